@@ -1,0 +1,94 @@
+//! Errors that a user reads: one clear message, the place in the study it is about, and what to do.
+//!
+//! Must not know: how a message is drawn (that is the command line's business) or which file a place is in.
+
+/// A place in a study's text. Lines and columns count from 1, columns in characters; `offset` and `length` count bytes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    pub line: usize,
+    pub column: usize,
+    pub offset: usize,
+    pub length: usize,
+}
+
+/// What is wrong with a study, found before anything runs (exit code 2).
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{message}")]
+pub struct Diagnostic {
+    /// One sentence: what was found and what was expected.
+    pub message: String,
+    /// Where; `None` only when the whole file is meant.
+    pub place: Option<Place>,
+    /// What to write instead.
+    pub help: Option<String>,
+}
+
+impl Diagnostic {
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), place: None, help: None }
+    }
+
+    #[must_use]
+    pub fn at(mut self, place: Place) -> Self {
+        self.place = Some(place);
+        self
+    }
+
+    /// Sets the place unless one is known already: the innermost place is the most telling.
+    #[must_use]
+    pub fn or_at(mut self, place: Place) -> Self {
+        self.place.get_or_insert(place);
+        self
+    }
+
+    #[must_use]
+    pub fn help(mut self, help: impl Into<String>) -> Self {
+        self.help = Some(help.into());
+        self
+    }
+}
+
+/// Why a stage that ran could not give its tables (exit code 3).
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Failure {
+    /// The stage's own finding: the message says what, with the values and the admissible range.
+    #[error("{0}")]
+    Failed(String),
+    /// The user asked to stop; nothing of this stage is kept.
+    #[error("stopped before it finished")]
+    Stopped,
+}
+
+impl Failure {
+    #[must_use]
+    pub fn new(message: impl Into<String>) -> Self {
+        Self::Failed(message.into())
+    }
+}
+
+/// The known name nearest to `name`, when it is near enough to be a likely slip.
+#[must_use]
+pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    let mut best: Option<(f64, &str)> = None;
+    for candidate in known {
+        let likeness = strsim::normalized_damerau_levenshtein(name, candidate).max(
+            // A name that is a word of a longer one (`addendum` of `addendum_coefficient`) is a likely slip too.
+            if !name.is_empty() && candidate.split('_').any(|word| word == name) { 0.7 } else { 0.0 },
+        );
+        if likeness >= 0.5 && best.is_none_or(|(so_far, _)| likeness > so_far) {
+            best = Some((likeness, candidate));
+        }
+    }
+    best.map(|(_, candidate)| candidate)
+}
+
+/// `did you mean …`, or the list of what is known.
+#[must_use]
+pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
+    if let Some(candidate) = nearest(name, known.clone()) {
+        return format!("did you mean `{candidate}`?");
+    }
+    let names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
+    if names.is_empty() { "there are none to choose from".to_owned() } else { format!("known here: {}", names.join(", ")) }
+}

@@ -1,0 +1,10 @@
+//! What every other layer stands on: errors with a place, units, declared parameters, canonical digests, seeds.
+//!
+//! Must not know: gears, graphs, files, YAML.
+
+pub mod digest;
+pub mod error;
+pub mod parameter;
+pub mod record;
+pub mod seed;
+pub mod units;

@@ -1,0 +1,141 @@
+//! Declared parameters: what a stage kind, a modification family, a stiffness method or an optimiser can be told.
+//!
+//! One declaration serves the reader of the YAML, its messages, the JSON schema, `gearstudy kinds`, the canonical
+//! digest and the conformance tests, so a new member is one file with one table of fields. Must not know: YAML, and
+//! what any parameter means. Ranges are inclusive and in SI.
+
+use super::units::Dimension;
+
+/// What a field may hold.
+#[derive(Clone, Copy)]
+pub enum Shape {
+    /// A number with a unit, inside `least..=most` (SI).
+    Quantity { dimension: Dimension, least: f64, most: f64 },
+    /// A number with any unit, or none: a published value.
+    AnyQuantity,
+    /// A plain number.
+    Number { least: f64, most: f64 },
+    Integer { least: i64, most: i64 },
+    Flag,
+    Text,
+    /// One of a few words.
+    Choice(&'static [Choice]),
+    /// The name of a stage of one of these kinds.
+    Reference(&'static [&'static str]),
+    /// A list; a single item stands for a list of one.
+    List(&'static Shape),
+    /// A list of lists' worth of named items: names chosen by the user, in the order of the study.
+    Map(&'static Shape),
+    /// Fields by name.
+    Group(&'static [Field]),
+    /// Exactly one member of a family: `name`, or `name: { fields }`.
+    Member(fn() -> &'static [Member]),
+}
+
+/// A word that a field may hold, and what it means.
+#[derive(Clone, Copy)]
+pub struct Choice {
+    pub name: &'static str,
+    pub summary: &'static str,
+}
+
+/// One member of a family as a user sees it.
+#[derive(Clone, Copy)]
+pub struct Member {
+    pub name: &'static str,
+    pub summary: &'static str,
+    pub fields: &'static [Field],
+}
+
+/// Whether a field must be given, and what stands when it is not (written as in a study).
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Presence {
+    Required,
+    Optional,
+    Default(&'static str),
+}
+
+/// How many values a quantity may be given.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Span {
+    /// One.
+    Single,
+    /// One, a list, or `{ from, to, count }`: an axis of the stage's tables. The stage is run in chunks of this many.
+    Axis { chunk: usize },
+    /// One, or, where an optimiser chooses, `[least, most]`.
+    Range,
+}
+
+/// One declared parameter.
+#[derive(Clone, Copy)]
+pub struct Field {
+    pub name: &'static str,
+    pub shape: Shape,
+    pub presence: Presence,
+    pub span: Span,
+    /// One sentence with the symbol and the unit.
+    pub summary: &'static str,
+}
+
+impl Field {
+    #[must_use]
+    pub const fn new(name: &'static str, shape: Shape, summary: &'static str) -> Self {
+        Self { name, shape, presence: Presence::Required, span: Span::Single, summary }
+    }
+
+    /// A quantity inside `least..=most` (SI).
+    #[must_use]
+    pub const fn quantity(name: &'static str, dimension: Dimension, least: f64, most: f64, summary: &'static str) -> Self {
+        Self::new(name, Shape::Quantity { dimension, least, most }, summary)
+    }
+
+    #[must_use]
+    pub const fn number(name: &'static str, least: f64, most: f64, summary: &'static str) -> Self {
+        Self::new(name, Shape::Number { least, most }, summary)
+    }
+
+    #[must_use]
+    pub const fn integer(name: &'static str, least: i64, most: i64, summary: &'static str) -> Self {
+        Self::new(name, Shape::Integer { least, most }, summary)
+    }
+
+    #[must_use]
+    pub const fn choice(name: &'static str, choices: &'static [Choice], summary: &'static str) -> Self {
+        Self::new(name, Shape::Choice(choices), summary)
+    }
+
+    #[must_use]
+    pub const fn reference(name: &'static str, kinds: &'static [&'static str], summary: &'static str) -> Self {
+        Self::new(name, Shape::Reference(kinds), summary)
+    }
+
+    #[must_use]
+    pub const fn group(name: &'static str, fields: &'static [Field], summary: &'static str) -> Self {
+        Self::new(name, Shape::Group(fields), summary)
+    }
+
+    #[must_use]
+    pub const fn optional(mut self) -> Self {
+        self.presence = Presence::Optional;
+        self
+    }
+
+    /// `text` is read as if it stood in the study.
+    #[must_use]
+    pub const fn default(mut self, text: &'static str) -> Self {
+        self.presence = Presence::Default(text);
+        self
+    }
+
+    #[must_use]
+    pub const fn axis(mut self, chunk: usize) -> Self {
+        self.span = Span::Axis { chunk };
+        self
+    }
+
+    #[must_use]
+    pub const fn range(mut self) -> Self {
+        self.span = Span::Range;
+        self
+    }
+}

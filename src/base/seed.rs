@@ -1,0 +1,56 @@
+//! Random numbers that depend on nothing but the study's seed, the stage and the row.
+//!
+//! `ChaCha8`, keyed by a digest of (study seed, stage name), one stream per row: no order of execution and no thread
+//! count can enter. Must not know: what the numbers are used for.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::SeedableRng;
+
+use super::digest::{Digest, Writer};
+
+/// The seed of one stage.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Seed(Digest);
+
+impl Seed {
+    /// The seed of the stage `stage` in a study whose seed is `study`.
+    #[must_use]
+    pub fn of_stage(study: u64, stage: &str) -> Self {
+        Self(Writer::new("gearstudy 1 stage seed").digest(&number(study)).text(stage).finish())
+    }
+
+    #[must_use]
+    pub fn digest(&self) -> Digest {
+        self.0
+    }
+
+    /// The generator of row `stream`.
+    #[must_use]
+    pub fn generator(&self, stream: u64) -> ChaCha8Rng {
+        let mut generator = ChaCha8Rng::from_seed(self.0.0);
+        generator.set_stream(stream);
+        generator
+    }
+}
+
+fn number(value: u64) -> Digest {
+    let mut bytes = [0; 32];
+    bytes[..8].copy_from_slice(&value.to_le_bytes());
+    Digest(bytes)
+}
+
+#[cfg(test)]
+mod tests {
+    use rand_core::Rng;
+
+    use super::*;
+
+    #[test]
+    fn streams_and_stages_are_apart_and_repeat() {
+        let draw = |study, stage: &str, stream| Seed::of_stage(study, stage).generator(stream).next_u64();
+        assert_eq!(draw(7, "optimum", 0), draw(7, "optimum", 0));
+        assert_ne!(draw(7, "optimum", 0), draw(7, "optimum", 1));
+        assert_ne!(draw(7, "optimum", 0), draw(8, "optimum", 0));
+        assert_ne!(draw(7, "optimum", 0), draw(7, "optimum2", 0));
+    }
+}

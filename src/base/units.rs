@@ -1,0 +1,312 @@
+//! Quantities with units: reading `7.81 um` and `19.05 N/(mm um)` into SI, and writing SI in a table's unit.
+//!
+//! Decimal prefixes are applied to the decimal text, not to the binary number, so `0.00781 mm` and `7.81 um` are the
+//! same bits and give the same cache key. Must not know: which field of a study a quantity belongs to.
+
+use std::f64::consts::PI;
+
+/// Exponents of metre, kilogram, second and radian.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Dimension {
+    pub length: i8,
+    pub mass: i8,
+    pub time: i8,
+    pub angle: i8,
+}
+
+const fn dimension(length: i8, mass: i8, time: i8, angle: i8) -> Dimension {
+    Dimension { length, mass, time, angle }
+}
+
+pub const RATIO: Dimension = dimension(0, 0, 0, 0);
+pub const LENGTH: Dimension = dimension(1, 0, 0, 0);
+pub const ANGLE: Dimension = dimension(0, 0, 0, 1);
+pub const FORCE: Dimension = dimension(1, 1, -2, 0);
+pub const TORQUE: Dimension = dimension(2, 1, -2, 0);
+pub const STRESS: Dimension = dimension(-1, 1, -2, 0);
+/// Stiffness, N/m; also load per face width.
+pub const STIFFNESS: Dimension = dimension(0, 1, -2, 0);
+/// Stiffness per face width, N/(mm µm): the dimension of a stress.
+pub const SPECIFIC_STIFFNESS: Dimension = STRESS;
+pub const PER_AREA: Dimension = dimension(-2, 0, 0, 0);
+pub const AREA: Dimension = dimension(2, 0, 0, 0);
+pub const TIME: Dimension = dimension(0, 0, 1, 0);
+
+impl Dimension {
+    fn times(self, other: Self, power: i8) -> Self {
+        dimension(
+            self.length.saturating_add(other.length.saturating_mul(power)),
+            self.mass.saturating_add(other.mass.saturating_mul(power)),
+            self.time.saturating_add(other.time.saturating_mul(power)),
+            self.angle.saturating_add(other.angle.saturating_mul(power)),
+        )
+    }
+
+    /// The name of the dimension and units a user may write, for messages.
+    #[must_use]
+    pub fn describe(self) -> (&'static str, &'static [&'static str]) {
+        match self {
+            RATIO => ("a ratio", &["%"]),
+            LENGTH => ("a length", &["mm", "um", "m"]),
+            ANGLE => ("an angle", &["deg", "rad"]),
+            FORCE => ("a force", &["N", "kN"]),
+            TORQUE => ("a torque", &["N m", "N mm"]),
+            STRESS => ("a stress", &["GPa", "MPa", "Pa", "N/(mm um)"]),
+            STIFFNESS => ("a stiffness or a load per width", &["N/m", "N/um", "N/mm"]),
+            PER_AREA => ("a reciprocal squared length", &["1/um^2", "1/mm^2"]),
+            AREA => ("an area", &["um^2", "mm^2"]),
+            TIME => ("a time", &["s", "ms", "us"]),
+            _ => ("a quantity", &[]),
+        }
+    }
+}
+
+/// A unit as a power of ten, a factor that is no power of ten, and its dimension: `SI = value · 10^ten · factor`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    pub ten: i32,
+    pub factor: f64,
+    pub dimension: Dimension,
+}
+
+/// Symbol, power of ten, other factor, dimension.
+const UNITS: &[(&str, i32, f64, Dimension)] = &[
+    ("m", 0, 1.0, LENGTH),
+    ("cm", -2, 1.0, LENGTH),
+    ("mm", -3, 1.0, LENGTH),
+    ("um", -6, 1.0, LENGTH),
+    ("µm", -6, 1.0, LENGTH),
+    ("μm", -6, 1.0, LENGTH),
+    ("nm", -9, 1.0, LENGTH),
+    ("rad", 0, 1.0, ANGLE),
+    ("mrad", -3, 1.0, ANGLE),
+    ("urad", -6, 1.0, ANGLE),
+    ("deg", 0, PI / 180.0, ANGLE),
+    ("°", 0, PI / 180.0, ANGLE),
+    ("N", 0, 1.0, FORCE),
+    ("kN", 3, 1.0, FORCE),
+    ("Nm", 0, 1.0, TORQUE),
+    ("Nmm", -3, 1.0, TORQUE),
+    ("kNm", 3, 1.0, TORQUE),
+    ("Pa", 0, 1.0, STRESS),
+    ("kPa", 3, 1.0, STRESS),
+    ("MPa", 6, 1.0, STRESS),
+    ("GPa", 9, 1.0, STRESS),
+    ("kg", 0, 1.0, dimension(0, 1, 0, 0)),
+    ("s", 0, 1.0, TIME),
+    ("ms", -3, 1.0, TIME),
+    ("us", -6, 1.0, TIME),
+    ("ns", -9, 1.0, TIME),
+    ("%", -2, 1.0, RATIO),
+    ("1", 0, 1.0, RATIO),
+];
+
+/// The symbols that [`parse_unit`] knows.
+pub fn symbols() -> impl Iterator<Item = &'static str> + Clone {
+    UNITS.iter().map(|unit| unit.0)
+}
+
+/// Why a text is no quantity of the wanted dimension.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum UnitError {
+    #[error("`{0}` is not a number followed by a unit")]
+    NotANumber(String),
+    #[error("the unit is missing")]
+    Missing,
+    #[error("unknown unit `{0}`")]
+    Unknown(String),
+    #[error("`{0}` cannot be read as a unit")]
+    Malformed(String),
+    #[error("the number is not finite")]
+    NotFinite,
+}
+
+/// A number and its unit as read; `value` is in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Quantity {
+    pub value: f64,
+    pub dimension: Dimension,
+    /// Whether a unit stood in the text at all.
+    pub has_unit: bool,
+}
+
+/// Reads `number unit`, for example `7.81 um`, `1 %`, `50 N m`, `2.738e8 N/m`.
+///
+/// # Errors
+/// When there is no number, the unit is unknown or malformed, or the value overflows.
+pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
+    let text = text.trim();
+    let split = number_length(text);
+    let (number, unit_text) = text.split_at(split);
+    if number.is_empty() || number.parse::<f64>().is_err() {
+        return Err(UnitError::NotANumber(text.to_owned()));
+    }
+    let unit_text = unit_text.trim();
+    let unit = if unit_text.is_empty() {
+        Unit { ten: 0, factor: 1.0, dimension: RATIO }
+    } else {
+        parse_unit(unit_text)?
+    };
+    let value = shifted(number, unit.ten)? * unit.factor;
+    if !value.is_finite() {
+        return Err(UnitError::NotFinite);
+    }
+    Ok(Quantity { value, dimension: unit.dimension, has_unit: !unit_text.is_empty() })
+}
+
+/// Bytes of the leading decimal number; an `e` counts only when digits follow it.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let mut at = usize::from(matches!(bytes.first(), Some(b'+' | b'-')));
+    while at < bytes.len() && (bytes[at].is_ascii_digit() || bytes[at] == b'.') {
+        at += 1;
+    }
+    if matches!(bytes.get(at), Some(b'e' | b'E')) {
+        let mut end = at + 1 + usize::from(matches!(bytes.get(at + 1), Some(b'+' | b'-')));
+        if bytes.get(end).is_some_and(u8::is_ascii_digit) {
+            while bytes.get(end).is_some_and(u8::is_ascii_digit) {
+                end += 1;
+            }
+            at = end;
+        }
+    }
+    at
+}
+
+/// `number · 10^ten`, rounded once.
+fn shifted(number: &str, ten: i32) -> Result<f64, UnitError> {
+    let (mantissa, exponent) = match number.find(['e', 'E']) {
+        Some(at) => (&number[..at], number[at + 1..].parse::<i32>().map_err(|_| UnitError::NotFinite)?),
+        None => (number, 0),
+    };
+    format!("{mantissa}e{}", exponent.saturating_add(ten)).parse().map_err(|_| UnitError::NotFinite)
+}
+
+/// Reads a unit: symbols multiplied by a space or `*`, divided by `/`, with `^n` and one level of brackets.
+///
+/// # Errors
+/// When a symbol is unknown or the text is malformed.
+pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
+    let malformed = || UnitError::Malformed(text.to_owned());
+    let mut unit = Unit { ten: 0, factor: 1.0, dimension: RATIO };
+    let mut sign: i8 = 1;
+    let mut in_brackets = false;
+    let mut divided = false;
+    let mut rest = text.trim_start();
+    while let Some(first) = rest.chars().next() {
+        match first {
+            '*' | '·' => rest = &rest[first.len_utf8()..],
+            '/' if !divided => {
+                (sign, divided) = (-1, true);
+                rest = &rest[1..];
+            }
+            '(' if !in_brackets => {
+                in_brackets = true;
+                rest = &rest[1..];
+            }
+            ')' if in_brackets => {
+                // What follows the bracket is multiplied again.
+                (in_brackets, sign) = (false, 1);
+                rest = &rest[1..];
+            }
+            _ => {
+                let end = rest.find([' ', '*', '·', '/', '(', ')', '^', '²', '³']).unwrap_or(rest.len());
+                let symbol = &rest[..end];
+                if symbol.is_empty() {
+                    return Err(malformed());
+                }
+                rest = &rest[end..];
+                let power = take_power(&mut rest).ok_or_else(malformed)?;
+                let &(_, ten, factor, dimension) = UNITS
+                    .iter()
+                    .find(|unit| unit.0 == symbol)
+                    .ok_or_else(|| UnitError::Unknown(symbol.to_owned()))?;
+                let signed = sign * power;
+                unit.ten += ten * i32::from(signed);
+                #[allow(clippy::float_cmp)] // exactly 1 means: a power of ten, nothing to multiply
+                if factor != 1.0 {
+                    unit.factor *= factor.powi(i32::from(signed));
+                }
+                unit.dimension = unit.dimension.times(dimension, signed);
+            }
+        }
+        rest = rest.trim_start();
+    }
+    if in_brackets { Err(malformed()) } else { Ok(unit) }
+}
+
+/// Reads `^n`, `²`, `³` or nothing; powers from 1 to 9.
+fn take_power(rest: &mut &str) -> Option<i8> {
+    for (mark, power) in [("²", 2), ("³", 3)] {
+        if let Some(after) = rest.strip_prefix(mark) {
+            *rest = after;
+            return Some(power);
+        }
+    }
+    let Some(after) = rest.strip_prefix('^') else { return Some(1) };
+    let digit = after.chars().next()?.to_digit(10)?;
+    *rest = &after[1..];
+    i8::try_from(digit).ok().filter(|power| *power > 0)
+}
+
+/// `si` expressed in `unit` (a text such as `um`); used wherever a number is shown.
+///
+/// # Panics
+/// When `unit` is no unit. Units of columns are literals of this program, and a test reads every one of them.
+#[must_use]
+pub fn in_unit(si: f64, unit: &str) -> f64 {
+    if unit.is_empty() {
+        return si;
+    }
+    let unit = parse_unit(unit).expect("a column's unit can be parsed");
+    // Dividing by an exact power of ten rounds once; multiplying by an inexact 1e-6 would round twice.
+    let value = si / unit.factor;
+    if unit.ten >= 0 { value / 10f64.powi(unit.ten) } else { value * 10f64.powi(-unit.ten) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn si(text: &str) -> f64 {
+        parse_quantity(text).unwrap().value
+    }
+
+    #[test]
+    fn the_same_length_in_two_units_has_the_same_bits() {
+        for (a, b) in [("7.81 um", "0.00781 mm"), ("206 GPa", "206000 MPa"), ("6.93um", "6.93e-6 m")] {
+            assert_eq!(si(a).to_bits(), si(b).to_bits(), "{a} and {b}");
+        }
+    }
+
+    #[test]
+    fn compound_units_have_their_dimension() {
+        let stiffness = parse_quantity("19.05 N/(mm um)").unwrap();
+        assert_eq!(stiffness.dimension, SPECIFIC_STIFFNESS);
+        assert_eq!(stiffness.value.to_bits(), 19.05e9_f64.to_bits());
+        assert_eq!(parse_quantity("50 N m").unwrap().dimension, TORQUE);
+        assert_eq!(parse_quantity("50 N*m").unwrap().dimension, TORQUE);
+        assert_eq!(parse_quantity("3 1/um^2").unwrap().dimension, PER_AREA);
+        assert_eq!(si("3 1/um²").to_bits(), 3e12_f64.to_bits());
+        assert_eq!(si("1 %").to_bits(), 0.01_f64.to_bits());
+        assert_eq!(si("180 deg").to_bits(), PI.to_bits());
+    }
+
+    #[test]
+    fn what_is_no_quantity_is_refused() {
+        assert_eq!(parse_quantity("fast"), Err(UnitError::NotANumber("fast".into())));
+        assert_eq!(parse_quantity("3 furlong"), Err(UnitError::Unknown("furlong".into())));
+        assert_eq!(parse_quantity("1e999 m"), Err(UnitError::NotFinite));
+        for text in ["3 N/(mm", "3 m^", "3 m^0", "3 N/mm/um", "3 )"] {
+            assert!(parse_quantity(text).is_err(), "{text}");
+        }
+        assert!(!parse_quantity("3").unwrap().has_unit);
+    }
+
+    #[test]
+    fn shown_values_round_trip() {
+        for (text, unit, shown) in [("7.81 um", "um", 7.81), ("14.079 mm", "mm", 14.079), ("2.738e8 N/m", "N/m", 2.738e8)] {
+            assert!((in_unit(si(text), unit) - shown).abs() <= f64::EPSILON * shown, "{text}");
+        }
+    }
+}

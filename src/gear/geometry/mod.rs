@@ -1,0 +1,102 @@
+//! Spur gears and pairs of them, in the terms of ISO 21771. Lengths in m, angles in rad.
+//!
+//! Must not know: stiffness, modification.
+
+use super::compliance::Material;
+
+/// Basic rack (ISO 53), in units of the module.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rack {
+    /// h_aP*.
+    pub addendum: f64,
+    /// h_fP*.
+    pub dedendum: f64,
+    /// ρ_fP*.
+    pub tip_radius: f64,
+}
+
+/// What defines one gear.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Specification {
+    /// z.
+    pub teeth: u32,
+    /// m \[m\].
+    pub module: f64,
+    /// α \[rad\].
+    pub pressure_angle: f64,
+    /// x, in units of the module.
+    pub profile_shift: f64,
+    pub rack: Rack,
+    /// r_a \[m\] when it is not m(z/2 + h_aP* + x).
+    pub tip_radius: Option<f64>,
+    /// b \[m\].
+    pub face_width: f64,
+    /// Radius of the bore, where the body is clamped \[m\].
+    pub bore_radius: f64,
+    pub material: Material,
+}
+
+/// Which of the two gears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Side {
+    Pinion,
+    Gear,
+}
+
+/// One gear with everything that follows from its specification.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Gear {
+    pub specification: Specification,
+    /// r = m z / 2.
+    pub reference_radius: f64,
+    /// r_b.
+    pub base_radius: f64,
+    /// r_a.
+    pub tip_radius: f64,
+    /// r_f.
+    pub root_radius: f64,
+    /// Radius at which the generated root curve meets the involute.
+    pub form_radius: f64,
+    /// ψ_b: half the angle of the tooth at the base circle \[rad\].
+    pub half_base_angle: f64,
+}
+
+/// Two gears on their centre distance. Path positions `s` \[m\] count from the pinion's tangent point T1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Pair {
+    pub pinion: Gear,
+    pub gear: Gear,
+    /// a_w \[m\].
+    pub centre_distance: f64,
+    /// α_w \[rad\].
+    pub working_pressure_angle: f64,
+    /// L = a_w sin α_w, the length T1T2 \[m\].
+    pub tangent_length: f64,
+    /// s_A, start of contact.
+    pub start_of_contact: f64,
+    /// s_E, end of contact.
+    pub end_of_contact: f64,
+    /// p_b \[m\].
+    pub base_pitch: f64,
+    /// ε_α.
+    pub contact_ratio: f64,
+}
+
+impl Pair {
+    #[must_use]
+    pub fn side(&self, side: Side) -> &Gear {
+        match side {
+            Side::Pinion => &self.pinion,
+            Side::Gear => &self.gear,
+        }
+    }
+
+    /// The roll angle \[rad\] of a gear's contact point at path position `s`: u1 = s/r_b1, u2 = (L − s)/r_b2.
+    #[must_use]
+    pub fn roll(&self, side: Side, s: f64) -> f64 {
+        match side {
+            Side::Pinion => s / self.pinion.base_radius,
+            Side::Gear => (self.tangent_length - s) / self.gear.base_radius,
+        }
+    }
+}

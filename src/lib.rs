@@ -1,0 +1,15 @@
+//! gearstudy: declarative, reproducible studies of spur-gear tooth modifications.
+//!
+//! The layers and what may import what are in `ARCHITECTURE.md`; `tests/layering.rs` holds them to it.
+
+pub mod base;
+pub mod cli;
+pub mod gear;
+pub mod numeric;
+pub mod optimize;
+pub mod report;
+pub mod runner;
+pub mod stage;
+pub mod store;
+pub mod study;
+pub mod table;

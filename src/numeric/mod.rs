@@ -1,0 +1,5 @@
+//! Numerical methods on plain numbers: interpolation, quadrature, roots, complementarity, harmonics.
+//!
+//! Must not know: gears, files, units of anything.
+
+pub mod chebyshev;

@@ -1,0 +1,115 @@
+//! `manifest.json`: what was run, from what, where, and what came of it.
+//!
+//! Must not know: how any of it was computed. Field names are read by other programs: additions only.
+
+use serde::{Deserialize, Serialize};
+
+pub const FORMAT: u32 = 1;
+
+/// The record of one run of one study.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct Manifest {
+    pub format: u32,
+    pub study: String,
+    pub title: String,
+    pub seed: u64,
+    /// The paper the study reproduces, if any: a key and the tables and figures it covers.
+    pub source: Option<Source>,
+    /// BLAKE3 of the study file's bytes.
+    pub study_digest: String,
+    pub program: Program,
+    pub machine: Machine,
+    /// UTC, RFC 3339. The only time in the file besides the seconds.
+    pub written: String,
+    pub seconds: f64,
+    pub stages: Vec<StageRecord>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct Source {
+    pub paper: String,
+    #[serde(default)]
+    pub tables: Vec<i64>,
+    #[serde(default)]
+    pub figures: Vec<i64>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct Program {
+    pub version: String,
+    /// The commit of the folder the study lies in, when it is a git work tree.
+    pub commit: Option<String>,
+    pub uncommitted_changes: Option<bool>,
+    pub rustc: String,
+    pub profile: String,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct Machine {
+    pub system: String,
+    pub processor: String,
+    pub cores: usize,
+    pub threads: usize,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct StageRecord {
+    pub name: String,
+    pub kind: String,
+    pub version: u32,
+    /// One per chunk.
+    pub keys: Vec<KeyRecord>,
+    /// `hit`, `ran`, `failed`, `skipped`.
+    pub status: String,
+    /// Why it ran.
+    pub why: String,
+    /// Seconds of computing, when it was computed (kept from then on a hit).
+    pub seconds: f64,
+    pub warnings: Vec<String>,
+    pub left_out: Vec<OmissionRecord>,
+    pub tables: Vec<TableRecord>,
+}
+
+/// The parts of a cache key, each a digest in hexadecimal, so that two runs can say *why* they differ.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+pub struct KeyRecord {
+    pub key: String,
+    pub config: String,
+    pub code: String,
+    pub seed: String,
+    pub demand: String,
+    /// Port, and the digest of what came in through it.
+    pub inputs: Vec<(String, String)>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+pub struct OmissionRecord {
+    pub what: String,
+    pub why: String,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct TableRecord {
+    /// `stage.table`.
+    pub name: String,
+    pub description: String,
+    pub rows: usize,
+    /// Content hash: schema and values without volatile columns.
+    pub content: String,
+    /// The Parquet file, relative to the manifest.
+    pub file: String,
+    pub columns: Vec<ColumnRecord>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+pub struct ColumnRecord {
+    pub name: String,
+    #[serde(rename = "type")]
+    pub kind: String,
+    pub unit: String,
+    pub description: String,
+    pub key: bool,
+    pub volatile: bool,
+    pub absolute_tolerance: f64,
+    pub relative_tolerance: f64,
+}

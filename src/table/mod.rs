@@ -1,0 +1,7 @@
+//! Tables: typed columns with unit, description, tolerance; rows sorted by key; a content hash; cell selection.
+//!
+//! Must not know: files, stages, gears.
+
+pub mod data;
+pub mod schema;
+pub mod select;
