@@ -3,6 +3,7 @@
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
 //! stage does not recompute another.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -19,20 +20,29 @@ fn main() -> io::Result<()> {
     }
     let mut stages = Vec::new();
     collect(&source.join("stage"), &mut stages)?;
-    // Files of `stage/` that are no kind of their own (codecs, the trait) are shared by all kinds.
-    let (kinds, common): (Vec<_>, Vec<_>) = stages.into_iter().partition(|path| path.parent() == Some(Path::new("src/stage/kinds")));
-    shared.extend(common);
+    // Files of `stage/` that belong to no single kind (codecs, the trait) are shared by all kinds.
+    let mut kinds: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for path in stages {
+        match kind_of(&path) {
+            Some(kind) => kinds.entry(kind).or_default().push(path),
+            None => shared.push(path),
+        }
+    }
     shared.sort();
     let base = digest(&shared)?;
     let mut lines = format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n");
-    for path in kinds {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        if name != "mod" {
-            lines += &format!("    ({name:?}, \"{}\"),\n", digest(&[path])?);
-        }
+    for (kind, paths) in kinds {
+        lines += &format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?);
     }
     lines += "];\n";
     fs::write(Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("code.rs"), lines)
+}
+
+/// The kind that `src/stage/kinds/<kind>.rs` or a file of `src/stage/kinds/<kind>/` belongs to.
+fn kind_of(path: &Path) -> Option<String> {
+    let first = path.strip_prefix("src/stage/kinds").ok()?.components().next()?;
+    let name = Path::new(&first).file_stem()?.to_string_lossy().into_owned();
+    (name != "mod").then_some(name)
 }
 
 fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> io::Result<()> {

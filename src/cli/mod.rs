@@ -1,1 +1,111 @@
-//! Placeholder.
+//! The command line: words in, exit code out. The only layer that prints.
+//!
+//! Must not know: how anything is computed.
+
+pub mod arguments;
+pub mod draw;
+pub mod print;
+pub mod progress;
+pub mod run;
+pub mod show;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+use crate::study::{self, LoadError, Study};
+
+use arguments::{Arguments, Command};
+
+/// Why a command ended without doing all of its work.
+#[derive(Debug, thiserror::Error)]
+pub enum Ending {
+    /// A word or a name on the command line that makes no sense, or a file that cannot be written.
+    #[error("{0}")]
+    Usage(String),
+    #[error("{0}")]
+    Invalid(Box<LoadError>),
+    /// A stage failed; what it said was printed where it happened.
+    #[error("{0}")]
+    Failed(String),
+    #[error("stopped; what was finished is kept, and the next run goes on from there")]
+    Stopped,
+}
+
+impl Ending {
+    /// The exit code, as the help lists it.
+    #[must_use]
+    pub fn code(&self) -> i32 {
+        match self {
+            Self::Usage(_) => 1,
+            Self::Invalid(_) => 2,
+            Self::Failed(_) => 3,
+            // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
+            Self::Stopped => 130,
+        }
+    }
+}
+
+/// What `70` in the help means.
+pub const BUG: i32 = 70;
+
+/// Runs the program with these words and gives its exit code.
+pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
+    let arguments = match Arguments::try_parse_from(words) {
+        Ok(arguments) => arguments,
+        Err(error) => {
+            // Help and version are asked for; everything else is a slip. When even this cannot be printed, the code says it.
+            let _ = error.print();
+            return i32::from(error.use_stderr());
+        }
+    };
+    match command(&arguments) {
+        Ok(()) => 0,
+        Err(ending) => {
+            match &ending {
+                Ending::Invalid(error) => draw::invalid_study(error),
+                other => eprintln!("gearstudy: {other}"),
+            }
+            ending.code()
+        }
+    }
+}
+
+fn command(arguments: &Arguments) -> Result<(), Ending> {
+    let places = &arguments.places;
+    let quiet = arguments.quiet;
+    match &arguments.command {
+        Command::New { file } => show::new_study(file),
+        Command::Check { studies } => show::check(&load_all(studies)?, quiet),
+        Command::Plan { studies, selection, json } => run::plan(&load_all(studies)?, places, selection, *json),
+        Command::Run { studies, selection, explain, dry_run: true, .. } => {
+            let _ = explain;
+            run::plan(&load_all(studies)?, places, selection, false)
+        }
+        Command::Run { studies, selection, explain, keep_going, jobs, .. } => {
+            let how = run::How { explain: *explain, keep_going: *keep_going, jobs: jobs.map(usize::from), quiet };
+            run::run(&load_all(studies)?, places, selection, &how)
+        }
+        Command::Status { studies, json } => run::status(&load_all(studies)?, places, *json),
+        Command::Report { studies } => run::report(&load_all(studies)?, places, quiet),
+        Command::Table { study, table, conditions, columns, format } => {
+            show::table(&load_all(std::slice::from_ref(study))?[0], places, table.as_deref(), conditions, columns, *format)
+        }
+        Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
+        Command::Kinds { kind } => show::kinds(kind.as_deref()),
+        Command::Schema => show::schema(),
+    }
+}
+
+/// Reads every study before anything runs, so that a slip in the second one costs nothing.
+fn load_all(paths: &[std::path::PathBuf]) -> Result<Vec<Study>, Ending> {
+    let studies: Vec<Study> =
+        paths.iter().map(|path| study::load(path)).collect::<Result<_, _>>().map_err(|error| Ending::Invalid(Box::new(error)))?;
+    for (index, study) in studies.iter().enumerate() {
+        if let Some(other) = studies[..index].iter().find(|other| other.name == study.name) {
+            let (a, b) = (other.path.display(), study.path.display());
+            return Err(Ending::Usage(format!("{a} and {b} are both called `{}`; their results would overwrite each other", study.name)));
+        }
+    }
+    Ok(studies)
+}

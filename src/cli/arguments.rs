@@ -1,0 +1,132 @@
+//! The words of the command line. Must not know: what any command does.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Declarative, reproducible studies of spur-gear tooth modifications.
+#[derive(Parser, Debug)]
+#[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
+#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, 4 differences found, \
+    70 a bug of this program, 130 stopped by Ctrl-C.")]
+pub struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+    #[command(flatten)]
+    pub places: Places,
+    /// Say only what went wrong.
+    #[arg(long, short, global = true)]
+    pub quiet: bool,
+}
+
+/// Where things are.
+#[derive(Args, Debug, Clone)]
+pub struct Places {
+    /// Folder for tables, manifest and report; each study has a folder of its own in it.
+    #[arg(long, global = true, value_name = "DIR", default_value = "results")]
+    pub results: PathBuf,
+    /// Folder of the cache of computed tables.
+    #[arg(long, global = true, value_name = "DIR", env = "GEARSTUDY_CACHE", default_value = ".gearstudy/cache")]
+    pub cache: PathBuf,
+}
+
+#[derive(Subcommand, Debug)]
+pub enum Command {
+    /// Write a small study to start from.
+    New {
+        /// The file to write; its name becomes the study's.
+        file: PathBuf,
+    },
+    /// Read studies and say what is wrong with them, without running anything.
+    Check {
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+    },
+    /// Say what a run would do, and why, and what it would leave out.
+    Plan {
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+        #[command(flatten)]
+        selection: Selection,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Run studies: compute what is missing, write tables, manifest and report.
+    Run {
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+        #[command(flatten)]
+        selection: Selection,
+        /// Say for every stage why it runs or not.
+        #[arg(long)]
+        explain: bool,
+        /// As `plan`: compute nothing, write nothing.
+        #[arg(long)]
+        dry_run: bool,
+        /// Go on with the stages that do not depend on one that failed.
+        #[arg(long)]
+        keep_going: bool,
+        /// How many threads to use [default: one per processor].
+        #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        jobs: Option<u16>,
+    },
+    /// Say what is up to date, stale or missing, and why.
+    Status {
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+    },
+    /// Print the verdicts of a study that was run, and write its report anew.
+    Report {
+        #[arg(required = true)]
+        studies: Vec<PathBuf>,
+    },
+    /// Print a table of a study that was run.
+    Table {
+        study: PathBuf,
+        /// `stage.table`; without it, the tables there are.
+        table: Option<String>,
+        /// Only rows where a column has this value; may be given several times.
+        #[arg(long = "where", value_name = "COLUMN=VALUE")]
+        conditions: Vec<String>,
+        /// Only these columns, in this order.
+        #[arg(long, value_delimiter = ',', value_name = "A,B")]
+        columns: Vec<String>,
+        #[arg(long, value_enum, default_value_t = Format::Pretty)]
+        format: Format,
+    },
+    /// Delete from the cache what no run has used lately.
+    Gc {
+        /// Keep what was used in the last N days.
+        #[arg(long, value_name = "N", default_value_t = 30)]
+        days: u32,
+        /// Only say what would be deleted.
+        #[arg(long)]
+        dry_run: bool,
+    },
+    /// List the kinds of stages, or say everything about one.
+    Kinds { kind: Option<String> },
+    /// Print the JSON schema of a study, for editors.
+    Schema,
+}
+
+/// Which stages, and whether to trust the cache.
+#[derive(Args, Debug, Clone, Default)]
+pub struct Selection {
+    /// Only these stages, and what they need.
+    #[arg(long, value_name = "STAGE,…", value_delimiter = ',')]
+    pub only: Vec<String>,
+    /// Compute even what is in the cache: everything, or `--force=STAGE,…` only these stages.
+    #[arg(long, value_name = "STAGE,…", value_delimiter = ',', num_args = 0.., require_equals = true)]
+    pub force: Option<Vec<String>>,
+}
+
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Format {
+    Pretty,
+    Csv,
+    Json,
+}

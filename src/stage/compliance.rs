@@ -1,0 +1,187 @@
+//! Compliances as tables: what the stiffness stage writes and every stage that loads teeth reads back.
+//!
+//! Values stand at Chebyshev nodes of the roll angle, so the series that comes back is the one that was written, to the
+//! last few bits. Must not know: which method made them.
+
+use crate::base::error::Failure;
+use crate::base::units::in_unit;
+use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use crate::numeric::chebyshev::{Series, nodes};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+use super::pair::si;
+
+/// Column and meaning of each series of a tooth.
+const SERIES: &[(&str, &str, &str, fn(&ToothCompliance) -> &Series)] = &[
+    ("bending", "nm/N", "Bending of the tooth, 1/k_b.", |tooth| &tooth.bending),
+    ("shear", "nm/N", "Shear of the tooth, 1/k_s.", |tooth| &tooth.shear),
+    ("axial", "nm/N", "Axial compression of the tooth, 1/k_a.", |tooth| &tooth.axial),
+    ("body", "nm/N", "Gear body under the tooth's own load, 1/k_f.", |tooth| &tooth.body),
+    ("contact_depth", "mm", "From the contact point to the tooth's centreline along the load line.", |tooth| &tooth.contact_depth),
+];
+
+#[must_use]
+pub fn compliance_schema() -> Schema {
+    let mut columns = vec![
+        Column::text("gear", "Which gear: pinion or gear.").key(),
+        Column::integer("node", "Chebyshev node, from 1 at the root side.").key(),
+        Column::float("roll_angle", "rad", "Roll angle of the loaded point."),
+        Column::float("radius", "mm", "Radius of the loaded point."),
+    ];
+    columns.extend(SERIES.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
+    Schema::new("compliance", "Compliance of one tooth of each gear over its whole face width, along its active flank.", columns)
+}
+
+#[must_use]
+pub fn neighbours_schema() -> Schema {
+    Schema::new(
+        "neighbours",
+        "Deflection of a tooth through the gear body per load on a neighbour.",
+        vec![
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::integer("neighbour", "How many pitches apart the two teeth are.").key(),
+            Column::integer("node", "Chebyshev node, from 1.").key(),
+            Column::float("roll_angle", "rad", "Roll angle of the tooth with the smaller roll angle."),
+            Column::float("compliance", "nm/N", "Deflection along the load line of one per load on the other; symmetric."),
+        ],
+    )
+}
+
+#[must_use]
+pub fn model_schema() -> Schema {
+    Schema::new(
+        "model",
+        "What the compliances were made with, and how contact is to be added.",
+        vec![
+            Column::text("method", "Method of the tooth compliance."),
+            Column::text("root", "Root curve of the teeth."),
+            Column::text("contact", "Contact law: linear or load_dependent."),
+            Column::text("coupling", "Whether loaded neighbours share the gear body: none or body."),
+        ],
+    )
+}
+
+/// The three tables of a pair's compliances.
+///
+/// # Errors
+/// When a compliance is not finite.
+pub fn write(compliance: &PairCompliance, base_radii: [f64; 2], method: &str, root: &str) -> Result<[Table; 3], TableError> {
+    let mut rows: Vec<Row> = Vec::new();
+    let mut neighbours: Vec<Row> = Vec::new();
+    for ((name, tooth), base_radius) in [("pinion", &compliance.pinion), ("gear", &compliance.gear)].into_iter().zip(base_radii) {
+        let values: Vec<Vec<f64>> = SERIES.iter().map(|(.., series)| series(tooth).node_values()).collect();
+        for (node, roll) in series_nodes(&tooth.bending).into_iter().enumerate() {
+            let radius = base_radius * (1.0 + roll * roll).sqrt();
+            let mut row: Row = vec![name.into(), (node + 1).into(), roll.into(), in_unit(radius, "mm").into()];
+            row.extend(SERIES.iter().zip(&values).map(|((_, unit, ..), values)| in_unit(values[node], unit).into()));
+            rows.push(row);
+        }
+        for (index, series) in tooth.neighbours.iter().enumerate() {
+            for (node, (roll, value)) in series_nodes(series).into_iter().zip(series.node_values()).enumerate() {
+                neighbours.push(vec![
+                    name.into(),
+                    (index + 1).into(),
+                    (node + 1).into(),
+                    roll.into(),
+                    in_unit(value, "nm/N").into(),
+                ]);
+            }
+        }
+    }
+    let contact = match compliance.contact {
+        ContactLaw::Linear => "linear",
+        ContactLaw::LoadDependent => "load_dependent",
+    };
+    let coupling = if compliance.coupled { "body" } else { "none" };
+    let model: Row = vec![method.into(), root.into(), contact.into(), coupling.into()];
+    Ok([
+        Table::from_rows(compliance_schema(), rows)?,
+        Table::from_rows(neighbours_schema(), neighbours)?,
+        Table::from_rows(model_schema(), vec![model])?,
+    ])
+}
+
+fn series_nodes(series: &Series) -> Vec<f64> {
+    nodes(series.lower(), series.upper(), series.coefficients().len())
+}
+
+/// The compliances that [`write`] wrote.
+///
+/// # Errors
+/// When a table is not one that [`write`] made.
+pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<PairCompliance, Failure> {
+    let contact = match model.texts("contact").first().map(String::as_str) {
+        Some("linear") => ContactLaw::Linear,
+        Some("load_dependent") => ContactLaw::LoadDependent,
+        other => return Err(Failure::new(format!("unknown contact law {other:?}"))),
+    };
+    Ok(PairCompliance {
+        pinion: tooth("pinion", compliance, neighbours)?,
+        gear: tooth("gear", compliance, neighbours)?,
+        contact,
+        coupled: model.texts("coupling").first().is_some_and(|coupling| coupling == "body"),
+    })
+}
+
+fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothCompliance, Failure> {
+    let rows: Vec<usize> = (0..table.rows()).filter(|&row| table.texts("gear")[row] == name).collect();
+    let series = |column: &str| series_from(table, column, &rows);
+    let mut across = Vec::new();
+    for neighbour in 1.. {
+        let rows: Vec<usize> = (0..neighbours.rows())
+            .filter(|&row| neighbours.texts("gear")[row] == name && neighbours.integers("neighbour")[row] == neighbour)
+            .collect();
+        if rows.is_empty() {
+            break;
+        }
+        across.push(series_from(neighbours, "compliance", &rows)?);
+    }
+    Ok(ToothCompliance {
+        bending: series("bending")?,
+        shear: series("shear")?,
+        axial: series("axial")?,
+        body: series("body")?,
+        contact_depth: series("contact_depth")?,
+        neighbours: across,
+    })
+}
+
+fn series_from(table: &Table, column: &str, rows: &[usize]) -> Result<Series, Failure> {
+    let rolls: Vec<f64> = rows.iter().map(|&row| table.floats("roll_angle")[row]).collect();
+    let (Some(first), Some(last)) = (rolls.first(), rolls.last()) else {
+        return Err(Failure::new(format!("table `{}` has no rows for this gear", table.name())));
+    };
+    // The outermost nodes are the interval's ends drawn in by cos(π/2n): undo that.
+    let shrink = libm::cos(std::f64::consts::PI / (2 * rolls.len()) as f64);
+    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first) / shrink);
+    let values: Vec<f64> = rows.iter().map(|&row| si(table, column, row)).collect();
+    Ok(Series::from_values(middle - half, middle + half, &values))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn compliances_come_back_to_the_last_bits() {
+        let tooth = |scale: f64| ToothCompliance {
+            bending: Series::fit(0.07, 0.62, 24, |u| scale * 1e-9 * libm::exp(u)),
+            shear: Series::fit(0.07, 0.62, 24, |u| scale * 4e-10 * (1.0 + u)),
+            axial: Series::fit(0.07, 0.62, 24, |u| scale * 1e-11 * u * u),
+            body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
+            contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
+            neighbours: vec![Series::fit(0.07, 0.29, 12, |u| scale * 3e-10 * (1.0 - u))],
+        };
+        let pair = PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
+        let [compliance, neighbours, model] = write(&pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
+        let back = read(&compliance, &neighbours, &model).unwrap();
+        assert!(back.coupled && back.contact == ContactLaw::LoadDependent);
+        for roll in [0.07, 0.2, 0.41, 0.62] {
+            assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);
+            assert!((back.pinion.contact_depth.value(roll) / pair.pinion.contact_depth.value(roll) - 1.0).abs() < 1e-14);
+        }
+        assert!((back.pinion.neighbours[0].value(0.15) / pair.pinion.neighbours[0].value(0.15) - 1.0).abs() < 1e-14);
+        assert_eq!(back.gear.neighbours.len(), 1);
+    }
+}

@@ -1,0 +1,188 @@
+//! Designs as tables: named lists of modifications, written by whoever makes them and read by whoever loads them.
+//!
+//! One row per parameter, so families of any shape share one table and a reader can query it. Values are in SI because
+//! a column of many parameters has no unit of its own. Must not know: what any parameter means.
+
+use crate::base::error::{Failure, Place};
+use crate::base::parameter::{Field, Member, Shape};
+use crate::base::record::{Entry, Record, Value};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+/// One modification: the family and its parameters.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    pub family: &'static str,
+    pub record: Record,
+}
+
+/// A named list of modifications that add up; an empty one is the unmodified pair.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedDesign {
+    pub name: String,
+    pub elements: Vec<Element>,
+}
+
+#[must_use]
+pub fn designs_schema() -> Schema {
+    Schema::new(
+        "designs",
+        "The designs, in the order of the study.",
+        vec![
+            Column::text("design", "Name of the design.").key(),
+            Column::integer("order", "Place in the study, from 1."),
+            Column::integer("elements", "How many modifications it adds up."),
+        ],
+    )
+}
+
+#[must_use]
+pub fn elements_schema() -> Schema {
+    Schema::new(
+        "elements",
+        "The modifications of each design, one row per parameter.",
+        vec![
+            Column::text("design", "Name of the design.").key(),
+            Column::integer("element", "Place in the design, from 1.").key(),
+            Column::text("family", "Family of the modification."),
+            Column::text("parameter", "Name of the parameter.").key(),
+            Column::float("value", "", "Value in SI; NaN where the parameter is a word.").allows_nan(),
+            Column::text("word", "The word, where the parameter is one."),
+        ],
+    )
+}
+
+/// The two tables of a list of designs.
+///
+/// # Errors
+/// When two designs have one name.
+pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
+    let mut names: Vec<Row> = Vec::new();
+    let mut rows: Vec<Row> = Vec::new();
+    for (order, design) in designs.iter().enumerate() {
+        names.push(vec![design.name.as_str().into(), (order + 1).into(), design.elements.len().into()]);
+        for (index, element) in design.elements.iter().enumerate() {
+            for (parameter, value, word) in flattened("", &element.record) {
+                rows.push(vec![
+                    design.name.as_str().into(),
+                    (index + 1).into(),
+                    element.family.into(),
+                    parameter.into(),
+                    value.into(),
+                    word.into(),
+                ]);
+            }
+        }
+    }
+    Ok([Table::from_rows(designs_schema(), names)?, Table::from_rows(elements_schema(), rows)?])
+}
+
+fn flattened(prefix: &str, record: &Record) -> Vec<(String, f64, String)> {
+    let mut flat = Vec::new();
+    for (name, entry) in &record.fields {
+        let name = format!("{prefix}{name}");
+        match &entry.value {
+            Value::Quantity(value) | Value::Number(value) => flat.push((name, *value, String::new())),
+            Value::Integer(value) => flat.push((name, *value as f64, String::new())),
+            Value::Flag(value) => flat.push((name, f64::from(u8::from(*value)), String::new())),
+            Value::Choice(word) => flat.push((name, f64::NAN, (*word).to_owned())),
+            Value::Text(word) => flat.push((name, f64::NAN, word.clone())),
+            Value::Group(record) => flat.extend(flattened(&format!("{name}."), record)),
+            // Ranges are replaced before a design is written; the other shapes do not occur in a family.
+            _ => {}
+        }
+    }
+    flat
+}
+
+/// The designs that [`write`] wrote, in their order; `families` says what the parameters are.
+///
+/// # Errors
+/// When a family or a word is not known any more.
+pub fn read(designs: &Table, elements: &Table, families: &[Member]) -> Result<Vec<NamedDesign>, Failure> {
+    let mut order: Vec<usize> = (0..designs.rows()).collect();
+    order.sort_by_key(|&row| designs.integers("order")[row]);
+    order.into_iter().map(|row| read_one(&designs.texts("design")[row], designs.integers("elements")[row], elements, families)).collect()
+}
+
+fn read_one(name: &str, count: i64, table: &Table, families: &[Member]) -> Result<NamedDesign, Failure> {
+    let mut elements = Vec::new();
+    for index in 1..=count {
+        let rows: Vec<usize> = (0..table.rows())
+            .filter(|&row| table.texts("design")[row] == name && table.integers("element")[row] == index)
+            .collect();
+        let first = *rows.first().ok_or_else(|| Failure::new(format!("design `{name}`: modification {index} has no rows")))?;
+        let word = &table.texts("family")[first];
+        let family = families.iter().find(|family| family.name == word);
+        let family = family.ok_or_else(|| Failure::new(format!("design `{name}`: unknown family `{word}`")))?;
+        let lookup = |parameter: &str| {
+            rows.iter()
+                .find(|&&row| table.texts("parameter")[row] == parameter)
+                .map(|&row| (table.floats("value")[row], table.texts("word")[row].as_str()))
+        };
+        elements.push(Element { family: family.name, record: rebuilt("", family.fields, &lookup)? });
+    }
+    Ok(NamedDesign { name: name.to_owned(), elements })
+}
+
+fn rebuilt<'a>(prefix: &str, fields: &[Field], lookup: &impl Fn(&str) -> Option<(f64, &'a str)>) -> Result<Record, Failure> {
+    let mut record = Record::default();
+    for field in fields {
+        let name = format!("{prefix}{}", field.name);
+        let value = match (&field.shape, lookup(&name)) {
+            (Shape::Group(inner), _) => {
+                let inner = rebuilt(&format!("{name}."), inner, lookup)?;
+                (!inner.fields.is_empty()).then_some(Value::Group(inner))
+            }
+            (_, None) => None,
+            (Shape::Choice(choices), Some((_, word))) => {
+                let choice = choices.iter().find(|choice| choice.name == word);
+                let choice = choice.ok_or_else(|| Failure::new(format!("`{word}` is no value of `{name}`")))?;
+                Some(Value::Choice(choice.name))
+            }
+            (Shape::Quantity { .. }, Some((value, _))) => Some(Value::Quantity(value)),
+            (Shape::Number { .. }, Some((value, _))) => Some(Value::Number(value)),
+            // Whole by construction and far below 2^53.
+            #[allow(clippy::cast_possible_truncation)]
+            (Shape::Integer { .. }, Some((value, _))) => Some(Value::Integer(value as i64)),
+            (Shape::Flag, Some((value, _))) => Some(Value::Flag(value != 0.0)),
+            (_, Some((_, word))) => Some(Value::Text(word.to_owned())),
+        };
+        if let Some(value) = value {
+            record.fields.push((field.name, Entry { value, place: Place::default() }));
+        }
+    }
+    Ok(record)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::parameter::Choice;
+    use crate::base::units::LENGTH;
+
+    const INNER: &[Field] = &[Field::number("factor", 0.0, 9.0, "")];
+    const FIELDS: &[Field] = &[
+        Field::choice("gear", &[Choice { name: "both", summary: "" }], ""),
+        Field::quantity("amount", LENGTH, 0.0, 1.0, "").optional(),
+        Field::group("preset", INNER, "").optional(),
+    ];
+
+    #[test]
+    fn designs_come_back_as_they_were_in_their_order() {
+        let entry = |value| Entry { value, place: Place::default() };
+        let both = ("gear", entry(Value::Choice("both")));
+        let preset = Record { fields: vec![("factor", entry(Value::Number(1.25)))], place: Place::default() };
+        let with_amount = Record { fields: vec![both.clone(), ("amount", entry(Value::Quantity(7.81e-6)))], place: Place::default() };
+        let with_preset = Record { fields: vec![both, ("preset", entry(Value::Group(preset)))], place: Place::default() };
+        let element = |record: &Record| Element { family: "relief", record: record.clone() };
+        let designs = vec![
+            NamedDesign { name: "z".into(), elements: vec![element(&with_amount), element(&with_preset)] },
+            NamedDesign { name: "a".into(), elements: vec![] },
+        ];
+        let [names, rows] = write(&designs).unwrap();
+        let families = [Member { name: "relief", summary: "", fields: FIELDS }];
+        assert_eq!(read(&names, &rows, &families).unwrap(), designs);
+        assert!(read(&names, &rows, &[]).is_err());
+    }
+}
