@@ -3,3 +3,5 @@
 //! Must not know: gears, files, units of anything.
 
 pub mod chebyshev;
+pub mod crossing;
+pub mod quadrature;

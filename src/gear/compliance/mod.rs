@@ -3,7 +3,83 @@
 //! Micro-geometry never enters these tables; it only changes gaps. Lengths in m, forces in N.
 //! Must not know: modification, load.
 
+pub mod energy;
+pub mod iso6336;
+pub mod ring;
+pub mod sainsot;
+pub mod sections;
+
+#[cfg(test)]
+mod tests;
+
+use crate::base::parameter::Member;
+use crate::base::record::Record;
+use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::{Pair, Side};
 use crate::numeric::chebyshev::Series;
+
+/// A way to find a tooth's compliance.
+pub struct Method {
+    pub member: Member,
+    /// The compliances of one gear of a pair, and what the user should know about them.
+    pub tooth: fn(&Record, &Pair, Side, &Setting) -> Result<(ToothCompliance, Vec<String>), ComplianceError>,
+}
+
+/// The methods, one line each.
+pub const METHODS: &[Method] = &[energy::METHOD];
+
+const MEMBERS: &[Member] = &[METHODS[0].member];
+
+/// The methods as a user sees them.
+#[must_use]
+pub fn members() -> &'static [Member] {
+    MEMBERS
+}
+
+/// The method called `name`.
+#[must_use]
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.member.name == name)
+}
+
+/// What every method is told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Setting {
+    pub root: RootShape,
+    pub contact: ContactLaw,
+    /// Whether loaded neighbours deflect each other through the body.
+    pub coupled: bool,
+}
+
+impl PairCompliance {
+    /// The compliances of both gears by one method.
+    ///
+    /// # Errors
+    /// When the method has no answer for one of the gears.
+    pub fn new(
+        method: &Method,
+        options: &Record,
+        pair: &Pair,
+        setting: &Setting,
+    ) -> Result<(Self, Vec<String>), ComplianceError> {
+        let (pinion, mut warnings) = (method.tooth)(options, pair, Side::Pinion, setting)?;
+        let (gear, more) = (method.tooth)(options, pair, Side::Gear, setting)?;
+        warnings.extend(more);
+        Ok((Self { pinion, gear, contact: setting.contact, coupled: setting.coupled }, warnings))
+    }
+}
+
+/// Why a method has no answer.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ComplianceError {
+    #[error("contact reaches the {gear} at radius {:.6} mm, below {:.6} mm where its root begins; choose another root", reached * 1e3, starts * 1e3)]
+    Root { gear: &'static str, reached: f64, starts: f64 },
+    #[error(
+        "the body formula of Sainsot et al. gives a negative compliance for the {gear} (h = r_f/r_bore = {radius_ratio:.3}, \
+         θ_f = {half_angle:.4} rad); it was fitted for h from 1.4 to 7 and θ_f from 0.01 to 0.12 rad"
+    )]
+    Body { gear: &'static str, radius_ratio: f64, half_angle: f64 },
+}
 
 /// Linear elastic, isotropic.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -2,6 +2,17 @@
 //!
 //! Must not know: stiffness, modification.
 
+pub mod error;
+pub mod gear;
+pub mod involute;
+pub mod pair;
+pub mod root;
+#[cfg(test)]
+pub mod testing;
+#[cfg(test)]
+mod tests;
+pub mod trochoid;
+
 use super::compliance::Material;
 
 /// Basic rack (ISO 53), in units of the module.
@@ -68,6 +79,8 @@ pub struct Pair {
     pub gear: Gear,
     /// a_w \[m\].
     pub centre_distance: f64,
+    /// a_w as it was given \[m\]; `None` when it follows from zero backlash.
+    pub given_centre_distance: Option<f64>,
     /// α_w \[rad\].
     pub working_pressure_angle: f64,
     /// L = a_w sin α_w, the length T1T2 \[m\].
@@ -80,23 +93,4 @@ pub struct Pair {
     pub base_pitch: f64,
     /// ε_α.
     pub contact_ratio: f64,
-}
-
-impl Pair {
-    #[must_use]
-    pub fn side(&self, side: Side) -> &Gear {
-        match side {
-            Side::Pinion => &self.pinion,
-            Side::Gear => &self.gear,
-        }
-    }
-
-    /// The roll angle \[rad\] of a gear's contact point at path position `s`: u1 = s/r_b1, u2 = (L − s)/r_b2.
-    #[must_use]
-    pub fn roll(&self, side: Side, s: f64) -> f64 {
-        match side {
-            Side::Pinion => s / self.pinion.base_radius,
-            Side::Gear => (self.tangent_length - s) / self.gear.base_radius,
-        }
-    }
 }
