@@ -3,4 +3,7 @@
 //! Must not know: files, clocks, threads, printing, YAML, global state.
 
 pub mod compliance;
+pub mod contact;
 pub mod geometry;
+pub mod modification;
+pub mod transmission_error;
