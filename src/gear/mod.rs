@@ -4,6 +4,8 @@
 
 pub mod compliance;
 pub mod contact;
+#[cfg(test)]
+pub(crate) mod fixtures;
 pub mod geometry;
 pub mod modification;
 pub mod transmission_error;
