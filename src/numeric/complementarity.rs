@@ -101,13 +101,7 @@ pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> 
 }
 
 /// Equilibrium with coupling; the rest as in [`balance`].
-pub fn balance_coupled(
-    springs: &impl Springs,
-    gaps: &[f64],
-    coupling: &Coupling,
-    total: f64,
-    above: f64,
-) -> Balance {
+pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
     let start = balance(springs, gaps, total, above);
     newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }

@@ -58,9 +58,9 @@ impl Face {
         cuts.sort_by(f64::total_cmp);
         cuts.dedup();
         let quadratic = |z: f64| {
-            parts().map(|part| part.lead_quadratic(z)).try_fold([0.0; 3], |sum, part| {
-                part.map(|part| [sum[0] + part[0], sum[1] + part[1], sum[2] + part[2]])
-            })
+            parts()
+                .map(|part| part.lead_quadratic(z))
+                .try_fold([0.0; 3], |sum, part| part.map(|part| [sum[0] + part[0], sum[1] + part[1], sum[2] + part[2]]))
         };
         let stretches = || cuts.windows(2).map(|cut| (cut[0], cut[1]));
         if closed_form {
@@ -96,7 +96,12 @@ impl Face {
         Self { offset, mean, shape: Shape::Quadratic(merged) }
     }
 
-    fn sliced(stretches: impl Iterator<Item = (f64, f64)>, width: f64, slices: usize, lead: impl Fn(f64) -> f64) -> Self {
+    fn sliced(
+        stretches: impl Iterator<Item = (f64, f64)>,
+        width: f64,
+        slices: usize,
+        lead: impl Fn(f64) -> f64,
+    ) -> Self {
         let rule = Rule::new(slices);
         let mut found = Vec::new();
         for (from, to) in stretches {

@@ -156,7 +156,8 @@ mod tests {
         let half = half_width([&STEEL, &SOFT], radius) * f64::sqrt(load);
         let body = |material: &Material, depth: f64| {
             let nu = material.poisson_ratio;
-            2.0 * (1.0 - nu * nu) / (PI * material.youngs_modulus) * (f64::ln(2.0 * depth / half) - nu / (2.0 * (1.0 - nu)))
+            2.0 * (1.0 - nu * nu) / (PI * material.youngs_modulus)
+                * (f64::ln(2.0 * depth / half) - nu / (2.0 * (1.0 - nu)))
         };
         let exact = load * (body(&STEEL, depths[0]) + body(&SOFT, depths[1]));
         let law = Logarithmic::new([&STEEL, &SOFT], radius, depths);

@@ -46,7 +46,8 @@ pub const FAMILY: Family = Family {
         let longest = if end == "both" { 0.5 * face_width } else { face_width };
         if length > longest {
             let (given, longest) = (length * 1e3, longest * 1e3);
-            let message = format!("the end relief is {given:.6} mm long; the face leaves room for 0 to {longest:.6} mm");
+            let message =
+                format!("the end relief is {given:.6} mm long; the face leaves room for 0 to {longest:.6} mm");
             return Err(Diagnostic::new(message).at(record.place_of(LENGTH.name)));
         }
         Ok(Arc::new(EndRelief {
@@ -87,7 +88,11 @@ impl EndRelief {
 impl Modification for EndRelief {
     fn lead(&self, z: f64) -> f64 {
         let distance = self.direction(z) * z - self.start;
-        if self.direction(z) == 0.0 || self.length == 0.0 { 0.0 } else { self.amount * self.curve.value(distance / self.length) }
+        if self.direction(z) == 0.0 || self.length == 0.0 {
+            0.0
+        } else {
+            self.amount * self.curve.value(distance / self.length)
+        }
     }
 
     fn lead_quadratic(&self, z: f64) -> Option<[f64; 3]> {
@@ -99,7 +104,8 @@ impl Modification for EndRelief {
         // amount · (a t + (1 − a) t²) with t = (±z − start)/length.
         let (start, scale) = (self.start / self.length, direction / self.length);
         let bend = 1.0 - linear;
-        let coefficients = [start * (bend * start - linear), scale * (linear - 2.0 * bend * start), scale * scale * bend];
+        let coefficients =
+            [start * (bend * start - linear), scale * (linear - 2.0 * bend * start), scale * scale * bend];
         Some(coefficients.map(|coefficient| self.amount * coefficient))
     }
 

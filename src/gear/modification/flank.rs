@@ -13,6 +13,7 @@ pub struct Flank {
     pub root_roll: f64,
     /// Roll angle where its own tip works.
     pub tip_roll: f64,
+    pub base_pitch: f64,
     /// p_b(ε_α − 1): the length of long relief.
     pub long_relief: f64,
     /// From either end of the flank to the nearest zone with the fewest pairs in contact, p_b(ε_α − ⌊ε_α⌋); for
@@ -34,6 +35,7 @@ impl Flank {
             base_radius: gear.base_radius,
             root_roll: pair.roll(side, root),
             tip_roll: pair.roll(side, tip),
+            base_pitch: pair.base_pitch,
             long_relief: pair.base_pitch * (pair.contact_ratio - 1.0),
             outer_zone: pair.base_pitch * (pair.contact_ratio - pair.contact_ratio.floor()),
             face_width: gear.specification.face_width,

@@ -9,7 +9,8 @@ use crate::base::parameter::{Field, Member};
 use crate::base::units;
 
 const AMOUNT: Field =
-    Field::quantity("amount", units::LENGTH, 0.0, MOST_AMOUNT, "C_β: depth at both ends of the gear's own face.").range();
+    Field::quantity("amount", units::LENGTH, 0.0, MOST_AMOUNT, "C_β: depth at both ends of the gear's own face.")
+        .range();
 
 pub const FAMILY: Family = Family {
     member: Member {

@@ -49,15 +49,25 @@ pub const FRACTION: Field = Field::number(
 .range()
 .optional();
 
-pub const START_ROLL_ANGLE: Field =
-    Field::quantity("start_roll_angle", units::ANGLE, 0.0, 10.0, "Instead of `length`: roll angle where the relief starts.")
-        .range()
-        .optional();
+pub const START_ROLL_ANGLE: Field = Field::quantity(
+    "start_roll_angle",
+    units::ANGLE,
+    0.0,
+    10.0,
+    "Instead of `length`: roll angle where the relief starts.",
+)
+.range()
+.optional();
 
-pub const START_DIAMETER: Field =
-    Field::quantity("start_diameter", units::LENGTH, 1e-4, 100.0, "Instead of `length`: diameter at which the relief starts.")
-        .range()
-        .optional();
+pub const START_DIAMETER: Field = Field::quantity(
+    "start_diameter",
+    units::LENGTH,
+    1e-4,
+    100.0,
+    "Instead of `length`: diameter at which the relief starts.",
+)
+.range()
+.optional();
 
 const SINGLE_ZONE: Choice = Choice {
     name: "single_zone",
@@ -70,7 +80,11 @@ const ZONE_END: Choice = Choice {
 
 pub const COUNTED_FROM_TIP: Field = Field::choice(
     "counted_from",
-    &[Choice { name: "tip", summary: "the relief is the last part of the flank, of that length" }, SINGLE_ZONE, ZONE_END],
+    &[
+        Choice { name: "tip", summary: "the relief is the last part of the flank, of that length" },
+        SINGLE_ZONE,
+        ZONE_END,
+    ],
     "Where `length` or `fraction` counts from.",
 )
 .default("tip");
@@ -87,6 +101,9 @@ pub const COUNTED_FROM_ROOT: Field = Field::choice(
 .default("root");
 
 const STARTS: [&str; 4] = [LENGTH.name, FRACTION.name, START_ROLL_ANGLE.name, START_DIAMETER.name];
+
+/// A relief shorter than this share of the base pitch is none.
+const SHORTEST: f64 = 1e-9;
 
 /// Which end of the flank the relief runs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,7 +143,9 @@ fn exactly_one<'a>(record: &Record, names: &[&'a str]) -> Result<&'a str, Diagno
     let list = || names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
     match (first, second) {
         (Some(only), None) => Ok(only),
-        (None, _) => Err(Diagnostic::new(format!("exactly one of {} is needed, and there is none", list())).at(record.place)),
+        (None, _) => {
+            Err(Diagnostic::new(format!("exactly one of {} is needed, and there is none", list())).at(record.place))
+        }
         (Some(one), Some(other)) => {
             let message = format!("exactly one of {} is needed, not both `{one}` and `{other}`", list());
             Err(Diagnostic::new(message).at(record.place_of(other)))
@@ -187,8 +206,8 @@ impl Ramp {
             curve: Curve::read(record),
             start: last - outward * from / flank.base_radius,
             end: last - outward * to / flank.base_radius,
-            // A relief of no length ends on the tip itself: the limit of ever shorter ones, which takes nothing away.
-            rate: if span > 0.0 { outward / span } else { 0.0 },
+            // The limit of ever shorter reliefs takes nothing away; a step would only unload a single point.
+            rate: if span * flank.base_radius > SHORTEST * flank.base_pitch { outward / span } else { 0.0 },
             base_radius: flank.base_radius,
         })
     }

@@ -6,7 +6,9 @@ use std::sync::Arc;
 
 use super::curve::{CURVE, EXPONENT};
 use super::flank::Flank;
-use super::relief::{self, AMOUNT, COUNTED_FROM_TIP, End, FRACTION, ISO_AMOUNT, LENGTH, Ramp, START_DIAMETER, START_ROLL_ANGLE};
+use super::relief::{
+    self, AMOUNT, COUNTED_FROM_TIP, End, FRACTION, ISO_AMOUNT, LENGTH, Ramp, START_DIAMETER, START_ROLL_ANGLE,
+};
 use super::{Family, GEAR};
 use crate::base::parameter::Member;
 

@@ -91,9 +91,11 @@ impl Loading<'_> {
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
-            let joined = points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
-            let here: [Point; _] =
-                std::array::from_fn(|node| self.point(span.position(rows, node), span.pairs, &states[node], wanted.pressure));
+            let joined =
+                points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
+            let here: [Point; _] = std::array::from_fn(|node| {
+                self.point(span.position(rows, node), span.pairs, &states[node], wanted.pressure)
+            });
             points.extend_from_slice(&here[usize::from(joined)..]);
             if wanted.pressure {
                 pressure.spans.push((*span, here.map(|point| point.pressure.unwrap_or(0.0))));
@@ -115,7 +117,9 @@ impl Loading<'_> {
             smallest,
             variance,
             reciprocal_variance: (variance > 0.0).then(|| 1.0 / variance),
-            harmonics: (1..=wanted.harmonics).map(|order| harmonics::amplitude(cycle.period(), &nodes, order)).collect(),
+            harmonics: (1..=wanted.harmonics)
+                .map(|order| harmonics::amplitude(cycle.period(), &nodes, order))
+                .collect(),
             unloaded_peak_to_peak: self.without_load().peak_to_peak(),
             loaded_contact_ratio: loaded / cycle.period(),
             largest_load_share: if self.force > 0.0 { share / self.force } else { 0.0 },

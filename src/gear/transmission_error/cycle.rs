@@ -175,9 +175,14 @@ mod tests {
 
     #[test]
     fn zones_fold_the_ends_of_contact_for_every_contact_ratio() {
-        for (ratio, expected) in
-            [(1.0, vec![1]), (1.0001, vec![2, 1]), (1.6457, vec![2, 1]), (2.0, vec![2]), (2.5, vec![3, 2]), (3.2, vec![4, 3])]
-        {
+        for (ratio, expected) in [
+            (1.0, vec![1]),
+            (1.0001, vec![2, 1]),
+            (1.6457, vec![2, 1]),
+            (2.0, vec![2]),
+            (2.5, vec![3, 2]),
+            (3.2, vec![4, 3]),
+        ] {
             let zones = zones(ratio, 9e-3);
             assert_eq!(zones.iter().map(|zone| zone.pairs).collect::<Vec<_>>(), expected, "{ratio}");
             let average: f64 = zones.iter().map(|zone| (zone.end - zone.start) * zone.pairs as f64).sum();

@@ -180,8 +180,8 @@ impl<'a> Loading<'a> {
                 let mut panel = 1.0;
                 while panel <= panels {
                     let to = if panel < panels { start + width * panel } else { end };
-                    let span = Span { start: from, end: to, pairs: zone.pairs };
-                    first = self.smooth(&span, first, DEEPEST, [None; 2], &mut visit);
+                    let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
+                    first = self.smooth(&span, first, DEEPEST, &mut visit);
                     from = to;
                     panel += 1.0;
                 }
@@ -190,40 +190,34 @@ impl<'a> Loading<'a> {
         }
     }
 
-    /// Visits a span, in parts if the set of loaded pairs changes inside it. `known` are the pairs whose first or last
-    /// touch the ends of the span are. Returns the state at its end.
-    fn smooth(
-        &self,
-        span: &Span,
-        first: State,
-        cuts: usize,
-        known: [Option<usize>; 2],
-        visit: &mut impl FnMut(&Span, &[State; NODES]),
-    ) -> State {
+    /// Visits a span, in parts if the set of loaded pairs changes inside it. Returns the state at its end.
+    fn smooth(&self, span: &Span, first: State, cuts: usize, visit: &mut impl FnMut(&Span, &[State; NODES])) -> State {
         let rows = &self.cycle.rows;
         let mut states = [first; NODES];
         for (node, state) in states.iter_mut().enumerate().skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
         if cuts > 0
-            && let Some((position, pair)) = self.change(span, &states, known)
+            && let Some((position, pair)) = self.change(span, &states)
         {
-            let before = Span { end: position, ..*span };
-            let after = Span { start: position, ..*span };
-            let middle = self.smooth(&before, first, cuts - 1, [known[0], Some(pair)], visit);
-            return self.smooth(&after, middle, cuts - 1, [Some(pair), known[1]], visit);
+            let before = Span { end: position, touches: [span.touches[0], Some(pair)], ..*span };
+            let after = Span { start: position, touches: [Some(pair), span.touches[1]], ..*span };
+            let middle = self.smooth(&before, first, cuts - 1, visit);
+            return self.smooth(&after, middle, cuts - 1, visit);
         }
         visit(span, &states);
         states[NODES - 1]
     }
 
     /// The first change of the set of loaded pairs between the nodes of a span: where, and of which pair.
-    fn change(&self, span: &Span, states: &[State; NODES], known: [Option<usize>; 2]) -> Option<(f64, usize)> {
+    fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, usize)> {
         let closest = CLOSEST * self.cycle.period();
         for node in 0..NODES - 1 {
             for pair in 0..span.pairs {
-                let (before, after) = (states[node].balance.interference[pair], states[node + 1].balance.interference[pair]);
-                let at_known_end = (node == 0 && known[0] == Some(pair)) || (node + 2 == NODES && known[1] == Some(pair));
+                let (before, after) =
+                    (states[node].balance.interference[pair], states[node + 1].balance.interference[pair]);
+                let ends = [node == 0, node + 2 == NODES];
+                let at_known_end = (0..2).any(|end| ends[end] && span.touches[end] == Some(pair));
                 if (before > 0.0) == (after > 0.0) || at_known_end {
                     continue;
                 }

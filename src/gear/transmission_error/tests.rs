@@ -50,12 +50,18 @@ fn harris_relations_hold() {
             let amount = 7e-6;
             let long = run(&relief(&pair, amount, 1.0));
             let exact = 0.5 * (force / STIFFNESS - amount).abs();
-            assert!((long.peak_to_peak - exact).abs() < 1e-9 * (force / STIFFNESS + amount), "long, {force} N, {ratio}");
+            assert!(
+                (long.peak_to_peak - exact).abs() < 1e-9 * (force / STIFFNESS + amount),
+                "long, {force} N, {ratio}"
+            );
             close(long.unloaded_peak_to_peak, 0.5 * amount, 1e-9);
             if ratio < 1.9 {
                 let short = run(&relief(&pair, amount, 0.5));
-                assert!((short.peak_to_peak - 0.5 * force / STIFFNESS).abs() < 1e-9 * (force / STIFFNESS), "short, {force} N");
-                assert!(short.unloaded_peak_to_peak < 1e-9 * amount);
+                // Of a path position against the length of the relief.
+                let rounding = 2e-14 * amount;
+                let error = (short.peak_to_peak - 0.5 * force / STIFFNESS).abs();
+                assert!(error < 1e-9 * (force / STIFFNESS) + rounding, "short, {force} N, {ratio}");
+                assert!(short.unloaded_peak_to_peak < rounding);
             }
         }
     }
@@ -142,7 +148,8 @@ fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
 fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     let pair = pair();
     let logarithmic = PairCompliance { contact: ContactLaw::LoadDependent, ..varying() };
-    let power = [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
+    let power =
+        [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
     let mixed = design(
         &pair,
@@ -248,8 +255,11 @@ fn swapping_the_gears_changes_nothing() {
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
         for compliance in [varying(), coupled()] {
             let compliance = PairCompliance { contact, ..compliance };
-            let mirrored =
-                PairCompliance { pinion: compliance.gear.clone(), gear: compliance.pinion.clone(), ..compliance.clone() };
+            let mirrored = PairCompliance {
+                pinion: compliance.gear.clone(),
+                gear: compliance.pinion.clone(),
+                ..compliance.clone()
+            };
             let (one, two) = (of(&pair, "pinion", "gear"), of(&swapped, "gear", "pinion"));
             let wanted = Wanted { harmonics: 3, pressure: true };
             let here = Loading::new(&cycle(&pair, &compliance), &one, 50.0).summary(wanted);
@@ -317,7 +327,8 @@ fn coupled_states_fulfil_complementarity() {
             let s = |pair_index: usize| point.path_position + BASE_PITCH * pair_index as f64;
             let u1 = |index: usize| s(index) / pair.pinion.base_radius;
             let u2 = |index: usize| (pair.tangent_length - s(index)) / pair.gear.base_radius;
-            let mut deflection = point.loads[j] * (compliance.pinion.total(u1(j)) + compliance.gear.total(u2(j)) + contact);
+            let mut deflection =
+                point.loads[j] * (compliance.pinion.total(u1(j)) + compliance.gear.total(u2(j)) + contact);
             for k in (0..point.pairs).filter(|k| *k != j) {
                 let between = j.abs_diff(k) - 1;
                 let pinion = compliance.pinion.neighbours[between].value(u1(j.min(k)));
@@ -343,7 +354,8 @@ fn coupling_of_nothing_is_no_coupling_and_coupling_softens_double_contact() {
         tooth.neighbours = vec![fixtures::tooth(|_| 0.0).body];
     }
     let design = ga_design(&pair, 6.93e-6, 3.41e-3, 5.67e-6);
-    let of = |compliance: &PairCompliance| Loading::new(&cycle(&pair, compliance), &design, 50.0).summary(Wanted::default());
+    let of =
+        |compliance: &PairCompliance| Loading::new(&cycle(&pair, compliance), &design, 50.0).summary(Wanted::default());
     let (summed, zero) = (of(&varying()), of(&nothing));
     close(zero.peak_to_peak, summed.peak_to_peak, 1e-10);
     close(zero.variance, summed.variance, 1e-10);
@@ -377,7 +389,7 @@ fn relief_above_the_deflection_shortens_the_contact() {
     let pair = pair();
     let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
     let force = 500.0;
-    let (amount, length) = (50e-6, 4e-3);
+    let (amount, length) = (50e-6, 2.5e-3);
     let linear = [("amount", Quantity(amount)), ("length", Quantity(length))];
     let design = design(&pair, &[("tip_relief", "both", &linear)]).unwrap();
     let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted::default());
@@ -419,7 +431,9 @@ fn root_relief_is_the_other_gears_tip_relief() {
                 ("counted_from", Choice(counted)),
             ]
         };
-        let root = design(&pair, &[("root_relief", "pinion", &values(if counted == "tip" { "root" } else { counted }))]).unwrap();
+        let root =
+            design(&pair, &[("root_relief", "pinion", &values(if counted == "tip" { "root" } else { counted }))])
+                .unwrap();
         let tip = design(&pair, &[("tip_relief", "gear", &values(counted))]).unwrap();
         let of = |design: &Design| Loading::new(&cycle, design, 50.0).summary(Wanted::default());
         close(of(&root).peak_to_peak, of(&tip).peak_to_peak, 1e-11);
