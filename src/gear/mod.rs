@@ -3,4 +3,9 @@
 //! Must not know: files, clocks, threads, printing, YAML, global state.
 
 pub mod compliance;
+pub mod contact;
+#[cfg(test)]
+pub(crate) mod fixtures;
 pub mod geometry;
+pub mod modification;
+pub mod transmission_error;

@@ -3,5 +3,10 @@
 //! Must not know: gears, files, units of anything.
 
 pub mod chebyshev;
+pub mod complementarity;
 pub mod crossing;
+pub mod extremum;
+pub mod harmonics;
+pub mod lobatto;
+pub mod panels;
 pub mod quadrature;

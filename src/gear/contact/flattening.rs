@@ -1,0 +1,166 @@
+//! How two flanks flatten against each other: contact laws and Hertzian pressure.
+//!
+//! Sources: the article `energy_ga` (linear law, here for two materials); Weber and Banaschek, Formänderung und
+//! Profilrücknahme bei gerad- und schrägverzahnten Rädern, 1953 (load-dependent law); Johnson, Contact Mechanics, 4.2
+//! (line contact). Loads per face width in N/m. Must not know: how teeth bend.
+
+use std::f64::consts::PI;
+
+use crate::gear::compliance::Material;
+
+/// (1 − ν²)/E \[1/Pa\].
+#[must_use]
+pub fn plane_compliance(material: &Material) -> f64 {
+    (1.0 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus
+}
+
+/// The linear law: 2/π Σ(1 − ν²)/E, interference per load per width \[1/Pa\]; for equal materials 4(1 − ν²)/(πE).
+#[must_use]
+pub fn linear(materials: [&Material; 2]) -> f64 {
+    2.0 / PI * (plane_compliance(materials[0]) + plane_compliance(materials[1]))
+}
+
+/// Half the width of the contact, b_H² = 4 p ρ Σ(1 − ν²)/E / π, over the square root of the load per width p.
+#[must_use]
+pub fn half_width(materials: [&Material; 2], combined_radius: f64) -> f64 {
+    let compliance = plane_compliance(materials[0]) + plane_compliance(materials[1]);
+    (4.0 * combined_radius * compliance / PI).sqrt()
+}
+
+/// The largest pressure of a line contact \[Pa\]: √(p / (π ρ Σ(1 − ν²)/E)).
+#[must_use]
+pub fn pressure(materials: [&Material; 2], combined_radius: f64, line_load: f64) -> f64 {
+    let compliance = plane_compliance(materials[0]) + plane_compliance(materials[1]);
+    (line_load / (PI * combined_radius * compliance)).sqrt()
+}
+
+/// 1/ρ = 1/ρ1 + 1/ρ2.
+#[must_use]
+pub fn combined_radius(radii: [f64; 2]) -> f64 {
+    radii[0] * radii[1] / (radii[0] + radii[1])
+}
+
+/// The load-dependent law of two flanks at one place: approach p(α − β ln p) at the load per width p.
+///
+/// Σ 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] with b_H ∝ √p. The law presumes b_H ≪ t; it would yield under more load
+/// beyond ln p = α/β − 1, where b_H has grown to the size of the tooth, and is held constant from there on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Logarithmic {
+    /// α \[1/Pa\].
+    pub constant: f64,
+    /// β = 1/π Σ(1 − ν²)/E \[1/Pa\].
+    pub rate: f64,
+}
+
+impl Logarithmic {
+    /// `depths`: t of both teeth \[m\].
+    #[must_use]
+    pub fn new(materials: [&Material; 2], combined_radius: f64, depths: [f64; 2]) -> Self {
+        let unit = half_width(materials, combined_radius);
+        let mut law = Self { constant: 0.0, rate: 0.0 };
+        for (material, depth) in materials.into_iter().zip(depths) {
+            let factor = 2.0 / PI * plane_compliance(material);
+            let ratio = material.poisson_ratio / (2.0 * (1.0 - material.poisson_ratio));
+            law.constant += factor * (libm::log(2.0 * depth / unit) - ratio);
+            law.rate += 0.5 * factor;
+        }
+        law
+    }
+
+    /// Load per width p and dp/dw with `compliance` (interference per load per width, > 0) in series, at w > 0.
+    #[must_use]
+    pub fn load(&self, compliance: f64, interference: f64) -> (f64, f64) {
+        let Self { constant, rate } = *self;
+        let last = libm::exp(constant / rate - 1.0);
+        if interference >= (compliance + rate) * last {
+            return ((interference - rate * last) / compliance, 1.0 / compliance);
+        }
+        // Newton on ln p: ln p + ln(c + α − β ln p) = ln w is almost straight, with a slope between 0 and 1.
+        let target = libm::log(interference);
+        let mut logarithm = target - libm::log(compliance + rate);
+        for _ in 0..50 {
+            let total = compliance + constant - rate * logarithm;
+            let step = (logarithm + libm::log(total) - target) / (1.0 - rate / total);
+            logarithm -= step;
+            // Converging quadratically, so the step after this one is below rounding.
+            if step.abs() <= 1e-8 {
+                break;
+            }
+        }
+        let total = compliance + constant - rate * logarithm;
+        (interference / total, 1.0 / (total - rate))
+    }
+
+    /// The approach of the flanks at the load per width p.
+    #[must_use]
+    pub fn approach(&self, load: f64) -> f64 {
+        let last = libm::exp(self.constant / self.rate - 1.0);
+        let load = load.min(last);
+        if load > 0.0 { load * (self.constant - self.rate * libm::log(load)) } else { 0.0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+    const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25 };
+
+    #[test]
+    fn the_linear_law_is_the_articles_for_equal_materials() {
+        let article = 4.0 * (1.0 - 0.09) / (PI * 206e9);
+        assert!((linear([&STEEL, &STEEL]) / article - 1.0).abs() < 1e-15);
+    }
+
+    /// 19/48, module 3 mm, 18 mm wide, 50 N·m: the least pressure of the single-contact zone is known to be 709 MPa.
+    #[test]
+    fn pressure_at_the_end_of_single_contact_is_the_published_one() {
+        let s = 2.009_266_843_717_533_4e-3 + 8.856_394_302_280_648e-3;
+        let radius = combined_radius([s, 34.373_024_404_229_71e-3 - s]);
+        let load = 50.0 / 26.781_240e-3 / 18e-3;
+        assert!((pressure([&STEEL, &STEEL], radius, load) - 709e6).abs() < 0.5e6);
+    }
+
+    /// Mean pressure times width is the load, and the largest pressure of an ellipse is 4/π of the mean.
+    #[test]
+    fn pressure_and_half_width_balance_the_load() {
+        let (radius, load) = (6e-3, 2e5_f64);
+        let half = half_width([&STEEL, &SOFT], radius) * load.sqrt();
+        let total = 0.5 * PI * half * pressure([&STEEL, &SOFT], radius, load);
+        assert!((total / load - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn the_load_dependent_law_inverts_at_every_load() {
+        let law = Logarithmic::new([&STEEL, &SOFT], 7e-3, [2.5e-3, 3e-3]);
+        let compliance = 4e-11;
+        let mut before = 0.0;
+        for exponent in -300..=40 {
+            let load = libm::pow(10.0, f64::from(exponent) * 0.5);
+            let interference = compliance * load + law.approach(load);
+            assert!(interference > before, "monotonic at {load}");
+            before = interference;
+            let (found, slope) = law.load(compliance, interference);
+            assert!((found / load - 1.0).abs() < 1e-12, "{load} {found}");
+            let step = 1e-5 * interference;
+            let difference = law.load(compliance, interference + step).0 - law.load(compliance, interference - step).0;
+            assert!((difference / (2.0 * step) / slope - 1.0).abs() < 1e-5, "slope at {load}");
+        }
+    }
+
+    /// The words of the law, term by term, at one load.
+    #[test]
+    fn the_load_dependent_law_is_webers() {
+        let (radius, load, depths) = (7e-3, 1e5, [2.5e-3, 3e-3]);
+        let half = half_width([&STEEL, &SOFT], radius) * f64::sqrt(load);
+        let body = |material: &Material, depth: f64| {
+            let nu = material.poisson_ratio;
+            2.0 * (1.0 - nu * nu) / (PI * material.youngs_modulus)
+                * (f64::ln(2.0 * depth / half) - nu / (2.0 * (1.0 - nu)))
+        };
+        let exact = load * (body(&STEEL, depths[0]) + body(&SOFT, depths[1]));
+        let law = Logarithmic::new([&STEEL, &SOFT], radius, depths);
+        assert!((law.approach(load) / exact - 1.0).abs() < 1e-13);
+    }
+}

@@ -1,0 +1,193 @@
+//! Tooth flank modifications: the trait every family has, the registry, and designs made of them.
+//!
+//! Depths are normal to the flank \[m\], positive where material is removed, and add up per gear. The profile is a
+//! function of the gear's roll angle \[rad\], the lead a function of z \[m\], which counts from the middle of the face
+//! and points the same way for both gears. Names and signs: ISO 21771-1, ISO 1328-1. Must not know: compliance, load.
+
+pub mod curve;
+pub mod end_relief;
+pub mod flank;
+pub mod helix_slope;
+pub mod lead_crowning;
+pub mod profile_crowning;
+pub mod profile_slope;
+pub mod relief;
+pub mod root_relief;
+pub mod template;
+pub mod tip_relief;
+
+use std::fmt::Debug;
+use std::sync::Arc;
+
+use super::geometry::{Pair, Side};
+use crate::base::error::Diagnostic;
+use crate::base::parameter::{Choice, Field, Member};
+use crate::base::record::Record;
+
+/// Every family, in the order in which they are listed to the user.
+pub const FAMILIES: &[Family] = &[
+    tip_relief::FAMILY,
+    root_relief::FAMILY,
+    profile_crowning::FAMILY,
+    profile_slope::FAMILY,
+    lead_crowning::FAMILY,
+    helix_slope::FAMILY,
+    end_relief::FAMILY,
+];
+
+/// A family as registered.
+#[derive(Clone, Copy)]
+pub struct Family {
+    /// Its name, meaning and fields; one of the fields is [`GEAR`].
+    pub member: Member,
+    /// Refuses combinations of fields that no declaration can express; values may still be ranges.
+    pub check: fn(&Record) -> Result<(), Diagnostic>,
+    /// The modification of one gear. The record has passed `check` and holds no ranges.
+    pub build: fn(&Record, &Pair, Side) -> Result<Arc<dyn Modification>, Diagnostic>,
+}
+
+/// One modification of one gear, with everything resolved.
+pub trait Modification: Debug + Send + Sync {
+    /// Depth at a roll angle; continuous.
+    fn depth(&self, _roll: f64) -> f64 {
+        0.0
+    }
+
+    /// Roll angles at which the depth is not smooth.
+    fn profile_breaks(&self) -> [Option<f64>; 2] {
+        [None; 2]
+    }
+
+    fn varies_along_profile(&self) -> bool {
+        false
+    }
+
+    /// Deviation at z; continuous.
+    fn lead(&self, z: f64) -> f64 {
+        let [constant, slope, bend] = self.lead_quadratic(z).unwrap_or_default();
+        constant + z * (slope + z * bend)
+    }
+
+    /// The polynomial c0 + c1 z + c2 z² that the lead equals between the breaks on either side of `z`; `None` when it
+    /// is of another kind there.
+    fn lead_quadratic(&self, _z: f64) -> Option<[f64; 3]> {
+        Some([0.0; 3])
+    }
+
+    /// The z at which the lead is not smooth.
+    fn lead_breaks(&self) -> [Option<f64>; 2] {
+        [None; 2]
+    }
+
+    fn varies_along_face(&self) -> bool {
+        false
+    }
+
+    /// Names and values (SI) of what was given and of what follows from it.
+    fn resolved(&self) -> Vec<(&'static str, f64)>;
+}
+
+/// What both gears of a pair are given.
+#[derive(Clone, Debug, Default)]
+pub struct Design {
+    pub pinion: Vec<Part>,
+    pub gear: Vec<Part>,
+}
+
+/// One modification and the name of its family.
+#[derive(Clone, Debug)]
+pub struct Part {
+    pub family: &'static str,
+    pub modification: Arc<dyn Modification>,
+}
+
+impl Design {
+    #[must_use]
+    pub fn side(&self, side: Side) -> &[Part] {
+        match side {
+            Side::Pinion => &self.pinion,
+            Side::Gear => &self.gear,
+        }
+    }
+
+    /// Adds a modification, as `family: { fields }` states it, to the gears that its field `gear` names.
+    ///
+    /// # Errors
+    /// When the fields contradict each other or do not fit the pair.
+    pub fn add(&mut self, family: &'static Family, record: &Record, pair: &Pair) -> Result<(), Diagnostic> {
+        (family.check)(record)?;
+        let gear = record.choice(GEAR.name);
+        if gear != "gear" {
+            let modification = (family.build)(record, pair, Side::Pinion)?;
+            self.pinion.push(Part { family: family.member.name, modification });
+        }
+        if gear != "pinion" {
+            let modification = (family.build)(record, pair, Side::Gear)?;
+            self.gear.push(Part { family: family.member.name, modification });
+        }
+        Ok(())
+    }
+
+    /// The sum of the depths of one gear at a roll angle.
+    #[must_use]
+    pub fn depth(&self, side: Side, roll: f64) -> f64 {
+        self.side(side).iter().map(|part| part.modification.depth(roll)).sum()
+    }
+
+    /// The sum of the lead deviations of both gears at z.
+    #[must_use]
+    pub fn lead(&self, z: f64) -> f64 {
+        self.pinion.iter().chain(&self.gear).map(|part| part.modification.lead(z)).sum()
+    }
+
+    /// Every resolved parameter: gear, family, name, value (SI).
+    #[must_use]
+    pub fn resolved(&self) -> Vec<(Side, &'static str, &'static str, f64)> {
+        let of = |side: Side| {
+            self.side(side).iter().flat_map(move |part| {
+                let values = part.modification.resolved().into_iter();
+                values.map(move |(name, value)| (side, part.family, name, value))
+            })
+        };
+        of(Side::Pinion).chain(of(Side::Gear)).collect()
+    }
+}
+
+/// The family called `name`.
+#[must_use]
+pub fn family(name: &str) -> Option<&'static Family> {
+    FAMILIES.iter().find(|family| family.member.name == name)
+}
+
+/// The families as a user may write them, for [`crate::base::parameter::Shape::Member`].
+#[must_use]
+pub fn members() -> &'static [Member] {
+    const MEMBERS: [Member; FAMILIES.len()] = {
+        let mut members = [FAMILIES[0].member; FAMILIES.len()];
+        let mut index = 1;
+        while index < FAMILIES.len() {
+            members[index] = FAMILIES[index].member;
+            index += 1;
+        }
+        members
+    };
+    &MEMBERS
+}
+
+/// Which gear is modified.
+pub const GEAR: Field = Field::choice(
+    "gear",
+    &[
+        Choice { name: "pinion", summary: "the driving gear" },
+        Choice { name: "gear", summary: "the driven gear" },
+        Choice { name: "both", summary: "each of the two, with the same values" },
+    ],
+    "Which gear is modified.",
+);
+
+/// The largest amount \[m\]: beyond it a relief is no longer small against the tooth.
+pub(crate) const MOST_AMOUNT: f64 = 5e-3;
+
+pub(crate) fn no_check(_: &Record) -> Result<(), Diagnostic> {
+    Ok(())
+}

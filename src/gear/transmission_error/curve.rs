@@ -1,0 +1,164 @@
+//! The curve of the transmission error over a mesh cycle, and its summary.
+//!
+//! Must not know: tables, units other than SI.
+
+use super::loading::{Loading, State};
+use super::trace::{Extremum, Trace};
+use crate::gear::contact::flattening;
+use crate::gear::geometry::Side;
+use crate::numeric::complementarity::PerSpring;
+use crate::numeric::harmonics;
+
+/// One position of a curve. Where the number of pairs in contact changes there are two points at one place, one for
+/// each side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// τ: distance from the position at which a pair starts contact \[m\].
+    pub cycle_position: f64,
+    /// s of the newest pair, from A to one base pitch behind it (to D, where 1 < ε_α < 2) \[m\].
+    pub path_position: f64,
+    /// The pinion's roll angle of the newest pair \[rad\].
+    pub roll_angle: f64,
+    /// Pairs inside the path of contact, loaded or not.
+    pub pairs: usize,
+    /// Pairs that carry load.
+    pub loaded_pairs: usize,
+    /// δ \[m\].
+    pub transmission_error: f64,
+    /// δ without load at the same position \[m\].
+    pub unloaded_transmission_error: f64,
+    /// Load of each pair \[N\], the newest first, then those one, two … base pitches ahead.
+    pub loads: PerSpring,
+    /// F / (δ − δ without load) \[N/m\]; NaN without load.
+    pub secant_stiffness: f64,
+    /// dF/dδ \[N/m\]; NaN without load.
+    pub tangent_stiffness: f64,
+    /// The largest Hertzian pressure of any pair \[Pa\], if it was asked for.
+    pub pressure: Option<f64>,
+}
+
+/// What a curve amounts to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Summary {
+    /// Integral mean over the cycle \[m\].
+    pub mean: f64,
+    pub peak_to_peak: f64,
+    pub largest: Extremum,
+    pub smallest: Extremum,
+    /// Integral mean of the squared deviation from the mean \[m²\].
+    pub variance: f64,
+    /// f = 1/variance \[1/m²\], the measure of `mei2016`; none where nothing varies.
+    pub reciprocal_variance: Option<f64>,
+    /// Amplitudes of the harmonics 1, 2 … of the mesh frequency \[m\].
+    pub harmonics: Vec<f64>,
+    /// Peak-to-peak of the transmission error without load \[m\].
+    pub unloaded_peak_to_peak: f64,
+    /// Mean number of loaded pairs: the contact ratio under load.
+    pub loaded_contact_ratio: f64,
+    /// The largest share of the load that one pair carries.
+    pub largest_load_share: f64,
+    /// The largest Hertzian pressure in the cycle \[Pa\], if it was asked for.
+    pub largest_pressure: Option<Extremum>,
+}
+
+/// What a summary holds beyond the least.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Wanted {
+    /// How many harmonics.
+    pub harmonics: usize,
+    pub pressure: bool,
+}
+
+impl Loading<'_> {
+    /// The curve, by position.
+    #[must_use]
+    pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
+        self.curve_and_summary(wanted).0
+    }
+
+    #[must_use]
+    pub fn summary(&self, wanted: Wanted) -> Summary {
+        self.curve_and_summary(wanted).1
+    }
+
+    /// Both, from the same positions.
+    #[must_use]
+    pub fn curve_and_summary(&self, wanted: Wanted) -> (Vec<Point>, Summary) {
+        let cycle = self.cycle;
+        let rows = &cycle.rows;
+        let mut points: Vec<Point> = Vec::new();
+        let (mut error, mut pressure) = (Trace::default(), Trace::default());
+        let (mut loaded, mut share) = (0.0, 0.0_f64);
+        self.walk(self.span_length(wanted.harmonics), |span, states| {
+            error.spans.push((*span, states.map(|state| state.transmission_error())));
+            let joined =
+                points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
+            let here: [Point; _] = std::array::from_fn(|node| {
+                self.point(span.position(rows, node), span.pairs, &states[node], wanted.pressure)
+            });
+            points.extend_from_slice(&here[usize::from(joined)..]);
+            if wanted.pressure {
+                pressure.spans.push((*span, here.map(|point| point.pressure.unwrap_or(0.0))));
+            }
+            // The loaded pairs are the same all over the span, up to its ends.
+            loaded += (span.end - span.start) * here[1].loaded_pairs as f64;
+            for load in here.iter().flat_map(|point| point.loads) {
+                share = share.max(load);
+            }
+        });
+        let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
+        let (largest, smallest) = (error.largest(rows, value), error.smallest(rows, value));
+        let nodes = error.nodes(rows);
+        let (mean, variance) = harmonics::mean_and_variance(cycle.period(), &nodes);
+        let summary = Summary {
+            mean,
+            peak_to_peak: largest.value - smallest.value,
+            largest,
+            smallest,
+            variance,
+            reciprocal_variance: (variance > 0.0).then(|| 1.0 / variance),
+            harmonics: (1..=wanted.harmonics)
+                .map(|order| harmonics::amplitude(cycle.period(), &nodes, order))
+                .collect(),
+            unloaded_peak_to_peak: self.without_load().peak_to_peak(),
+            loaded_contact_ratio: loaded / cycle.period(),
+            largest_load_share: if self.force > 0.0 { share / self.force } else { 0.0 },
+            largest_pressure: wanted
+                .pressure
+                .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),
+        };
+        (points, summary)
+    }
+
+    fn point(&self, position: f64, pairs: usize, state: &State, pressure: bool) -> Point {
+        let cycle = self.cycle;
+        let path_position = cycle.path_position(position, 0);
+        let loads = state.balance.loads;
+        let stiffness = |value: f64| if self.force > 0.0 { value } else { f64::NAN };
+        Point {
+            cycle_position: position,
+            path_position,
+            roll_angle: cycle.pair.roll(Side::Pinion, path_position),
+            pairs,
+            loaded_pairs: loads.iter().filter(|load| **load > 0.0).count(),
+            transmission_error: state.transmission_error(),
+            unloaded_transmission_error: state.unloaded,
+            loads,
+            secant_stiffness: stiffness(self.force / state.balance.approach),
+            tangent_stiffness: stiffness(state.balance.slope),
+            pressure: pressure.then(|| self.pressure(position, pairs, state)),
+        }
+    }
+
+    /// The largest Hertzian pressure of any pair, with the flanks' curvature ρ1 = s, ρ2 = L − s at its contact.
+    fn pressure(&self, position: f64, pairs: usize, state: &State) -> f64 {
+        let cycle = self.cycle;
+        (0..pairs)
+            .map(|pair| {
+                let s = cycle.path_position(position, pair);
+                let radius = flattening::combined_radius([s, cycle.pair.tangent_length - s]);
+                flattening::pressure(cycle.materials(), radius, self.line_load(position, state, pair))
+            })
+            .fold(0.0, f64::max)
+    }
+}

@@ -1,0 +1,195 @@
+//! One base pitch of mesh: which pairs are in contact where, and quick copies of everything elastic.
+//!
+//! Cycle positions τ \[m\] run from 0, where a pair starts contact at A, to p_b, where the next one does; pair j of a
+//! position is at s = s_A + τ + j p_b. The number of pairs in contact is a property of the zone a position was taken
+//! from: no position is ever compared with a zone's end, so both one-sided limits at B and D exist. Must not know:
+//! modification, load.
+
+use super::trace::Rows;
+use crate::base::error::Failure;
+use crate::gear::compliance::{ContactLaw, Material, PairCompliance};
+use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::geometry::Pair;
+use crate::numeric::complementarity::{Coupling, MOST, PerSpring};
+use crate::numeric::panels::Panels;
+
+/// Relative accuracy of the quick copies.
+const ACCURACY: f64 = 1e-14;
+/// Zones shorter than this share of the base pitch are not there: a contact ratio of 2 up to rounding is 2.
+const SHORTEST_ZONE: f64 = 1e-9;
+
+/// How finely a mesh cycle is sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
+    pub positions: usize,
+    /// Slices on each smooth stretch of the face where its deviation has no closed form.
+    pub slices: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { positions: 64, slices: 33 }
+    }
+}
+
+/// A stretch of the cycle with the same pairs in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    pub start: f64,
+    pub end: f64,
+    pub pairs: usize,
+}
+
+/// A pair's mesh cycle.
+#[derive(Clone, Debug)]
+pub struct MeshCycle {
+    pub pair: Pair,
+    pub settings: Settings,
+    /// The common face width \[m\].
+    pub face_width: f64,
+    pub zones: Vec<Zone>,
+    pub(super) elasticity: Elasticity,
+    /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
+    coupling: Vec<Panels>,
+    pub(super) rows: Rows,
+}
+
+/// Against the path position.
+#[derive(Clone, Debug)]
+pub(super) enum Elasticity {
+    /// Stiffness of a pair \[N/m\].
+    Linear(Panels),
+    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\].
+    Logarithmic { compliance: Panels, constant: Panels, rate: f64 },
+}
+
+impl MeshCycle {
+    /// # Errors
+    /// When the contact ratio is below 1 (contact is lost) or above what the solver holds.
+    pub fn new(pair: &Pair, compliance: &PairCompliance, settings: Settings) -> Result<Self, Failure> {
+        let path = (pair.start_of_contact, pair.end_of_contact);
+        let ratio = (path.1 - path.0) / pair.base_pitch;
+        if !(ratio >= 1.0 - SHORTEST_ZONE && ratio <= MOST as f64) {
+            return Err(Failure::new(format!("the transverse contact ratio is {ratio:.6}; it must be 1 to {MOST}")));
+        }
+        let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
+        let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
+        let rolls = |s: f64| (s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius);
+        let teeth = |s: f64| {
+            let (pinion, gear) = rolls(s);
+            compliance.pinion.total(pinion) + compliance.gear.total(gear)
+        };
+        let fit = |function: &dyn Fn(f64) -> f64| Panels::fit(path.0, path.1, ACCURACY, function);
+        let law = |s: f64| {
+            let (pinion, gear) = rolls(s);
+            let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
+            Logarithmic::new(materials, flattening::combined_radius([s, pair.tangent_length - s]), depths)
+        };
+        let elasticity = match compliance.contact {
+            ContactLaw::Linear => {
+                let contact = flattening::linear(materials) / face_width;
+                Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
+            }
+            ContactLaw::LoadDependent => Elasticity::Logarithmic {
+                compliance: fit(&|s| teeth(s) * face_width),
+                constant: fit(&|s| law(s).constant),
+                rate: law(path.0).rate,
+            },
+        };
+        let neighbours = if compliance.coupled {
+            let known = compliance.pinion.neighbours.len().max(compliance.gear.neighbours.len());
+            known.min(most_pairs(ratio) - 1)
+        } else {
+            0
+        };
+        let coupling = (0..neighbours)
+            .map(|index| {
+                let ahead = pair.base_pitch * (index + 1) as f64;
+                let body = |s: f64| {
+                    // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
+                    let (pinion, gear) = (rolls(s).0, rolls(s + ahead).1);
+                    let own = compliance.pinion.neighbours.get(index).map_or(0.0, |series| series.value(pinion));
+                    own + compliance.gear.neighbours.get(index).map_or(0.0, |series| series.value(gear))
+                };
+                Panels::fit(path.0, path.1 - ahead, ACCURACY, body)
+            })
+            .collect();
+        let zones = zones(ratio, pair.base_pitch);
+        Ok(Self { pair: pair.clone(), settings, face_width, zones, elasticity, coupling, rows: Rows::new() })
+    }
+
+    /// p_b \[m\].
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.pair.base_pitch
+    }
+
+    /// The path position s of pair `pair` at the cycle position τ.
+    #[must_use]
+    pub fn path_position(&self, position: f64, pair: usize) -> f64 {
+        self.pair.start_of_contact + position + self.pair.base_pitch * pair as f64
+    }
+
+    pub(super) fn materials(&self) -> [&Material; 2] {
+        [&self.pair.pinion.specification.material, &self.pair.gear.specification.material]
+    }
+
+    /// Whether any pair feels its neighbours' load.
+    pub(super) fn coupled(&self) -> bool {
+        !self.coupling.is_empty()
+    }
+
+    pub(super) fn coupling(&self, position: f64, pairs: usize) -> Coupling {
+        let mut matrix: Coupling = [PerSpring::default(); MOST];
+        for (index, panels) in self.coupling.iter().enumerate() {
+            for behind in 0..pairs.saturating_sub(index + 1) {
+                let value = panels.value(self.path_position(position, behind));
+                matrix[behind][behind + index + 1] = value;
+                matrix[behind + index + 1][behind] = value;
+            }
+        }
+        matrix
+    }
+}
+
+fn most_pairs(ratio: f64) -> usize {
+    zones(ratio, 1.0).iter().map(|zone| zone.pairs).max().unwrap_or(1)
+}
+
+/// ⌊ε⌋ + 1 pairs as long as the newest one shares the contact with the oldest, ⌊ε⌋ after that.
+fn zones(ratio: f64, period: f64) -> Vec<Zone> {
+    let whole = (ratio + SHORTEST_ZONE).floor();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the ratio was checked to be 1 to MOST
+    let fewest = whole as usize;
+    let shared = (ratio - whole) * period;
+    if shared < SHORTEST_ZONE * period {
+        return vec![Zone { start: 0.0, end: period, pairs: fewest }];
+    }
+    vec![Zone { start: 0.0, end: shared, pairs: fewest + 1 }, Zone { start: shared, end: period, pairs: fewest }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_fold_the_ends_of_contact_for_every_contact_ratio() {
+        for (ratio, expected) in [
+            (1.0, vec![1]),
+            (1.0001, vec![2, 1]),
+            (1.6457, vec![2, 1]),
+            (2.0, vec![2]),
+            (2.5, vec![3, 2]),
+            (3.2, vec![4, 3]),
+        ] {
+            let zones = zones(ratio, 9e-3);
+            assert_eq!(zones.iter().map(|zone| zone.pairs).collect::<Vec<_>>(), expected, "{ratio}");
+            let average: f64 = zones.iter().map(|zone| (zone.end - zone.start) * zone.pairs as f64).sum();
+            assert!((average / 9e-3 - ratio).abs() < 1e-12, "the mean number of pairs is the contact ratio");
+        }
+        // 2 up to rounding, from both sides.
+        assert_eq!(zones(2.0 - 4e-16, 1.0), zones(2.0, 1.0));
+        assert_eq!(zones(2.0 + 4e-16, 1.0), zones(2.0, 1.0));
+    }
+}

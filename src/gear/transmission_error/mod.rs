@@ -1,0 +1,13 @@
+//! Transmission error and mesh stiffness over one base pitch of mesh.
+//!
+//! The transmission error is the approach δ of the gears along the line of action \[m\], positive where the driven gear
+//! lags. [`cycle::MeshCycle`] holds what no modification changes, [`loading::Loading`] one design under one torque;
+//! curves, summaries and objectives come from it. Must not know: how compliances or modifications come about.
+
+pub mod curve;
+pub mod cycle;
+pub mod loading;
+pub mod stiffness;
+#[cfg(test)]
+mod tests;
+pub mod trace;

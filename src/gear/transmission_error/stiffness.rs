@@ -1,0 +1,52 @@
+//! Mesh stiffness of unmodified gears over a mesh cycle, and its extremes by zone.
+//!
+//! Stiffness is F/δ \[N/m\]: with the linear contact law and no coupling the sum of the pairs' stiffnesses, whatever the
+//! load. Must not know: tables.
+
+use super::curve::{Point, Wanted};
+use super::cycle::MeshCycle;
+use super::loading::Loading;
+use super::trace::{NODES, Trace};
+use crate::gear::modification::Design;
+
+/// Extremes of the stiffness where the same number of pairs is in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ZoneStiffness {
+    pub pairs: usize,
+    pub least: f64,
+    pub most: f64,
+}
+
+/// Extremes by zone and the mean over the cycle.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StiffnessSummary {
+    /// Where the fewest pairs are in contact: the single-contact zone for 1 < ε_α < 2.
+    pub fewest: ZoneStiffness,
+    /// Where one more is; none when the contact ratio is whole.
+    pub most: Option<ZoneStiffness>,
+    /// Integral mean over the cycle.
+    pub mean: f64,
+}
+
+/// The curve of unmodified gears and its summary; `torque` \[N m\] > 0 matters only for the load-dependent contact law.
+#[must_use]
+pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummary) {
+    let design = Design::default();
+    let loading = Loading::new(cycle, &design, torque);
+    let secant = |position: f64, pairs: usize| loading.force / loading.state(position, pairs).balance.approach;
+    let mut trace = Trace::default();
+    loading.walk(loading.span_length(0), |span, states| {
+        let values: [f64; NODES] = states.map(|state| loading.force / state.balance.approach);
+        trace.spans.push((*span, values));
+    });
+    let of = |pairs: usize| {
+        let zone = Trace { spans: trace.spans.iter().filter(|(span, _)| span.pairs == pairs).copied().collect() };
+        let (least, most) = (zone.smallest(&cycle.rows, secant).value, zone.largest(&cycle.rows, secant).value);
+        ZoneStiffness { pairs, least, most }
+    };
+    let fewest = cycle.zones.iter().map(|zone| zone.pairs).min().unwrap_or(1);
+    let nodes = trace.nodes(&cycle.rows);
+    let mean = nodes.iter().map(|node| node.weight * node.value).sum::<f64>() / cycle.period();
+    let most = (cycle.zones.len() > 1).then(|| of(fewest + 1));
+    (loading.curve(Wanted::default()), StiffnessSummary { fewest: of(fewest), most, mean })
+}

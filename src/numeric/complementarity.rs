@@ -1,0 +1,375 @@
+//! How a total load spreads over a few springs that stand behind gaps: a monotone complementarity problem.
+//!
+//! Find the approach x and interferences w_j = x − gap_j − Σ_k c_jk load_k with load_j = response_j(w_j) ≥ 0, zero for
+//! w_j ≤ 0, and Σ load_j = total. Responses are convex and increasing, so without coupling Newton's method started above
+//! the root falls onto it monotonically and needs no safeguard. With coupling the loads minimise a convex complementary
+//! energy; semismooth Newton finds them, and where it should cycle, relaxation inside a bracket does. Gaps are measured
+//! from the smallest one: then x keeps all its digits however small the load. Must not know: what the springs are.
+
+use super::crossing::crossing;
+
+/// The most springs one problem may have.
+pub const MOST: usize = 6;
+
+/// One number per spring.
+pub type PerSpring = [f64; MOST];
+/// Interference of one spring per load on another; symmetric, the diagonal is not read.
+pub type Coupling = [PerSpring; MOST];
+
+/// Loads and their slopes as functions of the interference.
+pub trait Springs {
+    /// Load and d load/d interference: zero for `interference` ≤ 0, convex and increasing above.
+    fn response(&self, spring: usize, interference: f64) -> (f64, f64);
+}
+
+/// Equilibrium.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Balance {
+    /// x, counted from the smallest gap.
+    pub approach: f64,
+    pub loads: PerSpring,
+    /// w_j; where there is no load, minus the distance that is still open.
+    pub interference: PerSpring,
+    /// d total/d x.
+    pub slope: f64,
+}
+
+impl Balance {
+    const EMPTY: Self = Self { approach: 0.0, loads: [0.0; MOST], interference: [0.0; MOST], slope: 0.0 };
+}
+
+/// The approach of linear springs without coupling: sort by gap and take prefix sums. Exact.
+#[must_use]
+pub fn linear_approach(stiffness: &PerSpring, gaps: &[f64], total: f64) -> f64 {
+    let mut order = [0, 1, 2, 3, 4, 5];
+    let order = &mut order[..gaps.len()];
+    for i in 1..order.len() {
+        let mut k = i;
+        while k > 0 && gaps[order[k]] < gaps[order[k - 1]] {
+            order.swap(k, k - 1);
+            k -= 1;
+        }
+    }
+    let (mut sum, mut moment, mut approach) = (0.0, 0.0, 0.0);
+    for (rank, &spring) in order.iter().enumerate() {
+        sum += stiffness[spring];
+        moment += stiffness[spring] * gaps[spring];
+        approach = (total + moment) / sum;
+        if order.get(rank + 1).is_none_or(|&next| approach <= gaps[next]) {
+            break;
+        }
+    }
+    approach
+}
+
+/// Nothing is loaded. `interference` is then the margin by which a spring is the nearest one, so that its sign tells
+/// the nearest and its zero is where two springs change places.
+#[must_use]
+pub fn unloaded(gaps: &[f64]) -> Balance {
+    let mut balance = Balance::EMPTY;
+    for (spring, gap) in gaps.iter().enumerate() {
+        let others = gaps.iter().enumerate().filter(|(other, _)| *other != spring).map(|(_, gap)| *gap);
+        let margin = others.fold(f64::INFINITY, f64::min) - gap;
+        balance.interference[spring] = if margin.is_finite() { margin } else { 0.0 };
+    }
+    balance
+}
+
+/// Equilibrium without coupling. `total` > 0, the smallest gap is 0, and at `above` the springs carry `total` or more.
+pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> Balance {
+    let mut found = Balance { approach: above, ..Balance::EMPTY };
+    for _ in 0..200 {
+        let (mut sum, mut slope) = (0.0, 0.0);
+        for (spring, gap) in gaps.iter().enumerate() {
+            let interference = found.approach - gap;
+            let (load, rise) = if interference > 0.0 { springs.response(spring, interference) } else { (0.0, 0.0) };
+            found.interference[spring] = interference;
+            found.loads[spring] = load;
+            sum += load;
+            slope += rise;
+        }
+        found.slope = slope;
+        let excess = sum - total;
+        let next = found.approach - excess / slope;
+        // Rounding decides below this; convexity keeps every earlier excess positive.
+        if excess.abs() <= 1e-14 * total || !(next > 0.0 && next.is_finite()) {
+            break;
+        }
+        found.approach = next;
+    }
+    found
+}
+
+/// Equilibrium with coupling; the rest as in [`balance`].
+pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
+    let start = balance(springs, gaps, total, above);
+    newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
+}
+
+fn newton(
+    springs: &impl Springs,
+    gaps: &[f64],
+    coupling: &Coupling,
+    total: f64,
+    mut found: Balance,
+) -> Option<Balance> {
+    let count = gaps.len();
+    for _ in 0..60 {
+        let mut rises = [0.0; MOST];
+        for spring in 0..count {
+            let w = found.interference[spring];
+            (found.loads[spring], rises[spring]) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
+        }
+        let mut residual = [0.0; MOST];
+        let mut settled = true;
+        for j in 0..count {
+            let w = found.interference[j];
+            residual[j] = w + deflection(coupling, &found.loads, j, count) + gaps[j] - found.approach;
+            settled &= residual[j].abs() <= 1e-14 * (found.approach.abs() + gaps[j] + w.abs());
+        }
+        let excess = found.loads[..count].iter().sum::<f64>() - total;
+        let solved = Bordered::solve(coupling, &rises, &residual, count)?;
+        found.slope = solved.slope;
+        if settled && excess.abs() <= 1e-13 * total {
+            return Some(found);
+        }
+        let shift = (-excess - solved.offset) / solved.slope;
+        let mut change = [0.0; MOST];
+        for j in 0..count {
+            change[j] = solved.particular[j] + solved.unit[j] * shift;
+        }
+        for j in 0..count {
+            found.interference[j] += if rises[j] > 0.0 {
+                change[j] / rises[j]
+            } else {
+                shift - residual[j] - deflection(coupling, &change, j, count)
+            };
+        }
+        found.approach += shift;
+        if !found.approach.is_finite() {
+            return None;
+        }
+    }
+    None
+}
+
+fn deflection(coupling: &Coupling, loads: &PerSpring, at: usize, count: usize) -> f64 {
+    (0..count).filter(|other| *other != at).map(|other| coupling[at][other] * loads[other]).sum()
+}
+
+/// Load changes of the loaded springs: `particular` undoes the residual, `unit` follows a unit of approach.
+struct Bordered {
+    particular: PerSpring,
+    unit: PerSpring,
+    offset: f64,
+    slope: f64,
+}
+
+impl Bordered {
+    /// Cholesky's factorisation of the compliance matrix of the loaded springs; `None` when it is not positive definite
+    /// or nothing is loaded.
+    fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
+        let mut loaded = [0; MOST];
+        let mut size = 0;
+        for spring in 0..count {
+            if rises[spring] > 0.0 {
+                loaded[size] = spring;
+                size += 1;
+            }
+        }
+        let mut factor = [[0.0; MOST]; MOST];
+        let (mut a, mut b) = ([0.0; MOST], [0.0; MOST]);
+        for i in 0..size {
+            for k in 0..=i {
+                let (row, column) = (loaded[i], loaded[k]);
+                let entry = if i == k { 1.0 / rises[row] } else { coupling[row][column] };
+                let rest = entry - (0..k).map(|m| factor[i][m] * factor[k][m]).sum::<f64>();
+                if i == k {
+                    if rest <= 0.0 || !rest.is_finite() {
+                        return None;
+                    }
+                    factor[i][i] = rest.sqrt();
+                } else {
+                    factor[i][k] = rest / factor[k][k];
+                }
+            }
+            let below = |y: &PerSpring| (0..i).map(|m| factor[i][m] * y[m]).sum::<f64>();
+            (a[i], b[i]) = ((-residual[loaded[i]] - below(&a)) / factor[i][i], (1.0 - below(&b)) / factor[i][i]);
+        }
+        let mut solved = Self { particular: [0.0; MOST], unit: [0.0; MOST], offset: 0.0, slope: 0.0 };
+        for i in (0..size).rev() {
+            for k in i + 1..size {
+                a[i] -= factor[k][i] * a[k];
+                b[i] -= factor[k][i] * b[k];
+            }
+            a[i] /= factor[i][i];
+            b[i] /= factor[i][i];
+            (solved.particular[loaded[i]], solved.unit[loaded[i]]) = (a[i], b[i]);
+            solved.offset += a[i];
+            solved.slope += b[i];
+        }
+        (solved.slope > 0.0).then_some(solved)
+    }
+}
+
+/// For a given approach, each load in turn against the others (coordinate descent on the complementary energy); the
+/// approach by bracketing. Slow and sure.
+fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
+    let count = gaps.len();
+    let mut found = Balance::EMPTY;
+    let mut excess = |approach: f64| {
+        found.approach = approach;
+        for _ in 0..20_000 {
+            let mut change = 0.0_f64;
+            for j in 0..count {
+                let w = approach - gaps[j] - deflection(coupling, &found.loads, j, count);
+                let load = if w > 0.0 { springs.response(j, w).0 } else { 0.0 };
+                change = change.max((load - found.loads[j]).abs());
+                (found.interference[j], found.loads[j]) = (w, load);
+            }
+            if change <= 1e-16 * total {
+                break;
+            }
+        }
+        found.loads[..count].iter().sum::<f64>() - total
+    };
+    let mut upper = (above, excess(above));
+    while upper.1 < 0.0 && upper.0 < f64::MAX / 4.0 {
+        upper = (2.0 * upper.0, excess(2.0 * upper.0));
+    }
+    let root = crossing(&mut excess, (0.0, -total), upper, 0.0);
+    excess(root);
+    let rises: Vec<f64> = (0..count)
+        .map(|j| if found.interference[j] > 0.0 { springs.response(j, found.interference[j]).1 } else { 0.0 })
+        .collect();
+    let mut padded = [0.0; MOST];
+    padded[..count].copy_from_slice(&rises);
+    found.slope = Bordered::solve(coupling, &padded, &[0.0; MOST], count).map_or(0.0, |solved| solved.slope);
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    struct Linear(PerSpring);
+
+    impl Springs for Linear {
+        fn response(&self, spring: usize, interference: f64) -> (f64, f64) {
+            (self.0[spring] * interference, self.0[spring])
+        }
+    }
+
+    /// Tries every set of loaded springs and solves the linear equations by Gauss–Jordan.
+    fn enumerated(compliance: &[Vec<f64>], gaps: &[f64], total: f64) -> (f64, Vec<f64>) {
+        let n = gaps.len();
+        for set in 1_u32..1 << n {
+            let members: Vec<usize> = (0..n).filter(|j| set >> j & 1 == 1).collect();
+            let size = members.len();
+            let mut rows: Vec<Vec<f64>> = members
+                .iter()
+                .map(|&i| {
+                    let mut row: Vec<f64> = members.iter().map(|&k| compliance[i][k]).collect();
+                    row.extend([-1.0, -gaps[i]]);
+                    row
+                })
+                .collect();
+            rows.push([vec![1.0; size], vec![0.0, total]].concat());
+            for column in 0..=size {
+                let pivot = (column..=size).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()));
+                rows.swap(column, pivot.unwrap());
+                let scale = rows[column][column];
+                rows[column].iter_mut().for_each(|entry| *entry /= scale);
+                let pivot_row = rows[column].clone();
+                for (index, row) in rows.iter_mut().enumerate() {
+                    if index != column {
+                        let factor = row[column];
+                        row.iter_mut().zip(&pivot_row).for_each(|(entry, p)| *entry -= factor * p);
+                    }
+                }
+            }
+            let mut loads = vec![0.0; n];
+            for (row, &member) in members.iter().enumerate() {
+                loads[member] = rows[row][size + 1];
+            }
+            let approach = rows[size][size + 1];
+            let open = |j: usize| gaps[j] + (0..n).map(|k| compliance[j][k] * loads[k]).sum::<f64>() - approach;
+            if (0..n).all(|j| loads[j] >= -1e-12 * total && (set >> j & 1 == 1 || open(j) >= -1e-12 * approach)) {
+                return (approach, loads);
+            }
+        }
+        panic!("no set of loaded springs fits");
+    }
+
+    fn check(compliance: &[Vec<f64>], gaps: &[f64], total: f64, solved: &Balance) {
+        let (approach, loads) = enumerated(compliance, gaps, total);
+        assert!((solved.approach / approach - 1.0).abs() < 1e-9, "{} {approach}", solved.approach);
+        for (j, load) in loads.iter().enumerate() {
+            assert!((solved.loads[j] - load).abs() < 1e-9 * total, "{:?} {loads:?}", solved.loads);
+            assert!(solved.loads[j] >= 0.0);
+        }
+        let sum: f64 = solved.loads[..gaps.len()].iter().sum();
+        assert!((sum / total - 1.0).abs() < 1e-12, "{sum} {total}");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
+        #[test]
+        fn random_problems_agree_with_enumeration(
+            count in 1_usize..=MOST,
+            roots in prop::collection::vec(-1.0_f64..1.0, MOST * MOST),
+            own in prop::collection::vec(0.02_f64..2.0, MOST),
+            openings in prop::collection::vec(0.0_f64..3.0, MOST),
+            closed in 0_usize..MOST,
+            total in 1e-3_f64..10.0,
+            coupled in any::<bool>(),
+        ) {
+            // B Bᵀ + diagonal: positive definite, off-diagonals of either sign and often larger than is mechanical.
+            let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST + m] * roots[k * MOST + m]).sum::<f64>();
+            let compliance: Vec<Vec<f64>> = (0..count)
+                .map(|i| (0..count).map(|k| match (i == k, coupled) {
+                    (true, _) => entry(i, i) + own[i],
+                    (false, true) => entry(i, k),
+                    (false, false) => 0.0,
+                }).collect())
+                .collect();
+            let mut gaps = openings[..count].to_vec();
+            gaps[closed % count] = 0.0;
+            let (mut stiffness, mut coupling) = ([0.0; MOST], [[0.0; MOST]; MOST]);
+            for i in 0..count {
+                stiffness[i] = 1.0 / compliance[i][i];
+                for k in 0..count {
+                    coupling[i][k] = compliance[i][k];
+                }
+            }
+            let springs = Linear(stiffness);
+            let above = linear_approach(&stiffness, &gaps, total);
+            check(&compliance, &gaps, total, &balance_coupled(&springs, &gaps, &coupling, total, above));
+            check(&compliance, &gaps, total, &relaxed(&springs, &gaps, &coupling, total, above));
+            if !coupled {
+                check(&compliance, &gaps, total, &balance(&springs, &gaps, total, above));
+                let slopes = [balance(&springs, &gaps, total, above), balance_coupled(&springs, &gaps, &coupling, total, above)];
+                prop_assert!((slopes[0].slope / slopes[1].slope - 1.0).abs() < 1e-13);
+            }
+        }
+    }
+
+    #[test]
+    fn a_vanishing_load_keeps_its_digits_beside_gaps() {
+        let stiffness = [3.0e8; MOST];
+        for total in [1e-300, 1e-15, 1e-3, 1e12] {
+            let gaps = [0.0, 4.0e-6];
+            let found = balance(&Linear(stiffness), &gaps, total, linear_approach(&stiffness, &gaps, total));
+            let exact = if total / 3.0e8 < 4.0e-6 { total / 3.0e8 } else { (total + 1200.0) / 6.0e8 };
+            assert!((found.approach / exact - 1.0).abs() < 1e-15, "{total}");
+        }
+    }
+
+    #[test]
+    fn without_load_the_nearest_has_the_positive_margin() {
+        let found = unloaded(&[2.0, 0.0, 3.0]);
+        assert_eq!(found.interference[..3], [-2.0, 2.0, -3.0]);
+    }
+}

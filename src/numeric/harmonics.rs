@@ -1,0 +1,75 @@
+//! Mean, variance and harmonics of a periodic function known at quadrature nodes.
+//!
+//! Integrals over the period, not sums over samples, so jumps and kinks at the ends of the pieces cost nothing. Must
+//! not know: what the function is.
+
+use std::f64::consts::TAU;
+
+/// One node: position in the period, quadrature weight (length), value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Node {
+    pub position: f64,
+    pub weight: f64,
+    pub value: f64,
+}
+
+/// Mean and variance: 1/P ∫f and 1/P ∫(f − mean)².
+#[must_use]
+pub fn mean_and_variance(period: f64, nodes: &[Node]) -> (f64, f64) {
+    // Measured from one of the values, so that a small variation on a large mean keeps its digits.
+    let origin = nodes.first().map_or(0.0, |node| node.value);
+    let offset = nodes.iter().map(|node| node.weight * (node.value - origin)).sum::<f64>() / period;
+    let spread = |node: &Node| node.weight * (node.value - origin - offset) * (node.value - origin - offset);
+    (origin + offset, nodes.iter().map(spread).sum::<f64>() / period)
+}
+
+/// The amplitude of harmonic `order` (cycles per period): |2/P ∫ f e^{−2πi·order·t/P}|.
+#[must_use]
+pub fn amplitude(period: f64, nodes: &[Node], order: usize) -> f64 {
+    let origin = nodes.first().map_or(0.0, |node| node.value);
+    let (mut cosine, mut sine) = (0.0, 0.0);
+    for node in nodes {
+        let angle = TAU * order as f64 * (node.position / period);
+        let part = node.weight * (node.value - origin);
+        cosine += part * libm::cos(angle);
+        sine += part * libm::sin(angle);
+    }
+    2.0 / period * libm::hypot(cosine, sine)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numeric::lobatto::Rule;
+
+    /// A rectangular wave: `high` on the first `share` of the period 3, `low` after it; each part in `cuts` panels.
+    fn wave(high: f64, low: f64, share: f64, cuts: u32) -> Vec<Node> {
+        let rule = Rule::new(8);
+        let mut nodes = Vec::new();
+        for (start, length, value) in [(0.0, 3.0 * share, high), (3.0 * share, 3.0 * (1.0 - share), low)] {
+            let width = length / f64::from(cuts);
+            for cut in 0..cuts {
+                for (x, w) in rule.nodes.iter().zip(&rule.weights) {
+                    let position = start + width * (f64::from(cut) + x);
+                    nodes.push(Node { position, weight: w * width, value });
+                }
+            }
+        }
+        nodes
+    }
+
+    #[test]
+    fn a_rectangular_wave_has_its_closed_forms() {
+        let (high, low, share) = (7e-6, 4e-6, 0.354);
+        let nodes = wave(high, low, share, 6);
+        let (mean, variance) = mean_and_variance(3.0, &nodes);
+        assert!((mean - (high * share + low * (1.0 - share))).abs() < 1e-20);
+        let exact = (high - low) * (high - low) * share * (1.0 - share);
+        assert!((variance / exact - 1.0).abs() < 1e-14);
+        for order in 1..=5 {
+            let angle = std::f64::consts::PI * order as f64 * share;
+            let exact = 2.0 * (high - low) * libm::sin(angle).abs() / (std::f64::consts::PI * order as f64);
+            assert!((amplitude(3.0, &nodes, order) / exact - 1.0).abs() < 1e-9, "{order}");
+        }
+    }
+}
