@@ -1,5 +1,6 @@
 //! Studies of small stage kinds that exist only here: every message, and what can never happen.
 
+mod declared;
 mod messages;
 mod properties;
 mod values;
@@ -79,7 +80,7 @@ static CELL: Shape = Shape::Text;
 static REPORT: &[Field] = &[
     Field::new("cells", Shape::List(&CELL), "Cells, as `stage.table.column`.").default("[]"),
     Field::new("value", Shape::AnyQuantity, "A published value.").optional(),
-    Field::reference("around", &["modification"], "Read through it.").optional(),
+    Field::reference("around", &["modification", "report"], "Read through it.").optional(),
 ];
 
 struct Part {
