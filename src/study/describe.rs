@@ -13,7 +13,8 @@ use crate::stage::Kind;
 #[must_use]
 pub fn list(kinds: &[&'static Kind]) -> String {
     let width = kinds.iter().map(|kind| kind.name.len()).max().unwrap_or(0);
-    kinds.iter().map(|kind| format!("{:width$}  {}\n", kind.name, kind.summary)).collect()
+    let lines: Vec<_> = kinds.iter().map(|kind| format!("{:width$}  {}\n", kind.name, kind.summary)).collect();
+    lines.concat()
 }
 
 /// A kind with all its fields and its example.

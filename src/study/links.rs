@@ -183,12 +183,11 @@ fn check_circles(names: &[&str], edges: &[Vec<Edge>]) -> Result<(), Diagnostic> 
     }
     let mut marks = vec![Mark::New; names.len()];
     for start in 0..names.len() {
-        let mut path = vec![(start, 0)];
-        if marks[start] == Mark::New {
-            marks[start] = Mark::Open;
-        } else {
+        if marks[start] != Mark::New {
             continue;
         }
+        marks[start] = Mark::Open;
+        let mut path = vec![(start, 0)];
         while let Some((stage, next)) = path.last_mut() {
             let Some(&(target, place)) = edges[*stage].get(*next) else {
                 marks[*stage] = Mark::Done;

@@ -209,7 +209,6 @@ impl Families {
 
 /// The summary, and what the schema cannot say.
 fn description(field: &Field) -> String {
-    let mut text = field.summary.to_owned();
     let range = match field.shape {
         Shape::Quantity { dimension, least, most } => {
             words::range(least, most, |value| words::quantity(value, dimension))
@@ -217,16 +216,12 @@ fn description(field: &Field) -> String {
         Shape::Reference(kinds) => Some(words::stage_of(kinds)),
         _ => None,
     };
-    if let Some(range) = range {
-        text += &format!(" ({range})");
-    }
-    text
+    range.map_or(field.summary.to_owned(), |range| format!("{} ({range})", field.summary))
 }
 
 /// One value, and the other ways in which a field's span lets it be given.
 fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
     match field.span {
-        Span::Single => single.clone(),
         Span::Axis { .. } => json!({ "anyOf": [
             single,
             { "type": "array", "minItems": 1, "items": single },
@@ -240,7 +235,7 @@ fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
         Span::Range if chooses => {
             json!({ "anyOf": [single, { "type": "array", "minItems": 2, "maxItems": 2, "items": single }] })
         }
-        Span::Range => single.clone(),
+        Span::Single | Span::Range => single.clone(),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Studies of small stage kinds that exist only here: every message, and what can never happen.
 
 mod declared;
+mod files;
 mod messages;
 mod properties;
 mod values;
