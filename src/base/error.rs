@@ -83,16 +83,23 @@ pub fn nearest<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> Opti
     best.map(|(_, candidate)| candidate)
 }
 
+/// Names that a message lists at most.
+const MOST_NAMES: usize = 30;
+
 /// `did you mean …`, or the list of what is known.
 #[must_use]
 pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> String {
     if let Some(candidate) = nearest(name, known.clone()) {
         return format!("did you mean `{candidate}`?");
     }
-    let names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
+    let mut names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
     if names.is_empty() {
-        "there are none to choose from".to_owned()
-    } else {
-        format!("known here: {}", names.join(", "))
+        return "there are none to choose from".to_owned();
     }
+    if names.len() > MOST_NAMES {
+        let more = names.len() - MOST_NAMES;
+        names.truncate(MOST_NAMES);
+        names.push(format!("and {more} more"));
+    }
+    format!("known here: {}", names.join(", "))
 }

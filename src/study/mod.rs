@@ -1,11 +1,26 @@
 //! A study: one YAML file, read and checked, then never changed.
 //!
-//! Must not know: execution, the store.
+//! `read` gives text, `document` a tree, `decode` records by the declared fields, `assemble` the study and its stages,
+//! `links` checks what they say of each other. Must not know: execution, the store.
 
-use std::path::PathBuf;
+mod assemble;
+mod decode;
+pub mod describe;
+mod document;
+mod links;
+mod quantity;
+mod read;
+pub mod schema;
+#[cfg(test)]
+mod tests;
+mod words;
 
-use crate::base::error::Place;
+use std::fmt;
+use std::path::{Path, PathBuf};
+
+use crate::base::error::{Diagnostic, Place};
 use crate::base::record::Record;
+use crate::stage::kinds::KINDS;
 use crate::stage::{Kind, Stage};
 
 /// What a study reproduces.
@@ -40,4 +55,59 @@ pub struct Node {
     /// After defaults; chunks of the stage are built from it.
     pub record: Record,
     pub stage: Box<dyn Stage>,
+}
+
+/// Why a file is no study. Shown as `file:line:column: message`, with the help on a line of its own.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct LoadError {
+    pub path: PathBuf,
+    /// What was read, to show the line; places count in it.
+    pub text: String,
+    pub diagnostic: Box<Diagnostic>,
+}
+
+impl LoadError {
+    fn new(path: &Path, text: String, diagnostic: Diagnostic) -> Self {
+        Self { path: path.to_owned(), text, diagnostic: Box::new(diagnostic) }
+    }
+}
+
+impl fmt::Display for LoadError {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(formatter, "{}:", self.path.display())?;
+        if let Some(place) = self.diagnostic.place {
+            write!(formatter, "{}:{}:", place.line, place.column)?;
+        }
+        write!(formatter, " {}", self.diagnostic.message)?;
+        match &self.diagnostic.help {
+            Some(help) => write!(formatter, "\n  help: {help}"),
+            None => Ok(()),
+        }
+    }
+}
+
+impl std::error::Error for LoadError {}
+
+/// Reads and checks a study.
+///
+/// # Errors
+/// One message for the first thing that is wrong with it.
+pub fn load(path: &Path) -> Result<Study, LoadError> {
+    load_text(&read::read(path)?, path)
+}
+
+/// Checks a study whose text was read from `path`.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text(text: &str, path: &Path) -> Result<Study, LoadError> {
+    load_text_with(text, path, KINDS)
+}
+
+/// The same with other kinds of stages than the registered ones.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text_with(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<Study, LoadError> {
+    assemble::study(text, path, kinds).map_err(|diagnostic| LoadError::new(path, text.to_owned(), diagnostic))
 }
