@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub const FORMAT: u32 = 1;
 
 /// The record of one run of one study.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Manifest {
     pub format: u32,
     pub study: String,
@@ -44,7 +44,7 @@ pub struct Source {
     pub figures: Vec<i64>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Program {
     pub version: String,
     /// The commit of the folder the study lies in, when it is a git work tree.
@@ -54,7 +54,7 @@ pub struct Program {
     pub profile: String,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Machine {
     pub system: String,
     pub processor: String,
