@@ -157,6 +157,12 @@ impl Cache {
         parquet::read(self.bytes(key, table)?).map_err(|problem| StoreError::Damaged { path, problem })
     }
 
+    /// Removes an entry that turned out to be damaged, so that the next plan knows.
+    pub fn forget(&self, key: Digest) {
+        // Somebody else may have removed it, or written it anew, already: either is as good.
+        let _ = fs::remove_file(self.path(key));
+    }
+
     fn journal_path(&self, study: &str) -> PathBuf {
         self.root.join("journals").join(format!("{study}.json"))
     }
