@@ -10,17 +10,40 @@ use super::plan::Plan;
 #[derive(Debug)]
 pub enum Event<'a> {
     /// First of all: what is going to be done.
-    Planned { plan: &'a Plan },
+    Planned {
+        plan: &'a Plan,
+    },
     /// A stage is up to date; comes for those that could not be planned because their inputs were not known.
-    Hit { stage: &'a str },
+    Hit {
+        stage: &'a str,
+    },
     /// `chunks` of a stage must be computed.
-    Started { stage: &'a str, why: &'a str, chunks: usize },
+    Started {
+        stage: &'a str,
+        why: &'a str,
+        chunks: usize,
+    },
     /// The share of a stage that is done, 0 to 1.
-    Progressed { stage: &'a str, share: f64 },
-    Warned { stage: &'a str, message: &'a str },
-    Finished { stage: &'a str, seconds: f64 },
-    Failed { stage: &'a str, fault: &'a Fault },
-    Skipped { stage: &'a str, why: &'a str },
+    Progressed {
+        stage: &'a str,
+        share: f64,
+    },
+    Warned {
+        stage: &'a str,
+        message: &'a str,
+    },
+    Finished {
+        stage: &'a str,
+        seconds: f64,
+    },
+    Failed {
+        stage: &'a str,
+        fault: &'a Fault,
+    },
+    Skipped {
+        stage: &'a str,
+        why: &'a str,
+    },
 }
 
 /// Whoever watches a run.

@@ -3,6 +3,8 @@
 //! Demand is that of the whole study plus what the user asks for, also when only some stages are run: otherwise
 //! `--only` would change keys. Must not know: the cache, states.
 
+use std::collections::BTreeSet;
+
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::DfsPostOrder;
@@ -68,7 +70,7 @@ impl Graph {
             .iter()
             .map(|outputs| {
                 let always = outputs.iter().filter(|schema| !schema.on_demand);
-                Demand { tables: always.map(|schema| (schema.name.clone(), Default::default())).collect() }
+                Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() }
             })
             .collect();
         for (reader, inputs) in self.inputs.iter().enumerate() {

@@ -13,3 +13,4 @@ pub mod outcome;
 pub mod plan;
 #[cfg(test)]
 mod tests;
+pub mod work;

@@ -79,7 +79,8 @@ impl Cache {
         for folder in [root.join("entries"), root.join("journals")] {
             fs::create_dir_all(&folder).map_err(StoreError::io("make the cache folder", &folder))?;
         }
-        let tag = "Signature: 8a477f597d28d172789f06886806bc55\n# A cache of gearstudy; see https://bford.info/cachedir/\n";
+        let tag =
+            "Signature: 8a477f597d28d172789f06886806bc55\n# A cache of gearstudy; see https://bford.info/cachedir/\n";
         file::write(&root.join("CACHEDIR.TAG"), tag.as_bytes(), Durability::Lazy)?;
         file::write(&root.join(".gitignore"), b"*\n", Durability::Lazy)?;
         let options = File::options().read(true).write(true).create(true).truncate(false).open(lock);
@@ -194,9 +195,11 @@ impl Cache {
                 None => Some("its name is no key".to_owned()),
                 Some(Err(problem)) => Some(problem),
                 Some(Ok(None)) => None,
-                Some(Ok(Some((entry, _)))) => entry.tables.iter().filter(|table| table.body.is_some()).find_map(|table| {
-                    self.table(entry.key, &table.name).err().map(|error| error.to_string())
-                }),
+                Some(Ok(Some((entry, _)))) => entry
+                    .tables
+                    .iter()
+                    .filter(|table| table.body.is_some())
+                    .find_map(|table| self.table(entry.key, &table.name).err().map(|error| error.to_string())),
             };
             damaged.extend(problem.map(|problem| (path, problem)));
         }
@@ -374,7 +377,10 @@ mod tests {
         let counts = |removed: Removed| (removed.entries, removed.kept);
         assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, true).unwrap()), (2, 1));
         assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, false).unwrap()), (2, 1));
-        assert_eq!(counts(Cache::clean(folder.path(), Remove::OlderThan(Duration::from_hours(1)), false).unwrap()), (0, 1));
+        assert_eq!(
+            counts(Cache::clean(folder.path(), Remove::OlderThan(Duration::from_hours(1)), false).unwrap()),
+            (0, 1)
+        );
         let cache = Cache::open(folder.path()).unwrap();
         assert!(matches!(cache.look_up(key("a")), Lookup::Found(_)));
         assert_eq!(cache.look_up(key("b")), Lookup::Missing);

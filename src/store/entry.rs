@@ -80,8 +80,7 @@ impl StoredTable {
     pub fn describe(table: &Table) -> Result<Self, StoreError> {
         let content = table.content_hash();
         let on_demand: Vec<&Column> = table.schema().columns.iter().filter(|column| column.on_demand).collect();
-        let base =
-            if on_demand.is_empty() { content } else { part(table, |column| !column.on_demand)?.content_hash() };
+        let base = if on_demand.is_empty() { content } else { part(table, |column| !column.on_demand)?.content_hash() };
         let columns = on_demand.iter().map(|wanted| {
             let alone = part(table, |column| column.name == wanted.name)?;
             Ok(StoredColumn { name: wanted.name.clone(), content: alone.content_hash() })

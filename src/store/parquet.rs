@@ -200,7 +200,7 @@ pub mod tests {
                 i64::try_from(index).unwrap().wrapping_mul(i64::MAX / 3).into(),
                 floats[index % 6].into(),
                 (1.0 / (index as f64 + 3.0)).into(),
-                (index % 3 == 0).into(),
+                index.is_multiple_of(3).into(),
                 (index as f64).into(),
             ]
         };

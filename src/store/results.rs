@@ -26,6 +26,9 @@ pub struct Folder {
     study: String,
 }
 
+/// Gives the Parquet file of (stage, table).
+pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
+
 /// What publishing would write and remove.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Changes {
@@ -94,7 +97,7 @@ impl Folder {
     }
 
     /// Brings the folder up to date. `manifest` comes without facts and files; `facts` is asked only when something is
-    /// written; `bytes` gives the Parquet file of (stage, table).
+    /// written.
     ///
     /// # Errors
     /// When a table cannot be had or a file not be written; what was there before stays valid.
@@ -102,7 +105,7 @@ impl Folder {
         &self,
         manifest: Manifest,
         facts: impl FnOnce() -> Facts,
-        bytes: &dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>,
+        bytes: Bytes<'_>,
     ) -> Result<Published, StoreError> {
         if let Some(old) = self.manifest()
             && self.compare(Some(&old), &self.with_earlier_tables(Some(&old), manifest.clone())) == Changes::default()
@@ -160,7 +163,8 @@ impl Folder {
         let Some(old) = old else { return new };
         for stage in new.stages.iter_mut().filter(|stage| !complete(stage)) {
             let earlier = old.stages.iter().find(|earlier| earlier.name == stage.name && earlier.kind == stage.kind);
-            if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(|table| self.intact(old, &table.file)))
+            if let Some(earlier) =
+                earlier.filter(|earlier| earlier.tables.iter().all(|table| self.intact(old, &table.file)))
             {
                 let StageRecord { status, why, .. } = std::mem::replace(stage, earlier.clone());
                 *stage = StageRecord { status, why, ..stage.clone() };
@@ -171,7 +175,8 @@ impl Folder {
 
     fn compare(&self, old: Option<&Manifest>, new: &Manifest) -> Changes {
         let new_tables: Vec<&TableRecord> = new.stages.iter().flat_map(|stage| &stage.tables).collect();
-        let old_tables: Vec<&TableRecord> = old.iter().flat_map(|old| &old.stages).flat_map(|stage| &stage.tables).collect();
+        let old_tables: Vec<&TableRecord> =
+            old.iter().flat_map(|old| &old.stages).flat_map(|stage| &stage.tables).collect();
         let intact = |file: &str| old.is_some_and(|old| self.intact(old, file));
         let tables: Vec<String> = new_tables
             .iter()
@@ -180,9 +185,8 @@ impl Folder {
             .collect();
         let with_hdf5 = cfg!(feature = "hdf5");
         let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&self.hdf5_file()));
-        let listed = |file: &str| {
-            new_tables.iter().any(|table| table.file == file) || (with_hdf5 && file == self.hdf5_file())
-        };
+        let listed =
+            |file: &str| new_tables.iter().any(|table| table.file == file) || (with_hdf5 && file == self.hdf5_file());
         // A manifest from elsewhere may name anything; only files right here are ours.
         let here = |file: &str| Path::new(file).file_name().is_some_and(|name| name == file);
         let old_files = old.iter().flat_map(|old| &old.files).map(|record| record.file.clone());
@@ -298,7 +302,12 @@ mod tests {
                 })
                 .collect(),
         };
-        Manifest { format: FORMAT, study: "s".to_owned(), stages: vec![stage("pair"), stage("ste")], ..Manifest::default() }
+        Manifest {
+            format: FORMAT,
+            study: "s".to_owned(),
+            stages: vec![stage("pair"), stage("ste")],
+            ..Manifest::default()
+        }
     }
 
     fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: Manifest) -> (Published, usize) {
