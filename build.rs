@@ -1,10 +1,11 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another.
+//! stage does not recompute another. The compiler's version goes into the program for the manifest.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::Command;
 use std::{env, fs, io};
 
 /// Layers every stage may use.
@@ -12,6 +13,9 @@ const SHARED: [&str; 5] = ["base", "numeric", "gear", "optimize", "table"];
 
 fn main() -> io::Result<()> {
     let source = PathBuf::from("src");
+    let rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())).arg("--version").output()?;
+    println!("cargo:rustc-env=GEARSTUDY_RUSTC={}", String::from_utf8_lossy(&rustc.stdout).trim());
+    println!("cargo:rustc-env=GEARSTUDY_PROFILE={}", env::var("PROFILE").unwrap_or_default());
     println!("cargo:rerun-if-changed=src");
     println!("cargo:rerun-if-changed=build.rs");
     let mut shared = Vec::new();

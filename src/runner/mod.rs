@@ -1,1 +1,16 @@
-//! Placeholder.
+//! Running a study: what must be computed, why, in which order, and doing it.
+//!
+//! Must not know: gears, what a stage computes, how progress is drawn.
+
+pub mod board;
+pub mod chunk;
+pub mod events;
+pub mod execute;
+pub mod graph;
+pub mod key;
+pub mod options;
+pub mod outcome;
+pub mod plan;
+#[cfg(test)]
+mod tests;
+pub mod work;

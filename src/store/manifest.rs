@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub const FORMAT: u32 = 1;
 
 /// The record of one run of one study.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Manifest {
     pub format: u32,
     pub study: String,
@@ -23,6 +23,16 @@ pub struct Manifest {
     pub written: String,
     pub seconds: f64,
     pub stages: Vec<StageRecord>,
+    /// Every file beside the manifest that belongs to it, so that a later run can tell what is missing or stale.
+    #[serde(default)]
+    pub files: Vec<FileRecord>,
+}
+
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+pub struct FileRecord {
+    /// Relative to the manifest.
+    pub file: String,
+    pub bytes: u64,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -34,7 +44,7 @@ pub struct Source {
     pub figures: Vec<i64>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Program {
     pub version: String,
     /// The commit of the folder the study lies in, when it is a git work tree.
@@ -44,7 +54,7 @@ pub struct Program {
     pub profile: String,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Machine {
     pub system: String,
     pub processor: String,
@@ -71,11 +81,20 @@ pub struct StageRecord {
 }
 
 /// The parts of a cache key, each a digest in hexadecimal, so that two runs can say *why* they differ.
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq, Eq)]
 pub struct KeyRecord {
     pub key: String,
+    /// All fields but the chunked axis.
     pub config: String,
+    /// Field, and the start of its digest: which part of `config` it was that changed.
+    #[serde(default)]
+    pub fields: Vec<(String, String)>,
+    /// The values of the chunked axis; empty for a stage that runs in one piece.
+    #[serde(default)]
+    pub axis: String,
+    /// Kind, version and sources.
     pub code: String,
+    /// Empty for a stage that draws no random numbers.
     pub seed: String,
     pub demand: String,
     /// Port, and the digest of what came in through it.

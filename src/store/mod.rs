@@ -1,5 +1,16 @@
-//! What is kept on disk: content-addressed objects, Parquet, HDF5, the manifest, locks.
+//! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with its manifest, the facts of a run.
 //!
 //! Must not know: stages, the graph.
 
+pub mod cache;
+pub mod csv;
+pub mod entry;
+pub mod error;
+pub mod facts;
+pub mod file;
+#[cfg(feature = "hdf5")]
+pub mod hdf5;
+pub mod journal;
 pub mod manifest;
+pub mod parquet;
+pub mod results;

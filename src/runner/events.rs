@@ -1,0 +1,59 @@
+//! What a run tells whoever watches it.
+//!
+//! Events of one stage come in order, from any thread; whoever receives them must be quick. Must not know: bars, lines,
+//! terminals.
+
+use super::outcome::Fault;
+use super::plan::Plan;
+
+/// Something happened.
+#[derive(Debug)]
+pub enum Event<'a> {
+    /// First of all: what is going to be done.
+    Planned {
+        plan: &'a Plan,
+    },
+    /// A stage is up to date; comes for those that could not be planned because their inputs were not known.
+    Hit {
+        stage: &'a str,
+    },
+    /// `chunks` of a stage must be computed.
+    Started {
+        stage: &'a str,
+        why: &'a str,
+        chunks: usize,
+    },
+    /// The share of a stage that is done, 0 to 1.
+    Progressed {
+        stage: &'a str,
+        share: f64,
+    },
+    Warned {
+        stage: &'a str,
+        message: &'a str,
+    },
+    Finished {
+        stage: &'a str,
+        seconds: f64,
+    },
+    Failed {
+        stage: &'a str,
+        fault: &'a Fault,
+    },
+    Skipped {
+        stage: &'a str,
+        why: &'a str,
+    },
+}
+
+/// Whoever watches a run.
+pub trait Observer: Sync {
+    fn event(&self, event: &Event<'_>);
+}
+
+/// Nobody watches.
+pub struct Silent;
+
+impl Observer for Silent {
+    fn event(&self, _event: &Event<'_>) {}
+}

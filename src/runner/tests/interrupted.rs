@@ -1,0 +1,138 @@
+//! Runs that are stopped, killed, or not alone.
+
+use std::process::{Command, Stdio};
+use std::time::Instant;
+
+use super::*;
+use crate::runner::board::State;
+use crate::runner::events::{Event, Observer};
+
+fn twenty() -> Vec<f64> {
+    (1..=20).map(f64::from).collect()
+}
+
+/// Stops the run after the third chunk.
+struct Stopper<'a>(&'a AtomicBool);
+
+impl Observer for Stopper<'_> {
+    fn event(&self, event: &Event<'_>) {
+        if matches!(event, Event::Progressed { share, .. } if *share > 0.14) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn a_stopped_run_goes_on_where_it_was() {
+    let mut bench = Bench::new();
+    bench.options.jobs = 1;
+    let specs = [stage("a", 1.0).cut(&CUT, &twenty()), stage("b", 1.0).of(&["a"])];
+    let stop = AtomicBool::new(false);
+    let study = bench.study(&specs);
+    let outcome = execute(&study, &bench.cache(), &bench.options, &Stopper(&stop), &stop).unwrap();
+    assert!(outcome.stopped);
+    let states: Vec<_> = outcome.stages.iter().map(|stage| (stage.state, stage.why.as_str())).collect();
+    assert_eq!(states, [(State::Skipped, "stopped"), (State::Skipped, "stopped")]);
+    assert_eq!(count(&bench.counter("a")), 3);
+    let outcome = bench.run(&specs);
+    assert!(!outcome.stopped);
+    assert_eq!(bench.computed(), ["a×17", "b"]);
+}
+
+#[test]
+fn a_running_stage_hears_that_it_should_stop() {
+    let mut bench = Bench::new();
+    let stop = AtomicBool::new(false);
+    let study = bench.study(&[stage("a", 1.0).mode("until_stopped"), stage("b", 1.0)]);
+    let outcome = std::thread::scope(|scope| {
+        scope.spawn(|| {
+            std::thread::sleep(Duration::from_millis(50));
+            stop.store(true, Ordering::Relaxed);
+        });
+        execute(&study, &bench.cache(), &bench.options, &Silent, &stop).unwrap()
+    });
+    assert!(outcome.stopped);
+    assert_eq!(outcome.stage("a").unwrap().state, State::Skipped);
+    assert_eq!(outcome.stage("b").unwrap().state, State::Done);
+    assert_eq!(bench.run(&[stage("b", 1.0)]).stage("b").unwrap().state, State::Hit);
+}
+
+/// What the child of the next test does; nothing when the tests are run as usual.
+#[test]
+fn child_that_is_killed() {
+    let Some(folder) = std::env::var_os("GEARSTUDY_TEST_CHILD") else { return };
+    let bench = Bench::new();
+    let specs = slow(&bench, std::path::Path::new(&folder));
+    let cache = Cache::open(&std::path::Path::new(&folder).join("cache")).unwrap();
+    execute(&specs, &cache, &bench.options, &Silent, &AtomicBool::new(false)).unwrap();
+}
+
+fn slow(bench: &Bench, folder: &std::path::Path) -> Study {
+    let mut study = bench.study(&[stage("a", 1.0).cut(&CUT, &twenty()).mode("slow"), stage("b", 1.0).of(&["a"])]);
+    // The counters are part of the configuration: parent and child must agree.
+    for node in &mut study.nodes {
+        for (name, entry) in &mut node.record.fields {
+            if *name == "counter" {
+                entry.value = Value::Text(format!("{}/{}", folder.display(), node.name));
+            }
+        }
+        node.stage = (node.kind.build)(&node.record).unwrap();
+    }
+    study
+}
+
+#[test]
+fn a_killed_process_loses_only_what_it_was_at() {
+    let bench = Bench::new();
+    let folder = bench.folder.path();
+    let stored = || {
+        bench.cache().verify().map(|damaged| {
+            assert_eq!(damaged, []);
+            walk(&bench.root().join("entries"))
+        })
+    };
+    let mut child = Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "runner::tests::interrupted::child_that_is_killed"])
+        .env("GEARSTUDY_TEST_CHILD", folder)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let began = Instant::now();
+    while walk(&bench.root().join("entries")) < 4 {
+        assert!(began.elapsed() < Duration::from_mins(1), "the child does not get anywhere");
+        std::thread::sleep(Duration::from_millis(1));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let kept = stored().unwrap();
+    assert!((4..20).contains(&kept), "{kept}");
+    let study = slow(&bench, folder);
+    let outcome = execute(&study, &bench.cache(), &bench.options, &Silent, &AtomicBool::new(false)).unwrap();
+    assert_eq!(outcome.stage("b").unwrap().state, State::Done);
+    assert_eq!(count(&format!("{}/a", folder.display())), 20 - kept);
+}
+
+/// The number of finished files below a folder.
+fn walk(folder: &std::path::Path) -> usize {
+    let Ok(entries) = std::fs::read_dir(folder) else { return 0 };
+    let paths = entries.map(|entry| entry.unwrap().path());
+    let finished = |path: &PathBuf| !path.file_name().unwrap().to_string_lossy().starts_with(".partial-");
+    paths.filter(finished).map(|path| if path.is_dir() { walk(&path) } else { 1 }).sum()
+}
+
+#[test]
+fn two_runs_at_once_on_one_cache_agree() {
+    let bench = Bench::new();
+    let specs = [stage("a", 1.0).cut(&CUT, &twenty()).mode("parallel"), stage("b", 1.0).of(&["a"])];
+    let (first, second) = std::thread::scope(|scope| {
+        let run = || execute(&bench.study(&specs), &bench.cache(), &bench.options, &Silent, &AtomicBool::new(false));
+        let other = scope.spawn(run);
+        (run().unwrap(), other.join().unwrap().unwrap())
+    });
+    for (a, b) in first.stages.iter().zip(&second.stages) {
+        assert!(a.state.has_tables() && b.state.has_tables());
+        assert_eq!(a.tables[0].1.content, b.tables[0].1.content);
+    }
+    assert!(bench.cache().verify().unwrap().is_empty());
+    assert_eq!(walk(&bench.root().join("entries")), 22);
+}

@@ -1,0 +1,93 @@
+//! Files that are there whole or not at all, whenever the program is killed.
+//!
+//! Written under a temporary name in the same folder and renamed. The folder itself is not fsynced: should a power cut
+//! undo the rename, the file is missing, which every reader of these files is ready for. Must not know: contents.
+
+use std::fs::File;
+use std::io::Write;
+use std::path::Path;
+
+use tempfile::{Builder, NamedTempFile};
+
+use super::error::StoreError;
+
+/// How temporary files begin; whatever is left of a killed run is told by it.
+pub const TEMPORARY: &str = ".partial-";
+
+/// Whether the bytes must have reached the disk before the name does.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub enum Durability {
+    /// After a power cut the file is either absent or whole.
+    Synced,
+    /// For what can be made again from synced files.
+    Lazy,
+}
+
+/// A temporary file in `folder` that anybody may read once it has its name.
+///
+/// # Errors
+/// When the folder cannot be written to.
+pub fn temporary(folder: &Path) -> Result<NamedTempFile, StoreError> {
+    let mut builder = Builder::new();
+    builder.prefix(TEMPORARY);
+    #[cfg(unix)]
+    let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o644);
+    #[cfg(unix)]
+    builder.permissions(permissions);
+    builder.tempfile_in(folder).map_err(StoreError::io("write into", folder))
+}
+
+/// Gives a temporary file its name.
+///
+/// # Errors
+/// When it cannot be written through or renamed.
+pub fn persist(file: NamedTempFile, path: &Path, durability: Durability) -> Result<(), StoreError> {
+    if durability == Durability::Synced {
+        file.as_file().sync_all().map_err(StoreError::io("write", path))?;
+    }
+    file.persist(path).map(drop).map_err(|error| StoreError::io("write", path)(error.error))
+}
+
+/// Writes a whole file.
+///
+/// # Errors
+/// As [`temporary`] and [`persist`].
+pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), StoreError> {
+    let mut file = temporary(path.parent().unwrap_or(Path::new(".")))?;
+    file.write_all(bytes).map_err(StoreError::io("write", path))?;
+    persist(file, path, durability)
+}
+
+/// Whether locks work here; where they do not (some network disks) a run goes on without.
+///
+/// # Errors
+/// Any other failure.
+pub fn lock(file: &File, path: &Path, shared: bool) -> Result<(), StoreError> {
+    let locked = if shared { file.lock_shared() } else { file.lock() };
+    match locked {
+        Err(error) if error.kind() == std::io::ErrorKind::Unsupported => Ok(()),
+        other => other.map_err(StoreError::io("lock", path)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_are_whole_readable_by_all_and_leave_nothing_beside_them() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        write(&path, b"one", Durability::Synced).unwrap();
+        write(&path, b"two", Durability::Lazy).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"two");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        #[cfg(unix)]
+        {
+            let mode = std::os::unix::fs::PermissionsExt::mode(&std::fs::metadata(&path).unwrap().permissions());
+            assert_eq!(mode & 0o777, 0o644);
+        }
+        let missing = write(&folder.path().join("no/such"), b"", Durability::Lazy).unwrap_err().to_string();
+        assert!(missing.contains("no"), "{missing}");
+    }
+}

@@ -1,0 +1,222 @@
+//! All tables of a study in one HDF5 file: `/stage/table/column`, one dataset per column.
+//!
+//! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
+//! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,
+//! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. Files are
+//! written only here: libhdf5 has one lock for all. Must not know: studies, where tables come from.
+
+use std::path::Path;
+use std::str::FromStr;
+
+use hdf5_metno::types::VarLenUnicode;
+use hdf5_metno::{File, Group, H5Type, Location};
+
+use super::error::StoreError;
+use super::file::{self, Durability};
+use super::parquet::flags;
+use crate::table::data::{Data, Table};
+use crate::table::schema::{Column, Schema, Tolerance, Type};
+
+/// A file that is being written; it has its name only once it is finished.
+pub struct Writer {
+    file: File,
+    temporary: tempfile::NamedTempFile,
+}
+
+impl Writer {
+    /// Begins a file that will be at `path`.
+    ///
+    /// # Errors
+    /// When the folder cannot be written to.
+    pub fn create(path: &Path) -> Result<Self, StoreError> {
+        let temporary = file::temporary(path.parent().unwrap_or(Path::new(".")))?;
+        let file = File::create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
+        Ok(Self { file, temporary })
+    }
+
+    /// Adds the table of a stage.
+    ///
+    /// # Errors
+    /// When a word holds a zero byte, which HDF5 cannot.
+    pub fn add(&mut self, stage: &str, table: &Table) -> Result<(), StoreError> {
+        let failed = |error: hdf5_metno::Error| format(format!("{stage}.{}", table.name()), &error);
+        let parent = if self.file.link_exists(stage) { self.file.group(stage) } else { group(&self.file, stage) };
+        let group = parent.and_then(|parent| group(&parent, table.name())).map_err(failed)?;
+        write_table(&group, table).map_err(failed)
+    }
+
+    /// # Errors
+    /// When it cannot be written through or renamed.
+    pub fn finish(self, path: &Path) -> Result<(), StoreError> {
+        self.file.close().map_err(|error| format(path.display().to_string(), &error))?;
+        file::persist(self.temporary, path, Durability::Lazy)
+    }
+}
+
+/// Reads one table back.
+///
+/// # Errors
+/// A sentence, when the file is not one of ours.
+pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
+    read_table(path, stage, table).map_err(|error| error.to_string())?
+}
+
+fn format(table: String, error: &hdf5_metno::Error) -> StoreError {
+    StoreError::Format { table, problem: error.to_string() }
+}
+
+fn group(parent: &Group, name: &str) -> hdf5_metno::Result<Group> {
+    parent.create_group_builder().obj_track_times(false).create(name)
+}
+
+fn write_table(group: &Group, table: &Table) -> hdf5_metno::Result<()> {
+    set(group, "description", &word(&table.schema().description)?)?;
+    if table.schema().on_demand {
+        set(group, "on_demand", &true)?;
+    }
+    let names = table.schema().columns.iter().map(|column| word(&column.name)).collect::<Result<Vec<_>, _>>()?;
+    group.new_attr_builder().with_data(&names).create("columns")?;
+    for (column, data) in table.schema().columns.iter().zip(table.columns()) {
+        match data {
+            Data::Float(values) => write_column(group, column, values)?,
+            Data::Integer(values) => write_column(group, column, values)?,
+            Data::Flag(values) => write_column(group, column, values)?,
+            Data::Text(values) => {
+                let words = values.iter().map(|value| word(value)).collect::<Result<Vec<_>, _>>()?;
+                write_column(group, column, &words)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+fn write_column<T: H5Type>(group: &Group, column: &Column, values: &[T]) -> hdf5_metno::Result<()> {
+    let builder = group.new_dataset_builder().obj_track_times(false);
+    let dataset = builder.with_data(values).create(column.name.as_str())?;
+    set(&dataset, "unit", &word(&column.unit)?)?;
+    set(&dataset, "description", &word(&column.description)?)?;
+    set(&dataset, "type", &word(column.kind.name())?)?;
+    for (name, flag) in flags(column) {
+        if flag {
+            set(&dataset, name, &true)?;
+        }
+    }
+    let tolerances =
+        [("absolute_tolerance", column.tolerance.absolute), ("relative_tolerance", column.tolerance.relative)];
+    for (name, tolerance) in tolerances {
+        if tolerance != 0.0 {
+            set(&dataset, name, &tolerance)?;
+        }
+    }
+    Ok(())
+}
+
+fn set<T: H5Type>(location: &Location, name: &str, value: &T) -> hdf5_metno::Result<()> {
+    location.new_attr::<T>().create(name)?.write_scalar(value)
+}
+
+fn word(text: &str) -> hdf5_metno::Result<VarLenUnicode> {
+    VarLenUnicode::from_str(text).map_err(|error| format!("`{text}`: {error}").into())
+}
+
+fn get<T: H5Type>(location: &Location, name: &str) -> hdf5_metno::Result<Option<T>> {
+    if location.attr_names()?.iter().any(|attribute| attribute == name) {
+        location.attr(name)?.read_scalar().map(Some)
+    } else {
+        Ok(None)
+    }
+}
+
+fn get_word(location: &Location, name: &str) -> hdf5_metno::Result<String> {
+    Ok(get::<VarLenUnicode>(location, name)?.map_or_else(String::new, |word| word.as_str().to_owned()))
+}
+
+fn read_table(path: &Path, stage: &str, table: &str) -> hdf5_metno::Result<Result<Table, String>> {
+    let group = File::open(path)?.group(stage)?.group(table)?;
+    let mut columns = Vec::new();
+    let mut data = Vec::new();
+    for name in group.attr("columns")?.read_raw::<VarLenUnicode>()? {
+        let dataset = group.dataset(name.as_str())?;
+        let kind = get_word(&dataset, "type")?;
+        let Some(kind) = Type::from_name(&kind) else {
+            return Ok(Err(format!("column `{name}` has the unknown type `{kind}`")));
+        };
+        data.push(match kind {
+            Type::Float => Data::Float(dataset.read_raw()?),
+            Type::Integer => Data::Integer(dataset.read_raw()?),
+            Type::Flag => Data::Flag(dataset.read_raw()?),
+            Type::Text => {
+                let words = dataset.read_raw::<VarLenUnicode>()?;
+                Data::Text(words.iter().map(|word| word.as_str().to_owned()).collect())
+            }
+        });
+        let set = |name: &str| Ok::<_, hdf5_metno::Error>(get::<bool>(&dataset, name)?.unwrap_or(false));
+        let number = |name: &str| Ok::<_, hdf5_metno::Error>(get::<f64>(&dataset, name)?.unwrap_or(0.0));
+        columns.push(Column {
+            name: name.as_str().to_owned(),
+            kind,
+            unit: get_word(&dataset, "unit")?,
+            description: get_word(&dataset, "description")?,
+            key: set("key")?,
+            tolerance: Tolerance { absolute: number("absolute_tolerance")?, relative: number("relative_tolerance")? },
+            volatile: set("volatile")?,
+            allows_nan: set("allows_nan")?,
+            on_demand: set("on_demand")?,
+        });
+    }
+    let schema = Schema {
+        name: table.to_owned(),
+        description: get_word(&group, "description")?,
+        columns,
+        on_demand: get::<bool>(&group, "on_demand")?.unwrap_or(false),
+    };
+    Ok(Table::from_columns(schema, data).map_err(|error| error.to_string()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::parquet::tests::{assert_identical, everything};
+
+    #[test]
+    fn every_table_comes_back_identical() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("study.h5");
+        let mut writer = Writer::create(&path).unwrap();
+        for rows in [0, 1, 7, 3000] {
+            writer.add(&format!("stage{rows}"), &everything(rows)).unwrap();
+        }
+        writer.finish(&path).unwrap();
+        for rows in [0, 1, 7, 3000] {
+            assert_identical(&everything(rows), &read(&path, &format!("stage{rows}"), "curve").unwrap());
+        }
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
+        assert!(read(&path, "stage0", "absent").is_err());
+    }
+
+    #[test]
+    fn two_tables_of_one_stage_lie_side_by_side() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("study.h5");
+        let mut schema = everything(0).schema().clone();
+        schema.name = "summary".to_owned();
+        let mut writer = Writer::create(&path).unwrap();
+        writer.add("ste", &everything(2)).unwrap();
+        writer.add("ste", &Table::from_rows(schema, vec![]).unwrap()).unwrap();
+        writer.finish(&path).unwrap();
+        assert_eq!(read(&path, "ste", "summary").unwrap().rows(), 0);
+        assert_eq!(read(&path, "ste", "curve").unwrap().rows(), 2);
+    }
+
+    #[test]
+    fn a_word_that_hdf5_cannot_hold_is_an_error_and_leaves_no_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("study.h5");
+        let schema = Schema::new("t", "", vec![Column::text("word", "")]);
+        let table = Table::from_rows(schema, vec![vec!["a\0b".into()]]).unwrap();
+        let mut writer = Writer::create(&path).unwrap();
+        assert!(writer.add("s", &table).is_err());
+        drop(writer);
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+}

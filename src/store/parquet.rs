@@ -1,0 +1,253 @@
+//! Tables as Parquet: one file holds the rows and everything the schema says about them.
+//!
+//! Unit, description, key, tolerance and flags are metadata of the fields, name and description of the table metadata
+//! of the schema, so pandas, Polars and DuckDB see them; reading back gives the identical table. The same table gives
+//! the same bytes: no time, no host, one row-group size, metadata in sorted order. Must not know: where files lie.
+
+use std::collections::HashMap;
+use std::sync::Arc;
+
+use arrow_array::cast::AsArray;
+use arrow_array::types::{Float64Type, Int64Type};
+use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
+use arrow_schema::{DataType, Field, Metadata, Schema as ArrowSchema};
+use bytes::Bytes;
+use parquet::arrow::ArrowWriter;
+use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::basic::{Compression, ZstdLevel};
+use parquet::file::properties::WriterProperties;
+
+use super::error::StoreError;
+use crate::table::data::{Data, Table};
+use crate::table::schema::{Column, Schema, Tolerance, Type};
+
+const LEVEL: i32 = 3;
+
+/// # Errors
+/// [`StoreError::Format`]; no table known makes it fail.
+pub fn write(table: &Table) -> Result<Vec<u8>, StoreError> {
+    let failed = |problem: String| StoreError::Format { table: table.name().to_owned(), problem };
+    let schema = Arc::new(arrow_schema(table.schema()));
+    let columns = table.columns().iter().map(array).collect();
+    let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(table.rows()));
+    let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), columns, &options)
+        .map_err(|error| failed(error.to_string()))?;
+    let level = ZstdLevel::try_new(LEVEL).map_err(|error| failed(error.to_string()))?;
+    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level)).build();
+    let mut bytes = Vec::new();
+    let mut writer =
+        ArrowWriter::try_new(&mut bytes, schema, Some(properties)).map_err(|error| failed(error.to_string()))?;
+    writer.write(&batch).map_err(|error| failed(error.to_string()))?;
+    writer.close().map_err(|error| failed(error.to_string()))?;
+    Ok(bytes)
+}
+
+/// # Errors
+/// A sentence, when the bytes are no table written by [`write`].
+pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
+    let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes)).map_err(|error| error.to_string())?;
+    let schema = table_schema(builder.schema())?;
+    let mut columns: Vec<Data> = schema.columns.iter().map(|column| Data::empty(column.kind)).collect();
+    for batch in builder.build().map_err(|error| error.to_string())? {
+        let batch = batch.map_err(|error| error.to_string())?;
+        for (data, array) in columns.iter_mut().zip(batch.columns()) {
+            extend(data, array)?;
+        }
+    }
+    Table::from_columns(schema, columns).map_err(|error| error.to_string())
+}
+
+fn array(data: &Data) -> ArrayRef {
+    match data {
+        Data::Float(values) => Arc::new(Float64Array::from(values.clone())),
+        Data::Integer(values) => Arc::new(Int64Array::from(values.clone())),
+        Data::Text(values) => Arc::new(StringArray::from_iter_values(values)),
+        Data::Flag(values) => Arc::new(BooleanArray::from(values.clone())),
+    }
+}
+
+fn extend(data: &mut Data, array: &ArrayRef) -> Result<(), String> {
+    if array.null_count() > 0 {
+        return Err("a cell is empty".to_owned());
+    }
+    let wrong = || format!("a column holds {}", array.data_type());
+    match data {
+        Data::Float(values) => {
+            values.extend_from_slice(array.as_primitive_opt::<Float64Type>().ok_or_else(wrong)?.values());
+        }
+        Data::Integer(values) => {
+            values.extend_from_slice(array.as_primitive_opt::<Int64Type>().ok_or_else(wrong)?.values());
+        }
+        Data::Text(values) => {
+            let texts = array.as_string_opt::<i32>().ok_or_else(wrong)?;
+            values.extend((0..texts.len()).map(|row| texts.value(row).to_owned()));
+        }
+        Data::Flag(values) => {
+            let flags = array.as_boolean_opt().ok_or_else(wrong)?;
+            values.extend((0..flags.len()).map(|row| flags.value(row)));
+        }
+    }
+    Ok(())
+}
+
+fn arrow_schema(schema: &Schema) -> ArrowSchema {
+    let fields: Vec<Field> = schema.columns.iter().map(arrow_field).collect();
+    let mut metadata = HashMap::from([
+        ("table".to_owned(), schema.name.clone()),
+        ("description".to_owned(), schema.description.clone()),
+    ]);
+    if schema.on_demand {
+        metadata.insert("on_demand".to_owned(), "true".to_owned());
+    }
+    ArrowSchema::new_with_metadata(fields, metadata)
+}
+
+fn arrow_field(column: &Column) -> Field {
+    let kind = match column.kind {
+        Type::Float => DataType::Float64,
+        Type::Integer => DataType::Int64,
+        Type::Text => DataType::Utf8,
+        Type::Flag => DataType::Boolean,
+    };
+    let mut metadata = HashMap::from([
+        ("unit".to_owned(), column.unit.clone()),
+        ("description".to_owned(), column.description.clone()),
+    ]);
+    for (name, set) in flags(column) {
+        if set {
+            metadata.insert(name.to_owned(), "true".to_owned());
+        }
+    }
+    for (name, tolerance) in
+        [("absolute_tolerance", column.tolerance.absolute), ("relative_tolerance", column.tolerance.relative)]
+    {
+        if tolerance != 0.0 {
+            metadata.insert(name.to_owned(), tolerance.to_string());
+        }
+    }
+    Field::new(&column.name, kind, false).with_metadata(metadata)
+}
+
+/// What a column can be besides its type, under the names used in every file.
+pub fn flags(column: &Column) -> [(&'static str, bool); 4] {
+    [
+        ("key", column.key),
+        ("volatile", column.volatile),
+        ("allows_nan", column.allows_nan),
+        ("on_demand", column.on_demand),
+    ]
+}
+
+fn table_schema(schema: &ArrowSchema) -> Result<Schema, String> {
+    let text = |metadata: &Metadata, name: &str| metadata.get(name).cloned().unwrap_or_default();
+    let name = schema.metadata().get("table").cloned().ok_or("it does not say which table it is")?;
+    let columns = schema.fields().iter().map(|field| table_column(field)).collect::<Result<_, _>>()?;
+    Ok(Schema {
+        name,
+        description: text(schema.metadata(), "description"),
+        columns,
+        on_demand: schema.metadata().contains_key("on_demand"),
+    })
+}
+
+fn table_column(field: &Field) -> Result<Column, String> {
+    let kind = match field.data_type() {
+        DataType::Float64 => Type::Float,
+        DataType::Int64 => Type::Integer,
+        DataType::Utf8 => Type::Text,
+        DataType::Boolean => Type::Flag,
+        other => return Err(format!("column `{}` holds {other}", field.name())),
+    };
+    let metadata = field.metadata();
+    let text = |name: &str| metadata.get(name).cloned().unwrap_or_default();
+    let set = |name: &str| metadata.contains_key(name);
+    let number = |name: &str| {
+        let parsed = metadata.get(name).map_or(Ok(0.0), |text| text.parse());
+        parsed.map_err(|_| format!("column `{}`: {name} is no number", field.name()))
+    };
+    Ok(Column {
+        name: field.name().clone(),
+        kind,
+        unit: text("unit"),
+        description: text("description"),
+        key: set("key"),
+        tolerance: Tolerance { absolute: number("absolute_tolerance")?, relative: number("relative_tolerance")? },
+        volatile: set("volatile"),
+        allows_nan: set("allows_nan"),
+        on_demand: set("on_demand"),
+    })
+}
+
+#[cfg(test)]
+pub mod tests {
+    use super::*;
+
+    /// Every type, every flag, NaN, signed zero, extremes, words of several alphabets, empty words.
+    pub fn everything(rows: usize) -> Table {
+        let columns = vec![
+            Column::text("design", "Name, ε_α").key(),
+            Column::integer("position", "Count").key(),
+            Column::float("te", "um", "Transmission error δ, \"quoted\"").tolerance(1e-3, 0.25).allows_nan(),
+            Column::float("stiffness", "N/(mm um)", "c_γ").on_demand(),
+            Column::flag("inside", "Whether"),
+            Column::float("seconds", "s", "Time").volatile().tolerance(0.0, 0.0),
+        ];
+        let words = ["", "iso", "Ünïcode – 齿轮 ⚙", "a,b\"c\n"];
+        let floats = [0.1, -0.0, f64::NAN, f64::MIN_POSITIVE / 4.0, f64::MAX, -1.0 / 3.0];
+        let row = |index: usize| {
+            vec![
+                words[index % 4].into(),
+                i64::try_from(index).unwrap().wrapping_mul(i64::MAX / 3).into(),
+                floats[index % 6].into(),
+                (1.0 / (index as f64 + 3.0)).into(),
+                index.is_multiple_of(3).into(),
+                (index as f64).into(),
+            ]
+        };
+        let schema = Schema::new("curve", "All that a table can hold", columns).on_demand();
+        Table::from_rows(schema, (0..rows).map(row).collect()).unwrap()
+    }
+
+    /// As `==`, but bit for bit: NaN equals NaN, −0 does not equal 0.
+    pub fn assert_identical(a: &Table, b: &Table) {
+        assert_eq!(a.schema(), b.schema());
+        for (x, y) in a.columns().iter().zip(b.columns()) {
+            match (x, y) {
+                (Data::Float(x), Data::Float(y)) => {
+                    let bits = |values: &[f64]| values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
+                    assert_eq!(bits(x), bits(y));
+                }
+                _ => assert_eq!(x, y),
+            }
+        }
+    }
+
+    #[test]
+    fn every_table_comes_back_identical() {
+        for rows in [0, 1, 7, 3000] {
+            let table = everything(rows);
+            let bytes = write(&table).unwrap();
+            let back = read(bytes).unwrap();
+            assert_identical(&table, &back);
+            assert_eq!(table.content_hash(), back.content_hash());
+        }
+    }
+
+    #[test]
+    fn the_same_table_gives_the_same_bytes() {
+        // Metadata pass through a hash map, which has another order in each instance.
+        let bytes = write(&everything(50)).unwrap();
+        for _ in 0..20 {
+            assert_eq!(write(&everything(50)).unwrap(), bytes);
+        }
+    }
+
+    #[test]
+    fn what_is_no_table_is_refused() {
+        assert!(read(Vec::new()).is_err());
+        assert!(read(b"PAR1 nonsense PAR1".to_vec()).is_err());
+        let mut bytes = write(&everything(50)).unwrap();
+        bytes.truncate(bytes.len() / 2);
+        assert!(read(bytes).is_err());
+    }
+}
