@@ -3,6 +3,7 @@
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
 //! stage does not recompute another.
 
+use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -29,7 +30,7 @@ fn main() -> io::Result<()> {
     for path in kinds {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         if name != "mod" {
-            lines += &format!("    ({name:?}, \"{}\"),\n", digest(&[path])?);
+            writeln!(lines, "    ({name:?}, \"{}\"),", digest(&[path])?).expect("a string takes all text");
         }
     }
     lines += "];\n";

@@ -179,7 +179,7 @@ impl Genetic {
             let mut pair = [parent(), parent()];
             cross(&mut pair, self.crossover, &mut generator);
             for mut child in pair {
-                self.mutate(&mut child, &mut generator);
+                mutate(&mut child, self.mutation, self.mutate_each_bit, &mut generator);
                 next.push(child);
             }
         }
@@ -187,16 +187,16 @@ impl Genetic {
         next.truncate(size);
         next
     }
+}
 
-    fn mutate(&self, child: &mut Chromosome, generator: &mut ChaCha8Rng) {
-        if self.mutate_each_bit {
-            for bit in child {
-                *bit ^= chance(generator, self.mutation);
-            }
-        } else if chance(generator, self.mutation) {
-            let at = below(generator, child.len());
-            child[at] = !child[at];
+fn mutate(child: &mut Chromosome, probability: f64, each_bit: bool, generator: &mut ChaCha8Rng) {
+    if each_bit {
+        for bit in child {
+            *bit ^= chance(generator, probability);
         }
+    } else if chance(generator, probability) {
+        let at = below(generator, child.len());
+        child[at] = !child[at];
     }
 }
 
@@ -329,6 +329,33 @@ mod tests {
         let mut single = [vec![true], vec![false]];
         cross(&mut single, 1.0, &mut generator);
         assert_eq!(single, [vec![true], vec![false]]);
+    }
+
+    #[test]
+    fn mutation_strikes_as_often_and_as_evenly_as_it_should() {
+        let (length, children) = (8, 40_000);
+        let strike = |probability, each_bit| {
+            let mut generator = generator("mutate");
+            let (mut struck, mut flips) = (0_usize, vec![0_usize; length]);
+            for _ in 0..children {
+                let mut child = vec![false; length];
+                mutate(&mut child, probability, each_bit, &mut generator);
+                struck += usize::from(child.contains(&true));
+                assert!(each_bit || child.iter().filter(|bit| **bit).count() <= 1);
+                flips.iter_mut().zip(child).for_each(|(flips, bit)| *flips += usize::from(bit));
+            }
+            (struck, flips)
+        };
+        // One offspring in two; each bit in one of sixteen. Binomial deviations 100 and 48.
+        let (struck, flips) = strike(0.5, false);
+        assert!(struck.abs_diff(20_000) < 400, "{struck}");
+        assert!(flips.iter().all(|flips| flips.abs_diff(2_500) < 192), "{flips:?}");
+        // Each bit one time in ten: deviation 60. Some bit in 1 − 0.9⁸ = 0.56953 of the children: deviation 99.
+        let (struck, flips) = strike(0.1, true);
+        assert!(flips.iter().all(|flips| flips.abs_diff(4_000) < 240), "{flips:?}");
+        assert!(struck.abs_diff(22_781) < 396, "{struck}");
+        assert_eq!((strike(0.0, false).0, strike(0.0, true).0), (0, 0));
+        assert_eq!((strike(1.0, false).0, strike(1.0, true).1), (children, vec![children; length]));
     }
 
     #[test]

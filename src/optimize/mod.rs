@@ -31,11 +31,13 @@ use crate::base::parameter::Member;
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 
+/// Builds a method for a number of variables; refuses what no declaration can express.
+pub type Build = fn(&Record, usize, Seed) -> Result<Box<dyn Strategy>, Diagnostic>;
+
 /// A method as registered.
 pub struct Method {
     pub member: Member,
-    /// Builds it for a number of variables; refuses what no declaration can express.
-    pub build: fn(&Record, usize, Seed) -> Result<Box<dyn Strategy>, Diagnostic>,
+    pub build: Build,
 }
 
 /// Every method, in the order in which `gearstudy kinds` lists them.

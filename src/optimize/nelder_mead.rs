@@ -2,8 +2,9 @@
 //!
 //! Sources: Nelder and Mead, Computer Journal 7 (1965) 308; coefficients ρ = 1, χ = 1 + 2/n, ψ = 3/4 − 1/(2n),
 //! σ = 1 − 1/n of Gao and Han, Comput. Optim. Appl. 51 (2012) 259, section 4 (for n = 1 those of n = 2, since σ would be
-//! 0). A simplex pressed flat against a bound, or stalled, is why it starts again around its best point. Lengths are
-//! shares of each variable's range.
+//! 0). A simplex may be pressed flat against a bound, or stall: so, once it has converged, it starts again around its best
+//! point until that gains nothing. Sure for up to five variables; where from six on several lie on a bound at once it may
+//! use up its evaluations, and differential evolution is the better choice. Lengths are shares of each variable's range.
 //!
 //! Must not know: randomness, but for a random start.
 
@@ -137,7 +138,7 @@ impl NelderMead {
 
     /// One vertex along each axis; every other restart turns the simplex round.
     fn around(&self, centre: &[f64]) -> Vec<Vec<f64>> {
-        let edge = if self.restarted % 2 == 0 { self.edge } else { -self.edge };
+        let edge = if self.restarted.is_multiple_of(2) { self.edge } else { -self.edge };
         (0..centre.len())
             .map(|axis| {
                 let mut vertex = centre.to_vec();
@@ -255,8 +256,9 @@ impl Strategy for NelderMead {
             step => {
                 let vertex = vertices.pop().ok_or("the batch was empty")?;
                 match step {
-                    Step::Expand { reflected } if vertex.value >= reflected.value => self.replace_worst(reflected),
-                    Step::Expand { .. } => self.replace_worst(vertex),
+                    Step::Expand { reflected } => {
+                        self.replace_worst(if vertex.value < reflected.value { vertex } else { reflected });
+                    }
                     Step::Contract { limit } if vertex.value > limit => self.shrink(),
                     Step::Contract { .. } => self.replace_worst(vertex),
                     _ => self.reflected(vertex),

@@ -1,5 +1,6 @@
 //! What several tests need: records of declared parameters without a YAML file.
 
+use gearstudy::base::error::Place;
 use gearstudy::base::parameter::{Field, Presence, Shape};
 use gearstudy::base::record::{Entry, Record, Value};
 
@@ -39,7 +40,7 @@ fn read(shape: &Shape, text: &str) -> Value {
             Value::Choice(choices.iter().find(|choice| choice.name == text).expect("the default is a choice").name)
         }
         Shape::Flag => Value::Flag(text.parse().unwrap()),
-        Shape::List(item) => Value::List(vec![Entry { value: read(item, text), place: Default::default() }]),
+        Shape::List(item) => Value::List(vec![Entry { value: read(item, text), place: Place::default() }]),
         _ => panic!("a default of this shape is not read here"),
     }
 }
