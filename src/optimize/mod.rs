@@ -1,1 +1,105 @@
-//! Placeholder.
+//! Minimisation over a box: the registry of methods, one line each, and the trait every method has.
+//!
+//! The caller asks for a batch of points, evaluates them in any order on any number of threads, and tells the values in
+//! the order of the points ([`search::Optimizer`]). A method works in the unit cube and sees only numbers and +∞, so
+//! bounds, scaling, inadmissible points and the history are kept in one place.
+//!
+//! The methods are written here rather than taken from `basin` 3.2, which has most of them: its solvers call the
+//! objective themselves, one point at a time or in a thread pool of their own, where ours must hand out whole batches
+//! that share the stage's threads and its stop flag; its CMA-ES takes `ln` and `exp` from the C library, which differ
+//! between CPUs; and its trajectories may change with a release, which the cached results of a study must not.
+//! Ours were checked against `SciPy`'s (see `tests/reference/optimize.py`).
+//!
+//! Must not know: gears, units, files, clocks, threads.
+
+pub mod bounds;
+pub mod differential_evolution;
+pub mod genetic;
+pub mod grid;
+pub mod latin_hypercube;
+pub mod nelder_mead;
+pub mod random;
+pub mod sampling;
+pub mod search;
+pub mod sobol;
+
+use bounds::Bounds;
+use search::{Optimizer, Reason};
+
+use crate::base::error::{Diagnostic, suggest};
+use crate::base::parameter::Member;
+use crate::base::record::Record;
+use crate::base::seed::Seed;
+
+/// Builds a method for a number of variables; refuses what no declaration can express.
+pub type Build = fn(&Record, usize, Seed) -> Result<Box<dyn Strategy>, Diagnostic>;
+
+/// A method as registered.
+pub struct Method {
+    pub member: Member,
+    pub build: Build,
+}
+
+/// Every method, in the order in which `gearstudy kinds` lists them.
+pub const METHODS: &[&Method] = &[
+    &genetic::METHOD,
+    &differential_evolution::METHOD,
+    &nelder_mead::METHOD,
+    &grid::METHOD,
+    &latin_hypercube::METHOD,
+    &sobol::METHOD,
+];
+
+/// What a method does: proposes points of the unit cube and learns their values. Deterministic: the same values give
+/// the same points.
+pub trait Strategy: Send {
+    /// The points to evaluate next, each coordinate in 0..=1; not empty before the method has finished.
+    fn batch(&self) -> &[Vec<f64>];
+
+    /// Takes the values of the batch, in its order: numbers, or +∞ for an inadmissible point. Never called after the
+    /// method has finished.
+    ///
+    /// # Errors
+    /// When the method cannot work with such values; the message says why.
+    fn learn(&mut self, values: &[f64]) -> Result<(), String>;
+
+    fn finished(&self) -> Option<Reason>;
+
+    /// The most evaluations it will ask for.
+    fn budget(&self) -> usize;
+}
+
+/// The methods as a user sees them, for [`crate::base::parameter::Shape::Member`].
+#[must_use]
+pub fn members() -> &'static [Member] {
+    const MEMBERS: [Member; METHODS.len()] = {
+        let mut members = [METHODS[0].member; METHODS.len()];
+        let mut at = 0;
+        while at < METHODS.len() {
+            members[at] = METHODS[at].member;
+            at += 1;
+        }
+        members
+    };
+    &MEMBERS
+}
+
+/// The method `name`, set up as `record` says, ready to search `bounds`.
+///
+/// # Errors
+/// When there is no such method, or its parameters make no sense together or for this number of variables.
+pub fn optimizer(name: &str, record: &Record, bounds: Bounds, seed: Seed) -> Result<Optimizer, Diagnostic> {
+    let Some(method) = METHODS.iter().find(|method| method.member.name == name) else {
+        let known = METHODS.iter().map(|method| method.member.name);
+        return Err(Diagnostic::new(format!("there is no optimisation method `{name}`"))
+            .at(record.place)
+            .help(suggest(name, known)));
+    };
+    let strategy = (method.build)(record, bounds.dimension(), seed).map_err(|wrong| wrong.or_at(record.place))?;
+    Ok(Optimizer::new(strategy, bounds))
+}
+
+/// A field declared as an integer from zero or one upwards.
+fn count(record: &Record, name: &str) -> usize {
+    usize::try_from(record.integer(name)).expect("the declared range of a count is not negative")
+}

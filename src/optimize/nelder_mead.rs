@@ -1,0 +1,278 @@
+//! Nelder and Mead's simplex with coefficients that suit the number of variables, clipped to the cube, restarted.
+//!
+//! Sources: Nelder and Mead, Computer Journal 7 (1965) 308; coefficients ρ = 1, χ = 1 + 2/n, ψ = 3/4 − 1/(2n),
+//! σ = 1 − 1/n of Gao and Han, Comput. Optim. Appl. 51 (2012) 259, section 4 (for n = 1 those of n = 2, since σ would be
+//! 0). A simplex may be pressed flat against a bound, or stall: so, once it has converged, it starts again around its best
+//! point until that gains nothing. Sure for up to five variables; where from six on several lie on a bound at once it may
+//! use up its evaluations, and differential evolution is the better choice. Lengths are shares of each variable's range.
+//!
+//! Must not know: randomness, but for a random start.
+
+use super::random::uniform;
+use super::search::Reason;
+use super::{Method, Strategy, count};
+use crate::base::error::Diagnostic;
+use crate::base::parameter::{Choice, Field, Member};
+use crate::base::record::Record;
+use crate::base::seed::Seed;
+
+pub const METHOD: Method = Method {
+    member: Member {
+        name: "nelder_mead",
+        summary: "local search by a moving simplex, without derivatives",
+        fields: FIELDS,
+    },
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::choice("start", STARTS, "where it starts").default("centre"),
+    Field::number("edge", 1e-6, 1.0, "edge of the first simplex, as a share of each range").default("0.1"),
+    Field::number("tolerance", 1e-14, 0.1, "the simplex's extent, as a share of each range, at which it has converged")
+        .default("1e-8"),
+    Field::integer("restarts", 0, 1000, "most restarts around the best point").default("3"),
+    Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000"),
+];
+
+const STARTS: &[Choice] = &[
+    Choice { name: "centre", summary: "the middle of every range" },
+    Choice { name: "random", summary: "a random point, from the seed" },
+];
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
+    let mut generator = seed.generator(0);
+    let start = match record.choice("start") {
+        "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
+        _ => vec![0.5; dimension],
+    };
+    let limits = Limits {
+        tolerance: record.number("tolerance"),
+        restarts: count(record, "restarts"),
+        evaluations: count(record, "evaluations"),
+    };
+    if limits.evaluations <= dimension {
+        let message = format!("{} evaluations are too few for a simplex in {dimension} variables", limits.evaluations);
+        return Err(Diagnostic::new(message)
+            .at(record.place_of("evaluations"))
+            .help(format!("give at least {}", dimension + 1)));
+    }
+    Ok(Box::new(NelderMead::new(start, None, record.number("edge"), limits)))
+}
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Extent of the simplex, in the maximum norm.
+    pub tolerance: f64,
+    pub restarts: usize,
+    pub evaluations: usize,
+}
+
+#[derive(Clone, Debug)]
+struct Vertex {
+    at: Vec<f64>,
+    value: f64,
+}
+
+/// What the values of the current batch are for.
+enum Step {
+    /// The vertices of a new simplex.
+    Begin,
+    Reflect,
+    Expand {
+        reflected: Vertex,
+    },
+    /// Outside when the reflected point was better than the worst vertex.
+    Contract {
+        limit: f64,
+    },
+    Shrink,
+}
+
+/// The search; also used to polish what another method found.
+pub struct NelderMead {
+    edge: f64,
+    limits: Limits,
+    expansion: f64,
+    contraction: f64,
+    shrinkage: f64,
+
+    /// Best first.
+    simplex: Vec<Vertex>,
+    batch: Vec<Vec<f64>>,
+    step: Step,
+    told: usize,
+    restarted: usize,
+    /// The best value when the present simplex was begun.
+    before: f64,
+    ended: Option<Reason>,
+}
+
+impl NelderMead {
+    /// Starts at `start`, whose value may be known, with a simplex of edge `edge` along the axes.
+    #[must_use]
+    pub fn new(start: Vec<f64>, value: Option<f64>, edge: f64, limits: Limits) -> Self {
+        let dimension = start.len().max(2) as f64;
+        let mut search = Self {
+            edge,
+            limits,
+            expansion: 1.0 + 2.0 / dimension,
+            contraction: 0.75 - 0.5 / dimension,
+            shrinkage: 1.0 - 1.0 / dimension,
+            simplex: Vec::new(),
+            batch: Vec::new(),
+            step: Step::Begin,
+            told: 0,
+            restarted: 0,
+            before: f64::INFINITY,
+            ended: None,
+        };
+        let mut vertices = search.around(&start);
+        match value {
+            Some(value) => search.simplex.push(Vertex { at: start, value }),
+            None => vertices.insert(0, start),
+        }
+        search.propose(Step::Begin, vertices);
+        search
+    }
+
+    /// One vertex along each axis; every other restart turns the simplex round.
+    fn around(&self, centre: &[f64]) -> Vec<Vec<f64>> {
+        let edge = if self.restarted.is_multiple_of(2) { self.edge } else { -self.edge };
+        (0..centre.len())
+            .map(|axis| {
+                let mut vertex = centre.to_vec();
+                let moved = vertex[axis] + edge;
+                // Where there is no room on this side there is on the other: an edge is at most 1.
+                vertex[axis] = if (0.0..=1.0).contains(&moved) { moved } else { clip(vertex[axis] - edge) };
+                vertex
+            })
+            .collect()
+    }
+
+    fn propose(&mut self, step: Step, points: Vec<Vec<f64>>) {
+        if self.told + points.len() > self.limits.evaluations {
+            self.ended = Some(Reason::Evaluations);
+        }
+        self.step = step;
+        self.batch = points;
+    }
+
+    /// (1 + factor)·centroid − factor·worst, clipped; the centroid is that of all vertices but the worst.
+    fn along(&self, factor: f64) -> Vec<f64> {
+        let (worst, others) = self.simplex.split_last().expect("a simplex has at least two vertices");
+        (0..worst.at.len())
+            .map(|axis| {
+                let centroid = others.iter().map(|vertex| vertex.at[axis]).sum::<f64>() / others.len() as f64;
+                clip((1.0 + factor) * centroid - factor * worst.at[axis])
+            })
+            .collect()
+    }
+
+    fn replace_worst(&mut self, vertex: Vertex) {
+        self.simplex.pop();
+        self.simplex.push(vertex);
+        self.go_on();
+    }
+
+    fn go_on(&mut self) {
+        // Stable: of equal vertices the older stays ahead.
+        self.simplex.sort_by(|a, b| a.value.total_cmp(&b.value));
+        let best = &self.simplex[0];
+        let extent = self.simplex[1..]
+            .iter()
+            .flat_map(|vertex| vertex.at.iter().zip(&best.at).map(|(a, b)| (a - b).abs()))
+            .fold(0.0, f64::max);
+        if extent > self.limits.tolerance {
+            let reflected = self.along(1.0);
+            self.propose(Step::Reflect, vec![reflected]);
+            return;
+        }
+        let gained = self.before - best.value > self.limits.tolerance * best.value.abs();
+        if self.restarted == self.limits.restarts || !gained {
+            self.ended = Some(Reason::Converged);
+            self.batch.clear();
+            return;
+        }
+        self.before = best.value;
+        self.restarted += 1;
+        self.simplex.truncate(1);
+        let vertices = self.around(&self.simplex[0].at);
+        self.propose(Step::Begin, vertices);
+    }
+
+    fn shrink(&mut self) {
+        let best = &self.simplex[0].at;
+        let points = self.simplex[1..]
+            .iter()
+            .map(|vertex| vertex.at.iter().zip(best).map(|(a, b)| clip(b + self.shrinkage * (a - b))).collect())
+            .collect();
+        self.propose(Step::Shrink, points);
+    }
+
+    fn reflected(&mut self, vertex: Vertex) {
+        let last = self.simplex.len() - 1;
+        if vertex.value < self.simplex[0].value {
+            let expanded = self.along(self.expansion);
+            self.propose(Step::Expand { reflected: vertex }, vec![expanded]);
+        } else if vertex.value < self.simplex[last - 1].value {
+            self.replace_worst(vertex);
+        } else if vertex.value < self.simplex[last].value {
+            let outside = self.along(self.contraction);
+            self.propose(Step::Contract { limit: vertex.value }, vec![outside]);
+        } else {
+            let inside = self.along(-self.contraction);
+            // Inside, the contracted point must be lower than the worst vertex, not merely as low.
+            let limit = self.simplex[last].value.next_down();
+            self.propose(Step::Contract { limit }, vec![inside]);
+        }
+    }
+}
+
+fn clip(coordinate: f64) -> f64 {
+    coordinate.clamp(0.0, 1.0)
+}
+
+impl Strategy for NelderMead {
+    fn batch(&self) -> &[Vec<f64>] {
+        &self.batch
+    }
+
+    fn learn(&mut self, values: &[f64]) -> Result<(), String> {
+        self.told += values.len();
+        let batch = std::mem::take(&mut self.batch);
+        let mut vertices: Vec<Vertex> =
+            batch.into_iter().zip(values).map(|(at, &value)| Vertex { at, value }).collect();
+        match std::mem::replace(&mut self.step, Step::Begin) {
+            Step::Begin => {
+                self.simplex.append(&mut vertices);
+                self.go_on();
+            }
+            Step::Shrink => {
+                self.simplex.truncate(1);
+                self.simplex.append(&mut vertices);
+                self.go_on();
+            }
+            step => {
+                let vertex = vertices.pop().ok_or("the batch was empty")?;
+                match step {
+                    Step::Expand { reflected } => {
+                        self.replace_worst(if vertex.value < reflected.value { vertex } else { reflected });
+                    }
+                    Step::Contract { limit } if vertex.value > limit => self.shrink(),
+                    Step::Contract { .. } => self.replace_worst(vertex),
+                    _ => self.reflected(vertex),
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn finished(&self) -> Option<Reason> {
+        self.ended
+    }
+
+    fn budget(&self) -> usize {
+        self.limits.evaluations
+    }
+}

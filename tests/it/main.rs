@@ -1,0 +1,7 @@
+//! All integration tests, in one binary: one link instead of a dozen.
+
+#![allow(clippy::float_cmp, reason = "tests say where a value must be met exactly")]
+#![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
+
+mod optimize;
+mod support;

@@ -1,0 +1,46 @@
+//! What several tests need: records of declared parameters without a YAML file.
+
+use gearstudy::base::error::Place;
+use gearstudy::base::parameter::{Field, Presence, Shape};
+use gearstudy::base::record::{Entry, Record, Value};
+
+/// The record of `fields` with their defaults, and `given` instead where a name is among them.
+pub fn record(fields: &[Field], given: &[(&str, Value)]) -> Record {
+    let mut record = Record::default();
+    for field in fields {
+        let value = given.iter().find(|(name, _)| *name == field.name).map(|(_, value)| value.clone());
+        let value = value.or(match field.presence {
+            Presence::Default(text) => Some(read(&field.shape, text)),
+            Presence::Optional => None,
+            Presence::Required => panic!("`{}` must be given", field.name),
+        });
+        if let Some(value) = value {
+            record.fields.push((field.name, Entry { value, place: record.place }));
+        }
+    }
+    for (name, _) in given {
+        assert!(fields.iter().any(|field| field.name == *name), "`{name}` is not declared");
+    }
+    record
+}
+
+fn read(shape: &Shape, text: &str) -> Value {
+    match shape {
+        Shape::Number { least, most } => {
+            let value = text.parse().unwrap();
+            assert!((*least..=*most).contains(&value), "the default {value} is outside {least}..={most}");
+            Value::Number(value)
+        }
+        Shape::Integer { least, most } => {
+            let value = text.parse().unwrap();
+            assert!((*least..=*most).contains(&value), "the default {value} is outside {least}..={most}");
+            Value::Integer(value)
+        }
+        Shape::Choice(choices) => {
+            Value::Choice(choices.iter().find(|choice| choice.name == text).expect("the default is a choice").name)
+        }
+        Shape::Flag => Value::Flag(text.parse().unwrap()),
+        Shape::List(item) => Value::List(vec![Entry { value: read(item, text), place: Place::default() }]),
+        _ => panic!("a default of this shape is not read here"),
+    }
+}
