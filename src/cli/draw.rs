@@ -7,7 +7,7 @@ use std::io::{IsTerminal, Write};
 
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 
-use crate::study::load::LoadError;
+use crate::study::LoadError;
 
 /// Writes the message to standard error.
 pub fn invalid_study(error: &LoadError) {

@@ -4,6 +4,7 @@
 
 pub mod arguments;
 pub mod draw;
+pub mod pages;
 pub mod print;
 pub mod progress;
 pub mod run;

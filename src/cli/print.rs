@@ -38,7 +38,7 @@ fn heading(column: &Column) -> String {
 
 fn pretty(table: &Table, rows: &[usize], columns: &[usize]) -> String {
     let mut drawn = Drawn::new();
-    drawn.load_preset(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
+    drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
     drawn.set_header(columns.iter().map(|&index| heading(&table.schema().columns[index])));
     for &row in rows {
         drawn.add_row(Row::from(columns.iter().map(|&index| {

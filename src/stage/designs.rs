@@ -6,6 +6,8 @@
 use crate::base::error::{Failure, Place};
 use crate::base::parameter::{Field, Member, Shape};
 use crate::base::record::{Entry, Record, Value};
+use crate::gear::geometry::Pair;
+use crate::gear::modification::{self, Design};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -21,6 +23,24 @@ pub struct Element {
 pub struct NamedDesign {
     pub name: String,
     pub elements: Vec<Element>,
+}
+
+impl NamedDesign {
+    /// The design on a pair.
+    ///
+    /// # Errors
+    /// When a modification does not fit the pair; the message names the design.
+    pub fn built(&self, pair: &Pair) -> Result<Design, Failure> {
+        let mut design = Design::default();
+        for Element { family, record } in &self.elements {
+            let known = modification::family(family)
+                .ok_or_else(|| Failure::new(format!("design `{}`: unknown family `{family}`", self.name)))?;
+            design
+                .add(known, record, pair)
+                .map_err(|error| Failure::new(format!("design `{}`, {family}: {}", self.name, error.message)))?;
+        }
+        Ok(design)
+    }
 }
 
 #[must_use]

@@ -3,7 +3,10 @@
 //! A stage is pure: the same configuration, inputs and seed give the same tables, bit for bit, whatever the number of
 //! threads. Must not know: the store, the runner, other stages (it sees their tables, never their code).
 
+pub mod compliance;
+pub mod designs;
 pub mod kinds;
+pub mod pair;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};

@@ -1,6 +1,12 @@
 //! The registry of stage kinds: one line each.
 
+pub mod geometry;
+pub mod modification;
+pub mod optimizer;
+pub mod ste;
+pub mod stiffness;
+
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] = &[];
+pub const KINDS: &[&Kind] = &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND];

@@ -5,9 +5,8 @@
 
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
-use crate::base::record::{Entry, Record};
-use crate::base::units::in_unit;
-use crate::gear::geometry::{Pair, Side};
+use crate::base::record::{Entry, Record, Value};
+use crate::gear::modification::template::Template;
 use crate::gear::modification::{self, Design};
 use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::{Context, Inputs, Kind, Port, Stage, pair};
@@ -17,7 +16,7 @@ use crate::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "modification",
     version: 1,
-    summary: "Named designs of flank modifications (ISO 21771 names): tip and root relief, crowning, slopes, end relief.",
+    summary: "Named designs of flank modifications (ISO 21771): tip and root relief, crowning, slopes, end relief.",
     fields: FIELDS,
     example: "
 kind: modification
@@ -45,16 +44,67 @@ struct Modification {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let designs = record
-        .map("designs")
-        .iter()
-        .map(|(name, entry)| NamedDesign { name: name.clone(), elements: elements(entry) })
-        .collect();
+    let mut designs = Vec::new();
+    for (name, entry) in record.map("designs") {
+        designs.push(NamedDesign { name: name.clone(), elements: elements(entry)? });
+    }
     Ok(Box::new(Modification { pair: record.reference("pair").to_owned(), designs }))
 }
 
-/// The modifications that stand in a list.
-#[must_use]
-pub fn elements(entry: &Entry) -> Vec<Element> {
-    entry.value.items().iter().filter_map(|item| item.value.as_member()).map(|(family, record)| Element { family, record: record.clone() }).collect()
+/// The modifications of one design, each checked for what no declaration can express.
+fn elements(entry: &Entry) -> Result<Vec<Element>, Diagnostic> {
+    let Value::List(items) = &entry.value else { return Ok(Vec::new()) };
+    Template::new(items)?;
+    let member = |item: &Entry| match &item.value {
+        Value::Member(family, record) => Some(Element { family, record: record.clone() }),
+        _ => None,
+    };
+    Ok(items.iter().filter_map(member).collect())
+}
+
+fn resolved_schema() -> Schema {
+    Schema::new(
+        "resolved",
+        "What each modification comes to on the pair.",
+        vec![
+            Column::text("design", "Name of the design.").key(),
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::text("family", "Family of the modification."),
+            Column::text("parameter", "Name of the parameter."),
+            Column::integer("row", "Counts the parameters of a gear, from 1.").key(),
+            Column::float("value", "", "Value in SI: m and rad."),
+        ],
+    )
+}
+
+impl Stage for Modification {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![designs::designs_schema(), designs::elements_schema(), resolved_schema()]
+    }
+
+    fn run(&self, _context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let mut rows: Vec<Row> = Vec::new();
+        for named in &self.designs {
+            let design = named.built(&pair)?;
+            for (index, (side, family, parameter, value)) in Design::resolved(&design).into_iter().enumerate() {
+                rows.push(vec![
+                    named.name.as_str().into(),
+                    side.name().into(),
+                    family.into(),
+                    parameter.into(),
+                    (index + 1).into(),
+                    value.into(),
+                ]);
+            }
+        }
+        let failed = |error: crate::table::data::TableError| Failure::new(error.to_string());
+        let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
+        tables.push(Table::from_rows(resolved_schema(), rows).map_err(failed)?);
+        Ok(tables)
+    }
 }

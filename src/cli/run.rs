@@ -1,0 +1,248 @@
+//! Commands that run, plan, or ask what a run would do.
+//!
+//! Must not know: how any of it is decided.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use serde_json::json;
+
+use super::Ending;
+use super::arguments::{Places, Selection};
+use super::pages;
+use super::progress::{Watcher, duration, out};
+use super::show::last_run;
+use crate::base::error::Diagnostic;
+use crate::runner::execute::{self, RunError};
+use crate::runner::options::{Force, Options};
+use crate::runner::outcome::Outcome;
+use crate::runner::plan::{self, Action, Plan};
+use crate::store::cache::{Cache, Remove};
+use crate::store::error::StoreError;
+use crate::store::results::{Changes, Folder};
+use crate::study::Study;
+
+/// How to run.
+pub struct How {
+    pub explain: bool,
+    pub keep_going: bool,
+    pub jobs: Option<usize>,
+    pub quiet: bool,
+}
+
+fn options(selection: &Selection) -> Options {
+    let force = match &selection.force {
+        None => Force::Nothing,
+        Some(names) if names.is_empty() => Force::All,
+        Some(names) => Force::Stages(names.iter().cloned().collect()),
+    };
+    Options { only: selection.only.clone(), force, ..Options::default() }
+}
+
+/// A name on the command line that no stage has.
+fn unknown(diagnostic: &Diagnostic) -> Ending {
+    let help = diagnostic.help.as_ref().map(|help| format!("; {help}")).unwrap_or_default();
+    Ending::Usage(format!("{}{help}", diagnostic.message))
+}
+
+fn stored(error: &StoreError) -> Ending {
+    Ending::Usage(error.to_string())
+}
+
+pub fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
+    let stop = stop_flag();
+    let mut failures = Vec::new();
+    for study in studies {
+        match run_one(study, places, selection, how, &stop) {
+            Err(Ending::Failed(message)) if how.keep_going => failures.push(message),
+            Err(ending) => return Err(ending),
+            Ok(()) => {}
+        }
+    }
+    if failures.is_empty() { Ok(()) } else { Err(Ending::Failed(failures.join("; "))) }
+}
+
+/// Set by Ctrl-C; pressed twice, the program ends at once.
+fn stop_flag() -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    let flag = Arc::clone(&stop);
+    // Without a handler Ctrl-C ends the program at once; what is finished is kept in that case too.
+    let _ = ctrlc::set_handler(move || {
+        if flag.swap(true, Ordering::Relaxed) {
+            std::process::exit(130);
+        }
+        eprintln!("gearstudy: stopping; once more to stop at once");
+    });
+    stop
+}
+
+fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, stop: &AtomicBool) -> Result<(), Ending> {
+    let cache = Cache::open(&places.cache).map_err(|error| stored(&error))?;
+    let folder = Folder::new(&places.results, &study.name);
+    let options =
+        Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection) };
+    if how.explain {
+        let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
+        out(&plan_text(study, &plan));
+    }
+    let width = study.nodes.iter().map(|node| node.name.chars().count()).max().unwrap_or(0);
+    let watcher = Watcher::new(how.quiet, width);
+    let (outcome, published) =
+        execute::run(study, &cache, &options, &watcher, stop, &folder).map_err(|error| match error {
+            RunError::Study(diagnostic) => unknown(&diagnostic),
+            other => Ending::Usage(other.to_string()),
+        })?;
+    let page = if published.changes == Changes::default() && pages::are_there(&folder) {
+        None
+    } else {
+        Some(pages::write(&folder, &published.manifest).map_err(Ending::Usage)?)
+    };
+    ended(study, &outcome, &folder, page.as_deref(), how.quiet)
+}
+
+fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&str>, quiet: bool) -> Result<(), Ending> {
+    if outcome.stopped {
+        return Err(Ending::Stopped);
+    }
+    let failed: Vec<&str> = outcome.faults().map(|(stage, _)| stage).collect();
+    if !failed.is_empty() {
+        return Err(Ending::Failed(format!("{}: {} failed", study.name, failed.join(", "))));
+    }
+    if quiet {
+        return Ok(());
+    }
+    let count = |number: usize| format!("{number} stage{}", if number == 1 { "" } else { "s" });
+    let line = match (outcome.ran(), verdicts) {
+        (0, None) => format!("nothing to do, {} up to date", count(outcome.stages.len())),
+        (ran, verdicts) => {
+            let verdicts = verdicts.map(|text| format!("; {text}")).unwrap_or_default();
+            format!("{} ran in {}{verdicts}", count(ran), duration(outcome.seconds))
+        }
+    };
+    out(&format!("{}: {line}; {}\n", study.name, pages::path(folder).display()));
+    Ok(())
+}
+
+/// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.
+fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, Ending> {
+    let elsewhere;
+    let root = if places.cache.exists() {
+        places.cache.as_path()
+    } else {
+        elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+        elsewhere.path()
+    };
+    let cache = Cache::open(root).map_err(|error| stored(&error))?;
+    plan::plan(study, &cache, options).map_err(|error| unknown(&error))
+}
+
+pub fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
+    let mut all = Vec::new();
+    for study in studies {
+        let plan = plan_of(study, places, &options(selection))?;
+        if as_json {
+            all.push(plan_json(study, &plan));
+        } else {
+            out(&plan_text(study, &plan));
+        }
+    }
+    if as_json {
+        out(&format!("{:#}\n", serde_json::Value::Array(all)));
+    }
+    Ok(())
+}
+
+fn plan_text(study: &Study, plan: &Plan) -> String {
+    let width = plan.stages.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
+    let mut text = format!("{}: {}\n", study.name, study.title);
+    for stage in &plan.stages {
+        let mut action = stage.action.phrase();
+        if stage.chunks > 1 && matches!(stage.action, Action::Run(_)) {
+            action += &format!(" ({} of {} chunks)", stage.missing, stage.chunks);
+        }
+        text += format!("  {:width$}  {action}", stage.name).trim_end();
+        text += "\n";
+        for omission in &stage.left_out {
+            text += &format!("  {:width$}    left out: {}: {}\n", "", omission.what, omission.why);
+        }
+    }
+    text
+}
+
+fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
+    let stages: Vec<_> = plan
+        .stages
+        .iter()
+        .map(|stage| {
+            let left_out: Vec<_> =
+                stage.left_out.iter().map(|omission| json!({ "what": omission.what, "why": omission.why })).collect();
+            json!({
+                "name": stage.name, "kind": stage.kind, "action": stage.action.phrase(),
+                "chunks": stage.chunks, "missing_chunks": stage.missing, "left_out": left_out,
+            })
+        })
+        .collect();
+    json!({ "study": study.name, "file": study.path, "up_to_date": plan.is_up_to_date(), "stages": stages })
+}
+
+pub fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), Ending> {
+    let mut all = Vec::new();
+    for study in studies {
+        let plan = plan_of(study, places, &Options::default())?;
+        let has_results = Folder::new(&places.results, &study.name).manifest().is_some();
+        let words: Vec<(&str, &str, String)> = plan
+            .stages
+            .iter()
+            .map(|stage| match &stage.action {
+                Action::Hit if has_results => (stage.name.as_str(), "up to date", String::new()),
+                Action::Hit => (stage.name.as_str(), "computed", "no results folder".to_owned()),
+                other => (stage.name.as_str(), "stale", other.phrase()),
+            })
+            .collect();
+        if as_json {
+            let stages: Vec<_> =
+                words.iter().map(|(name, state, why)| json!({ "name": name, "state": state, "why": why })).collect();
+            all.push(json!({ "study": study.name, "results": has_results, "stages": stages }));
+            continue;
+        }
+        let stale = words.iter().filter(|(_, state, _)| *state != "up to date").count();
+        let sum = if stale == 0 { "up to date".to_owned() } else { format!("{stale} of {} stages are not up to date", words.len()) };
+        out(&format!("{}: {sum}\n", study.name));
+        let width = words.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
+        for (name, state, why) in words.iter().filter(|(_, state, _)| *state != "up to date") {
+            out(&format!("  {name:width$}  {state}  {why}\n"));
+        }
+    }
+    if as_json {
+        out(&format!("{:#}\n", serde_json::Value::Array(all)));
+    }
+    Ok(())
+}
+
+pub fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
+    for study in studies {
+        let (folder, manifest) = last_run(study, places)?;
+        let text = pages::write(&folder, &manifest).map_err(Ending::Usage)?;
+        if !quiet {
+            out(&pages::verdicts(&folder, &manifest).map_err(Ending::Usage)?);
+            out(&format!("{}: {text}; {}\n", study.name, pages::path(&folder).display()));
+        }
+    }
+    Ok(())
+}
+
+pub fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending> {
+    let age = std::time::Duration::from_secs(u64::from(days) * 86_400);
+    let removed = Cache::clean(&places.cache, Remove::OlderThan(age), dry_run).map_err(|error| stored(&error))?;
+    let word = if dry_run { "would delete" } else { "deleted" };
+    #[allow(clippy::cast_precision_loss)]
+    let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    out(&format!(
+        "{word} {} entries ({:.1} MB), kept {} ({:.1} MB)\n",
+        removed.entries,
+        megabytes(removed.bytes),
+        removed.kept,
+        megabytes(removed.kept_bytes)
+    ));
+    Ok(())
+}

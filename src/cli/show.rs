@@ -1,0 +1,98 @@
+//! Commands that only show something: check, kinds, schema, table, and writing a study to start from.
+//!
+//! Must not know: execution.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::Path;
+
+use super::Ending;
+use super::arguments::{Format, Places};
+use super::print;
+use super::progress::out;
+use crate::base::error::suggest;
+use crate::stage::{self, kinds::KINDS};
+use crate::store::manifest::{Manifest, TableRecord};
+use crate::store::results::Folder;
+use crate::study::{Study, describe, schema as studies};
+use crate::table::data::Table;
+
+const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
+
+/// Writes a small study; never over a file that is there.
+pub fn new_study(file: &Path) -> Result<(), Ending> {
+    let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    // The first line points editors to this repository's schema, which a study elsewhere has not beside it.
+    let text: String = TEMPLATE.lines().skip(1).map(|line| format!("{line}\n")).collect();
+    let text = text.replacen("study: quick", &format!("study: {name}"), 1);
+    let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));
+    let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
+    opened.write_all(text.as_bytes()).map_err(cannot)?;
+    out(&format!("wrote {0}; next: gearstudy run {0}\n", file.display()));
+    Ok(())
+}
+
+/// Says that the studies are valid: reading them has found nothing wrong.
+pub fn check(studies: &[Study], quiet: bool) -> Result<(), Ending> {
+    for study in studies.iter().filter(|_| !quiet) {
+        out(&format!("{}: `{}` is valid, {} stages\n", study.path.display(), study.name, study.nodes.len()));
+    }
+    Ok(())
+}
+
+pub fn kinds(name: Option<&str>) -> Result<(), Ending> {
+    let Some(name) = name else {
+        out(&describe::list(KINDS));
+        return Ok(());
+    };
+    let Some(kind) = stage::kind(name) else {
+        let known = KINDS.iter().map(|kind| kind.name);
+        return Err(Ending::Usage(format!("there is no kind `{name}`; {}", suggest(name, known))));
+    };
+    out(&describe::kind(kind));
+    Ok(())
+}
+
+pub fn schema() -> Result<(), Ending> {
+    out(&studies::schema_text(KINDS));
+    Ok(())
+}
+
+/// Prints a table of the last run, or which tables there are.
+pub fn table(
+    study: &Study,
+    places: &Places,
+    name: Option<&str>,
+    conditions: &[String],
+    columns: &[String],
+    format: Format,
+) -> Result<(), Ending> {
+    let (folder, manifest) = last_run(study, places)?;
+    let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+    let Some(name) = name else {
+        let width = records.iter().map(|record| record.name.len()).max().unwrap_or(0);
+        for record in records {
+            out(&format!("{:width$}  {:>8} rows  {}\n", record.name, record.rows, record.description));
+        }
+        return Ok(());
+    };
+    let found = records.iter().find(|record| record.name == name);
+    let Some(record) = found else {
+        let known: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
+        return Err(Ending::Usage(format!("there is no table `{name}`; {}", suggest(name, known.iter().copied()))));
+    };
+    let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
+    out(&print::table(&table, conditions, columns, format).map_err(Ending::Usage)?);
+    Ok(())
+}
+
+/// The results folder of a study and the manifest in it.
+pub fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
+    let folder = Folder::new(&places.results, &study.name);
+    let manifest = folder.manifest().ok_or_else(|| {
+        let (path, file) = (folder.path().display(), study.path.display());
+        Ending::Usage(format!("there are no results in {path}; first: gearstudy run {file}"))
+    })?;
+    Ok((folder, manifest))
+}

@@ -1,0 +1,266 @@
+//! `kind: optimizer`: the modification that makes the transmission error smallest, by a chosen method, in a box.
+//!
+//! Every value of the designs that is given as `[least, most]` is a variable. Must not know: how any method searches.
+
+use rayon::prelude::*;
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::record::{Record, Value};
+use crate::base::units::{ANGLE, LENGTH, TORQUE, in_unit};
+use crate::gear::geometry::Pair;
+use crate::gear::modification::template::{Template, Variable};
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::loading::Loading;
+use crate::optimize::bounds::Bounds;
+use crate::optimize::search::{Optimizer as Search, Reason};
+use crate::optimize::{self};
+use crate::stage::designs::{self, Element, NamedDesign};
+use crate::stage::{Context, Inputs, Kind, Port, Stage, compliance, pair};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+use super::modification::ELEMENTS;
+
+pub const KIND: Kind = Kind {
+    name: "optimizer",
+    version: 1,
+    summary: "Modifications that make the transmission error smallest, by a seeded search in a box.",
+    fields: FIELDS,
+    example: "
+kind: optimizer
+stiffness: stiffness
+method: { genetic: { population: 100, generations: 100 } }
+minimize: peak_to_peak
+at: { torque: 50 N m }
+design:
+  - tip_relief: { gear: both, amount: [0 um, 8 um], length: [0 mm, 6 mm], curve: parabolic }
+  - lead_crowning: { gear: pinion, amount: [0 um, 8 um] }
+",
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::reference("stiffness", &["stiffness"], "The pair's compliances."),
+    Field::new("method", Shape::Member(optimize::members), "How to search.").default("differential_evolution"),
+    Field::choice("minimize", OBJECTIVES, "What is to be small.").default("peak_to_peak"),
+    Field::group("at", AT, "The loads it is to be small at."),
+    Field::new("design", ELEMENTS, "The modifications; a value given as [least, most] is a variable.").chooses(),
+    Field::new("name", Shape::Text, "Name of the design that is found.").default("optimum"),
+    Field::integer("positions", 8, 10_000, "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.")
+        .default("64"),
+    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.").default("33"),
+];
+
+const AT: &[Field] = &[
+    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion, one or several.").axis(usize::MAX),
+    Field::choice("combine", COMBINE, "What counts when there are several.").default("worst"),
+];
+
+const OBJECTIVES: &[Choice] = &[
+    Choice { name: "peak_to_peak", summary: "largest less smallest transmission error" },
+    Choice { name: "variance", summary: "integral mean of the squared deviation of the transmission error" },
+];
+
+const COMBINE: &[Choice] =
+    &[Choice { name: "worst", summary: "the largest" }, Choice { name: "mean", summary: "the mean" }];
+
+struct Optimizer {
+    stiffness: String,
+    method: (&'static str, Record),
+    objective: &'static str,
+    torques: Vec<f64>,
+    worst: bool,
+    elements: Vec<Element>,
+    template: Template,
+    name: String,
+    settings: Settings,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let at = record.group("at");
+    let (method, options) = record.member("method");
+    let items = record.list("design");
+    let template = Template::new(items)?;
+    if template.variables().is_empty() {
+        return Err(Diagnostic::new("nothing is left open for the search")
+            .at(record.place_of("design"))
+            .help("give at least one value as a range, for example `amount: [0 um, 8 um]`"));
+    }
+    let element = |value: &Value| match value {
+        Value::Member(family, record) => Some(Element { family, record: record.clone() }),
+        _ => None,
+    };
+    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
+    let optimizer = Optimizer {
+        stiffness: record.reference("stiffness").to_owned(),
+        method: (method, options.clone()),
+        objective: record.choice("minimize"),
+        torques: at.axis("torque").to_vec(),
+        worst: at.choice("combine") == "worst",
+        elements: items.iter().filter_map(|item| element(&item.value)).collect(),
+        template,
+        name: record.text("name").to_owned(),
+        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+    };
+    // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
+    optimizer.search(crate::base::seed::Seed::of_stage(0, "")).map(drop)?;
+    Ok(Box::new(optimizer))
+}
+
+/// The unit a variable is shown in: amounts in µm, other lengths in mm.
+fn unit(variable: &Variable) -> &'static str {
+    match variable.dimension {
+        LENGTH if variable.name.contains("amount") => "um",
+        LENGTH => "mm",
+        ANGLE => "deg",
+        _ => "",
+    }
+}
+
+fn column(variable: &Variable) -> String {
+    variable.name.replace('.', "_")
+}
+
+impl Optimizer {
+    fn search(&self, seed: crate::base::seed::Seed) -> Result<Search, Diagnostic> {
+        let bounds = self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect();
+        optimize::optimizer(self.method.0, &self.method.1, Bounds::new(bounds)?, seed)
+    }
+
+    fn objective_unit(&self) -> &'static str {
+        if self.objective == "variance" { "um^2" } else { "um" }
+    }
+
+    fn best_schema(&self) -> Schema {
+        let mut columns = vec![
+            Column::text("design", "Name of the design.").key(),
+            Column::float("objective", self.objective_unit(), "What was made small.").tolerance(1e-9, 1e-6),
+            Column::float("peak_to_peak", "um", "Peak-to-peak of the transmission error, the largest of all loads.")
+                .tolerance(1e-9, 1e-6),
+            Column::integer("evaluations", "How often the objective was computed."),
+            Column::integer("generations", "How many batches the search took."),
+            Column::text("ended", "Why the search ended."),
+        ];
+        // On a plateau many designs are as good: values of variables are compared loosely.
+        columns.extend(self.template.variables().iter().map(|variable| {
+            Column::float(&column(variable), unit(variable), "Value of the variable in the best design.").tolerance(0.0, 1e-3)
+        }));
+        Schema::new("best", "The best design that was found.", columns)
+    }
+
+    fn history_schema(&self) -> Schema {
+        let unit = self.objective_unit();
+        let reciprocal = format!("1/{unit}");
+        Schema::new(
+            "history",
+            "The search, batch by batch (generation by generation).",
+            vec![
+                Column::integer("generation", "Counts the batches, from 1.").key(),
+                Column::integer("evaluations", "Evaluations so far."),
+                Column::float("best", unit, "Lowest objective in the batch.").allows_nan(),
+                Column::float("best_so_far", unit, "Lowest objective so far.").allows_nan(),
+                Column::float("mean", unit, "Mean objective of the batch.").allows_nan(),
+                Column::float("best_fitness", &reciprocal, "1/best: fitness of the best of the batch.").allows_nan(),
+                Column::float("best_fitness_so_far", &reciprocal, "1/best so far.").allows_nan(),
+            ],
+        )
+    }
+
+    /// The objective \[m or m²\]; infinite where the design cannot be built.
+    fn value(&self, cycle: &MeshCycle, pair: &Pair, point: &[f64]) -> f64 {
+        let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
+        let values = self.torques.iter().map(|torque| {
+            let loading = Loading::new(cycle, &design, *torque);
+            if self.objective == "variance" { loading.variance() } else { loading.peak_to_peak() }
+        });
+        if self.worst { values.fold(0.0, f64::max) } else { values.sum::<f64>() / self.torques.len() as f64 }
+    }
+
+    /// The elements with the values of the best point in the place of the ranges.
+    fn best_elements(&self, point: &[f64]) -> Vec<Element> {
+        let mut values = point.iter();
+        let mut elements = self.elements.clone();
+        for element in &mut elements {
+            for (_, entry) in &mut element.record.fields {
+                if matches!(entry.value, Value::Range(..)) {
+                    entry.value = Value::Quantity(values.next().copied().unwrap_or(f64::NAN));
+                }
+            }
+        }
+        elements
+    }
+
+    fn tables(&self, search: &Search, reason: Reason, pair: &Pair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
+        let best = search.best().ok_or_else(|| Failure::new("no design in the box can be built on this pair"))?;
+        let failed = |error: TableError| Failure::new(error.to_string());
+        let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
+        let peak_to_peak =
+            self.torques.iter().map(|torque| Loading::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
+        let unit_of_objective = self.objective_unit();
+        let shown = |value: f64| if value.is_finite() { in_unit(value, unit_of_objective) } else { f64::NAN };
+        let mut row: Row = vec![
+            self.name.as_str().into(),
+            shown(best.value).into(),
+            in_unit(peak_to_peak, "um").into(),
+            search.evaluations().into(),
+            search.history().len().into(),
+            reason.to_string().into(),
+        ];
+        row.extend(self.template.variables().iter().zip(&best.point).map(|(variable, value)| in_unit(*value, unit(variable)).into()));
+        let history = search.history().iter().enumerate().map(|(index, generation)| -> Row {
+            let reciprocal = |value: f64| 1.0 / shown(value);
+            vec![
+                (index + 1).into(),
+                generation.evaluations.into(),
+                shown(generation.best).into(),
+                shown(generation.best_so_far).into(),
+                shown(generation.mean).into(),
+                reciprocal(generation.best).into(),
+                reciprocal(generation.best_so_far).into(),
+            ]
+        });
+        let found = NamedDesign { name: self.name.clone(), elements: self.best_elements(&best.point) };
+        let mut tables = vec![
+            Table::from_rows(self.best_schema(), vec![row]).map_err(failed)?,
+            Table::from_rows(self.history_schema(), history.collect()).map_err(failed)?,
+        ];
+        tables.extend(designs::write(&[found]).map_err(failed)?);
+        Ok(tables)
+    }
+}
+
+impl Stage for Optimizer {
+    fn inputs(&self) -> Vec<Port> {
+        vec![
+            Port::tables("pair", &self.stiffness, &["gears", "pair"]).through("pair"),
+            Port::tables("stiffness", &self.stiffness, &["compliance", "neighbours", "model"]),
+        ]
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![self.best_schema(), self.history_schema(), designs::designs_schema(), designs::elements_schema()]
+    }
+
+    fn uses_seed(&self) -> bool {
+        true
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let read = |table| inputs.table("stiffness", table);
+        let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
+        let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
+        let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
+        let budget = search.budget().max(1) as f64;
+        let mut done = 0_usize;
+        let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
+            context.check_stop()?;
+            let values = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
+            done += points.len();
+            (context.progress)(done as f64 / budget);
+            Ok(values)
+        })?;
+        self.tables(&search, reason, &pair, &cycle)
+    }
+}

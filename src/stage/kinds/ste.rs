@@ -1,0 +1,308 @@
+//! `kind: ste`: static transmission error of designs under torques: curves, summaries, harmonics.
+//!
+//! One chunk per torque, so an added torque computes only itself. Must not know: who made the designs.
+
+use std::time::Instant;
+
+use rayon::prelude::*;
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Field, Shape};
+use crate::base::record::{Record, Value};
+use crate::base::units::{RATIO, TORQUE, in_unit};
+use crate::gear::modification::{self, Design};
+use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::loading::Loading;
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, designs, pair};
+use crate::table::data::{Row, Table};
+use crate::table::schema::{Column, Schema};
+
+pub const KIND: Kind = Kind {
+    name: "ste",
+    version: 1,
+    summary: "Static transmission error of designs under torques, with load sharing and contact pressure.",
+    fields: FIELDS,
+    example: "
+kind: ste
+stiffness: stiffness
+designs: modification
+torque: { from: 25 N m, to: 100 N m, count: 4 }
+",
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::reference("stiffness", &["stiffness"], "The pair's compliances."),
+    Field::new("designs", Shape::List(&Shape::Reference(&["modification", "optimizer"])), "Who gives the designs."),
+    Field::quantity("torque", TORQUE, 0.0, 1e9, "Torque on the pinion.").axis(1),
+    Field::quantity("accuracy", RATIO, 1e-9, 0.1, "Wanted relative accuracy of the peak-to-peak; sets the positions.")
+        .optional(),
+    Field::integer("positions", 8, 100_000, "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.")
+        .default("64"),
+    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.").default("33"),
+    Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
+];
+
+/// Where doubling the positions stops.
+const MOST_POSITIONS: usize = 4096;
+
+struct Ste {
+    stiffness: String,
+    designs: Vec<String>,
+    torques: Vec<f64>,
+    accuracy: Option<f64>,
+    settings: Settings,
+    harmonics: usize,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let reference = |value: &Value| match value {
+        Value::Reference(name) => Some(name.clone()),
+        _ => None,
+    };
+    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
+    let designs: Vec<String> = record.list("designs").iter().filter_map(|entry| reference(&entry.value)).collect();
+    if designs.is_empty() {
+        return Err(Diagnostic::new("no designs are given").at(record.place_of("designs")));
+    }
+    Ok(Box::new(Ste {
+        stiffness: record.reference("stiffness").to_owned(),
+        designs,
+        torques: record.axis("torque").to_vec(),
+        accuracy: record.maybe_quantity("accuracy"),
+        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+        harmonics: whole("harmonics"),
+    }))
+}
+
+fn keys() -> Vec<Column> {
+    vec![
+        Column::text("design", "Name of the design.").key(),
+        Column::float("torque", "N m", "Torque on the pinion.").key(),
+    ]
+}
+
+fn summary_schema() -> Schema {
+    let mut columns = keys();
+    columns.extend([
+        Column::float("mean", "um", "Integral mean of the transmission error over the mesh cycle."),
+        Column::float("peak_to_peak", "um", "Largest less smallest transmission error.").tolerance(1e-12, 1e-9),
+        Column::float("maximum", "um", "Largest transmission error."),
+        Column::float("minimum", "um", "Smallest transmission error."),
+        Column::float("variance", "um^2", "Integral mean of the squared deviation from the mean.").tolerance(1e-15, 1e-9),
+        Column::float("reciprocal_variance", "1/um^2", "f = 1/variance (mei2016, equation 16); NaN where nothing varies.")
+            .allows_nan()
+            .tolerance(0.0, 1e-8),
+        Column::float("unloaded_peak_to_peak", "um", "The same without load.").tolerance(1e-12, 1e-9),
+        Column::float("loaded_contact_ratio", "", "Mean number of pairs that carry load."),
+        Column::float("largest_load_share", "", "Largest share of the load on one pair."),
+        Column::float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.").on_demand(),
+        Column::integer("positions", "Positions per base pitch that were used."),
+        Column::float("error_estimate", "", "Relative change of the peak-to-peak from half the positions.").tolerance(1e-9, 0.0),
+        Column::float("seconds", "s", "Time for this row.").volatile(),
+    ]);
+    Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
+}
+
+fn curve_schema() -> Schema {
+    let mut columns = keys();
+    columns.extend([
+        Column::integer("point", "Counts the positions, from 1.").key(),
+        Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
+            .tolerance(1e-9, 1e-9),
+        Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
+        Column::integer("pairs", "Pairs inside the path of contact."),
+        Column::integer("loaded_pairs", "Pairs that carry load."),
+        Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
+        Column::float("unloaded_transmission_error", "um", "The same without load.").tolerance(1e-12, 1e-9),
+        Column::float("newest_load_share", "", "Share of the load on the pair that came into contact last.").tolerance(1e-12, 1e-9),
+        Column::float("secant_stiffness", "N/m", "Load over loaded less unloaded transmission error; NaN without load.")
+            .allows_nan(),
+        Column::float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.").allows_nan(),
+        Column::float("pressure", "MPa", "Largest Hertzian pressure of any pair.").on_demand(),
+    ]);
+    Schema::new(
+        "curve",
+        "Transmission error over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.",
+        columns,
+    )
+}
+
+fn harmonics_schema() -> Schema {
+    let mut columns = keys();
+    columns.extend([
+        Column::integer("order", "Multiple of the mesh frequency.").key(),
+        Column::float("amplitude", "um", "Amplitude of the transmission error.").tolerance(1e-12, 1e-9),
+    ]);
+    Schema::new("harmonics", "Harmonics of the transmission error.", columns)
+}
+
+/// One design under one torque.
+struct Answer {
+    points: Vec<Point>,
+    summary: Summary,
+    positions: usize,
+    error: f64,
+    seconds: f64,
+}
+
+impl Ste {
+    fn answer(&self, cycles: &[MeshCycle], design: &Design, torque: f64, wanted: Wanted) -> Answer {
+        let began = Instant::now();
+        let coarse = |cycle: &MeshCycle| Loading::new(cycle, design, torque).peak_to_peak();
+        let mut before = coarse(&cycles[0]);
+        let mut error = f64::INFINITY;
+        let mut last = &cycles[0];
+        for cycle in &cycles[1..] {
+            let now = coarse(cycle);
+            let scale = now.abs().max(f64::MIN_POSITIVE);
+            error = if now == before { 0.0 } else { (now - before).abs() / scale };
+            (last, before) = (cycle, now);
+            if self.accuracy.is_none_or(|accuracy| error <= accuracy) {
+                break;
+            }
+        }
+        let (points, summary) = Loading::new(last, design, torque).curve_and_summary(wanted);
+        let seconds = began.elapsed().as_secs_f64();
+        Answer { points, summary, positions: last.settings.positions, error, seconds }
+    }
+
+    /// Cycles from half the positions up: two when no accuracy is asked for, as many as it may take otherwise.
+    fn cycles(&self, pair: &crate::gear::geometry::Pair, compliance: &crate::gear::compliance::PairCompliance) -> Result<Vec<MeshCycle>, Failure> {
+        let (first, count) = match self.accuracy {
+            Some(_) => (8, (MOST_POSITIONS / 8).ilog2() as usize + 1),
+            None => (self.settings.positions.div_ceil(2), 2),
+        };
+        let base = MeshCycle::new(pair, compliance, self.settings)?;
+        let positions = |index: usize| if self.accuracy.is_none() && index == 1 { self.settings.positions } else { first << index };
+        Ok((0..count)
+            .map(|index| MeshCycle { settings: Settings { positions: positions(index), ..self.settings }, ..base.clone() })
+            .collect())
+    }
+}
+
+impl Stage for Ste {
+    fn inputs(&self) -> Vec<Port> {
+        let mut ports = vec![
+            Port::tables("pair", &self.stiffness, &["gears", "pair"]).through("pair"),
+            Port::tables("stiffness", &self.stiffness, &["compliance", "neighbours", "model"]),
+        ];
+        for (index, stage) in self.designs.iter().enumerate() {
+            ports.push(Port::tables(format!("designs_{}", index + 1), stage, &["designs", "elements"]));
+        }
+        ports
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![summary_schema(), curve_schema(), harmonics_schema()]
+    }
+
+    fn left_out(&self, demand: &Demand) -> Vec<Omission> {
+        let mut omissions = vec![Omission::new(
+            "slices across the face",
+            "crowning, slopes and linear or parabolic end relief have a closed form under linear contact",
+        )];
+        if !demand.column("summary", "largest_pressure") && !demand.column("curve", "pressure") {
+            omissions.push(Omission::new("contact pressure", "nobody asks for columns `largest_pressure` or `pressure`"));
+        }
+        if self.harmonics == 0 {
+            omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
+        }
+        omissions
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let read = |table| inputs.table("stiffness", table);
+        let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
+        let cycles = self.cycles(&pair, &compliance)?;
+        let mut designs = Vec::new();
+        for index in 1..=self.designs.len() {
+            let port = format!("designs_{index}");
+            let (names, elements) = (inputs.table(&port, "designs")?, inputs.table(&port, "elements")?);
+            for named in designs::read(names, elements, modification::members())? {
+                designs.push((named.built(&pair)?, named.name));
+            }
+        }
+        let summary_pressure = context.demand.column("summary", "largest_pressure");
+        let curve_pressure = context.demand.column("curve", "pressure");
+        let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
+        let tasks: Vec<(usize, f64)> =
+            (0..designs.len()).flat_map(|design| self.torques.iter().map(move |torque| (design, *torque))).collect();
+        let answers: Vec<Answer> = tasks
+            .par_iter()
+            .map(|&(design, torque)| {
+                context.check_stop()?;
+                Ok(self.answer(&cycles, &designs[design].0, torque, wanted))
+            })
+            .collect::<Result<_, Failure>>()?;
+
+        let (mut summaries, mut curves, mut harmonics): (Vec<Row>, Vec<Row>, Vec<Row>) = Default::default();
+        for (&(design, torque), answer) in tasks.iter().zip(&answers) {
+            let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
+            summaries.push([key(), summary_row(answer, summary_pressure)].concat());
+            for (index, point) in answer.points.iter().enumerate() {
+                curves.push([key(), vec![(index + 1).into()], point_row(point, curve_pressure)].concat());
+            }
+            for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
+                harmonics.push([key(), vec![(index + 1).into(), in_unit(*amplitude, "um").into()]].concat());
+            }
+            if let Some(accuracy) = self.accuracy.filter(|accuracy| answer.error > *accuracy) {
+                let (name, reached) = (&designs[design].1, answer.error);
+                (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
+                ));
+            }
+        }
+        let table = |schema: Schema, rows: Vec<Row>| {
+            Table::from_rows(context.demand.narrowed(schema), rows).map_err(|error| Failure::new(error.to_string()))
+        };
+        Ok(vec![
+            table(summary_schema(), summaries)?,
+            table(curve_schema(), curves)?,
+            table(harmonics_schema(), harmonics)?,
+        ])
+    }
+}
+
+fn summary_row(answer: &Answer, pressure: bool) -> Row {
+    let summary = &answer.summary;
+    let mut row: Row = [
+        in_unit(summary.mean, "um"),
+        in_unit(summary.peak_to_peak, "um"),
+        in_unit(summary.largest.value, "um"),
+        in_unit(summary.smallest.value, "um"),
+        in_unit(summary.variance, "um^2"),
+        summary.reciprocal_variance.map_or(f64::NAN, |value| in_unit(value, "1/um^2")),
+        in_unit(summary.unloaded_peak_to_peak, "um"),
+        summary.loaded_contact_ratio,
+        summary.largest_load_share,
+    ]
+    .map(Into::into)
+    .into();
+    if pressure {
+        row.push(in_unit(summary.largest_pressure.map_or(f64::NAN, |largest| largest.value), "MPa").into());
+    }
+    row.extend([answer.positions.into(), answer.error.into(), answer.seconds.into()]);
+    row
+}
+
+fn point_row(point: &Point, pressure: bool) -> Row {
+    let total: f64 = point.loads.iter().sum();
+    let mut row: Row = vec![
+        in_unit(point.cycle_position, "mm").into(),
+        in_unit(point.roll_angle, "deg").into(),
+        point.pairs.into(),
+        point.loaded_pairs.into(),
+        in_unit(point.transmission_error, "um").into(),
+        in_unit(point.unloaded_transmission_error, "um").into(),
+        (if total > 0.0 { point.loads[0] / total } else { 0.0 }).into(),
+        point.secant_stiffness.into(),
+        point.tangent_stiffness.into(),
+    ];
+    if pressure {
+        row.push(in_unit(point.pressure.unwrap_or(f64::NAN), "MPa").into());
+    }
+    row
+}

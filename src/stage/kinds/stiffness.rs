@@ -1,0 +1,235 @@
+//! `kind: stiffness`: compliances of both gears' teeth by a chosen method, and the mesh stiffness they give.
+//!
+//! Must not know: how any method works. Stiffness is F/δ along the line of action.
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::record::Record;
+use crate::base::units::{TORQUE, in_unit};
+use crate::gear::compliance::iso6336;
+use crate::gear::compliance::{self, ContactLaw, Method, PairCompliance, Setting};
+use crate::gear::geometry::Pair;
+use crate::gear::geometry::root::RootShape;
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::stiffness::stiffness;
+use crate::stage::compliance as codec;
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, pair};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+pub const KIND: Kind = Kind {
+    name: "stiffness",
+    version: 1,
+    summary: "Compliance of the teeth of both gears, and the mesh stiffness over the mesh cycle.",
+    fields: FIELDS,
+    example: "
+kind: stiffness
+pair: geometry
+method: energy
+root: trochoid
+contact: linear
+coupling: body
+",
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::reference("pair", &["geometry"], "The pair."),
+    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.").default("energy"),
+    Field::choice("root", ROOTS, "The shape of the tooth below its involute.").default("trochoid"),
+    Field::choice("contact", CONTACTS, "How the flanks flatten against each other.").default("linear"),
+    Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
+        .default("body"),
+    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.")
+        .optional(),
+    Field::integer("positions", 8, 100_000, "Positions per base pitch; the ends of contact come on top.").default("64"),
+];
+
+const ROOTS: &[Choice] = &[
+    Choice { name: "trochoid", summary: "as the rack's tip round cuts it" },
+    Choice { name: "circular_fillet", summary: "an arc of the rack's tip radius, tangent to root circle and flank" },
+    Choice { name: "base_circle", summary: "none: clamped where the involute starts" },
+];
+
+const CONTACTS: &[Choice] = &[
+    Choice { name: "linear", summary: "4(1 − ν²)/(πEb), whatever the load" },
+    Choice { name: "load_dependent", summary: "the logarithmic law of Weber and Banaschek" },
+];
+
+const COUPLINGS: &[Choice] = &[
+    Choice { name: "none", summary: "pair stiffnesses are summed" },
+    Choice { name: "body", summary: "a load on one tooth moves its neighbours" },
+];
+
+/// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
+const ANY_TORQUE: f64 = 1.0;
+
+struct Stiffness {
+    pair: String,
+    method: &'static Method,
+    options: Record,
+    setting: Setting,
+    root: &'static str,
+    torque: f64,
+    settings: Settings,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let (name, options) = record.member("method");
+    let method = compliance::method(name).ok_or_else(|| Diagnostic::new(format!("unknown method `{name}`")))?;
+    let contact = if record.choice("contact") == "linear" { ContactLaw::Linear } else { ContactLaw::LoadDependent };
+    let torque = record.maybe_quantity("torque");
+    if contact == ContactLaw::LoadDependent && torque.is_none() {
+        return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
+            .at(record.place_of("contact"))
+            .help("add for example `torque: 50 N m`"));
+    }
+    let root = record.choice("root");
+    let setting = Setting {
+        root: match root {
+            "circular_fillet" => RootShape::CircularFillet,
+            "base_circle" => RootShape::BaseCircle,
+            _ => RootShape::Trochoid,
+        },
+        contact,
+        coupled: record.choice("coupling") == "body",
+    };
+    let positions = usize::try_from(record.integer("positions")).unwrap_or(64);
+    Ok(Box::new(Stiffness {
+        pair: record.reference("pair").to_owned(),
+        method,
+        options: options.clone(),
+        setting,
+        root,
+        torque: torque.unwrap_or(ANY_TORQUE),
+        settings: Settings { positions, ..Settings::default() },
+    }))
+}
+
+fn curve_schema() -> Schema {
+    Schema::new(
+        "curve",
+        "Mesh stiffness over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.",
+        vec![
+            Column::integer("point", "Counts the positions, from 1.").key(),
+            Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action."),
+            Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
+            Column::integer("pairs", "Pairs in contact."),
+            Column::float("stiffness", "N/m", "Mesh stiffness F/δ of the unmodified pair."),
+        ],
+    )
+}
+
+fn summary_schema() -> Schema {
+    let extreme = |name: &str, description: &str| Column::float(name, "N/m", description).allows_nan();
+    Schema::new(
+        "summary",
+        "Extremes of the mesh stiffness; NaN where that many pairs are never in contact.",
+        vec![
+            extreme("single_min", "Smallest stiffness with one pair in contact."),
+            extreme("single_max", "Largest stiffness with one pair in contact."),
+            extreme("double_min", "Smallest stiffness with two pairs in contact."),
+            extreme("double_max", "Largest stiffness with two pairs in contact."),
+            Column::float("mean", "N/m", "Integral mean over the mesh cycle."),
+            Column::integer("fewest_pairs", "Pairs in contact where they are fewest."),
+        ],
+    )
+}
+
+fn iso_schema() -> Schema {
+    let column = |name: &str, description: &str| Column::float(name, "N/(mm um)", description);
+    Schema::new(
+        "iso6336",
+        "Mesh stiffness per face width by ISO 6336-1, for solid discs.",
+        vec![
+            column("theoretical", "c′_th: theoretical stiffness of a pair."),
+            column("single", "c′: maximum stiffness of a pair."),
+            column("mesh", "c_γα: mean stiffness of the mesh."),
+        ],
+    )
+    .on_demand()
+}
+
+fn iso_table(pair: &Pair) -> Result<Table, TableError> {
+    let (pinion, gear) = (&pair.pinion.specification, &pair.gear.specification);
+    let found = iso6336::stiffness(&iso6336::Input {
+        teeth: [f64::from(pinion.teeth), f64::from(gear.teeth)],
+        profile_shifts: [pinion.profile_shift, gear.profile_shift],
+        helix_angle: 0.0,
+        dedendum: 0.5 * (pinion.rack.dedendum + gear.rack.dedendum),
+        pressure_angle: pinion.pressure_angle,
+        contact_ratio: pair.contact_ratio,
+    });
+    let row: Row = [found.theoretical, found.single, found.mesh].map(|value| in_unit(value, "N/(mm um)").into()).into();
+    Table::from_rows(iso_schema(), vec![row])
+}
+
+impl Stage for Stiffness {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![
+            codec::compliance_schema(),
+            codec::neighbours_schema(),
+            codec::model_schema(),
+            curve_schema(),
+            summary_schema(),
+            iso_schema(),
+        ]
+    }
+
+    fn left_out(&self, demand: &Demand) -> Vec<Omission> {
+        let mut omissions = vec![Omission::new(
+            "finite-element mesh and factorisation",
+            format!("method `{}` needs none", self.method.member.name),
+        )];
+        if !self.setting.coupled {
+            omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
+        }
+        if !demand.table("iso6336") {
+            omissions.push(Omission::new("stiffness by ISO 6336-1", "nobody asks for table `iso6336`"));
+        }
+        omissions
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let (compliance, warnings) = PairCompliance::new(self.method, &self.options, &pair, &self.setting)
+            .map_err(|error| Failure::new(error.to_string()))?;
+        for warning in warnings {
+            (context.warn)(warning);
+        }
+        let failed = |error: TableError| Failure::new(error.to_string());
+        let radii = [pair.pinion.base_radius, pair.gear.base_radius];
+        let mut tables =
+            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root).map_err(failed)?);
+        context.check_stop()?;
+
+        let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
+        let (points, summary) = stiffness(&cycle, self.torque);
+        let rows = points.iter().enumerate().map(|(index, point)| -> Row {
+            vec![
+                (index + 1).into(),
+                in_unit(point.cycle_position, "mm").into(),
+                in_unit(point.roll_angle, "deg").into(),
+                point.pairs.into(),
+                point.secant_stiffness.into(),
+            ]
+        });
+        tables.push(Table::from_rows(curve_schema(), rows.collect()).map_err(failed)?);
+        let zone = |pairs: usize| {
+            let zones = [Some(summary.fewest), summary.most];
+            let found = zones.into_iter().flatten().find(|zone| zone.pairs == pairs);
+            found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
+        };
+        let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
+        row.extend([summary.mean.into(), summary.fewest.pairs.into()]);
+        tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
+        if context.demand.table("iso6336") {
+            tables.push(iso_table(&pair).map_err(failed)?);
+        }
+        Ok(tables)
+    }
+}
