@@ -266,7 +266,7 @@ impl<'a> Tree<'a> {
     fn place(&self, span: &Span) -> Place {
         let (offset, end) = (self.offset(span.start), self.offset(span.end));
         let covered = self.text.get(offset..end).unwrap_or("");
-        let length = covered.lines().next().unwrap_or("").trim_end().len();
+        let length = covered.lines().next().unwrap_or("").len();
         Place { line: span.start.line(), column: span.start.col() + 1, offset, length }
     }
 

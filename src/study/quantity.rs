@@ -214,8 +214,9 @@ impl Measure<'_> {
     }
 }
 
-/// Point `at` of `points`. Where both ends have the same unit the point is found in that unit and read as if it were
-/// written there, so `{ from: 25 mm, to: 100 mm, count: 16 }` holds the bits of `50 mm`.
+/// Point `at` of `points`. Where both ends have the same unit the point is found in that unit, to the 15 digits that a
+/// binary number keeps, and read as if it were written there, so `{ from: 25 mm, to: 100 mm, count: 16 }` holds the
+/// bits of `50 mm`.
 fn between(from: &Node, to: &Node, first: f64, last: f64, at: usize, points: usize) -> f64 {
     let share = |low: f64, high: f64| low + (high - low) * at as f64 / (points - 1) as f64;
     let written = |node: &Node| match &node.content {
@@ -227,7 +228,7 @@ fn between(from: &Node, to: &Node, first: f64, last: f64, at: usize, points: usi
     };
     if let (Some((low, unit)), Some((high, other))) = (written(from), written(to))
         && unit == other
-        && let Ok(point) = parse_quantity(&format!("{} {unit}", share(low, high)))
+        && let Ok(point) = parse_quantity(&format!("{:.14e} {unit}", share(low, high)))
     {
         return point.value;
     }

@@ -3,7 +3,12 @@
 use serde_json::Value;
 
 use super::{KINDS, VALID, changed, load};
-use crate::study::document::parse;
+use crate::base::error::Place;
+use crate::base::parameter::{Field, Presence, Shape};
+use crate::base::units::RATIO;
+use crate::study::decode::Decoder;
+use crate::study::document::{nothing, parse};
+use crate::study::words::example;
 use crate::study::{describe, schema};
 
 /// The part of JSON schema that ours uses, except the patterns.
@@ -156,4 +161,59 @@ fn a_description_names_every_field_with_range_default_and_choices() {
             .contains("torque: a torque in N m, N mm, between 0 N m and 1e7 N m; one value, a list, or")
     );
     assert!(describe::list(KINDS).starts_with("geometry      A stage of the tests: geometry.\nmodification  A"));
+}
+
+/// Walks through all fields, also those of members, and hands each to `see`; families that hold themselves end the walk.
+fn walk(fields: &'static [Field], see: &mut impl FnMut(&'static Field), met: &mut Vec<&'static str>) {
+    let mut names: Vec<_> = fields.iter().map(|field| field.name).collect();
+    names.sort_unstable();
+    assert!(names.windows(2).all(|pair| pair[0] != pair[1]), "a name stands twice among {names:?}");
+    for field in fields {
+        see(field);
+        let mut shape = &field.shape;
+        while let Shape::List(item) | Shape::Map(item) = shape {
+            shape = item;
+        }
+        match shape {
+            Shape::Group(inner) => walk(inner, see, met),
+            Shape::Member(members) if !met.contains(&field.name) => {
+                met.push(field.name);
+                for member in members() {
+                    walk(member.fields, see, met);
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+#[test]
+fn every_declared_field_is_one_that_a_study_can_give() {
+    for kind in KINDS.iter().chain(crate::stage::kinds::KINDS) {
+        walk(
+            kind.fields,
+            &mut |field| {
+                let name = format!("{} of {}", field.name, kind.name);
+                let plain =
+                    field.name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_');
+                assert!(plain && field.name != "kind", "{name}");
+                assert!(field.summary.len() > 3, "{name} says nothing");
+                if let Shape::Quantity { dimension, least, most } = field.shape {
+                    assert!(least < most, "{name}: {least} is not below {most}");
+                    assert!(dimension == RATIO || example(dimension, least, most).is_some(), "{name} has no example");
+                }
+                if matches!(field.presence, Presence::Default(_)) {
+                    let read = Decoder::new("").record(
+                        &nothing(Place::default()),
+                        std::slice::from_ref(field),
+                        &[],
+                        "the default",
+                        Place::default(),
+                    );
+                    assert!(read.is_ok(), "{name}: {read:?}");
+                }
+            },
+            &mut Vec::new(),
+        );
+    }
 }

@@ -350,6 +350,16 @@ const CHANGES: &[(&str, &str, &str)] = &[
         "3:1: unknown field `sed` of the study\n  help: did you mean `seed`?",
     ),
     ("paper: nobody", "paper: µµ, table: 3", "3:22: unknown field `table` of `source`\n  help: did you mean `tables`?"),
+    (
+        "design:\n      - tip_relief: { amount: [0 um, 8 um], length: 2 mm }",
+        "design: nothing\n    method: { tip_relief: { amount: [0 um, 8 um] } }",
+        "25:37: `amount` takes one value here, not a range\n  help: a range `[least, most]` belongs in `design` of a stage of kind `optimizer`",
+    ),
+    (
+        "study: small",
+        "study: a-name-that-is-longer-than-a-folder-of-results-should-have-it-here",
+        "1:8: `a-name-that-is-longer-than-a-folder-of-results-should-have-i…` cannot be the name of a study\n  help: lower-case letters, digits, `-` and `_` make a name, at most 64 of them: for example `a-name-that-is-longer-than-a-folder-of-results-should-have-it-he`",
+    ),
 ];
 
 /// Whole texts.

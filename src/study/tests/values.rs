@@ -98,10 +98,11 @@ fn an_axis_is_sorted_and_its_points_have_the_bits_of_written_values() {
     let spaced = torques("{ from: 25 N m, to: 100 N m, count: 16 }");
     let written: Vec<f64> = (0..16).map(|at| f64::from(25 + 5 * at)).collect();
     assert_eq!(bits(&spaced), bits(&written));
-    // 0.7 N mm is no multiple of a binary fraction, in SI even less: the points must be those that a user would write.
-    let spaced = torques("{ from: 0.1 N mm, to: 0.7 N mm, count: 4 }");
-    let written = torques("[0.1 N mm, 0.3 N mm, 0.5 N mm, 0.7 N mm]");
-    assert_eq!(bits(&spaced), bits(&written));
+    // No multiples of a binary fraction, in SI even less: the points must be those that a user would write.
+    let spaced = torques("{ from: 0.1 N mm, to: 0.5 N mm, count: 3 }");
+    assert_eq!(bits(&spaced), bits(&torques("[0.1 N mm, 0.3 N mm, 0.5 N mm]")));
+    let spaced = torques("{ from: 5 N mm, to: 20 N mm, count: 6 }");
+    assert_eq!(bits(&spaced), bits(&torques("[5 N mm, 8 N mm, 11 N mm, 14 N mm, 17 N mm, 20 N mm]")));
     let mixed = torques("{ from: 500 N mm, to: 1 N m, count: 3 }");
     assert_eq!(bits(&mixed), bits(&[0.5, 0.75, 1.0]));
 }
@@ -122,6 +123,9 @@ fn anchors_and_merges_save_repetition() {
     );
     let rack = record(&study, "other").group("rack");
     assert_eq!((rack.number("addendum"), rack.number("shift")), (1.5, 0.25));
+    let study = valid(&changed("plain: []", "plain: &plain []\n      <<: { single: nothing, merged: nothing }"));
+    let names: Vec<_> = record(&study, "designs").map("designs").iter().map(|(name, _)| name.as_str()).collect();
+    assert_eq!(names, ["plain", "relieved", "single", "merged"]);
 }
 
 #[test]
