@@ -73,6 +73,8 @@ pub struct Field {
     pub shape: Shape,
     pub presence: Presence,
     pub span: Span,
+    /// Whether an optimiser chooses below this field: quantities with [`Span::Range`] may be `[least, most]` there.
+    pub chooses: bool,
     /// One sentence with the symbol and the unit.
     pub summary: &'static str,
 }
@@ -80,7 +82,7 @@ pub struct Field {
 impl Field {
     #[must_use]
     pub const fn new(name: &'static str, shape: Shape, summary: &'static str) -> Self {
-        Self { name, shape, presence: Presence::Required, span: Span::Single, summary }
+        Self { name, shape, presence: Presence::Required, span: Span::Single, chooses: false, summary }
     }
 
     /// A quantity inside `least..=most` (SI).
@@ -130,6 +132,13 @@ impl Field {
     #[must_use]
     pub const fn axis(mut self, chunk: usize) -> Self {
         self.span = Span::Axis { chunk };
+        self
+    }
+
+    /// Below this field an optimiser chooses.
+    #[must_use]
+    pub const fn chooses(mut self) -> Self {
+        self.chooses = true;
         self
     }
 

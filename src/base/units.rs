@@ -135,13 +135,10 @@ pub struct Quantity {
 /// # Errors
 /// When there is no number, the unit is unknown or malformed, or the value overflows.
 pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
-    let text = text.trim();
-    let split = number_length(text);
-    let (number, unit_text) = text.split_at(split);
+    let (number, unit_text) = split_quantity(text);
     if number.is_empty() || number.parse::<f64>().is_err() {
-        return Err(UnitError::NotANumber(text.to_owned()));
+        return Err(UnitError::NotANumber(text.trim().to_owned()));
     }
-    let unit_text = unit_text.trim();
     let unit = if unit_text.is_empty() {
         Unit { ten: 0, factor: 1.0, dimension: RATIO }
     } else {
@@ -152,6 +149,14 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
         return Err(UnitError::NotFinite);
     }
     Ok(Quantity { value, dimension: unit.dimension, has_unit: !unit_text.is_empty() })
+}
+
+/// The leading number of a text and what follows it, its unit; either may be empty.
+#[must_use]
+pub fn split_quantity(text: &str) -> (&str, &str) {
+    let text = text.trim();
+    let (number, unit) = text.split_at(number_length(text));
+    (number, unit.trim())
 }
 
 /// Bytes of the leading decimal number; an `e` counts only when digits follow it.
