@@ -1,8 +1,9 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
-//! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another.
+//! Each stage kind's key holds the digest of the shared kernel layers and of its own file, with the folder of the same
+//! name where it has one: a changed message in one stage does not recompute another.
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::{env, fs, io};
 
@@ -20,15 +21,22 @@ fn main() -> io::Result<()> {
     let mut stages = Vec::new();
     collect(&source.join("stage"), &mut stages)?;
     // Files of `stage/` that are no kind of their own (codecs, the trait) are shared by all kinds.
-    let (kinds, common): (Vec<_>, Vec<_>) = stages.into_iter().partition(|path| path.parent() == Some(Path::new("src/stage/kinds")));
+    let folder = Path::new("src/stage/kinds");
+    let (own, common): (Vec<_>, Vec<_>) = stages.into_iter().partition(|path| path.starts_with(folder));
     shared.extend(common);
     shared.sort();
+    let mut kinds: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
+    for path in own {
+        let first = path.strip_prefix(folder).ok().and_then(|inside| inside.components().next());
+        let name = first
+            .map_or_else(String::new, |first| first.as_os_str().to_string_lossy().trim_end_matches(".rs").to_owned());
+        kinds.entry(name).or_default().push(path);
+    }
     let base = digest(&shared)?;
     let mut lines = format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n");
-    for path in kinds {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    for (name, paths) in &kinds {
         if name != "mod" {
-            lines += &format!("    ({name:?}, \"{}\"),\n", digest(&[path])?);
+            lines += &format!("    ({name:?}, \"{}\"),\n", digest(paths)?);
         }
     }
     lines += "];\n";
