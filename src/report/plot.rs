@@ -209,9 +209,13 @@ impl Plot {
             Kind::Points => Sign::Dot,
             Kind::Bar => Sign::Square,
         };
-        let series = self.series.iter().enumerate().filter(|(_, series)| !is_alone && !series.label.is_empty());
+        let series = self.series.iter().enumerate().filter(|_| !is_alone);
         let mut items: Vec<Item> = series
-            .map(|(index, series)| Item { label: series.label.clone(), sign, colour: self.colour(index) })
+            .map(|(index, series)| Item {
+                label: if series.label.is_empty() { "computed".to_owned() } else { series.label.clone() },
+                sign,
+                colour: self.colour(index),
+            })
             .collect();
         for mark in &self.marks {
             let shares_name = self.series.iter().any(|series| series.label == mark.label);

@@ -4,45 +4,25 @@
 
 use std::fmt::Write;
 
-use comfy_table::{CellAlignment, ContentArrangement, Table as Drawn, presets};
+use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table as Drawn, presets};
 
-use super::{ReportError, verdict};
+use super::ReportError;
+use super::verdict::{self, Row};
 use crate::table::data::Table;
 
-/// The verdicts as a table, then every reason with its proof; no line is longer than `width`, 60 at least.
+/// Below this the columns would break their numbers.
+const NARROWEST_TABLE: u16 = 96;
+
+/// The verdicts as a table (as a list where that would not fit), then every reason with its proof.
+///
+/// No line is longer than `width`, 60 at least.
 ///
 /// # Errors
 /// When the table is of another shape.
 pub fn verdicts(table: &Table, width: u16) -> Result<String, ReportError> {
     let rows = verdict::rows(table)?;
     let width = width.max(60);
-    let mut drawn = Drawn::new();
-    drawn
-        .load_style(presets::UTF8_HORIZONTAL_ONLY)
-        .set_content_arrangement(ContentArrangement::Dynamic)
-        .set_width(width);
-    drawn.force_no_tty();
-    drawn.set_header(["#", "where", "what", "published", "computed", "difference", "verdict"]);
-    for row in &rows {
-        let what = if row.label.is_empty() { &row.cell } else { &row.label };
-        let difference = if row.relative.is_empty() { &row.difference } else { &row.relative };
-        let verdict = format!("{} {}", row.sign, row.verdict);
-        drawn.add_row([
-            &row.number.to_string(),
-            &row.location,
-            what,
-            &row.published,
-            &row.computed,
-            difference,
-            &verdict,
-        ]);
-    }
-    for column in [0, 3, 4, 5] {
-        if let Some(column) = drawn.column_mut(column) {
-            column.set_cell_alignment(CellAlignment::Right);
-        }
-    }
-    let mut text = drawn.trim_fmt();
+    let mut text = if width < NARROWEST_TABLE { listed(&rows, width) } else { tabulated(&rows, width) };
     text.push('\n');
     for row in &rows {
         let parts = [&row.because, &row.proof, &row.failing, &row.note];
@@ -52,6 +32,51 @@ pub fn verdicts(table: &Table, width: u16) -> Result<String, ReportError> {
         }
     }
     Ok(text)
+}
+
+fn what(row: &Row) -> &str {
+    if row.label.is_empty() { &row.cell } else { &row.label }
+}
+
+fn difference(row: &Row) -> &str {
+    if row.relative.is_empty() { &row.difference } else { &row.relative }
+}
+
+fn tabulated(rows: &[Row], width: u16) -> String {
+    let mut drawn = Drawn::new();
+    let style = presets::UTF8_HORIZONTAL_ONLY.row_separator(LineStyle::none());
+    drawn.load_style(style).set_content_arrangement(ContentArrangement::Dynamic).set_width(width);
+    drawn.force_no_tty();
+    drawn.set_header(["#", "where", "what", "published", "computed", "difference", "verdict"]);
+    for row in rows {
+        let verdict = format!("{} {}", row.sign, row.verdict);
+        let number = row.number.to_string();
+        drawn.add_row([&number, &row.location, what(row), &row.published, &row.computed, difference(row), &verdict]);
+    }
+    // Numbers and verdicts stay whole; words give way.
+    for column in [0, 3, 4, 5, 6] {
+        if let Some(drawn) = drawn.column_mut(column) {
+            drawn.set_constraint(ColumnConstraint::ContentWidth);
+            drawn.set_cell_alignment(if column == 6 { CellAlignment::Left } else { CellAlignment::Right });
+        }
+    }
+    let mut text = drawn.trim_fmt();
+    text.push('\n');
+    text
+}
+
+fn listed(rows: &[Row], width: u16) -> String {
+    let mut text = String::new();
+    for row in rows {
+        let place = if row.location.is_empty() { String::new() } else { format!(" ({})", row.location) };
+        let lead = format!("{:>4}  ", row.number);
+        wrap(&mut text, &lead, &format!("{} {}: {}{place}", row.sign, row.verdict, what(row)), usize::from(width));
+        let apart = if difference(row).is_empty() { String::new() } else { format!(", {}", difference(row)) };
+        let values = format!("{} published, {} computed{apart}", row.published, row.computed);
+        let values = if row.is_claim { row.computed.clone() } else { values };
+        wrap(&mut text, &" ".repeat(6), &values, usize::from(width));
+    }
+    text
 }
 
 /// Sets words into lines of at most `width` characters behind `lead`; further lines are indented as far.
