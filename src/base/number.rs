@@ -80,7 +80,7 @@ pub fn significant(value: f64, digits: usize) -> String {
         return "0".to_owned();
     }
     let exponent = magnitude(value, digits);
-    let power = if (-3..6).contains(&exponent) { 0 } else { exponent.div_euclid(3) * 3 };
+    let power = if (-4..6).contains(&exponent) { 0 } else { exponent.div_euclid(3) * 3 };
     let mantissa = shifted(value, -power);
     let wanted = i32::try_from(digits).unwrap_or(17) - 1 - (exponent - power);
     let text = format!("{mantissa:.*}", usize::try_from(wanted).unwrap_or(0));
@@ -161,7 +161,8 @@ mod tests {
             (2.738e8, 4, "273.8×10⁶"),
             (4.724_000_1e8, 4, "472.4×10⁶"),
             (50.0, 5, "50"),
-            (-0.000_12, 3, "−120×10⁻⁶"),
+            (-0.000_12, 3, "−0.00012"),
+            (-0.000_012, 3, "−12×10⁻⁶"),
             (0.001_5, 3, "0.0015"),
             (9.999_96, 5, "10"),
             (999_999.6, 6, "1×10⁶"),

@@ -9,25 +9,22 @@ for (const button of document.querySelectorAll("button[data-verdict]")) {
       row.hidden = on && row.dataset.verdict !== button.dataset.verdict;
   });
 }
-// Printed pages show what is folded in.
-addEventListener("beforeprint", () => document.querySelectorAll(".reason details").forEach(d => { d.open = true; }));
+// Printed pages show the proofs.
+addEventListener("beforeprint", () => document.querySelectorAll("details.proof").forEach(d => { d.open = true; }));
 // Figures: a line at the nearest abscissa, a dot on every series there, and their values.
 for (const svg of document.querySelectorAll("svg[data-plot]")) {
   const plot = JSON.parse(svg.dataset.plot), [left, top, width, height] = plot.frame;
   const canvas = svg.parentElement, readout = canvas.querySelector(".readout");
   const layer = document.createElementNS(svg.namespaceURI, "g");
   const all = plot.series.flatMap((series, index) => series.points.map(point => ({ series, index, point })));
-  let stops = [...new Set(all.map(entry => entry.point[0]))].sort((a, b) => a - b), stop = -1;
+  const stops = [...new Set(all.map(entry => entry.point[0]))].sort((a, b) => a - b);
+  let stop = -1;
   svg.append(layer);
   const number = value => {
-    if (value === 0) return "0";
-    const size = Math.abs(value);
-    if (size >= 1e5 || size < 1e-3) {
-      const power = Math.floor(Math.log10(size) / 3) * 3, raised = [...String(power)].map(c => "⁻0123456789"["-0123456789".indexOf(c)]);
-      const up = raised.map(c => ({ 0: "⁰", 1: "¹", 2: "²", 3: "³", 4: "⁴", 5: "⁵", 6: "⁶", 7: "⁷", 8: "⁸", 9: "⁹" })[c] || c).join("");
-      return Number((value / 10 ** power).toPrecision(5)) + "×10" + up;
-    }
-    return String(Number(value.toPrecision(5)));
+    const size = Math.abs(value), plain = shown => String(Number(shown.toPrecision(5))).replace("-", "−");
+    if (size === 0 || (size < 1e6 && size >= 1e-4)) return plain(value);
+    const power = Math.floor(Math.log10(size) / 3) * 3;
+    return plain(value / 10 ** power) + "×10" + [...String(power)].map(c => "⁻⁰¹²³⁴⁵⁶⁷⁸⁹"["-0123456789".indexOf(c)]).join("");
   };
   const draw = (name, attributes) => {
     const element = document.createElementNS(svg.namespaceURI, name);
@@ -56,7 +53,6 @@ for (const svg of document.querySelectorAll("svg[data-plot]")) {
       return row;
     };
     const abscissa = plot.categories.length ? plot.categories[first[2]] : `${plot.x.label} ${number(first[2])} ${plot.x.unit}`;
-    svg.classList.add("read");
     readout.replaceChildren(line(abscissa), ...shown.slice().sort((a, b) => a.point[1] - b.point[1]).map(entry =>
       line(`${entry.series.label ? entry.series.label + ": " : ""}${number(entry.point[3])} ${plot.y.unit}`, getComputedStyle(svg).getPropertyValue((entry.series.colour.match(/--\w+/) || [""])[0]) || entry.series.colour, entry === closest && shown.length > 1)));
     readout.hidden = false;
