@@ -4,6 +4,7 @@
 
 pub mod digest;
 pub mod error;
+pub mod number;
 pub mod parameter;
 pub mod record;
 pub mod seed;

@@ -1,1 +1,100 @@
-//! Placeholder.
+//! From a manifest and tables to what people read: one HTML page, figures, the verdicts on a terminal.
+//!
+//! Must not know: how anything was computed, and where tables are kept. The same tables give the same bytes, apart from
+//! the section of the page about the run itself.
+
+mod figure;
+mod page;
+mod plot;
+mod scale;
+pub mod text;
+mod verdict;
+
+use crate::store::manifest::Manifest;
+use crate::table::data::{Data, Table};
+
+/// What a run's results look like.
+pub struct Rendered {
+    /// One file that needs no other.
+    pub html: String,
+    /// Name (without `.svg`) and contents of each figure.
+    pub figures: Vec<(String, String)>,
+}
+
+/// Why there is no report.
+#[derive(Debug, PartialEq, Eq, thiserror::Error)]
+pub enum ReportError {
+    #[error("table `{0}` is needed for the report, but is not among the results")]
+    Missing(String),
+    /// A table is not of the shape that this version writes.
+    #[error("{0}; run the study again with this version")]
+    Unfit(String),
+    #[error("the page could not be made: {0}")]
+    Page(String),
+}
+
+/// Makes the report; `tables` gives a table by its full name, `stage.table`.
+///
+/// # Errors
+/// When a report stage's table, or one that a figure draws, is missing or of another shape.
+pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Rendered, ReportError> {
+    let stages: Vec<&str> = manifest
+        .stages
+        .iter()
+        .filter(|stage| stage.kind == "report" && matches!(stage.status.as_str(), "hit" | "ran"))
+        .map(|stage| stage.name.as_str())
+        .collect();
+    let mut parts = Vec::new();
+    for stage in &stages {
+        let table = |name: &str| {
+            let name = format!("{stage}.{name}");
+            tables(&name).ok_or(ReportError::Missing(name))
+        };
+        let mut figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
+        if stages.len() > 1 {
+            figures.iter_mut().for_each(|figure| figure.name = format!("{stage}-{}", figure.name));
+        }
+        let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
+        parts.push(page::Part { stage: (*stage).to_owned(), verdicts, counts, figures });
+    }
+    let html = page::html(manifest, &parts, tables)?;
+    let figures =
+        parts.iter().flat_map(|part| &part.figures).map(|figure| (figure.name.clone(), figure.plot.svg(true)));
+    Ok(Rendered { html, figures: figures.collect() })
+}
+
+fn column<'a>(table: &'a Table, name: &str) -> Result<&'a Data, ReportError> {
+    table.column(name).ok_or_else(|| ReportError::Unfit(format!("table `{}` has no column `{name}`", table.name())))
+}
+
+fn wrong_type(table: &Table, name: &str) -> ReportError {
+    ReportError::Unfit(format!("column `{name}` of table `{}` is of another type", table.name()))
+}
+
+fn texts<'a>(table: &'a Table, name: &str) -> Result<&'a [String], ReportError> {
+    match column(table, name)? {
+        Data::Text(values) => Ok(values),
+        _ => Err(wrong_type(table, name)),
+    }
+}
+
+fn floats<'a>(table: &'a Table, name: &str) -> Result<&'a [f64], ReportError> {
+    match column(table, name)? {
+        Data::Float(values) => Ok(values),
+        _ => Err(wrong_type(table, name)),
+    }
+}
+
+fn integers<'a>(table: &'a Table, name: &str) -> Result<&'a [i64], ReportError> {
+    match column(table, name)? {
+        Data::Integer(values) => Ok(values),
+        _ => Err(wrong_type(table, name)),
+    }
+}
+
+fn flags<'a>(table: &'a Table, name: &str) -> Result<&'a [bool], ReportError> {
+    match column(table, name)? {
+        Data::Flag(values) => Ok(values),
+        _ => Err(wrong_type(table, name)),
+    }
+}

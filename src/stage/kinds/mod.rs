@@ -3,10 +3,12 @@
 pub mod geometry;
 pub mod modification;
 pub mod optimizer;
+pub mod report;
 pub mod ste;
 pub mod stiffness;
 
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] = &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND];
+pub const KINDS: &[&Kind] =
+    &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND, &report::KIND];

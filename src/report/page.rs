@@ -1,0 +1,231 @@
+//! The page: what stands on it, put into words and handed to the template, which escapes every text.
+//!
+//! Must not know: how a figure is drawn. Everything that differs from run to run stands in the template's last section.
+
+use minijinja::Environment;
+use minijinja::syntax::SyntaxConfig;
+use minijinja::value::Serde;
+use serde::Serialize;
+
+use super::figure::Figure;
+use super::{ReportError, flags, integers, plot, texts, verdict};
+use crate::base::number::{significant, unit_symbol, with_unit};
+use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::table::data::{Data, Table};
+
+/// Rows of a table shown on the page.
+const SHOWN_ROWS: usize = 8;
+
+/// What one report stage contributes.
+pub struct Part {
+    pub stage: String,
+    pub verdicts: Table,
+    pub counts: Table,
+    pub figures: Vec<Figure>,
+}
+
+/// Everything the template can name.
+#[derive(Serialize)]
+struct View<'a> {
+    manifest: &'a Manifest,
+    counts: Vec<Count>,
+    total: i64,
+    attention: i64,
+    parts: Vec<PartView>,
+    left_out: Vec<Remark>,
+    warnings: Vec<Remark>,
+    failures: Vec<&'a StageRecord>,
+    stages: Vec<StageView<'a>>,
+    tables: Vec<TableView<'a>>,
+    seconds: String,
+    style: &'static str,
+    plot_style: &'static str,
+    script: &'static str,
+}
+
+#[derive(Serialize)]
+struct Count {
+    verdict: String,
+    count: i64,
+    sign: &'static str,
+    needs_attention: bool,
+    meaning: String,
+}
+
+#[derive(Serialize)]
+struct PartView {
+    stage: String,
+    rows: Vec<verdict::Row>,
+    figures: Vec<FigureView>,
+}
+
+#[derive(Serialize)]
+struct FigureView {
+    name: String,
+    title: String,
+    note: String,
+    tables: String,
+    /// Made by `plot`, which escapes what it is given.
+    svg: String,
+}
+
+#[derive(Serialize)]
+struct Remark {
+    stage: String,
+    what: String,
+    why: String,
+}
+
+#[derive(Serialize)]
+struct StageView<'a> {
+    record: &'a StageRecord,
+    seconds: String,
+    rows: usize,
+    key: String,
+}
+
+#[derive(Serialize)]
+struct TableView<'a> {
+    record: &'a TableRecord,
+    content: String,
+    columns: Vec<ColumnView<'a>>,
+    rows: Vec<Vec<String>>,
+    is_stored: bool,
+}
+
+#[derive(Serialize)]
+struct ColumnView<'a> {
+    name: &'a str,
+    unit: String,
+    description: &'a str,
+    key: bool,
+    volatile: bool,
+    is_number: bool,
+}
+
+/// # Errors
+/// When a table is of another shape.
+pub fn html(
+    manifest: &Manifest,
+    parts: &[Part],
+    tables: &dyn Fn(&str) -> Option<Table>,
+) -> Result<String, ReportError> {
+    let failed = |error: minijinja::Error| ReportError::Page(format!("{error:#}"));
+    let mut environment = Environment::new();
+    environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(failed)?);
+    environment.add_template("page.html", include_str!("page.html")).map_err(failed)?;
+    let counts = counts(parts)?;
+    let total: i64 = counts.iter().map(|count| count.count).sum();
+    let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.count).sum();
+    let remarks = |pick: fn(&StageRecord) -> Vec<(String, String)>| -> Vec<Remark> {
+        let of = |stage: &StageRecord| {
+            let name = stage.name.clone();
+            pick(stage).into_iter().map(move |(what, why)| Remark { stage: name.clone(), what, why })
+        };
+        manifest.stages.iter().flat_map(of).collect()
+    };
+    let left_out = remarks(|stage| stage.left_out.iter().map(|left| (left.what.clone(), left.why.clone())).collect());
+    let warnings = remarks(|stage| stage.warnings.iter().map(|warning| (warning.clone(), String::new())).collect());
+    let failures: Vec<&StageRecord> =
+        manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
+    let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
+    let index: Vec<TableView> =
+        manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| table_view(record, tables)).collect();
+    let parts = parts.iter().map(part_view).collect::<Result<Vec<_>, _>>()?;
+    let view = View {
+        manifest,
+        counts,
+        total,
+        attention,
+        parts,
+        left_out,
+        warnings,
+        failures,
+        stages,
+        tables: index,
+        seconds: seconds(manifest.seconds),
+        style: include_str!("page.css"),
+        plot_style: plot::STYLE,
+        script: include_str!("page.js"),
+    };
+    environment.get_template("page.html").and_then(|template| template.render(Serde(view))).map_err(failed)
+}
+
+fn counts(parts: &[Part]) -> Result<Vec<Count>, ReportError> {
+    let mut counts: Vec<Count> = Vec::new();
+    for part in parts {
+        let (verdicts, numbers) = (texts(&part.counts, "verdict")?, integers(&part.counts, "count")?);
+        let (attention, meanings) = (flags(&part.counts, "needs_attention")?, texts(&part.counts, "meaning")?);
+        for row in 0..part.counts.rows() {
+            match counts.iter_mut().find(|count| count.verdict == verdicts[row]) {
+                Some(count) => count.count += numbers[row],
+                None => counts.push(Count {
+                    verdict: verdicts[row].clone(),
+                    count: numbers[row],
+                    sign: verdict::sign(&verdicts[row]),
+                    needs_attention: attention[row],
+                    meaning: meanings[row].clone(),
+                }),
+            }
+        }
+    }
+    Ok(counts)
+}
+
+fn part_view(part: &Part) -> Result<PartView, ReportError> {
+    let figures = part.figures.iter().map(|figure| FigureView {
+        name: figure.name.clone(),
+        title: figure.plot.title.clone(),
+        note: figure.note.clone(),
+        tables: figure.tables.clone(),
+        svg: figure.plot.svg(false),
+    });
+    Ok(PartView { stage: part.stage.clone(), rows: verdict::rows(&part.verdicts)?, figures: figures.collect() })
+}
+
+fn stage_view(record: &StageRecord) -> StageView<'_> {
+    let key = match record.keys.as_slice() {
+        [] => String::new(),
+        [only] => short(&only.key),
+        [first, rest @ ..] => format!("{} and {} more", short(&first.key), rest.len()),
+    };
+    let rows = record.tables.iter().map(|table| table.rows).sum();
+    StageView { record, seconds: seconds(record.seconds), rows, key }
+}
+
+fn table_view<'a>(record: &'a TableRecord, tables: &dyn Fn(&str) -> Option<Table>) -> TableView<'a> {
+    let table = tables(&record.name);
+    let columns = record.columns.iter().map(|column| ColumnView {
+        name: &column.name,
+        unit: unit_symbol(&column.unit),
+        description: &column.description,
+        key: column.key,
+        volatile: column.volatile,
+        is_number: matches!(column.kind.as_str(), "float" | "integer"),
+    });
+    let rows = table.as_ref().map_or_else(Vec::new, |table| {
+        // By the record's columns, and only what it says: a volatile value would make the page differ from run to run.
+        let cell = |row: usize, column: &crate::store::manifest::ColumnRecord| match table.column(&column.name) {
+            None => String::new(),
+            Some(_) if column.volatile => "varies".to_owned(),
+            Some(Data::Float(values)) => significant(values[row], 6),
+            Some(other) => other.cell(row).to_string(),
+        };
+        (0..table.rows().min(SHOWN_ROWS))
+            .map(|row| record.columns.iter().map(|column| cell(row, column)).collect())
+            .collect()
+    });
+    TableView { record, content: short(&record.content), columns: columns.collect(), rows, is_stored: table.is_some() }
+}
+
+fn short(digest: &str) -> String {
+    digest.chars().take(12).collect()
+}
+
+fn seconds(seconds: f64) -> String {
+    if seconds < 0.1 {
+        with_unit(&significant(1e3 * seconds, 3), "ms")
+    } else {
+        with_unit(&significant(seconds, 3), "s")
+    }
+}

@@ -1,0 +1,154 @@
+//! One row of the table of verdicts as text: with the digits of the paper, one more for what was computed.
+//!
+//! Must not know: HTML, terminals. Serves both.
+
+use serde::Serialize;
+
+use super::{ReportError, floats, texts};
+use crate::base::number::{Printed, significant, unit_symbol, with_unit};
+use crate::base::units::split_quantity;
+use crate::table::data::Table;
+
+/// A row, ready to be set.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    pub number: i64,
+    pub label: String,
+    /// Where the paper says it.
+    pub location: String,
+    pub cell: String,
+    pub with: String,
+    pub is_claim: bool,
+    pub published: String,
+    pub computed: String,
+    pub difference: String,
+    pub relative: String,
+    pub tolerance: String,
+    pub expected: String,
+    pub verdict: String,
+    pub sign: &'static str,
+    pub because: String,
+    pub note: String,
+    pub numbers: String,
+    pub proof: String,
+    pub failing: String,
+}
+
+/// A sign for a verdict, so that colour is never alone.
+#[must_use]
+pub fn sign(verdict: &str) -> &'static str {
+    match verdict {
+        "reproduced" | "holds" => "✓",
+        "explained" | "refuted" => "≠",
+        _ => "!",
+    }
+}
+
+/// # Errors
+/// When the table is of another shape.
+pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
+    let text = |name: &str| texts(table, name);
+    let number = |name: &str| floats(table, name);
+    let numbers = super::integers(table, "number")?;
+    let (labels, locations, cells, with) = (text("label")?, text("where")?, text("cell")?, text("with")?);
+    let (kinds, stated, found, units) = (text("kind")?, text("published_text")?, text("found")?, text("unit")?);
+    let (computed, difference) = (number("computed")?, number("difference")?);
+    let (relative, tolerance) = (number("relative_difference")?, number("tolerance")?);
+    let (expected, expected_tolerance) = (number("expected")?, number("expected_tolerance")?);
+    let (verdicts, because, note) = (text("verdict")?, text("because")?, text("note")?);
+    let (arithmetic, proof, failing) = (text("numbers")?, text("proof")?, text("failing")?);
+    let one = |row: usize| {
+        let is_claim = kinds[row] == "claim";
+        let unit = units[row].as_str();
+        let printed = Printed::read(&stated[row]).unwrap_or(Printed { decimals: 0, exponent: 0 });
+        let within = |value: f64, tolerance: f64| match (value.is_nan(), is_claim) {
+            (true, _) => String::new(),
+            (false, true) => format!("{} rows", significant(value, 4)),
+            (false, false) => with_unit(&format!("{} ± {}", close(value, printed), significant(tolerance, 2)), unit),
+        };
+        Row {
+            number: numbers[row],
+            label: labels[row].clone(),
+            location: locations[row].clone(),
+            cell: cells[row].clone(),
+            with: with[row].clone(),
+            is_claim,
+            published: if is_claim { "claimed".to_owned() } else { as_printed(&stated[row]) },
+            computed: if is_claim { found[row].clone() } else { with_unit(&close(computed[row], printed), unit) },
+            difference: if is_claim {
+                String::new()
+            } else {
+                with_unit(&signed(close(difference[row], printed)), unit)
+            },
+            relative: if is_claim || relative[row].is_nan() { String::new() } else { percent(relative[row]) },
+            tolerance: if is_claim {
+                String::new()
+            } else {
+                with_unit(&format!("± {}", significant(tolerance[row], 3)), unit)
+            },
+            expected: within(expected[row], expected_tolerance[row]),
+            verdict: verdicts[row].clone(),
+            sign: sign(&verdicts[row]),
+            because: because[row].clone(),
+            note: note[row].clone(),
+            numbers: arithmetic[row].clone(),
+            proof: proof[row].clone(),
+            failing: failing[row].clone(),
+        }
+    };
+    Ok((0..table.rows()).map(one).collect())
+}
+
+/// The printed text with the typography of a journal: `2.738e8 N/m` as `2.738×10⁸ N/m`.
+fn as_printed(text: &str) -> String {
+    let (number, unit) = split_quantity(text);
+    match (number.parse::<f64>(), Printed::read(text)) {
+        (Ok(value), Some(printed)) => with_unit(&printed.show(value, 0), unit),
+        _ => text.to_owned(),
+    }
+}
+
+/// In the manner of the printed value with one more digit; by significant digits where that would show nothing.
+fn close(value: f64, printed: Printed) -> String {
+    let shown = printed.show(value, 1);
+    let is_lost = value != 0.0 && !shown.chars().any(|digit| ('1'..='9').contains(&digit));
+    if is_lost || shown.chars().count() > 14 { significant(value, 3) } else { shown }
+}
+
+fn signed(text: String) -> String {
+    let is_zero = !text.chars().any(|digit| ('1'..='9').contains(&digit));
+    if text.starts_with('−') || is_zero { text } else { format!("+{text}") }
+}
+
+fn percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    if percent.abs() < 0.005 {
+        return "0.00\u{202f}%".to_owned();
+    }
+    let decimals = if percent.abs() < 9.995 { 2 } else { 1 };
+    let text = if percent.abs() < 1e4 {
+        format!("{percent:+.decimals$}").replace('-', "−")
+    } else {
+        signed(significant(percent, 3))
+    };
+    format!("{text}\u{202f}{}", unit_symbol("%"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn values_are_shown_with_the_digits_of_the_paper() {
+        let micrometres = Printed::read("2.316 um").unwrap();
+        assert_eq!(as_printed("2.738e8 N/m"), "2.738×10⁸\u{202f}N/m");
+        assert_eq!(as_printed("0.40 um"), "0.40\u{202f}µm");
+        assert_eq!(close(3.000_883, micrometres), "3.0009");
+        assert_eq!(close(0.000_001, micrometres), "1×10⁻⁶");
+        assert_eq!(close(0.0, micrometres), "0.0000");
+        assert_eq!(close(1e20, micrometres), "100×10¹⁸");
+        assert_eq!(signed("0.0000".to_owned()), "0.0000");
+        assert_eq!((percent(0.2957).as_str(), percent(-0.0123).as_str()), ("+29.6\u{202f}%", "−1.23\u{202f}%"));
+        assert_eq!(percent(-0.000_01), "0.00\u{202f}%");
+    }
+}

@@ -1,0 +1,228 @@
+//! The stage kind `report`: what a paper printed beside what was computed, with a verdict on each, and the figures.
+//!
+//! It computes nothing about gears: it reads cells of other stages' tables. Every published number may be compared with
+//! a cell, with a formula over cells, or stand as a claim that is true or false in every row. A reason for a difference
+//! can carry arithmetic that proves it and the value that is expected instead; both are checked each time. Must not
+//! know: how the report is drawn. Values in the row's unit, as printed.
+
+mod entry;
+mod figure;
+mod formula;
+mod operand;
+mod verdict;
+
+use std::collections::BTreeSet;
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Field, Shape};
+use crate::base::record::Record;
+use crate::stage::{Context, Inputs, Kind, Port, Stage, Want};
+use crate::table::data::Table;
+use crate::table::schema::{Column, Schema};
+
+use entry::Entry;
+use figure::Figure;
+use verdict::Verdict;
+
+const WITH: Shape = Shape::Map(&Shape::Text);
+const TOLERANCE: &str =
+    "how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity";
+
+const EXPECTED: &[Field] = &[
+    Field::new("value", Shape::Text, "the value the study stands by, with its unit; for a claim the number of rows"),
+    Field::new("tolerance", Shape::Text, TOLERANCE).default("digits"),
+];
+
+const PROOF: &[Field] = &[
+    Field::new("claim", Shape::Text, "a comparison that must hold; `published` and `computed` are known in it"),
+    Field::new("with", WITH, "what its other names stand for: cells or quantities").optional(),
+];
+
+const PUBLISHED: &[Field] = &[
+    Field::new("label", Shape::Text, "what it is, in words").optional(),
+    Field::new("where", Shape::Text, "where the paper says it: a table, an equation, a page").optional(),
+    Field::new("cell", Shape::Text, "the computed cell, `stage.table[key=value, …].column`").optional(),
+    Field::new("formula", Shape::Text, "or arithmetic over the names in `with`: + - * / ^ sqrt abs min max").optional(),
+    Field::new("claim", Shape::Text, "or a comparison that the paper says is true, in every row of its cells")
+        .optional(),
+    Field::new("with", WITH, "what the names in a formula or claim stand for: cells or quantities").optional(),
+    Field::new("value", Shape::Text, "the published value as printed, with its unit").optional(),
+    Field::new("tolerance", Shape::Text, TOLERANCE).default("digits"),
+    Field::group("expected", EXPECTED, "where the computed value stands today, so that it cannot drift unseen")
+        .optional(),
+    Field::new("because", Shape::Text, "why they differ").optional(),
+    Field::group("proof", PROOF, "arithmetic that proves the reason").optional(),
+    Field::new("note", Shape::Text, "a remark that claims no difference").optional(),
+];
+
+pub const KIND: Kind = Kind {
+    name: "report",
+    version: 1,
+    summary: "a verdict on every published number, and the figures",
+    fields: &[
+        Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "the paper's numbers and claims").optional(),
+        Field::new("figures", Shape::List(&Shape::Group(figure::FIELDS)), "the figures of the report").optional(),
+    ],
+    example: "\
+kind: report
+published:
+  - label: Peak-to-peak transmission error, unmodified
+    where: Table 2
+    cell: ste.summary[design=unmodified, torque=50 N m].peak_to_peak
+    value: 2.316 um
+    tolerance: 1 %
+    because: the stiffnesses the paper prints bound it from below
+    proof:
+      claim: F / k1 - F / k2 > published
+      with: { F: 1866.98 N, k1: 2.738e8 N/m, k2: 4.724e8 N/m }
+figures:
+  - name: transmission_error
+    title: Static transmission error over the mesh cycle at 50 N m
+    table: ste.curve
+    x: position
+    y: transmission_error
+    series: design
+    where: { torque: 50 N m }
+",
+    build,
+};
+
+/// The stage as configured.
+struct Report {
+    entries: Vec<Entry>,
+    figures: Vec<Figure>,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let records = |field: &str| -> Vec<&Record> {
+        record.maybe_list(field).unwrap_or_default().iter().filter_map(|entry| entry.value.record()).collect()
+    };
+    let (published, drawn) = (records("published"), records("figures"));
+    let entries = published.iter().enumerate().map(|(index, record)| Entry::read(index + 1, record));
+    let entries = entries.collect::<Result<_, _>>()?;
+    let figures = drawn.iter().enumerate().map(|(index, record)| Figure::read(index + 1, record));
+    let figures: Vec<Figure> = figures.collect::<Result<_, _>>()?;
+    figure::check_names(&figures, &drawn)?;
+    Ok(Box::new(Report { entries, figures }))
+}
+
+impl Stage for Report {
+    fn inputs(&self) -> Vec<Port> {
+        let mut ports: Vec<Port> = Vec::new();
+        let cells = self.entries.iter().flat_map(Entry::operands).filter_map(operand::Operand::cell).map(|cell| {
+            let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
+            (cell.stage.as_str(), cell.table.as_str(), columns.collect())
+        });
+        for (stage, table, columns) in cells.chain(self.figures.iter().flat_map(Figure::wants)) {
+            want(&mut ports, stage, table, columns);
+        }
+        ports
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        let [figures, published] = figure::schemas();
+        vec![verdicts(), verdict_counts(), figures, published]
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let (mut rows, mut found) = (Vec::new(), Vec::new());
+        for entry in &self.entries {
+            context.check_stop()?;
+            let finding = entry.find(inputs).map_err(Failure::Failed)?;
+            rows.push(finding.row);
+            found.push(finding.verdict);
+        }
+        let count = |verdict: Verdict| found.iter().filter(|&&other| other == verdict).count();
+        let counts = Verdict::ALL.iter().enumerate().map(|(index, &verdict)| {
+            let (word, meaning) = (verdict.word(), verdict.meaning());
+            vec![
+                (index + 1).into(),
+                word.into(),
+                count(verdict).into(),
+                verdict.needs_attention().into(),
+                meaning.into(),
+            ]
+        });
+        let (mut drawn, mut marks) = (Vec::new(), Vec::new());
+        for figure in &self.figures {
+            let (row, published) = figure.rows(inputs).map_err(Failure::Failed)?;
+            drawn.push(row);
+            marks.extend(published);
+        }
+        let [figures, published] = figure::schemas();
+        [(verdicts(), rows), (verdict_counts(), counts.collect()), (figures, drawn), (published, marks)]
+            .into_iter()
+            .filter(|(schema, _)| context.demand.table(&schema.name))
+            .map(|(schema, rows)| Table::from_rows(schema, rows).map_err(|error| Failure::new(error.to_string())))
+            .collect()
+    }
+}
+
+/// Adds a table and columns to the port of a stage.
+fn want(ports: &mut Vec<Port>, stage: &str, table: &str, columns: Vec<&str>) {
+    let at = ports.iter().position(|port| port.stage == stage).unwrap_or_else(|| {
+        ports.push(Port::tables(stage, stage, &[]));
+        ports.len() - 1
+    });
+    let wants = &mut ports[at].wants;
+    let at = wants.iter().position(|want| want.table == table).unwrap_or_else(|| {
+        wants.push(Want { table: table.to_owned(), columns: Vec::new() });
+        wants.len() - 1
+    });
+    let all: BTreeSet<String> = wants[at].columns.drain(..).chain(columns.into_iter().map(str::to_owned)).collect();
+    wants[at].columns = all.into_iter().collect();
+}
+
+fn verdicts() -> Schema {
+    Schema::new(
+        "verdicts",
+        "What the paper printed, what was computed, and what is to be said about it",
+        vec![
+            Column::integer("number", "Number of the entry, in the order of the study").key(),
+            Column::text("label", "What it is, in words"),
+            Column::text("where", "Where the paper says it"),
+            Column::text("cell", "The computed cell, formula or claim"),
+            Column::text("with", "What the names in a formula or claim stand for"),
+            Column::text("kind", "value or claim"),
+            Column::text("published_text", "The published value as printed, with its unit"),
+            Column::float("published", "", "The published value in the row's unit; for a claim the number of rows"),
+            Column::float(
+                "computed",
+                "",
+                "The computed value in the row's unit; for a claim the rows in which it holds",
+            ),
+            Column::text("found", "For a claim: in how many rows it holds"),
+            Column::text("unit", "Unit of published, computed, difference, tolerance and expected"),
+            Column::float("difference", "", "computed − published"),
+            Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0")
+                .allows_nan(),
+            Column::float("tolerance", "", "How far apart the two may be and still agree"),
+            Column::float("expected", "", "The value the study stands by").allows_nan(),
+            Column::float("expected_tolerance", "", "How far the computed value may be from the expected one")
+                .allows_nan(),
+            Column::text("verdict", "unexplained, moved, outdated, explained, refuted, reproduced or holds"),
+            Column::text("because", "Why they differ"),
+            Column::text("note", "A remark that claims no difference"),
+            Column::text("numbers", "The formula's names with their values"),
+            Column::text("proof", "The arithmetic that proves the reason, with its numbers"),
+            Column::text("failing", "For a claim: the rows in which it does not hold"),
+        ],
+    )
+}
+
+fn verdict_counts() -> Schema {
+    Schema::new(
+        "verdict_counts",
+        "How often each verdict was given, and what it means",
+        vec![
+            Column::integer("order", "What needs attention comes first").key(),
+            Column::text("verdict", "The verdict's word"),
+            Column::integer("count", "Entries with this verdict"),
+            Column::flag("needs_attention", "Whether somebody has to look at it"),
+            Column::text("meaning", "What it means"),
+        ],
+    )
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,342 @@
+//! Figures as declared: which columns of which tables, and the published values drawn beside them.
+//!
+//! Only the declaration is kept (and checked against the tables); the points are drawn from the tables themselves. Must
+//! not know: how anything is drawn.
+
+use crate::base::error::{Diagnostic, Place as TextPlace};
+use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::record::{Record, Value};
+use crate::base::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
+use crate::stage::Inputs;
+use crate::table::data::{Row, Table};
+use crate::table::schema::{Column, Schema, Type};
+use crate::table::select::{rows_where, unknown_column};
+
+use super::formula::{described, same_dimension};
+use super::operand::{in_si, no_rows, table};
+
+const KINDS: &[Choice] = &[
+    Choice { name: "line", summary: "a line for each series" },
+    Choice { name: "points", summary: "markers only" },
+    Choice { name: "bar", summary: "bars over the words or numbers of the x column" },
+];
+
+const LOG: &[Choice] = &[
+    Choice { name: "none", summary: "both axes linear" },
+    Choice { name: "x", summary: "the x axis" },
+    Choice { name: "y", summary: "the y axis" },
+    Choice { name: "both", summary: "both axes" },
+];
+
+const PUBLISHED: &[Field] = &[
+    Field::new("x", Shape::Text, "place on the x axis, with its unit; without it a line across the figure").optional(),
+    Field::new("y", Shape::Text, "place on the y axis, with its unit; without it an upright line").optional(),
+    Field::new("label", Shape::Text, "name in the legend; the name of a series takes that series' colour")
+        .default("published"),
+];
+
+pub const FIELDS: &[Field] = &[
+    Field::new("name", Shape::Text, "name of the file in `figures/`: letters, digits, - and _"),
+    Field::new("title", Shape::Text, "what is shown"),
+    Field::choice("kind", KINDS, "how it is drawn").default("line"),
+    Field::new("table", Shape::List(&Shape::Text), "`stage.table`; several are drawn together, told apart by stage"),
+    Field::new("x", Shape::Text, "column of the x axis"),
+    Field::new("y", Shape::List(&Shape::Text), "column of the y axis; several need one unit"),
+    Field::new("series", Shape::Text, "column whose values are drawn apart, one line each").optional(),
+    Field::new("segments", Shape::Text, "column at whose changes a line is interrupted (a jump stays a jump)")
+        .optional(),
+    Field::new("where", Shape::Map(&Shape::Text), "only the rows with these values, column: value").optional(),
+    Field::new("x_label", Shape::Text, "name of the x axis; otherwise that of the column").optional(),
+    Field::new("y_label", Shape::Text, "name of the y axis; otherwise that of the column").optional(),
+    Field::choice("log", LOG, "axes with a logarithmic scale").default("none"),
+    Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "what the paper says, drawn for comparison")
+        .optional(),
+    Field::new("note", Shape::Text, "what to see in it").optional(),
+];
+
+/// A published point or line; lengths along the axes, in SI.
+struct Mark {
+    label: String,
+    x: Option<Place>,
+    y: Option<Place>,
+}
+
+struct Place {
+    text: String,
+    dimension: Dimension,
+}
+
+pub struct Figure {
+    number: usize,
+    line: usize,
+    name: String,
+    title: String,
+    kind: &'static str,
+    /// Stage and table.
+    tables: Vec<(String, String)>,
+    x: String,
+    y: Vec<String>,
+    series: String,
+    segments: String,
+    conditions: Vec<(String, String)>,
+    x_label: String,
+    y_label: String,
+    log: &'static str,
+    published: Vec<Mark>,
+    note: String,
+}
+
+impl Figure {
+    /// # Errors
+    /// What is wrong with it, at the place of the field.
+    pub fn read(number: usize, record: &Record) -> Result<Self, Diagnostic> {
+        let text = |field: &str| record.maybe_text(field).unwrap_or_default().trim().to_owned();
+        let name = text("name");
+        let fits = |character: char| character.is_ascii_alphanumeric() || matches!(character, '-' | '_');
+        if name.is_empty() || name.len() > 60 || !name.chars().all(fits) {
+            let message = format!("`{name}` is no name for a file; use up to 60 letters, digits, - and _");
+            return Err(Diagnostic::new(message).at(record.place_of("name")));
+        }
+        let mut tables = Vec::new();
+        for (table, place) in texts(record, "table") {
+            let Some((stage, table)) =
+                table.split_once('.').filter(|(stage, table)| !stage.is_empty() && !table.is_empty())
+            else {
+                return Err(Diagnostic::new(format!("`{table}` is no table; write `stage.table`")).at(place));
+            };
+            tables.push((stage.to_owned(), table.to_owned()));
+        }
+        let y: Vec<String> = texts(record, "y").into_iter().map(|(column, _)| column).collect();
+        for (field, is_empty) in [("table", tables.is_empty()), ("y", y.is_empty())] {
+            if is_empty {
+                return Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)));
+            }
+        }
+        let mut conditions = Vec::new();
+        for (column, entry) in record.maybe_map("where").unwrap_or_default() {
+            let Value::Text(value) = &entry.value else { continue };
+            conditions.push((column.clone(), value.trim().to_owned()));
+        }
+        let mut published = Vec::new();
+        for entry in record.maybe_list("published").unwrap_or_default() {
+            if let Some(record) = entry.value.record() {
+                published.push(read_mark(record)?);
+            }
+        }
+        Ok(Self {
+            number,
+            line: record.place.line,
+            name,
+            title: text("title"),
+            kind: record.choice("kind"),
+            tables,
+            x: text("x"),
+            y,
+            series: text("series"),
+            segments: text("segments"),
+            conditions,
+            x_label: text("x_label"),
+            y_label: text("y_label"),
+            log: record.choice("log"),
+            published,
+            note: text("note"),
+        })
+    }
+
+    /// Stage, table and columns that it draws.
+    pub fn wants(&self) -> impl Iterator<Item = (&str, &str, Vec<&str>)> {
+        let columns = || {
+            let single = [self.x.as_str(), self.series.as_str(), self.segments.as_str()];
+            let several = self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
+            single.into_iter().filter(|column| !column.is_empty()).chain(several).collect()
+        };
+        self.tables.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), columns()))
+    }
+
+    /// The rows of the tables `figures` and `figure_published`.
+    ///
+    /// # Errors
+    /// When a column is missing, holds no numbers, or no row meets the conditions.
+    pub fn rows(&self, inputs: &Inputs) -> Result<(Row, Vec<Row>), String> {
+        self.resolve(inputs).map_err(|problem| format!("figure `{}` (line {}): {problem}", self.name, self.line))
+    }
+
+    fn resolve(&self, inputs: &Inputs) -> Result<(Row, Vec<Row>), String> {
+        let mut units: Option<(String, String)> = None;
+        for (stage, name) in &self.tables {
+            let table = table(stage, name, inputs)?;
+            let found = self.check(table)?;
+            match &units {
+                None => units = Some(found),
+                Some(first) if *first == found => {}
+                Some(first) => {
+                    let message = "the tables have different units on an axis";
+                    return Err(format!("{message}: {} and {}, {} and {}", first.0, found.0, first.1, found.1));
+                }
+            }
+        }
+        let (x_unit, y_unit) = units.unwrap_or_default();
+        let mut marks = Vec::new();
+        for (index, mark) in self.published.iter().enumerate() {
+            let along =
+                |place: &Option<Place>, unit: &str| place.as_ref().map_or(Ok(f64::NAN), |place| place.along(unit));
+            let row: Row = vec![
+                self.number.into(),
+                (index + 1).into(),
+                mark.label.as_str().into(),
+                along(&mark.x, &x_unit)?.into(),
+                along(&mark.y, &y_unit)?.into(),
+            ];
+            marks.push(row);
+        }
+        let tables: Vec<String> = self.tables.iter().map(|(stage, table)| format!("{stage}.{table}")).collect();
+        let conditions: Vec<String> =
+            self.conditions.iter().map(|(column, value)| format!("{column}={value}")).collect();
+        let mut row: Row = vec![self.number.into()];
+        let texts = [
+            self.name.as_str(),
+            &self.title,
+            self.kind,
+            &tables.join(", "),
+            &self.x,
+            &self.y.join(", "),
+            &self.series,
+            &self.segments,
+            &conditions.join(", "),
+            &self.x_label,
+            &self.y_label,
+            self.log,
+            &self.note,
+        ];
+        row.extend(texts.map(Into::into));
+        Ok((row, marks))
+    }
+
+    /// Checks the columns; gives the units of the two axes.
+    fn check(&self, table: &Table) -> Result<(String, String), String> {
+        let schema = table.schema();
+        let column = |name: &str| schema.column(name).ok_or_else(|| unknown_column(schema, name));
+        let rows = rows_where(table, &self.conditions)?;
+        if rows.is_empty() {
+            return Err(no_rows(table, &self.conditions));
+        }
+        let x = column(&self.x)?;
+        if self.kind != "bar" {
+            numbers(x)?;
+        }
+        let mut unit: Option<&str> = None;
+        for name in &self.y {
+            let y = column(name)?;
+            numbers(y)?;
+            if unit.is_some_and(|unit| unit != y.unit) {
+                return Err(format!("the columns {} have different units", self.y.join(", ")));
+            }
+            unit = Some(&y.unit);
+        }
+        for name in [&self.series, &self.segments] {
+            if !name.is_empty() {
+                column(name)?;
+            }
+        }
+        Ok((x.unit.clone(), unit.unwrap_or_default().to_owned()))
+    }
+}
+
+fn numbers(column: &Column) -> Result<(), String> {
+    match column.kind {
+        Type::Float | Type::Integer => Ok(()),
+        _ => Err(format!("column `{}` holds {}s, not numbers", column.name, column.kind.name())),
+    }
+}
+
+impl Place {
+    /// In the unit of an axis.
+    fn along(&self, unit: &str) -> Result<f64, String> {
+        let axis = in_si(1.0, unit)?;
+        if !same_dimension(axis.dimension, self.dimension) {
+            let (found, wanted) = (described(self.dimension), described(axis.dimension));
+            return Err(format!("`{}` is {found}, but the axis shows {wanted}", self.text));
+        }
+        let (number, written) = split_quantity(&self.text);
+        if parse_unit(written).ok() == parse_unit(unit).ok() {
+            return number.parse().map_err(|_| format!("`{}` is no number", self.text));
+        }
+        let si = parse_quantity(&self.text).map_err(|error| error.to_string())?.value;
+        Ok(in_unit(si, unit))
+    }
+}
+
+fn read_mark(record: &Record) -> Result<Mark, Diagnostic> {
+    let place = |field: &str| {
+        let Some(text) = record.maybe_text(field) else { return Ok(None) };
+        let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
+        let quantity = parse_quantity(text).map_err(|error| wrong(format!("`{text}`: {error}")))?;
+        Ok(Some(Place { text: text.trim().to_owned(), dimension: quantity.dimension }))
+    };
+    let mark = Mark { label: record.text("label").trim().to_owned(), x: place("x")?, y: place("y")? };
+    if mark.x.is_none() && mark.y.is_none() {
+        return Err(Diagnostic::new("a published point needs `x`, `y`, or both").at(record.place));
+    }
+    Ok(mark)
+}
+
+fn texts(record: &Record, field: &str) -> Vec<(String, TextPlace)> {
+    let entries = record.maybe_list(field).unwrap_or_default();
+    entries
+        .iter()
+        .filter_map(|entry| match &entry.value {
+            Value::Text(text) => Some((text.trim().to_owned(), entry.place)),
+            _ => None,
+        })
+        .collect()
+}
+
+/// Refuses two figures of one name: they would be one file.
+///
+/// # Errors
+/// At the second of them.
+pub fn check_names(figures: &[Figure], records: &[&Record]) -> Result<(), Diagnostic> {
+    for (index, figure) in figures.iter().enumerate() {
+        if figures[..index].iter().any(|earlier| earlier.name.eq_ignore_ascii_case(&figure.name)) {
+            let place = records.get(index).map(|record| record.place_of("name")).unwrap_or_default();
+            return Err(Diagnostic::new(format!("two figures are called `{}`", figure.name)).at(place));
+        }
+    }
+    Ok(())
+}
+
+#[must_use]
+pub fn schemas() -> [Schema; 2] {
+    let figures = Schema::new(
+        "figures",
+        "Figures of the report: what is drawn from which table",
+        vec![
+            Column::integer("figure", "Number of the figure, in the order of the study").key(),
+            Column::text("name", "Name of the file in `figures/`"),
+            Column::text("title", "What is shown"),
+            Column::text("kind", "line, points or bar"),
+            Column::text("tables", "The tables it is drawn from, `stage.table`, separated by commas"),
+            Column::text("x", "Column of the x axis"),
+            Column::text("y", "Columns of the y axis, separated by commas"),
+            Column::text("series", "Column whose values are drawn apart"),
+            Column::text("segments", "Column at whose changes a line is interrupted"),
+            Column::text("conditions", "The rows that are drawn, `column=value`, separated by commas"),
+            Column::text("x_label", "Name of the x axis, if not that of the column"),
+            Column::text("y_label", "Name of the y axis, if not that of the column"),
+            Column::text("log", "Axes with a logarithmic scale: none, x, y, both"),
+            Column::text("note", "What to see in it"),
+        ],
+    );
+    let published = Schema::new(
+        "figure_published",
+        "Published points and lines drawn into the figures",
+        vec![
+            Column::integer("figure", "Number of the figure").key(),
+            Column::integer("number", "Number of the point in the figure").key(),
+            Column::text("label", "Name in the legend"),
+            Column::float("x", "", "Place on the x axis in the axis' unit; NaN for a line across").allows_nan(),
+            Column::float("y", "", "Place on the y axis in the axis' unit; NaN for an upright line").allows_nan(),
+        ],
+    );
+    [figures, published]
+}

@@ -1,0 +1,531 @@
+//! Arithmetic with dimensions: `F / k1 - F / k2 > published`.
+//!
+//! The library parses; the tree is walked here, because a formula must not divide whole numbers (`1 / 2` is a half), must
+//! not add newtons to metres, and must give the same bits on every machine. Allowed: `+ - * / ^`, comparisons, `&&`,
+//! `||`, `!`, sqrt, abs, min, max. Values are SI; an angle counts as a plain number. Must not know: tables, entries.
+
+use evalexpr::{DefaultNumericTypes, Node, Operator, Value, build_operator_tree};
+
+use crate::base::error::suggest;
+use crate::base::number::{significant, with_unit};
+use crate::base::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
+
+/// Longer formulas are refused: nobody reads them, and the parser's recursion stays shallow.
+const LONGEST: usize = 600;
+const FUNCTIONS: [&str; 4] = ["abs", "max", "min", "sqrt"];
+
+/// A number in SI and its dimension.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Number {
+    pub si: f64,
+    pub dimension: Dimension,
+}
+
+impl Number {
+    #[must_use]
+    pub const fn plain(si: f64) -> Self {
+        Self { si, dimension: RATIO }
+    }
+
+    fn fits(self, other: Self) -> bool {
+        let is_zero = |number: Self| number.si == 0.0 && number.dimension == RATIO;
+        same_dimension(self.dimension, other.dimension) || is_zero(self) || is_zero(other)
+    }
+}
+
+/// Whether two dimensions are the same when radians count as plain numbers.
+#[must_use]
+pub fn same_dimension(a: Dimension, b: Dimension) -> bool {
+    (a.length, a.mass, a.time) == (b.length, b.mass, b.time)
+}
+
+/// What an expression gives.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Outcome {
+    Number(Number),
+    Truth(bool),
+}
+
+/// What the names in a formula stand for.
+pub type Names<'a> = &'a dyn Fn(&str) -> Option<Number>;
+
+/// A parsed and checked expression.
+#[derive(Debug)]
+pub struct Formula {
+    pub text: String,
+    root: Node<DefaultNumericTypes>,
+    is_claim: bool,
+}
+
+impl Formula {
+    /// Reads an expression whose names are all in `names`.
+    ///
+    /// # Errors
+    /// A sentence: what cannot be read, or which operator, function or name is not known.
+    pub fn parse(text: &str, names: &[&str]) -> Result<Self, String> {
+        if text.trim().is_empty() {
+            return Err("the formula is empty".to_owned());
+        }
+        if text.len() > LONGEST {
+            return Err(format!("the formula has {} characters; at most {LONGEST} are read", text.len()));
+        }
+        let root = build_operator_tree::<DefaultNumericTypes>(text)
+            .map_err(|error| format!("`{text}` cannot be read: {error}"))?;
+        let is_claim = check(&root, names)?;
+        Ok(Self { text: text.trim().to_owned(), root, is_claim })
+    }
+
+    /// Whether it is true or false rather than a number.
+    #[must_use]
+    pub fn is_claim(&self) -> bool {
+        self.is_claim
+    }
+
+    /// The names that occur in it.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.root.iter_variable_identifiers()
+    }
+
+    /// # Errors
+    /// Units that do not go together, or a result that is not finite.
+    pub fn evaluate(&self, names: Names) -> Result<Outcome, String> {
+        evaluate(&self.root, names)
+    }
+
+    /// Both sides of every comparison as numbers: `2.867 µm > 2.316 µm`. Lengths and the like are given in `unit` when
+    /// it fits.
+    ///
+    /// # Errors
+    /// As [`Formula::evaluate`].
+    pub fn with_numbers(&self, names: Names, unit: &str) -> Result<String, String> {
+        with_numbers(&self.root, names, unit)
+    }
+}
+
+/// Checks names, operators and functions; says whether the node is true or false rather than a number.
+fn check(node: &Node<DefaultNumericTypes>, names: &[&str]) -> Result<bool, String> {
+    let children = node.children();
+    // Every side of an operator must be there and be of one sort: numbers, or something true or false.
+    let sides = |sign: &str, count: usize, are_truths: bool| {
+        if children.len() != count {
+            return Err(format!("a value is missing at `{sign}`"));
+        }
+        for child in children {
+            if check(child, names)? != are_truths {
+                let wanted = if are_truths {
+                    "joins comparisons, not numbers"
+                } else {
+                    "needs numbers, not something true or false"
+                };
+                return Err(format!("`{sign}` {wanted}"));
+            }
+        }
+        Ok(())
+    };
+    match node.operator() {
+        Operator::RootNode => match children {
+            [child] => check(child, names),
+            _ => Err("something is missing between brackets".to_owned()),
+        },
+        Operator::Add => sides("+", 2, false).map(|()| false),
+        Operator::Sub => sides("-", 2, false).map(|()| false),
+        Operator::Neg => sides("-", 1, false).map(|()| false),
+        Operator::Mul => sides("*", 2, false).map(|()| false),
+        Operator::Div => sides("/", 2, false).map(|()| false),
+        Operator::Exp => sides("^", 2, false).map(|()| false),
+        operator if comparison(operator).is_some() => {
+            sides(comparison(operator).unwrap_or(""), 2, false).map(|()| true)
+        }
+        Operator::And => sides("&&", 2, true).map(|()| true),
+        Operator::Or => sides("||", 2, true).map(|()| true),
+        Operator::Not => sides("!", 1, true).map(|()| true),
+        Operator::Const { value: Value::Int(_) | Value::Float(_) } => Ok(false),
+        Operator::VariableIdentifierRead { identifier } => {
+            if names.contains(&identifier.as_str()) {
+                Ok(false)
+            } else {
+                Err(format!("`{identifier}` is not given; {}", suggest(identifier, names.iter().copied())))
+            }
+        }
+        Operator::FunctionIdentifier { identifier } => {
+            if !FUNCTIONS.contains(&identifier.as_str()) {
+                return Err(format!("there is no function `{identifier}`; {}", suggest(identifier, FUNCTIONS)));
+            }
+            let arguments = arguments(children);
+            let expected = if matches!(identifier.as_str(), "min" | "max") { 2..=usize::MAX } else { 1..=1 };
+            if !expected.contains(&arguments.len()) {
+                return Err(format!("`{identifier}` is given {} values", arguments.len()));
+            }
+            for argument in arguments {
+                if check(argument, names)? {
+                    return Err(format!("`{identifier}` needs numbers, not something true or false"));
+                }
+            }
+            Ok(false)
+        }
+        other => Err(format!("`{}` has no place in a formula", other.to_string().trim())),
+    }
+}
+
+fn comparison(operator: &Operator<DefaultNumericTypes>) -> Option<&'static str> {
+    match operator {
+        Operator::Eq => Some("="),
+        Operator::Neq => Some("≠"),
+        Operator::Gt => Some(">"),
+        Operator::Lt => Some("<"),
+        Operator::Geq => Some("≥"),
+        Operator::Leq => Some("≤"),
+        _ => None,
+    }
+}
+
+/// The arguments of a function: a bracket around one value, or around a tuple.
+fn arguments(children: &[Node<DefaultNumericTypes>]) -> Vec<&Node<DefaultNumericTypes>> {
+    match children {
+        [only] => match only.operator() {
+            Operator::RootNode => arguments(only.children()),
+            Operator::Tuple => only.children().iter().collect(),
+            _ => vec![only],
+        },
+        several => several.iter().collect(),
+    }
+}
+
+fn number(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Number, String> {
+    match evaluate(node, names)? {
+        Outcome::Number(number) => Ok(number),
+        Outcome::Truth(_) => Err("a number was expected, not something true or false".to_owned()),
+    }
+}
+
+fn truth(node: &Node<DefaultNumericTypes>, names: Names) -> Result<bool, String> {
+    match evaluate(node, names)? {
+        Outcome::Truth(truth) => Ok(truth),
+        Outcome::Number(_) => Err("a comparison was expected, not a number".to_owned()),
+    }
+}
+
+fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, String> {
+    let children = node.children();
+    let two = |sign: &str| match children {
+        [a, b] => Ok((number(a, names)?, number(b, names)?)),
+        _ => Err(format!("`{sign}` needs two values")),
+    };
+    let alike = |sign: &str| {
+        let (a, b) = two(sign)?;
+        if a.fits(b) {
+            Ok((a, b))
+        } else {
+            Err(format!("{} and {} do not go together at `{sign}`", described(a.dimension), described(b.dimension)))
+        }
+    };
+    let finite = |si: f64, dimension: Dimension| {
+        if si.is_finite() {
+            Ok(Outcome::Number(Number { si, dimension }))
+        } else {
+            Err(format!("`{node}` is {si}, which is no finite number"))
+        }
+    };
+    match node.operator() {
+        Operator::RootNode => {
+            children.first().map_or(Err("nothing to evaluate".to_owned()), |child| evaluate(child, names))
+        }
+        Operator::Add => alike("+").and_then(|(a, b)| finite(a.si + b.si, wider(a, b))),
+        Operator::Sub => alike("-").and_then(|(a, b)| finite(a.si - b.si, wider(a, b))),
+        Operator::Mul => two("*").and_then(|(a, b)| finite(a.si * b.si, product(a.dimension, b.dimension, 1))),
+        Operator::Div => two("/").and_then(|(a, b)| finite(a.si / b.si, product(a.dimension, b.dimension, -1))),
+        Operator::Exp => two("^").and_then(|(a, b)| {
+            let dimension = power(a.dimension, b)?;
+            finite(libm::pow(a.si, b.si), dimension)
+        }),
+        Operator::Neg => match children {
+            [only] => number(only, names).map(|a| Outcome::Number(Number { si: -a.si, ..a })),
+            _ => Err("`-` needs a value".to_owned()),
+        },
+        operator if comparison(operator).is_some() => {
+            let (a, b) = alike(comparison(operator).unwrap_or(""))?;
+            let order = a.si.partial_cmp(&b.si).ok_or("a value is no number")?;
+            Ok(Outcome::Truth(match operator {
+                Operator::Gt => order.is_gt(),
+                Operator::Lt => order.is_lt(),
+                Operator::Geq => order.is_ge(),
+                Operator::Leq => order.is_le(),
+                Operator::Neq => order.is_ne(),
+                _ => order.is_eq(),
+            }))
+        }
+        // Both sides are evaluated: a unit that does not fit must not hide behind a first side that decides.
+        Operator::And | Operator::Or => match children {
+            [a, b] => {
+                let (a, b) = (truth(a, names)?, truth(b, names)?);
+                Ok(Outcome::Truth(if matches!(node.operator(), Operator::And) { a && b } else { a || b }))
+            }
+            _ => Err("`&&` and `||` need two sides".to_owned()),
+        },
+        Operator::Not => match children {
+            [only] => truth(only, names).map(|truth| Outcome::Truth(!truth)),
+            _ => Err("`!` needs a comparison".to_owned()),
+        },
+        Operator::Const { value: Value::Float(value) } => finite(*value, RATIO),
+        Operator::Const { value: Value::Int(value) } => finite(*value as f64, RATIO),
+        Operator::VariableIdentifierRead { identifier } => {
+            let value = names(identifier).ok_or_else(|| format!("`{identifier}` is not given"))?;
+            finite(value.si, value.dimension)
+        }
+        Operator::FunctionIdentifier { identifier } => {
+            let values =
+                arguments(children).into_iter().map(|child| number(child, names)).collect::<Result<Vec<_>, _>>()?;
+            let (first, rest) = values.split_first().ok_or_else(|| format!("`{identifier}` needs a value"))?;
+            if let Some(other) = rest.iter().find(|other| !first.fits(**other)) {
+                let (a, b) = (described(first.dimension), described(other.dimension));
+                return Err(format!("{a} and {b} do not go together in `{identifier}`"));
+            }
+            match identifier.as_str() {
+                "abs" => finite(first.si.abs(), first.dimension),
+                "sqrt" => finite(first.si.sqrt(), power(first.dimension, Number::plain(0.5))?),
+                "min" => Ok(Outcome::Number(
+                    rest.iter().fold(*first, |a, &b| Number { si: a.si.min(b.si), dimension: wider(a, b) }),
+                )),
+                _ => Ok(Outcome::Number(
+                    rest.iter().fold(*first, |a, &b| Number { si: a.si.max(b.si), dimension: wider(a, b) }),
+                )),
+            }
+        }
+        other => Err(format!("`{}` has no place in a formula", other.to_string().trim())),
+    }
+}
+
+/// The dimension of a sum, where a plain zero may stand for any.
+fn wider(a: Number, b: Number) -> Dimension {
+    if a.dimension == RATIO { b.dimension } else { a.dimension }
+}
+
+fn product(a: Dimension, b: Dimension, power: i8) -> Dimension {
+    let join = |a: i8, b: i8| a.saturating_add(b.saturating_mul(power));
+    Dimension {
+        length: join(a.length, b.length),
+        mass: join(a.mass, b.mass),
+        time: join(a.time, b.time),
+        angle: join(a.angle, b.angle),
+    }
+}
+
+fn power(base: Dimension, exponent: Number) -> Result<Dimension, String> {
+    if !same_dimension(exponent.dimension, RATIO) {
+        return Err(format!("an exponent is a plain number, not {}", described(exponent.dimension)));
+    }
+    if same_dimension(base, RATIO) {
+        return Ok(RATIO);
+    }
+    let raise = |part: i8| {
+        let raised = f64::from(part) * exponent.si;
+        // Within i8 and whole: only then is there such a dimension.
+        #[allow(clippy::cast_possible_truncation)]
+        if raised.fract() == 0.0 && raised.abs() < 100.0 { Some(raised as i8) } else { None }
+    };
+    let raised = (raise(base.length), raise(base.mass), raise(base.time));
+    let (Some(length), Some(mass), Some(time)) = raised else {
+        return Err(format!("{} to the power {} has no unit", described(base), exponent.si));
+    };
+    Ok(Dimension { length, mass, time, angle: 0 })
+}
+
+/// The words for a dimension in a message.
+#[must_use]
+pub fn described(dimension: Dimension) -> String {
+    match dimension.describe() {
+        (_, []) => {
+            let parts = [("m", dimension.length), ("kg", dimension.mass), ("s", dimension.time)];
+            let parts = parts.iter().filter(|(_, power)| *power != 0).map(|(unit, power)| match power {
+                1 => (*unit).to_owned(),
+                power => format!("{unit}^{power}"),
+            });
+            format!("a quantity in {}", parts.collect::<Vec<_>>().join(" "))
+        }
+        (name, _) => name.to_owned(),
+    }
+}
+
+/// `number` in `unit` when that fits, otherwise in the field's usual unit.
+#[must_use]
+pub fn shown(number: Number, unit: &str, digits: usize) -> String {
+    let fits = |unit: &str| parse_unit(unit).is_ok_and(|parsed| same_dimension(parsed.dimension, number.dimension));
+    let usual = match number.dimension {
+        LENGTH if number.si.abs() < 1e-4 => "um",
+        LENGTH => "mm",
+        FORCE => "N",
+        TORQUE => "N m",
+        STRESS => "MPa",
+        STIFFNESS => "N/m",
+        _ => "",
+    };
+    let unit = if !unit.is_empty() && fits(unit) { unit } else { usual };
+    if unit.is_empty() && !same_dimension(number.dimension, RATIO) {
+        return format!("{} ({} in SI)", significant(number.si, digits), described(number.dimension));
+    }
+    with_unit(&significant(in_unit(number.si, unit), digits), unit)
+}
+
+fn with_numbers(node: &Node<DefaultNumericTypes>, names: Names, unit: &str) -> Result<String, String> {
+    let joined = |word: &str| {
+        let parts =
+            node.children().iter().map(|child| with_numbers(child, names, unit)).collect::<Result<Vec<_>, _>>()?;
+        Ok(parts.join(word))
+    };
+    match node.operator() {
+        Operator::RootNode => joined(""),
+        Operator::And => joined(" and "),
+        Operator::Or => joined(" or "),
+        Operator::Not => joined("").map(|inner: String| format!("not ({inner})")),
+        operator => match (comparison(operator), node.children()) {
+            (Some(sign), [a, b]) => {
+                let (a, b) = (number(a, names)?, number(b, names)?);
+                // A plain zero takes the other side's unit.
+                let (a, b) = (Number { dimension: wider(a, b), ..a }, Number { dimension: wider(b, a), ..b });
+                let pair = |digits| (shown(a, unit, digits), shown(b, unit, digits));
+                let told_apart =
+                    (4..=12).map(pair).find(|(left, right)| left != right || a.si.total_cmp(&b.si).is_eq());
+                let (left, right) = told_apart.unwrap_or_else(|| pair(17));
+                // The sign of the *finding*, so that a refuted comparison does not read as if it held.
+                let holds = truth(node, names)?;
+                Ok(if holds { format!("{left} {sign} {right}") } else { format!("{left} {} {right}", negated(sign)) })
+            }
+            _ => number(node, names).map(|value| shown(value, unit, 4)),
+        },
+    }
+}
+
+/// What is the case when a comparison does not hold.
+fn negated(sign: &str) -> &'static str {
+    match sign {
+        ">" => "≤",
+        "<" => "≥",
+        "≥" => "<",
+        "≤" => ">",
+        "=" => "≠",
+        _ => "=",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::units::parse_quantity;
+
+    fn given(name: &str) -> Option<Number> {
+        let text = match name {
+            "F" => "1866.979 N",
+            "k1" => "2.738e8 N/m",
+            "k2" => "4.724e8 N/m",
+            "published" => "2.316 um",
+            "b" => "18 mm",
+            "angle" => "90 deg",
+            _ => return None,
+        };
+        let quantity = parse_quantity(text).unwrap();
+        Some(Number { si: quantity.value, dimension: quantity.dimension })
+    }
+
+    const NAMES: [&str; 6] = ["F", "k1", "k2", "published", "b", "angle"];
+
+    fn value(text: &str) -> Result<Outcome, String> {
+        Formula::parse(text, &NAMES)?.evaluate(&given)
+    }
+
+    fn plain(text: &str) -> f64 {
+        match value(text) {
+            Ok(Outcome::Number(Number { si, dimension })) if same_dimension(dimension, RATIO) => si,
+            other => panic!("{text} gives {other:?}"),
+        }
+    }
+
+    #[test]
+    fn arithmetic_is_that_of_real_numbers() {
+        for (text, expected) in [
+            ("1 / 2", 0.5),
+            ("-2 ^ 2", -4.0),
+            ("2 ^ 0.5 * sqrt(2)", 2.0),
+            ("1 - 0.728 / 2.316", 1.0 - 0.728 / 2.316),
+            ("max(1, 2, 3) - min(4, 5)", -1.0),
+            ("abs(-1.5e-3)", 1.5e-3),
+            ("(1 + 2) * 3", 9.0),
+            ("10 - 4 - 3", 3.0),
+            ("F / (k1 * published)", 1866.979 / (2.738e8 * 2.316e-6)),
+            ("angle", std::f64::consts::FRAC_PI_2),
+        ] {
+            assert!((plain(text) - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{text} = {}", plain(text));
+        }
+    }
+
+    /// The paper's own stiffnesses bound its own transmission error: F/k1 − F/k2 = 2.867 µm (physics: 2.867).
+    #[test]
+    fn the_bound_on_the_published_error_is_shown_with_its_numbers() {
+        let formula = Formula::parse("F / k1 - F / k2 > published", &NAMES).unwrap();
+        assert_eq!(formula.evaluate(&given), Ok(Outcome::Truth(true)));
+        assert_eq!(formula.with_numbers(&given, "um").unwrap(), "2.867\u{202f}µm > 2.316\u{202f}µm");
+        let refuted = Formula::parse("F / k1 - F / k2 < published && b > 0", &NAMES).unwrap();
+        assert_eq!(
+            refuted.with_numbers(&given, "um").unwrap(),
+            "2.867\u{202f}µm ≥ 2.316\u{202f}µm and 18000\u{202f}µm > 0\u{202f}µm"
+        );
+        assert_eq!(formula.names().collect::<Vec<_>>(), ["F", "k1", "F", "k2", "published"]);
+    }
+
+    #[test]
+    fn units_that_do_not_go_together_are_refused() {
+        for (text, message) in [
+            ("F + published", "a force and a length do not go together at `+`"),
+            ("F > published", "do not go together at `>`"),
+            ("max(F, b)", "do not go together in `max`"),
+            ("2 ^ F", "an exponent is a plain number, not a force"),
+            ("sqrt(F)", "to the power 0.5 has no unit"),
+            ("F / (k1 - k1)", "no finite number"),
+            ("sqrt(-1)", "no finite number"),
+            ("b > 0 || F > b", "a force and a length"),
+        ] {
+            let error = value(text).unwrap_err();
+            assert!(error.contains(message), "{text}: {error}");
+        }
+        let Ok(Outcome::Number(stress)) = value("F / (b * b)") else { panic!("no number") };
+        assert_eq!(stress.dimension, STRESS);
+        let Ok(Outcome::Number(length)) = value("sqrt(b * b)") else { panic!("no number") };
+        assert_eq!((length.dimension, length.si.to_bits()), (LENGTH, 0.018_f64.to_bits()));
+        assert_eq!(value("F > 0 && b > 0"), Ok(Outcome::Truth(true)));
+    }
+
+    #[test]
+    fn what_is_no_formula_is_refused_when_it_is_read() {
+        for (text, message) in [
+            ("", "empty"),
+            ("F /", "a value is missing at `/`"),
+            ("F b", "no function `F`"),
+            ("F / k3", "`k3` is not given; did you mean `k1`?"),
+            ("(F", "cannot be read"),
+            ("F = 3", "no place"),
+            ("F; b", "no place"),
+            ("\"F\"", "no place"),
+            ("F % 2", "no place"),
+            ("sin(F)", "no function `sin`"),
+            ("sqrtt(F)", "did you mean `sqrt`?"),
+            ("math::sin(F)", "no function"),
+            ("sqrt(F, b)", "given 2 values"),
+            ("min(F)", "given 1 value"),
+            ("F < b < k1", "needs numbers"),
+            ("F && b", "joins comparisons"),
+            ("true", "no place"),
+            ("()", "missing between brackets"),
+        ] {
+            let error = Formula::parse(text, &NAMES).unwrap_err();
+            assert!(error.contains(message), "{text}: {error}");
+        }
+        let deep = "(".repeat(100_000);
+        assert!(Formula::parse(&deep, &NAMES).unwrap_err().contains("at most"));
+    }
+
+    #[test]
+    fn close_sides_are_shown_with_digits_that_tell_them_apart() {
+        let names: Names = &|name| Some(Number::plain(if name == "b" { 1.000_001 } else { 1.0 }));
+        let formula = Formula::parse("b > F", &NAMES).unwrap();
+        assert_eq!(formula.with_numbers(names, "").unwrap(), "1.000001 > 1");
+    }
+}

@@ -1,0 +1,201 @@
+//! What a name in an entry stands for: a quantity as written, or cells of another stage's table.
+//!
+//! Must not know: verdicts. Everything is SI once it is resolved.
+
+use crate::base::number::{significant, with_unit};
+use crate::base::units::{UnitError, parse_quantity, split_quantity};
+use crate::stage::Inputs;
+use crate::table::data::{Cell, Data, Table};
+use crate::table::select::{CellName, rows_where, unknown_column};
+
+use super::formula::Number;
+
+/// A quantity or cells, as written.
+#[derive(Clone, Debug)]
+pub struct Operand {
+    pub text: String,
+    pub source: Source,
+}
+
+#[derive(Clone, Debug)]
+pub enum Source {
+    Quantity { number: Number, unit: String },
+    Cells(CellName),
+}
+
+impl Operand {
+    /// Reads `50 N m`, or `ste.summary[design=iso].peak_to_peak`.
+    ///
+    /// # Errors
+    /// A sentence that says what was expected.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        let text = text.trim();
+        let source = match parse_quantity(text) {
+            Ok(quantity) => Source::Quantity {
+                number: Number { si: quantity.value, dimension: quantity.dimension },
+                unit: split_quantity(text).1.to_owned(),
+            },
+            Err(UnitError::NotANumber(_)) => {
+                let name = CellName::parse(text).map_err(|_| {
+                    format!("`{text}` is neither a quantity (`50 N m`) nor a cell (`stage.table[key=value, …].column`)")
+                })?;
+                Source::Cells(name)
+            }
+            Err(error) => return Err(format!("`{text}`: {error}")),
+        };
+        Ok(Self { text: text.to_owned(), source })
+    }
+
+    #[must_use]
+    pub fn cell(&self) -> Option<&CellName> {
+        match &self.source {
+            Source::Cells(name) => Some(name),
+            Source::Quantity { .. } => None,
+        }
+    }
+
+    /// Looks the values up.
+    ///
+    /// # Errors
+    /// When no row meets the conditions, or the column holds no numbers.
+    pub fn resolve(&self, inputs: &Inputs) -> Result<Values, String> {
+        match &self.source {
+            Source::Quantity { number, unit } => {
+                Ok(Values { numbers: vec![*number], unit: unit.clone(), keys: Vec::new(), rows: vec![Vec::new()] })
+            }
+            Source::Cells(name) => cells(name, inputs).map_err(|problem| format!("`{}`: {problem}", self.text)),
+        }
+    }
+}
+
+/// The values an operand stands for: one, or one per row.
+#[derive(Clone, Debug)]
+pub struct Values {
+    pub numbers: Vec<Number>,
+    /// As written, or the column's.
+    pub unit: String,
+    /// The key columns that tell the rows apart: those that no condition fixes.
+    pub keys: Vec<String>,
+    /// Their values, for each row.
+    pub rows: Vec<Vec<Key>>,
+}
+
+impl Values {
+    /// The only value.
+    ///
+    /// # Errors
+    /// When there are several rows: names the columns that would tell them apart.
+    pub fn single(&self, text: &str) -> Result<Number, String> {
+        match self.numbers.as_slice() {
+            [only] => Ok(*only),
+            several => {
+                let apart =
+                    if self.keys.is_empty() { String::new() } else { format!("; add {}", self.keys.join(", ")) };
+                Err(format!("`{text}` names {} rows where one is meant{apart}", several.len()))
+            }
+        }
+    }
+}
+
+/// One key value of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Key {
+    value: Cell,
+    unit: String,
+}
+
+impl std::fmt::Display for Key {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match &self.value {
+            Cell::Float(value) => formatter.write_str(&with_unit(&significant(*value, 6), &self.unit)),
+            other => write!(formatter, "{other}"),
+        }
+    }
+}
+
+/// A number of a column in SI; on the decimal text, so that the bits are those of the quantity as a user writes it.
+///
+/// # Errors
+/// When the column's unit is none.
+pub fn in_si(value: f64, unit: &str) -> Result<Number, String> {
+    let quantity = parse_quantity(&format!("{value:e} {unit}")).map_err(|error| error.to_string())?;
+    Ok(Number { si: quantity.value, dimension: quantity.dimension })
+}
+
+/// The table a cell is in.
+///
+/// # Errors
+/// When it did not come in.
+pub fn table<'a>(stage: &str, table: &str, inputs: &Inputs<'a>) -> Result<&'a Table, String> {
+    inputs.table(stage, table).map_err(|failure| failure.to_string())
+}
+
+fn cells(name: &CellName, inputs: &Inputs) -> Result<Values, String> {
+    let table = table(&name.stage, &name.table, inputs)?;
+    let rows = rows_where(table, &name.conditions)?;
+    if rows.is_empty() {
+        return Err(no_rows(table, &name.conditions));
+    }
+    let schema = table.schema();
+    let index = schema.position(&name.column).ok_or_else(|| unknown_column(schema, &name.column))?;
+    let column = &schema.columns[index];
+    if column.volatile {
+        return Err(format!("column `{}` differs from run to run, so no verdict can stand on it", column.name));
+    }
+    let value = |row: usize| match &table.columns()[index] {
+        Data::Float(values) => Ok(values[row]),
+        Data::Integer(values) => Ok(values[row] as f64),
+        _ => Err(format!("column `{}` holds {}s, not numbers", column.name, column.kind.name())),
+    };
+    let number = |row: usize| {
+        let value = value(row)?;
+        if value.is_finite() { in_si(value, &column.unit) } else { Err(format!("column `{}` is {value}", column.name)) }
+    };
+    let free: Vec<usize> = schema
+        .key_columns()
+        .filter(|&key| name.conditions.iter().all(|(condition, _)| *condition != schema.columns[key].name))
+        .collect();
+    let key =
+        |row: usize, key: usize| Key { value: table.columns()[key].cell(row), unit: schema.columns[key].unit.clone() };
+    Ok(Values {
+        numbers: rows.iter().map(|&row| number(row)).collect::<Result<_, _>>()?,
+        unit: column.unit.clone(),
+        keys: free.iter().map(|&key| schema.columns[key].name.clone()).collect(),
+        rows: rows.iter().map(|&row| free.iter().map(|&column| key(row, column)).collect()).collect(),
+    })
+}
+
+/// Says which condition nothing meets, and what there is instead.
+#[must_use]
+pub fn no_rows(table: &Table, conditions: &[(String, String)]) -> String {
+    if table.rows() == 0 {
+        return format!("table `{}` has no rows", table.name());
+    }
+    for condition in conditions {
+        let alone = std::slice::from_ref(condition);
+        if rows_where(table, alone).is_ok_and(|rows| rows.is_empty()) {
+            let (column, value) = condition;
+            return format!("no row has {column} = {value}; there are {}", distinct(table, column));
+        }
+    }
+    "no row meets all of its conditions together".to_owned()
+}
+
+/// The first few different values of a column.
+fn distinct(table: &Table, column: &str) -> String {
+    const MOST: usize = 8;
+    let Some(position) = table.schema().position(column) else { return "none".to_owned() };
+    let unit = &table.schema().columns[position].unit;
+    let mut seen: Vec<String> = Vec::new();
+    for row in 0..table.rows() {
+        let text = Key { value: table.columns()[position].cell(row), unit: unit.clone() }.to_string();
+        if !seen.contains(&text) {
+            if seen.len() == MOST {
+                seen.push("…".to_owned());
+                break;
+            }
+            seen.push(text);
+        }
+    }
+    seen.join(", ")
+}

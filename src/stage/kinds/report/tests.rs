@@ -1,0 +1,330 @@
+//! The stage as a whole, on small tables, with records built by hand.
+
+use std::sync::atomic::AtomicBool;
+
+use super::*;
+use crate::base::error::Place;
+use crate::base::record::{Entry as Item, Value};
+use crate::base::seed::Seed;
+use crate::stage::Demand;
+use crate::table::data::Cell;
+
+type Fields<'a> = &'a [(&'static str, Value)];
+
+fn item(value: Value) -> Item {
+    Item { value, place: Place { line: 7, ..Place::default() } }
+}
+
+fn text(text: &str) -> Value {
+    Value::Text(text.to_owned())
+}
+
+fn map(pairs: &[(&str, &str)]) -> Value {
+    Value::Map(pairs.iter().map(|(name, value)| ((*name).to_owned(), item(text(value)))).collect())
+}
+
+fn group(fields: Fields) -> Value {
+    let fields = fields.iter().map(|(name, value)| (*name, item(value.clone()))).collect();
+    Value::Group(Record { fields, place: Place { line: 3, ..Place::default() } })
+}
+
+fn list(values: Vec<Value>) -> Value {
+    Value::List(values.into_iter().map(item).collect())
+}
+
+fn record(published: Vec<Value>, figures: Vec<Value>) -> Record {
+    let fields = vec![("published", item(list(published))), ("figures", item(list(figures)))];
+    Record { fields, place: Place::default() }
+}
+
+fn summary() -> Table {
+    let schema = Schema::new(
+        "summary",
+        "",
+        vec![
+            Column::text("design", "").key(),
+            Column::float("torque", "N m", "").key(),
+            Column::float("peak_to_peak", "um", "").allows_nan(),
+            Column::float("seconds", "s", "").volatile(),
+            Column::integer("positions", ""),
+        ],
+    );
+    let mut rows = Vec::new();
+    for (torque, unmodified, iso, ga) in [(25.0, 1.5, 1.4, 1.9), (50.0, 3.0, 0.75, 0.43), (100.0, 6.0, 3.7, f64::NAN)] {
+        for (design, value) in [("unmodified", unmodified), ("iso", iso), ("ga", ga)] {
+            rows.push(vec![design.into(), torque.into(), value.into(), 0.1.into(), 64.into()]);
+        }
+    }
+    Table::from_rows(schema, rows).unwrap()
+}
+
+fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String> {
+    let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
+    let tables = stage.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
+    let (demand, stop) = (Demand { tables }, AtomicBool::new(false));
+    let context =
+        Context { seed: Seed::of_stage(1, "report"), demand: &demand, stop: &stop, progress: &|_| (), warn: &|_| () };
+    let summary = summary();
+    let inputs = Inputs { ports: [("ste".to_owned(), vec![&summary])].into() };
+    stage.run(&context, &inputs).map_err(|failure| failure.to_string())
+}
+
+fn verdict(fields: Fields) -> Result<(String, Table), String> {
+    let table = run(vec![group(fields)], vec![])?.remove(0);
+    Ok((table.texts("verdict")[0].clone(), table))
+}
+
+const UNMODIFIED: &str = "ste.summary[design=unmodified, torque=50 N m].peak_to_peak";
+const ISO: &str = "ste.summary[design=iso, torque=50 N m].peak_to_peak";
+
+#[test]
+fn a_cell_is_compared_in_the_printed_unit() {
+    let (word, table) = verdict(&[("cell", text(UNMODIFIED)), ("value", text("0.0030 mm"))]).unwrap();
+    assert_eq!(word, "reproduced");
+    assert_eq!((table.floats("computed")[0], table.floats("tolerance")[0]), (0.003, 0.000_05));
+    assert_eq!((table.texts("unit")[0].as_str(), table.texts("published_text")[0].as_str()), ("mm", "0.0030 mm"));
+}
+
+#[test]
+fn tolerances_are_digits_shares_or_quantities() {
+    for (value, tolerance, expected) in [
+        ("3.02 um", "digits", "unexplained"),
+        ("3.0 um", "digits", "reproduced"),
+        ("3.02 um", "1 %", "reproduced"),
+        ("3.04 um", "1 %", "unexplained"),
+        ("3.04 um", "50 nm", "reproduced"),
+        ("3.04 um", "0.03 um", "unexplained"),
+    ] {
+        let fields = [("cell", text(UNMODIFIED)), ("value", text(value)), ("tolerance", text(tolerance))];
+        assert_eq!(verdict(&fields).unwrap().0, expected, "{value} within {tolerance}");
+    }
+    for (value, tolerance, message) in [
+        ("3 um", "-1 %", "negative"),
+        ("3 um", "1 N", "does not fit"),
+        ("3 um", "0.1", "does not fit"),
+        ("0 um", "1 %", "of a value of 0 is nothing"),
+        ("3 um", "tight", "tolerance `tight`"),
+        ("three", "digits", "`three` is not a number"),
+        ("3 furlong", "digits", "unknown unit"),
+    ] {
+        let fields = [("cell", text(UNMODIFIED)), ("value", text(value)), ("tolerance", text(tolerance))];
+        let error = verdict(&fields).unwrap_err();
+        assert!(error.starts_with("study: ") && error.contains(message), "{error}");
+    }
+}
+
+#[test]
+fn a_formula_has_the_unit_of_its_value() {
+    let with = map(&[("iso", ISO), ("none", UNMODIFIED)]);
+    let reduction = [("formula", text("1 - iso / none")), ("with", with), ("value", text("75.0 %"))];
+    let (word, table) = verdict(&reduction).unwrap();
+    assert_eq!(word, "reproduced");
+    assert!((table.floats("computed")[0] - 75.0).abs() < 1e-12);
+    assert_eq!(table.texts("numbers")[0], "iso = 0.75\u{202f}µm, none = 3\u{202f}µm");
+
+    let own = map(&[("a", "2.316 um"), ("b", "0.728 um")]);
+    let fields = [
+        ("formula", text("1 - b / a")),
+        ("with", own.clone()),
+        ("value", text("68.5 %")),
+        ("tolerance", text("0.2 %")),
+    ];
+    assert_eq!(verdict(&fields).unwrap().0, "reproduced");
+    // Units are checked before anything runs where no cell is in the way, and when it runs otherwise.
+    let error = verdict(&[("formula", text("a + b")), ("with", own), ("value", text("68.5 %"))]).unwrap_err();
+    assert!(error.starts_with("study: what is computed is a length, but the published `68.5 %` is a ratio"), "{error}");
+    let error = verdict(&[("cell", text(ISO)), ("value", text("3 N"))]).unwrap_err();
+    assert!(error.contains("is a length, but the published `3 N` is a force"), "{error}");
+}
+
+#[test]
+fn a_claim_is_counted_row_by_row() {
+    let cells = |second: &str| map(&[("iso", "ste.summary[design=iso].peak_to_peak"), ("other", second)]);
+    let holds = [("claim", text("iso < other")), ("with", cells("ste.summary[design=unmodified].peak_to_peak"))];
+    let (word, table) = verdict(&holds).unwrap();
+    assert_eq!((word.as_str(), table.texts("found")[0].as_str()), ("holds", "holds in 3 of 3"));
+
+    let low = [("claim", text("iso < other")), ("with", cells("1 um"))];
+    let (word, table) = verdict(&low).unwrap();
+    assert_eq!((word.as_str(), table.texts("found")[0].as_str()), ("unexplained", "holds in 1 of 3"));
+    assert_eq!(
+        table.texts("failing")[0],
+        "does not hold at torque 25\u{202f}N·m; torque 100\u{202f}N·m; at torque 25\u{202f}N·m: 1.4\u{202f}µm ≥ 1\u{202f}µm"
+    );
+    let mut explained = low.to_vec();
+    explained.push(("because", text("each relief is best at one load")));
+    assert_eq!(verdict(&explained).unwrap().0, "refuted");
+    explained.push(("expected", group(&[("value", text("1")), ("tolerance", text("0"))])));
+    assert_eq!(verdict(&explained).unwrap().0, "refuted");
+    explained.pop();
+    explained.push(("expected", group(&[("value", text("2")), ("tolerance", text("0"))])));
+    assert_eq!(verdict(&explained).unwrap().0, "moved");
+}
+
+#[test]
+fn rows_of_a_claim_must_line_up() {
+    let with = map(&[("a", "ste.summary[design=iso].peak_to_peak"), ("b", "ste.summary[torque=50 N m].peak_to_peak")]);
+    let error = verdict(&[("claim", text("a < b")), ("with", with)]).unwrap_err();
+    assert!(error.contains("the rows of a (3, by torque) and b (3, by design) do not line up"), "{error}");
+}
+
+#[test]
+fn a_reason_needs_its_proof_and_its_expectation() {
+    let entry = |claim: &str, expected: &str| {
+        let with = map(&[("F", "1866.979 N"), ("k1", "2.738e8 N/m"), ("k2", "4.724e8 N/m")]);
+        vec![
+            ("cell", text(UNMODIFIED)),
+            ("value", text("2.316 um")),
+            ("because", text("its own stiffnesses bound it")),
+            ("proof", group(&[("claim", text(claim)), ("with", with)])),
+            ("expected", group(&[("value", text(expected)), ("tolerance", text("0.1 %"))])),
+        ]
+    };
+    let (word, table) = verdict(&entry("F / k1 - F / k2 > published", "3.0 um")).unwrap();
+    assert_eq!(word, "explained");
+    assert_eq!(
+        table.texts("proof")[0],
+        "F / k1 - F / k2 > published: 2.867\u{202f}µm > 2.316\u{202f}µm, \
+         with F = 1866.98\u{202f}N, k1 = 273.8×10⁶\u{202f}N/m, k2 = 472.4×10⁶\u{202f}N/m"
+    );
+    assert!((table.floats("relative_difference")[0] - (3.0 - 2.316) / 2.316).abs() < 1e-12);
+    let (word, table) = verdict(&entry("F / k1 - F / k2 < published", "3.0 um")).unwrap();
+    assert_eq!(word, "unexplained");
+    assert!(
+        table.texts("proof")[0].contains("2.867\u{202f}µm ≥ 2.316\u{202f}µm — does not hold"),
+        "{}",
+        table.texts("proof")[0]
+    );
+    assert_eq!(verdict(&entry("F / k1 - F / k2 > published", "3.1 um")).unwrap().0, "moved");
+    assert_eq!(verdict(&entry("F / k1 - F / k2 <= computed", "3000 nm")).unwrap().0, "explained");
+    let error = verdict(&entry("F / k1 - k2 > published", "3.0 um")).unwrap_err();
+    assert!(error.starts_with("study: proof: a length and a stiffness"), "{error}");
+}
+
+#[test]
+fn cells_that_cannot_be_compared_are_refused_by_name() {
+    for (cell, message) in [
+        ("ste.summary[design=iso].peak_to_peak", "names 3 rows where one is meant; add torque"),
+        ("ste.summary[design=is, torque=50 N m].peak_to_peak", "no row has design = is; there are ga, iso, unmodified"),
+        ("ste.summary[design=iso, torque=51 N m].peak_to_peak", "no row has torque = 51 N m; there are 25\u{202f}N·m"),
+        ("ste.summary[design=ga, torque=100 N m].peak_to_peak", "column `peak_to_peak` is NaN"),
+        ("ste.summary[design=iso, torque=50 N m].seconds", "differs from run to run"),
+        ("ste.summary[design=iso, torque=50 N m].design", "holds texts, not numbers"),
+        ("ste.summary[design=iso, torque=50 N m].peek_to_peak", "did you mean `peak_to_peak`?"),
+        ("ste.summary[desing=iso].peak_to_peak", "did you mean `design`?"),
+        ("ste.curve[design=iso].x", "no table `curve`"),
+        ("other.summary[design=iso].x", "nothing came in through `other`"),
+    ] {
+        let error = verdict(&[("cell", text(cell)), ("value", text("1 um")), ("where", text("Table 2"))]).unwrap_err();
+        assert!(error.starts_with("`published` entry 1 (line 3, Table 2): "), "{error}");
+        assert!(error.contains(message), "{cell}: {error}");
+    }
+}
+
+#[test]
+fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
+    let value = ("value", text("1 um"));
+    let cases: Vec<(Vec<(&'static str, Value)>, &str)> = vec![
+        (vec![value.clone()], "one of `cell`, `formula` and `claim`; found none"),
+        (vec![("cell", text(ISO)), ("claim", text("1 < 2"))], "found `cell` and `claim`"),
+        (vec![("cell", text(ISO))], "the published `value` is missing"),
+        (vec![("claim", text("1 < 2")), value.clone()], "it has no `value`"),
+        (vec![("cell", text("3 um")), value.clone()], "is no cell"),
+        (vec![("cell", text("ste.summary")), value.clone()], "neither a quantity"),
+        (vec![("formula", text("1 < 2")), value.clone()], "call it `claim`"),
+        (vec![("claim", text("1 + 2"))], "a claim compares"),
+        (vec![("cell", text(ISO)), ("with", map(&[("a", "1")])), value.clone()], "not to a `cell`"),
+        (vec![("formula", text("a")), ("with", map(&[("a", "1 um"), ("b", "2")])), value.clone()], "gives `b`, but"),
+        (vec![("formula", text("a + c")), ("with", map(&[("a", "1 um")])), value.clone()], "`c` is not given"),
+        (vec![("formula", text("a")), ("with", map(&[("a", "1 furlong")])), value.clone()], "unknown unit `furlong`"),
+        (
+            vec![("cell", text(ISO)), value.clone(), ("proof", group(&[("claim", text("1 < 2"))]))],
+            "not the reason it proves",
+        ),
+        (
+            vec![
+                ("cell", text(ISO)),
+                value.clone(),
+                ("because", text("x")),
+                ("proof", group(&[("claim", text("1 + 2"))])),
+            ],
+            "a proof compares",
+        ),
+        (
+            vec![("cell", text(ISO)), value, ("expected", group(&[("value", text("1 N"))]))],
+            "is a force; the published value is a length",
+        ),
+    ];
+    for (fields, message) in cases {
+        let error = verdict(&fields).unwrap_err();
+        assert!(error.starts_with("study: ") && error.contains(message), "{message}: {error}");
+    }
+}
+
+fn figure(changes: Fields) -> Value {
+    let mut fields = vec![
+        ("name", text("sweep")),
+        ("title", text("Sweep")),
+        ("kind", Value::Choice("line")),
+        ("table", list(vec![text("ste.summary")])),
+        ("x", text("torque")),
+        ("y", list(vec![text("peak_to_peak")])),
+        ("series", text("design")),
+        ("log", Value::Choice("none")),
+    ];
+    for (name, value) in changes {
+        match fields.iter_mut().find(|(field, _)| field == name) {
+            Some(field) => field.1 = value.clone(),
+            None => fields.push((name, value.clone())),
+        }
+    }
+    group(&fields)
+}
+
+#[test]
+fn figures_are_checked_and_their_points_put_in_the_axes_units() {
+    let mark = group(&[("x", text("50000 N mm")), ("y", text("0.002316 mm")), ("label", text("unmodified"))]);
+    let across = group(&[("y", text("2.316 um")), ("label", text("Table 2"))]);
+    let tables = run(vec![], vec![figure(&[("published", list(vec![mark, across]))])]).unwrap();
+    let (figures, marks) = (&tables[2], &tables[3]);
+    assert_eq!(figures.texts("tables"), ["ste.summary"]);
+    assert!((marks.floats("x")[0] - 50.0).abs() < 1e-12 && marks.floats("x")[1].is_nan());
+    assert_eq!(marks.floats("y")[1].to_bits(), 2.316_f64.to_bits());
+    for (changes, message) in [
+        (("x", text("torq")), "did you mean `torque`?"),
+        (("x", text("design")), "holds texts"),
+        (("y", list(vec![text("peak_to_peak"), text("seconds")])), "different units"),
+        (("where", map(&[("design", "best")])), "no row has design = best"),
+        (
+            ("published", list(vec![group(&[("x", text("5 um")), ("label", text("p"))])])),
+            "`5 um` is a length, but the axis shows a torque",
+        ),
+        (("published", list(vec![group(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
+        (("name", text("../x")), "no name for a file"),
+        (("table", list(vec![text("ste")])), "is no table"),
+    ] {
+        let error = run(vec![], vec![figure(&[changes])]).unwrap_err();
+        assert!(error.contains(message), "{message}: {error}");
+    }
+    assert!(run(vec![], vec![figure(&[]), figure(&[])]).unwrap_err().contains("two figures are called `sweep`"));
+}
+
+#[test]
+fn ports_ask_for_each_table_once_with_the_columns_named() {
+    let published = group(&[("cell", text(ISO)), ("value", text("1 um"))]);
+    let claim = group(&[("claim", text("a < 2")), ("with", map(&[("a", "pair.summary.ratio")]))]);
+    let stage = (KIND.build)(&record(vec![published, claim], vec![figure(&[])])).unwrap();
+    let ports = stage.inputs();
+    assert_eq!(ports.iter().map(|port| port.stage.as_str()).collect::<Vec<_>>(), ["ste", "pair"]);
+    assert_eq!(ports[0].wants.len(), 1);
+    assert_eq!(ports[0].wants[0].columns, ["design", "peak_to_peak", "torque"]);
+}
+
+#[test]
+fn the_counts_add_up_and_an_empty_report_is_one() {
+    let tables = run(vec![group(&[("cell", text(ISO)), ("value", text("1 um"))])], vec![]).unwrap();
+    assert_eq!(tables[1].integers("count").iter().sum::<i64>(), 1);
+    assert_eq!(tables[1].column("verdict").unwrap().cell(0), Cell::from("unexplained"));
+    let tables = run(vec![], vec![]).unwrap();
+    assert_eq!(tables.iter().map(Table::rows).collect::<Vec<_>>(), [0, 7, 0, 0]);
+}
