@@ -119,6 +119,12 @@ impl MeshCycle {
         Ok(Self { pair: pair.clone(), settings, face_width, zones, elasticity, coupling, rows: Rows::new() })
     }
 
+    /// The same cycle, sampled otherwise.
+    #[must_use]
+    pub fn sampled(&self, settings: Settings) -> Self {
+        Self { settings, ..self.clone() }
+    }
+
     /// p_b \[m\].
     #[must_use]
     pub fn period(&self) -> f64 {

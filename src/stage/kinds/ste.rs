@@ -177,7 +177,7 @@ impl Ste {
         let base = MeshCycle::new(pair, compliance, self.settings)?;
         let positions = |index: usize| if self.accuracy.is_none() && index == 1 { self.settings.positions } else { first << index };
         Ok((0..count)
-            .map(|index| MeshCycle { settings: Settings { positions: positions(index), ..self.settings }, ..base.clone() })
+            .map(|index| base.sampled(Settings { positions: positions(index), ..self.settings }))
             .collect())
     }
 }

@@ -1,0 +1,98 @@
+//! The report of a study on disk: the page, its figures, and the sentence that sums the verdicts up.
+//!
+//! Must not know: how anything is drawn.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::report;
+use crate::report::text;
+use crate::store::file::{self, Durability};
+use crate::store::manifest::Manifest;
+use crate::store::results::Folder;
+use crate::table::data::Table;
+
+const PAGE: &str = "report.html";
+const FIGURES: &str = "figures";
+
+#[must_use]
+pub fn path(folder: &Folder) -> PathBuf {
+    folder.path().join(PAGE)
+}
+
+/// Whether the page was written.
+#[must_use]
+pub fn are_there(folder: &Folder) -> bool {
+    path(folder).is_file()
+}
+
+/// Draws the page and the figures of a run; one sentence about the verdicts.
+///
+/// # Errors
+/// When a table cannot be read or a file not be written.
+pub fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
+    let rendered = report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
+    let figures = folder.path().join(FIGURES);
+    let cannot = |path: &Path, error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
+    fs::create_dir_all(&figures).map_err(|error| cannot(&figures, &error))?;
+    let put = |path: &Path, bytes: &[u8]| file::write(path, bytes, Durability::Lazy).map_err(|error| cannot(path, &error));
+    for (name, svg) in &rendered.figures {
+        put(&figures.join(format!("{name}.svg")), svg.as_bytes())?;
+    }
+    // Figures that are no more would be taken for current ones.
+    for entry in fs::read_dir(&figures).map_err(|error| cannot(&figures, &error))?.flatten() {
+        let name = entry.file_name().to_string_lossy().into_owned();
+        let kept = |figure: &str| rendered.figures.iter().any(|(name, _)| name == figure);
+        if name.strip_suffix(".svg").is_some_and(|figure| !kept(figure)) {
+            fs::remove_file(entry.path()).map_err(|error| cannot(&entry.path(), &error))?;
+        }
+    }
+    put(&path(folder), rendered.html.as_bytes())?;
+    Ok(summary(folder, manifest))
+}
+
+fn table(folder: &Folder, manifest: &Manifest, name: &str) -> Option<Table> {
+    let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == name)?;
+    folder.table(record).ok()
+}
+
+/// The tables of this name that report stages gave.
+fn of_reports(folder: &Folder, manifest: &Manifest, name: &str) -> Vec<Table> {
+    let reports = manifest.stages.iter().filter(|stage| stage.kind == "report");
+    reports.filter_map(|stage| table(folder, manifest, &format!("{}.{name}", stage.name))).collect()
+}
+
+fn summary(folder: &Folder, manifest: &Manifest) -> String {
+    let mut parts = Vec::new();
+    let mut all = 0;
+    for counts in of_reports(folder, manifest, "verdict_counts") {
+        for (word, count) in counts.texts("verdict").iter().zip(counts.integers("count")) {
+            all += count;
+            if *count > 0 {
+                parts.push(format!("{count} {word}"));
+            }
+        }
+    }
+    match all {
+        0 => String::new(),
+        1 => format!("1 verdict: {}", parts.join(", ")),
+        all => format!("{all} verdicts: {}", parts.join(", ")),
+    }
+}
+
+/// The verdicts of a run as text.
+///
+/// # Errors
+/// When the table of verdicts is not one.
+pub fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
+    let width = terminal_width();
+    let tables = of_reports(folder, manifest, "verdicts");
+    let shown: Result<Vec<String>, String> =
+        tables.iter().map(|table| text::verdicts(table, width).map_err(|error| error.to_string())).collect();
+    Ok(shown?.concat())
+}
+
+/// Columns of the terminal; of a page of text where there is none.
+fn terminal_width() -> u16 {
+    comfy_table::Table::new().width().unwrap_or(120)
+}
