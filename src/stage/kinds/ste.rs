@@ -198,14 +198,11 @@ impl Stage for Ste {
         vec![summary_schema(), curve_schema(), harmonics_schema()]
     }
 
-    fn left_out(&self, demand: &Demand) -> Vec<Omission> {
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = vec![Omission::new(
             "slices across the face",
             "crowning, slopes and linear or parabolic end relief have a closed form under linear contact",
         )];
-        if !demand.column("summary", "largest_pressure") && !demand.column("curve", "pressure") {
-            omissions.push(Omission::new("contact pressure", "nobody asks for columns `largest_pressure` or `pressure`"));
-        }
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }

@@ -180,16 +180,13 @@ impl Stage for Stiffness {
         ]
     }
 
-    fn left_out(&self, demand: &Demand) -> Vec<Omission> {
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = vec![Omission::new(
             "finite-element mesh and factorisation",
             format!("method `{}` needs none", self.method.member.name),
         )];
         if !self.setting.coupled {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
-        }
-        if !demand.table("iso6336") {
-            omissions.push(Omission::new("stiffness by ISO 6336-1", "nobody asks for table `iso6336`"));
         }
         omissions
     }
