@@ -1,6 +1,6 @@
 //! gearstudy: declarative, reproducible studies of spur-gear tooth modifications.
 //!
-//! The layers and what may import what are in `ARCHITECTURE.md`; `tests/layering.rs` holds them to it.
+//! The layers and what may import what are in `ARCHITECTURE.md`; `tests/it/layering.rs` holds them to it.
 
 pub mod base;
 pub mod cli;

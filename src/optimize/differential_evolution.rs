@@ -223,6 +223,29 @@ mod tests {
     use super::*;
 
     #[test]
+    fn a_trial_replaces_its_parent_unless_it_is_worse() {
+        let mut search = DifferentialEvolution {
+            seed: Seed::of_stage(1, "select"),
+            generations: 1,
+            towards_best: false,
+            weight: 0.7,
+            crossover: 0.9,
+            tolerance: 0.0,
+            polish: None,
+            population: vec![vec![0.1], vec![0.2], vec![0.3]],
+            values: vec![1.0, 2.0, 3.0],
+            trials: vec![vec![0.4], vec![0.5], vec![0.6]],
+            told: 1,
+            ended: None,
+            polishing: None,
+        };
+        search.select(&[1.5, 2.0, 0.5]);
+        assert_eq!(search.population, [[0.1], [0.5], [0.6]]);
+        assert_eq!(search.values, [1.0, 2.0, 0.5]);
+        assert_eq!(search.best(), 2);
+    }
+
+    #[test]
     fn reflection_mirrors_and_stays_inside() {
         for (outside, inside) in [(0.25, 0.25), (-0.25, 0.25), (1.25, 0.75), (2.25, 0.25), (-1.25, 0.75), (3.5, 0.5)] {
             assert_eq!(reflect(outside).to_bits(), f64::to_bits(inside), "{outside}");

@@ -136,15 +136,14 @@ impl NelderMead {
         search
     }
 
-    /// One vertex along each axis; every other restart turns the simplex round.
+    /// One vertex along each axis.
     fn around(&self, centre: &[f64]) -> Vec<Vec<f64>> {
-        let edge = if self.restarted.is_multiple_of(2) { self.edge } else { -self.edge };
         (0..centre.len())
             .map(|axis| {
                 let mut vertex = centre.to_vec();
-                let moved = vertex[axis] + edge;
-                // Where there is no room on this side there is on the other: an edge is at most 1.
-                vertex[axis] = if (0.0..=1.0).contains(&moved) { moved } else { clip(vertex[axis] - edge) };
+                let moved = vertex[axis] + self.edge;
+                // No room above: a vertex below, clipped to the cube.
+                vertex[axis] = if moved <= 1.0 { moved } else { clip(vertex[axis] - self.edge) };
                 vertex
             })
             .collect()

@@ -35,6 +35,14 @@ def corners(x):
     return total
 
 
+def steps(x):
+    """Flat nearly everywhere: ties decide."""
+    total = 0.0
+    for t in x:
+        total += np.floor(50.0 * abs(t - 0.7))
+    return total
+
+
 def simplex():
     rows = []
     for name, function, dimension in [
@@ -43,6 +51,8 @@ def simplex():
         ("slope", slope, 3),
         ("corners", corners, 2),
         ("corners", corners, 4),
+        ("steps", steps, 2),
+        ("steps", steps, 3),
     ]:
         start = np.full(dimension, 0.5)
         first = np.vstack([start] + [start + 0.1 * unit for unit in np.eye(dimension)])

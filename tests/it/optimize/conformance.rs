@@ -140,6 +140,10 @@ fn the_population_methods_use_exactly_their_budget() {
     let given = [("population", integer(20)), ("generations", integer(15))];
     let evolution = run(search("differential_evolution", &given, &bounds, 1), |x| x[0]);
     assert_eq!((evolution.evaluations(), evolution.budget()), (300, 300));
+    // Children come in pairs; an odd population has no room for the last.
+    let odd =
+        run(search("genetic", &[("population", integer(9)), ("generations", integer(7))], &bounds, 1), |x| 1.0 + x[0]);
+    assert_eq!((odd.evaluations(), odd.budget()), (63, 63));
     let grid = run(search("grid", &[], &bounds, 1), |x| x[0]);
     assert_eq!((grid.evaluations(), grid.finished()), (1331, Some(Reason::Complete)));
 }
@@ -238,6 +242,17 @@ fn inadmissible_points_are_never_the_best() {
         let (_, done) = points(search(method, &given, &[(0.0, 1.0); 2], 3), |_| f64::NAN);
         assert!(done.best().is_none(), "{method}");
         assert!(done.history().iter().all(|row| row.best == f64::INFINITY && row.mean == f64::INFINITY), "{method}");
+    }
+}
+
+#[test]
+fn not_a_number_counts_as_infinite() {
+    for (method, given) in variants() {
+        let met = |inadmissible| {
+            points(search(method, &given, &[(0.0, 1.0); 2], 3), |x| if x[0] < 0.5 { inadmissible } else { 1.0 + x[0] })
+                .0
+        };
+        assert_eq!(met(f64::NAN), met(f64::INFINITY), "{method}");
     }
 }
 

@@ -99,6 +99,19 @@ fn the_simplex_converges_from_anywhere() {
 }
 
 #[test]
+fn restarts_free_a_simplex_stuck_in_a_sharp_valley() {
+    // Kinks like those of a peak-to-peak value: without a restart some seeds end on the valley's floor, far from 0.
+    let valley: Function =
+        |x| x.windows(2).map(|pair| 20.0 * (pair[1] - pair[0]).abs()).sum::<f64>() + (x[0] - 0.37).abs();
+    let missed = |restarts| {
+        let given = [("restarts", integer(restarts)), ("start", choice("random"))];
+        misses("nelder_mead", &given, &[(0.0, 1.3); 3], valley, 0.0)
+    };
+    assert!(missed(0) > 0.1, "{:e}", missed(0));
+    assert!(missed(3) < 1e-7, "{:e}", missed(3));
+}
+
+#[test]
 fn a_minimum_in_a_corner_is_met_exactly() {
     // Lowest at (−1, 7): falling to one bound and to the other.
     let corner: Function = |x| (x[0] + 2.0).powi(2) + (8.0 - x[1]);

@@ -1,0 +1,48 @@
+# gearstudy: `make` lists what can be made. Every target does its own set-up.
+
+SHELL := /bin/bash
+.SHELLFLAGS := -euo pipefail -c
+.DEFAULT_GOAL := help
+
+# rustup installs here; a shell opened before that does not know it.
+export PATH := $(PATH):$(HOME)/.cargo/bin
+# Tests that read results back with Python find it here, whatever their folder.
+export GEARSTUDY_PYTHON := $(CURDIR)/.venv/bin/python
+
+RELEASE := target/release/gearstudy
+STUDIES := $(sort $(wildcard studies/*.yaml))
+
+.PHONY: help setup release studies study test bench results clean
+
+help:  ## list the targets
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+
+setup:  ## install what the machine lacks: Debian packages, Python tools for the cross-checks
+	@scripts/setup
+
+release: setup  ## build the program with optimisation
+	cargo build --release --locked
+
+studies: release  ## run every study: tables, figures and reports in results/
+	@status=0; for study in $(STUDIES); do $(RELEASE) run "$$study" || status=$$?; done; exit $$status
+
+study: release  ## run one study: make study STUDY=energy_ga
+	@if [ -z "$(STUDY)" ] || [ ! -f "studies/$(STUDY).yaml" ]; then \
+		echo "make study STUDY=name, where name is one of: $(patsubst studies/%.yaml,%,$(STUDIES))" >&2; exit 2; fi
+	$(RELEASE) run "studies/$(STUDY).yaml"
+
+test: setup  ## format, lints, all tests, and the quick study run twice
+	cargo fmt --check
+	cargo clippy --locked --all-targets -- -D warnings
+	cargo test --locked
+	@# The program that the tests were built with: another build would differ in features and take a minute.
+	scripts/run-twice target/debug/gearstudy studies/quick.yaml
+
+bench: setup  ## measure the kernels and the program
+	cargo bench --locked
+
+results: studies  ## refresh the results that are committed, and show what changed
+	@git status --short results
+
+clean:  ## remove what was built and the cache; studies and results stay
+	rm -rf target .venv .gearstudy
