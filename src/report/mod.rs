@@ -4,6 +4,7 @@
 //! the section of the page about the run itself.
 
 mod figure;
+mod legend;
 mod page;
 mod plot;
 mod scale;
