@@ -98,6 +98,18 @@ fn tolerances_are_digits_shares_or_quantities() {
         let fields = [("cell", text(UNMODIFIED)), ("value", text(value)), ("tolerance", text(tolerance))];
         assert_eq!(verdict(&fields).unwrap().0, expected, "{value} within {tolerance}");
     }
+    let negative = |value: &str, tolerance: &str| {
+        let fields = [
+            ("formula", text("a - 1")),
+            ("with", map(&[("a", "0.5")])),
+            ("value", text(value)),
+            ("tolerance", text(tolerance)),
+        ];
+        verdict(&fields).unwrap().0
+    };
+    assert_eq!(negative("-0.504", "1 %"), "reproduced");
+    assert_eq!(negative("-0.51", "1 %"), "unexplained");
+    assert_eq!(negative("-0.504", "0.005"), "reproduced");
     for (value, tolerance, message) in [
         ("3 um", "-1 %", "negative"),
         ("3 um", "1 N", "does not fit"),
