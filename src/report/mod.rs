@@ -4,6 +4,7 @@
 //! the section of the page about the run itself.
 
 mod figure;
+mod legend;
 mod page;
 mod plot;
 mod scale;
@@ -52,7 +53,9 @@ pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Re
         };
         let mut figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
         if stages.len() > 1 {
-            figures.iter_mut().for_each(|figure| figure.name = format!("{stage}-{}", figure.name));
+            for figure in &mut figures {
+                figure.name = format!("{stage}-{}", figure.name);
+            }
         }
         let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
         parts.push(page::Part { stage: (*stage).to_owned(), verdicts, counts, figures });

@@ -46,7 +46,7 @@ struct View<'a> {
 #[derive(Serialize)]
 struct Count {
     verdict: String,
-    count: i64,
+    entries: i64,
     sign: &'static str,
     needs_attention: bool,
     meaning: String,
@@ -115,8 +115,8 @@ pub fn html(
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(failed)?);
     environment.add_template("page.html", include_str!("page.html")).map_err(failed)?;
     let counts = counts(parts)?;
-    let total: i64 = counts.iter().map(|count| count.count).sum();
-    let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.count).sum();
+    let total: i64 = counts.iter().map(|count| count.entries).sum();
+    let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
     let remarks = |pick: fn(&StageRecord) -> Vec<(String, String)>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
@@ -158,10 +158,10 @@ fn counts(parts: &[Part]) -> Result<Vec<Count>, ReportError> {
         let (attention, meanings) = (flags(&part.counts, "needs_attention")?, texts(&part.counts, "meaning")?);
         for row in 0..part.counts.rows() {
             match counts.iter_mut().find(|count| count.verdict == verdicts[row]) {
-                Some(count) => count.count += numbers[row],
+                Some(count) => count.entries += numbers[row],
                 None => counts.push(Count {
                     verdict: verdicts[row].clone(),
-                    count: numbers[row],
+                    entries: numbers[row],
                     sign: verdict::sign(&verdicts[row]),
                     needs_attention: attention[row],
                     meaning: meanings[row].clone(),

@@ -6,6 +6,7 @@
 
 use std::fmt::Write;
 
+use super::legend::{self, Colour, Item, Sign};
 use super::scale::{Scale, Tick};
 use crate::base::number::{superscript, unit_symbol};
 
@@ -16,7 +17,7 @@ const WIDTH: f64 = 860.0;
 const PLOT_HEIGHT: f64 = 340.0;
 const RIGHT: f64 = 18.0;
 /// Average width of a character at the size of a label: browsers differ, so places that depend on it leave room.
-const CHARACTER: f64 = 7.0;
+pub const CHARACTER: f64 = 7.0;
 /// Series beyond this many are coloured along a ramp.
 const COLOURS: usize = 8;
 
@@ -81,7 +82,7 @@ pub fn escape(text: &str) -> String {
 }
 
 /// A coordinate with two decimals and no negative zero.
-fn at(value: f64) -> String {
+pub fn at(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
@@ -126,7 +127,7 @@ impl Plot {
     #[must_use]
     pub fn svg(&self, standalone: bool) -> String {
         let legend = self.legend();
-        let rows = legend_rows(&legend);
+        let rows = legend::rows(&legend, WIDTH);
         let title_height = if standalone { 34.0 } else { 6.0 };
         let legend_height = if legend.is_empty() { 8.0 } else { 12.0 + 22.0 * rows.len() as f64 };
         let Some(frame) = self.frame(title_height + legend_height) else { return self.empty() };
@@ -149,7 +150,7 @@ impl Plot {
         } else {
             let _ = write!(svg, r#" tabindex="0" data-plot="{}">"#, escape(&self.data(&frame)));
         }
-        draw_legend(&mut svg, &legend, &rows, frame.left, title_height);
+        legend::draw(&mut svg, &legend, &rows, frame.left, title_height);
         self.draw_axes(&mut svg, &frame, is_slanted);
         match self.kind {
             Kind::Line => self.draw_lines(&mut svg, &frame),
@@ -431,120 +432,5 @@ fn axis_label(axis: &Axis, power: i32) -> String {
 fn dots(svg: &mut String, frame: &Frame, series: &Series, colour: Colour, radius: f64) {
     for (x, y) in series.runs.iter().flatten().filter_map(|&point| frame.place(point)) {
         let _ = write!(svg, r#"<circle {} cx="{}" cy="{}" r="{radius}"/>"#, colour.fill(), at(x), at(y));
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Colour {
-    /// One of the style's colours, made to be told apart by colour-blind readers.
-    Of(usize),
-    /// Along a ramp, red, green, blue.
-    Ramp([u8; 3]),
-    /// That of the text.
-    Ink,
-}
-
-impl Colour {
-    fn ramp(index: usize, count: usize) -> Self {
-        // Blue over violet to orange: rising lightness, readable on white and on black.
-        const STOPS: [[f64; 3]; 4] =
-            [[49.0, 88.0, 196.0], [140.0, 80.0, 180.0], [208.0, 92.0, 120.0], [236.0, 158.0, 44.0]];
-        let along = 3.0 * index as f64 / (count - 1) as f64;
-        let from = if along >= 2.0 { 2 } else { usize::from(along >= 1.0) };
-        let share = along - from as f64;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 0 and 255
-        let mix =
-            |channel: usize| (STOPS[from][channel] * (1.0 - share) + STOPS[from + 1][channel] * share).round() as u8;
-        Self::Ramp([mix(0), mix(1), mix(2)])
-    }
-
-    fn value(self) -> String {
-        match self {
-            Self::Of(index) => format!("var(--s{index})"),
-            Self::Ramp([red, green, blue]) => format!("#{red:02x}{green:02x}{blue:02x}"),
-            Self::Ink => "var(--ink)".to_owned(),
-        }
-    }
-
-    fn stroke(self) -> String {
-        format!(r#"style="stroke:{}""#, self.value())
-    }
-
-    fn fill(self) -> String {
-        format!(r#"style="fill:{}""#, self.value())
-    }
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Sign {
-    Line,
-    Dot,
-    Square,
-    Diamond,
-    Dashes,
-}
-
-/// One entry of the legend.
-#[derive(Clone, Debug, PartialEq)]
-struct Item {
-    label: String,
-    sign: Sign,
-    colour: Colour,
-}
-
-impl Item {
-    fn width(&self) -> f64 {
-        52.0 + CHARACTER * self.label.chars().count() as f64
-    }
-}
-
-/// Which entries stand in which row.
-fn legend_rows(items: &[Item]) -> Vec<Vec<usize>> {
-    let mut rows: Vec<Vec<usize>> = Vec::new();
-    let mut used = f64::INFINITY;
-    for (index, item) in items.iter().enumerate() {
-        if used + item.width() > WIDTH - 70.0 {
-            rows.push(Vec::new());
-            used = 0.0;
-        }
-        used += item.width();
-        if let Some(row) = rows.last_mut() {
-            row.push(index);
-        }
-    }
-    rows
-}
-
-fn draw_legend(svg: &mut String, items: &[Item], rows: &[Vec<usize>], left: f64, top: f64) {
-    for (nth, row) in rows.iter().enumerate() {
-        let y = top + 14.0 + 22.0 * nth as f64;
-        let mut x = left;
-        for &index in row {
-            let Item { label, sign, colour } = &items[index];
-            let (stroke, fill) = (colour.stroke(), colour.fill());
-            let (x0, y0) = (at(x), at(y));
-            let _ = match sign {
-                Sign::Line => write!(svg, r#"<path class="series" {stroke} d="M{x0} {y0}h24"/>"#),
-                Sign::Dashes => write!(svg, r#"<path class="dashes" {stroke} d="M{x0} {y0}h24"/>"#),
-                Sign::Dot => write!(svg, r#"<circle {fill} cx="{}" cy="{y0}" r="3.6"/>"#, at(x + 12.0)),
-                Sign::Square => {
-                    write!(svg, r#"<rect {fill} x="{}" y="{}" width="12" height="12"/>"#, at(x + 6.0), at(y - 6.0))
-                }
-                Sign::Diamond => write!(
-                    svg,
-                    r#"<path class="mark" {stroke} d="M{} {}l6 6l-6 6l-6 -6z"/>"#,
-                    at(x + 12.0),
-                    at(y - 6.0)
-                ),
-            };
-            let _ = write!(
-                svg,
-                r#"<text class="legend" x="{}" y="{}">{}</text>"#,
-                at(x + 31.0),
-                at(y + 4.5),
-                escape(label)
-            );
-            x += items[index].width();
-        }
     }
 }

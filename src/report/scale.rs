@@ -42,7 +42,7 @@ impl Scale {
             high = high.max(0.0);
         }
         let size = low.abs().max(high.abs());
-        if high - low <= 1e-12 * size || high == low {
+        if high - low <= 1e-12 * size {
             // One value: enough room to see that it is constant.
             let room = if size == 0.0 { 1.0 } else { 0.1 * size };
             return Some(Self { low: low - room, high: high + room, is_log });

@@ -9,6 +9,9 @@ mod entry;
 mod figure;
 mod formula;
 mod operand;
+mod quantity;
+mod rows;
+mod stated;
 mod verdict;
 
 use std::collections::BTreeSet;
@@ -193,7 +196,7 @@ fn verdicts() -> Schema {
             ),
             Column::text("found", "For a claim: in how many rows it holds"),
             Column::text("unit", "Unit of published, computed, difference, tolerance and expected"),
-            Column::float("difference", "", "computed − published"),
+            Column::float("difference", "", "computed − published").tolerance(1e-12, 1e-6),
             Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0")
                 .allows_nan(),
             Column::float("tolerance", "", "How far apart the two may be and still agree"),

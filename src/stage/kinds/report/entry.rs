@@ -3,14 +3,16 @@
 //! Must not know: figures, other entries.
 
 use crate::base::error::{Diagnostic, Place};
-use crate::base::number::Printed;
 use crate::base::record::{Record, Value};
-use crate::base::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
+use crate::base::units::{RATIO, in_unit};
 use crate::stage::Inputs;
 use crate::table::data::Row;
 
-use super::formula::{Formula, Names, Number, Outcome, described, same_dimension, shown};
-use super::operand::{Operand, Values, in_si};
+use super::formula::{Formula, Outcome};
+use super::operand::{Operand, in_si};
+use super::quantity::Number;
+use super::rows::Rows;
+use super::stated::{Target, convert, read_target};
 use super::verdict::{Comparison, Verdict};
 
 /// Names that a proof may use without giving them.
@@ -24,22 +26,6 @@ enum Subject {
     Formula(Formula, Operands),
     /// True or false in every row.
     Claim(Formula, Operands),
-}
-
-/// A value as printed.
-struct Stated {
-    text: String,
-    /// In `unit`.
-    number: f64,
-    unit: String,
-    dimension: Dimension,
-    printed: Printed,
-}
-
-/// A stated value and how far a computed one may be from it, in the stated unit.
-struct Target {
-    stated: Stated,
-    tolerance: f64,
 }
 
 struct Proof {
@@ -119,7 +105,7 @@ impl Entry {
         {
             let field = if formula.is_claim() { "claim" } else { "formula" };
             let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
-            let outcome = rows_of(&Inputs::default(), with)
+            let outcome = Rows::of(&Inputs::default(), with)
                 .and_then(|rows| formula.evaluate(&rows.names(0, None)))
                 .map_err(wrong)?;
             if let (Outcome::Number(number), Some(target)) = (outcome, &self.published) {
@@ -128,10 +114,15 @@ impl Entry {
         }
         if let Some(Proof { claim, with }) = &self.proof
             && with.iter().all(|(_, operand)| operand.cell().is_none())
-            && claim.names().all(|name| name != "computed")
+            && claim.names().all(|name| name != "computed" && (name != "published" || self.published.is_some()))
         {
             let place = record.maybe_group("proof").map_or(record.place, |proof| proof.place_of("claim"));
-            self.prove(&Inputs::default(), f64::NAN).map_err(|message| Diagnostic::new(message).at(place))?;
+            self.prove(
+                &Inputs::default(),
+                self.published.as_ref().map_or(f64::NAN, |target| target.stated.number),
+                f64::NAN,
+            )
+            .map_err(|message| Diagnostic::new(message).at(place))?;
         }
         Ok(())
     }
@@ -165,7 +156,7 @@ impl Entry {
                 (self.in_published_unit(values.single(&operand.text)?)?, 0.0, String::new(), String::new())
             }
             Subject::Formula(formula, with) => {
-                let rows = rows_of(inputs, with)?;
+                let rows = Rows::of(inputs, with)?;
                 rows.single()?;
                 match formula.evaluate(&rows.names(0, None))? {
                     Outcome::Number(number) => (self.in_published_unit(number)?, 0.0, rows.written(0), String::new()),
@@ -173,7 +164,7 @@ impl Entry {
                 }
             }
             Subject::Claim(formula, with) => {
-                let rows = rows_of(inputs, with)?;
+                let rows = Rows::of(inputs, with)?;
                 let mut failing = Vec::new();
                 for row in 0..rows.count {
                     if formula.evaluate(&rows.names(row, None))? == Outcome::Truth(false) {
@@ -191,7 +182,7 @@ impl Entry {
             Some(target) => Some((target.stated.in_unit(unit)?, convert(target.tolerance, &target.stated.unit, unit)?)),
             None => None,
         };
-        let (proof_holds, proof) = match self.prove(inputs, computed)? {
+        let (proof_holds, proof) = match self.prove(inputs, published, computed)? {
             Some((holds, text)) => (Some(holds), text),
             None => (None, String::new()),
         };
@@ -201,7 +192,11 @@ impl Entry {
             Comparison { published, computed, tolerance, expected, has_reason, proof_holds, is_claim }.judge()?;
         let (cell, with) = self.subject.written();
         let stated = self.published.as_ref().map_or_else(|| "holds".to_owned(), |target| target.stated.text.clone());
-        let found = if is_claim { format!("holds in {computed} of {total}") } else { String::new() };
+        let found = match (is_claim, total > 1.0) {
+            (false, _) => String::new(),
+            (true, true) => format!("holds in {computed} of {total}"),
+            (true, false) => (if computed > 0.0 { "holds" } else { "does not hold" }).to_owned(),
+        };
         let difference = computed - published;
         let row = vec![
             self.number.into(),
@@ -237,14 +232,14 @@ impl Entry {
     }
 
     /// Whether the proof holds, and its text with the numbers put in.
-    fn prove(&self, inputs: &Inputs, computed: f64) -> Result<Option<(bool, String)>, String> {
+    fn prove(&self, inputs: &Inputs, published: f64, computed: f64) -> Result<Option<(bool, String)>, String> {
         let Some(Proof { claim, with }) = &self.proof else { return Ok(None) };
-        let rows = rows_of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
+        let rows = Rows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
         rows.single().map_err(|problem| format!("proof: {problem}"))?;
         let unit = self.published.as_ref().map_or("", |target| target.stated.unit.as_str());
-        let published =
-            self.published.as_ref().map_or(Ok(Number::plain(1.0)), |target| in_si(target.stated.number, unit));
-        let given = (published?, in_si(computed, unit).unwrap_or(Number::plain(f64::NAN)));
+        // A value that is not known yet is NaN, which no formula lets pass.
+        let number = |value: f64| if value.is_nan() { Ok(Number::plain(value)) } else { in_si(value, unit) };
+        let given = (number(published)?, number(computed)?);
         let names = rows.names(0, Some(given));
         let outcome = claim.evaluate(&names).map_err(|problem| format!("proof: {problem}"))?;
         let numbers = claim.with_numbers(&names, unit).map_err(|problem| format!("proof: {problem}"))?;
@@ -267,105 +262,6 @@ impl Subject {
                 (formula.text.clone(), with.join("; "))
             }
         }
-    }
-}
-
-impl Stated {
-    fn check_dimension(&self, number: Number) -> Result<(), String> {
-        if same_dimension(number.dimension, self.dimension) {
-            return Ok(());
-        }
-        let (found, stated) = (described(number.dimension), described(self.dimension));
-        Err(format!("what is computed is {found}, but the published `{}` is {stated}", self.text))
-    }
-
-    fn in_unit(&self, unit: &str) -> Result<f64, String> {
-        convert(self.number, &self.unit, unit)
-    }
-}
-
-fn convert(value: f64, from: &str, to: &str) -> Result<f64, String> {
-    if from == to { Ok(value) } else { in_si(value, from).map(|number| in_unit(number.si, to)) }
-}
-
-/// The values of every name, in rows that line up.
-struct Rows<'a> {
-    with: &'a [(String, Operand)],
-    values: Vec<Values>,
-    /// The operand whose rows are counted, if any has several.
-    leader: Option<usize>,
-    count: usize,
-}
-
-fn rows_of<'a>(inputs: &Inputs, with: &'a [(String, Operand)]) -> Result<Rows<'a>, String> {
-    let values: Vec<Values> = with
-        .iter()
-        .map(|(name, operand)| operand.resolve(inputs).map_err(|problem| format!("{name} = {problem}")))
-        .collect::<Result<_, _>>()?;
-    let leader = values.iter().position(|values| values.numbers.len() > 1);
-    let count = leader.map_or(1, |leader| values[leader].numbers.len());
-    if let Some(leader) = leader {
-        for (other, (name, _)) in values.iter().zip(with) {
-            if other.numbers.len() > 1 && (&other.keys, &other.rows) != (&values[leader].keys, &values[leader].rows) {
-                let (first, keys) = (&with[leader].0, values[leader].keys.join(", "));
-                return Err(format!(
-                    "the rows of {first} ({count}, by {keys}) and {name} ({}, by {}) do not line up",
-                    other.numbers.len(),
-                    other.keys.join(", ")
-                ));
-            }
-        }
-    }
-    Ok(Rows { with, values, leader, count })
-}
-
-impl Rows<'_> {
-    fn single(&self) -> Result<(), String> {
-        for (values, (_, operand)) in self.values.iter().zip(self.with) {
-            values.single(&operand.text)?;
-        }
-        Ok(())
-    }
-
-    fn number(&self, operand: usize, row: usize) -> Number {
-        let numbers = &self.values[operand].numbers;
-        numbers[if numbers.len() == 1 { 0 } else { row }]
-    }
-
-    /// The names of one row; `given` are `published` and `computed`, in a proof.
-    fn names(&self, row: usize, given: Option<(Number, Number)>) -> impl Fn(&str) -> Option<Number> + '_ {
-        move |name| match (name, given) {
-            ("published", Some((published, _))) => Some(published),
-            ("computed", Some((_, computed))) => Some(computed),
-            _ => self.with.iter().position(|(known, _)| known == name).map(|operand| self.number(operand, row)),
-        }
-    }
-
-    /// `k1 = 273.8×10⁶ N/m, …`
-    fn written(&self, row: usize) -> String {
-        let one = |(operand, (name, _)): (usize, &(String, Operand))| {
-            let text = shown(self.number(operand, row), &self.values[operand].unit, 6);
-            format!("{name} = {text}")
-        };
-        self.with.iter().enumerate().map(one).collect::<Vec<_>>().join(", ")
-    }
-
-    /// Where a claim does not hold, with the numbers of the first such row.
-    fn remark(&self, failing: &[usize], formula: &Formula) -> Result<String, String> {
-        const MOST: usize = 6;
-        let (Some(&first), Some(leader)) = (failing.first(), self.leader) else { return Ok(String::new()) };
-        let (keys, rows) = (&self.values[leader].keys, &self.values[leader].rows);
-        let at = |row: usize| {
-            let parts = keys.iter().zip(&rows[row]).map(|(key, value)| format!("{key} {value}"));
-            parts.collect::<Vec<_>>().join(", ")
-        };
-        let mut places: Vec<String> = failing.iter().take(MOST).map(|&row| at(row)).collect();
-        if failing.len() > MOST {
-            places.push(format!("and {} more", failing.len() - MOST));
-        }
-        let names: Names = &self.names(first, None);
-        let numbers = formula.with_numbers(names, &self.values[leader].unit)?;
-        Ok(format!("does not hold at {}; at {}: {numbers}", places.join("; "), at(first)))
     }
 }
 
@@ -437,52 +333,4 @@ fn read_formula(text: &str, with: &Operands, given: &[&str], place: Place) -> Re
         return Err(Diagnostic::new(format!("`with` gives `{unused}`, but `{text}` does not use it")).at(place));
     }
     Ok(formula)
-}
-
-/// Reads `value` and `tolerance`; `dimension` is what the value must have, where that is known.
-fn read_target(record: &Record, dimension: Option<Dimension>) -> Result<Target, Diagnostic> {
-    let place = record.place_of("value");
-    let wrong = |message: String| Diagnostic::new(message).at(place);
-    let text = record.text("value").trim();
-    let quantity = parse_quantity(text).map_err(|error| wrong(format!("value `{text}`: {error}")))?;
-    if let Some(wanted) = dimension.filter(|wanted| !same_dimension(*wanted, quantity.dimension)) {
-        let (found, wanted) = (described(quantity.dimension), described(wanted));
-        return Err(wrong(format!("`{text}` is {found}; the published value is {wanted}")));
-    }
-    let (number, unit) = split_quantity(text);
-    let (Ok(number), Some(printed)) = (number.parse::<f64>(), Printed::read(text)) else {
-        return Err(wrong(format!("`{text}` is no number followed by a unit")));
-    };
-    let stated =
-        Stated { text: text.to_owned(), number, unit: unit.to_owned(), dimension: quantity.dimension, printed };
-    let tolerance = read_tolerance(record, &stated)?;
-    Ok(Target { stated, tolerance })
-}
-
-/// `digits`, `1 %` of the value, or a quantity.
-fn read_tolerance(record: &Record, stated: &Stated) -> Result<f64, Diagnostic> {
-    const HELP: &str =
-        "write `digits` (as far as the printed digits go), `1 %` (of the value), or a quantity in the value's unit";
-    let wrong = |message: String| Diagnostic::new(message).at(record.place_of("tolerance")).help(HELP);
-    let text = record.maybe_text("tolerance").unwrap_or("digits").trim();
-    if text == "digits" {
-        return Ok(stated.printed.half_unit());
-    }
-    let quantity = parse_quantity(text).map_err(|error| wrong(format!("tolerance `{text}`: {error}")))?;
-    if quantity.value < 0.0 {
-        return Err(wrong(format!("the tolerance `{text}` is negative")));
-    }
-    if quantity.has_unit && quantity.dimension == RATIO {
-        if stated.number == 0.0 {
-            return Err(wrong(format!("`{text}` of a value of 0 is nothing")));
-        }
-        return Ok(quantity.value * stated.number.abs());
-    }
-    // A bare number is in the value's unit, where that is no unit; beside a `%` it could mean two things.
-    let fits =
-        if quantity.has_unit { same_dimension(quantity.dimension, stated.dimension) } else { stated.unit.is_empty() };
-    if !fits {
-        return Err(wrong(format!("the tolerance `{text}` does not fit the value `{}`", stated.text)));
-    }
-    Ok(in_unit(quantity.value, &stated.unit))
 }

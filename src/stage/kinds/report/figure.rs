@@ -12,8 +12,8 @@ use crate::table::data::{Row, Table};
 use crate::table::schema::{Column, Schema, Type};
 use crate::table::select::{rows_where, unknown_column};
 
-use super::formula::{described, same_dimension};
 use super::operand::{in_si, no_rows, table};
+use super::quantity::{described, same_dimension};
 
 const KINDS: &[Choice] = &[
     Choice { name: "line", summary: "a line for each series" },

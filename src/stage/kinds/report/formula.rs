@@ -7,37 +7,13 @@
 use evalexpr::{DefaultNumericTypes, Node, Operator, Value, build_operator_tree};
 
 use crate::base::error::suggest;
-use crate::base::number::{significant, with_unit};
-use crate::base::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
+use crate::base::units::{Dimension, RATIO};
+
+use super::quantity::{Number, described, power, product, shown, wider};
 
 /// Longer formulas are refused: nobody reads them, and the parser's recursion stays shallow.
 const LONGEST: usize = 600;
 const FUNCTIONS: [&str; 4] = ["abs", "max", "min", "sqrt"];
-
-/// A number in SI and its dimension.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Number {
-    pub si: f64,
-    pub dimension: Dimension,
-}
-
-impl Number {
-    #[must_use]
-    pub const fn plain(si: f64) -> Self {
-        Self { si, dimension: RATIO }
-    }
-
-    fn fits(self, other: Self) -> bool {
-        let is_zero = |number: Self| number.si == 0.0 && number.dimension == RATIO;
-        same_dimension(self.dimension, other.dimension) || is_zero(self) || is_zero(other)
-    }
-}
-
-/// Whether two dimensions are the same when radians count as plain numbers.
-#[must_use]
-pub fn same_dimension(a: Dimension, b: Dimension) -> bool {
-    (a.length, a.mass, a.time) == (b.length, b.mass, b.time)
-}
 
 /// What an expression gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -295,77 +271,6 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
     }
 }
 
-/// The dimension of a sum, where a plain zero may stand for any.
-fn wider(a: Number, b: Number) -> Dimension {
-    if a.dimension == RATIO { b.dimension } else { a.dimension }
-}
-
-fn product(a: Dimension, b: Dimension, power: i8) -> Dimension {
-    let join = |a: i8, b: i8| a.saturating_add(b.saturating_mul(power));
-    Dimension {
-        length: join(a.length, b.length),
-        mass: join(a.mass, b.mass),
-        time: join(a.time, b.time),
-        angle: join(a.angle, b.angle),
-    }
-}
-
-fn power(base: Dimension, exponent: Number) -> Result<Dimension, String> {
-    if !same_dimension(exponent.dimension, RATIO) {
-        return Err(format!("an exponent is a plain number, not {}", described(exponent.dimension)));
-    }
-    if same_dimension(base, RATIO) {
-        return Ok(RATIO);
-    }
-    let raise = |part: i8| {
-        let raised = f64::from(part) * exponent.si;
-        // Within i8 and whole: only then is there such a dimension.
-        #[allow(clippy::cast_possible_truncation)]
-        if raised.fract() == 0.0 && raised.abs() < 100.0 { Some(raised as i8) } else { None }
-    };
-    let raised = (raise(base.length), raise(base.mass), raise(base.time));
-    let (Some(length), Some(mass), Some(time)) = raised else {
-        return Err(format!("{} to the power {} has no unit", described(base), exponent.si));
-    };
-    Ok(Dimension { length, mass, time, angle: 0 })
-}
-
-/// The words for a dimension in a message.
-#[must_use]
-pub fn described(dimension: Dimension) -> String {
-    match dimension.describe() {
-        (_, []) => {
-            let parts = [("m", dimension.length), ("kg", dimension.mass), ("s", dimension.time)];
-            let parts = parts.iter().filter(|(_, power)| *power != 0).map(|(unit, power)| match power {
-                1 => (*unit).to_owned(),
-                power => format!("{unit}^{power}"),
-            });
-            format!("a quantity in {}", parts.collect::<Vec<_>>().join(" "))
-        }
-        (name, _) => name.to_owned(),
-    }
-}
-
-/// `number` in `unit` when that fits, otherwise in the field's usual unit.
-#[must_use]
-pub fn shown(number: Number, unit: &str, digits: usize) -> String {
-    let fits = |unit: &str| parse_unit(unit).is_ok_and(|parsed| same_dimension(parsed.dimension, number.dimension));
-    let usual = match number.dimension {
-        LENGTH if number.si.abs() < 1e-4 => "um",
-        LENGTH => "mm",
-        FORCE => "N",
-        TORQUE => "N m",
-        STRESS => "MPa",
-        STIFFNESS => "N/m",
-        _ => "",
-    };
-    let unit = if !unit.is_empty() && fits(unit) { unit } else { usual };
-    if unit.is_empty() && !same_dimension(number.dimension, RATIO) {
-        return format!("{} ({} in SI)", significant(number.si, digits), described(number.dimension));
-    }
-    with_unit(&significant(in_unit(number.si, unit), digits), unit)
-}
-
 fn with_numbers(node: &Node<DefaultNumericTypes>, names: Names, unit: &str) -> Result<String, String> {
     let joined = |word: &str| {
         let parts =
@@ -409,8 +314,9 @@ fn negated(sign: &str) -> &'static str {
 
 #[cfg(test)]
 mod tests {
+    use super::super::quantity::same_dimension;
     use super::*;
-    use crate::base::units::parse_quantity;
+    use crate::base::units::{LENGTH, STRESS, parse_quantity};
 
     fn given(name: &str) -> Option<Number> {
         let text = match name {

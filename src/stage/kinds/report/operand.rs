@@ -8,7 +8,7 @@ use crate::stage::Inputs;
 use crate::table::data::{Cell, Data, Table};
 use crate::table::select::{CellName, rows_where, unknown_column};
 
-use super::formula::Number;
+use super::quantity::Number;
 
 /// A quantity or cells, as written.
 #[derive(Clone, Debug)]

@@ -98,6 +98,18 @@ fn tolerances_are_digits_shares_or_quantities() {
         let fields = [("cell", text(UNMODIFIED)), ("value", text(value)), ("tolerance", text(tolerance))];
         assert_eq!(verdict(&fields).unwrap().0, expected, "{value} within {tolerance}");
     }
+    let negative = |value: &str, tolerance: &str| {
+        let fields = [
+            ("formula", text("a - 1")),
+            ("with", map(&[("a", "0.5")])),
+            ("value", text(value)),
+            ("tolerance", text(tolerance)),
+        ];
+        verdict(&fields).unwrap().0
+    };
+    assert_eq!(negative("-0.504", "1 %"), "reproduced");
+    assert_eq!(negative("-0.51", "1 %"), "unexplained");
+    assert_eq!(negative("-0.504", "0.005"), "reproduced");
     for (value, tolerance, message) in [
         ("3 um", "-1 %", "negative"),
         ("3 um", "1 N", "does not fit"),
@@ -159,6 +171,15 @@ fn a_claim_is_counted_row_by_row() {
     explained.pop();
     explained.push(("expected", group(&[("value", text("2")), ("tolerance", text("0"))])));
     assert_eq!(verdict(&explained).unwrap().0, "moved");
+    explained.pop();
+    // In the proof of a claim the two numbers are counts of rows.
+    explained.push(("proof", group(&[("claim", text("published == 3 && computed == 1"))])));
+    assert_eq!(verdict(&explained).unwrap().0, "refuted");
+
+    let alone = [("claim", text("iso < other")), ("with", map(&[("iso", ISO), ("other", "0.5 um")]))];
+    let (word, table) = verdict(&alone).unwrap();
+    assert_eq!((word.as_str(), table.texts("found")[0].as_str()), ("unexplained", "does not hold"));
+    assert_eq!(table.texts("failing")[0], "0.75\u{202f}µm ≥ 0.5\u{202f}µm");
 }
 
 #[test]
