@@ -9,7 +9,7 @@ use std::path::Path;
 use std::str::FromStr;
 
 use hdf5_metno::types::VarLenUnicode;
-use hdf5_metno::{File, Group, H5Type, Location};
+use hdf5_metno::{File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
 use super::file::{self, Durability};
@@ -30,7 +30,7 @@ impl Writer {
     /// When the folder cannot be written to.
     pub fn create(path: &Path) -> Result<Self, StoreError> {
         let temporary = file::temporary(path.parent().unwrap_or(Path::new(".")))?;
-        let file = File::create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
+        let file = unlocked().create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
         Ok(Self { file, temporary })
     }
 
@@ -59,6 +59,14 @@ impl Writer {
 /// A sentence, when the file is not one of ours.
 pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
     read_table(path, stage, table).map_err(|error| error.to_string())?
+}
+
+/// Without libhdf5's own lock (1.10.7 or later): a file is written under a name nobody else knows, the lock fails on
+/// some network disks, and a process started meanwhile would go on holding it.
+fn unlocked() -> FileBuilder {
+    let mut builder = FileBuilder::new();
+    builder.access_plist().file_locking(false);
+    builder
 }
 
 fn format(table: String, error: &hdf5_metno::Error) -> StoreError {
@@ -132,7 +140,7 @@ fn get_word(location: &Location, name: &str) -> hdf5_metno::Result<String> {
 }
 
 fn read_table(path: &Path, stage: &str, table: &str) -> hdf5_metno::Result<Result<Table, String>> {
-    let group = File::open(path)?.group(stage)?.group(table)?;
+    let group = unlocked().open(path)?.group(stage)?.group(table)?;
     let mut columns = Vec::new();
     let mut data = Vec::new();
     for name in group.attr("columns")?.read_raw::<VarLenUnicode>()? {
