@@ -2,8 +2,9 @@
 //!
 //! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
 //! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,
-//! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. Files are
-//! written only here: libhdf5 has one lock for all. Must not know: studies, where tables come from.
+//! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. No times are
+//! kept, so the same tables give the same bytes. Files are written only here: libhdf5 has one lock for all. Must
+//! not know: studies, where tables come from.
 
 use std::path::Path;
 use std::str::FromStr;
@@ -200,6 +201,22 @@ mod tests {
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         assert!(read(&path, "stage0", "absent").is_err());
+    }
+
+    #[test]
+    fn the_same_tables_give_the_same_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let bytes = |name: &str| {
+            let path = folder.path().join(name);
+            let mut writer = Writer::create(&path).unwrap();
+            writer.add("ste", &everything(300)).unwrap();
+            writer.finish(&path).unwrap();
+            std::fs::read(&path).unwrap()
+        };
+        let first = bytes("a");
+        // Times in HDF5 count seconds.
+        std::thread::sleep(std::time::Duration::from_millis(1100));
+        assert!(first == bytes("b"));
     }
 
     #[test]
