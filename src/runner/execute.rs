@@ -98,6 +98,7 @@ pub fn execute(
             shares: Mutex::default(),
         };
         pool.in_place_scope_fifo(|scope| run.spawn(scope, &queued));
+        debug_assert!(run.board().halted.is_some() || run.loaded().is_empty(), "nobody reads these tables any more");
         board = run.board.into_inner().unwrap_or_else(PoisonError::into_inner);
     }
     board.close();

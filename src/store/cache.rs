@@ -190,12 +190,12 @@ impl Cache {
     /// When a folder cannot be read.
     pub fn verify(&self) -> Result<Vec<(PathBuf, String)>, StoreError> {
         let mut damaged = Vec::new();
-        for (path, key) in entries(&self.root)? {
-            let problem = match key.map(|key| entry::open(&path, key)) {
-                None => Some("its name is no key".to_owned()),
-                Some(Err(problem)) => Some(problem),
-                Some(Ok(None)) => None,
-                Some(Ok(Some((entry, _)))) => entry
+        // What is under a temporary name is not there yet, or was left behind.
+        for (path, key) in entries(&self.root)?.into_iter().filter_map(|(path, key)| Some((path, key?))) {
+            let problem = match entry::open(&path, key) {
+                Err(problem) => Some(problem),
+                Ok(None) => None,
+                Ok(Some((entry, _))) => entry
                     .tables
                     .iter()
                     .filter(|table| table.body.is_some())
@@ -213,13 +213,7 @@ impl Cache {
     pub fn clean(root: &Path, remove: Remove, dry_run: bool) -> Result<Removed, StoreError> {
         let lock_path = root.join("lock");
         let Ok(lock) = File::open(&lock_path) else { return Ok(Removed::default()) };
-        match lock.try_lock() {
-            Err(fs::TryLockError::WouldBlock) => return Err(StoreError::InUse { path: root.display().to_string() }),
-            Err(fs::TryLockError::Error(error)) if error.kind() != std::io::ErrorKind::Unsupported => {
-                return Err(StoreError::io("lock", &lock_path)(error));
-            }
-            _ => {}
-        }
+        lock_alone(&lock, &lock_path)?;
         let referenced = if remove == Remove::Unreferenced { referenced(root)? } else { BTreeSet::new() };
         let now = SystemTime::now();
         let mut removed = Removed::default();
@@ -245,6 +239,21 @@ impl Cache {
         }
         Ok(removed)
     }
+}
+
+/// Takes the lock when no run holds it. A run that is just ending, or whose lock lives on for a moment in a process it
+/// started, is given a little time.
+fn lock_alone(lock: &File, path: &Path) -> Result<(), StoreError> {
+    for _ in 0..20 {
+        match lock.try_lock() {
+            Err(fs::TryLockError::WouldBlock) => std::thread::sleep(Duration::from_millis(10)),
+            Err(fs::TryLockError::Error(error)) if error.kind() != std::io::ErrorKind::Unsupported => {
+                return Err(StoreError::io("lock", path)(error));
+            }
+            _ => return Ok(()),
+        }
+    }
+    Err(StoreError::InUse { path: path.display().to_string() })
 }
 
 /// The keys that the journals name.

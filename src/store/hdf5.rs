@@ -2,14 +2,15 @@
 //!
 //! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
 //! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,
-//! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. Files are
-//! written only here: libhdf5 has one lock for all. Must not know: studies, where tables come from.
+//! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. No times are
+//! kept, so the same tables give the same bytes. Files are written only here: libhdf5 has one lock for all. Must
+//! not know: studies, where tables come from.
 
 use std::path::Path;
 use std::str::FromStr;
 
 use hdf5_metno::types::VarLenUnicode;
-use hdf5_metno::{File, Group, H5Type, Location};
+use hdf5_metno::{File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
 use super::file::{self, Durability};
@@ -30,7 +31,7 @@ impl Writer {
     /// When the folder cannot be written to.
     pub fn create(path: &Path) -> Result<Self, StoreError> {
         let temporary = file::temporary(path.parent().unwrap_or(Path::new(".")))?;
-        let file = File::create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
+        let file = unlocked().create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
         Ok(Self { file, temporary })
     }
 
@@ -59,6 +60,14 @@ impl Writer {
 /// A sentence, when the file is not one of ours.
 pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
     read_table(path, stage, table).map_err(|error| error.to_string())?
+}
+
+/// Without libhdf5's own lock (1.10.7 or later): a file is written under a name nobody else knows, the lock fails on
+/// some network disks, and a process started meanwhile would go on holding it.
+fn unlocked() -> FileBuilder {
+    let mut builder = FileBuilder::new();
+    builder.access_plist().file_locking(false);
+    builder
 }
 
 fn format(table: String, error: &hdf5_metno::Error) -> StoreError {
@@ -132,7 +141,7 @@ fn get_word(location: &Location, name: &str) -> hdf5_metno::Result<String> {
 }
 
 fn read_table(path: &Path, stage: &str, table: &str) -> hdf5_metno::Result<Result<Table, String>> {
-    let group = File::open(path)?.group(stage)?.group(table)?;
+    let group = unlocked().open(path)?.group(stage)?.group(table)?;
     let mut columns = Vec::new();
     let mut data = Vec::new();
     for name in group.attr("columns")?.read_raw::<VarLenUnicode>()? {
@@ -192,6 +201,22 @@ mod tests {
         }
         assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         assert!(read(&path, "stage0", "absent").is_err());
+    }
+
+    #[test]
+    fn the_same_tables_give_the_same_bytes() {
+        let folder = tempfile::tempdir().unwrap();
+        let bytes = |name: &str| {
+            let path = folder.path().join(name);
+            let mut writer = Writer::create(&path).unwrap();
+            writer.add("ste", &everything(300)).unwrap();
+            writer.finish(&path).unwrap();
+            std::fs::read(&path).unwrap()
+        };
+        let first = bytes("a");
+        // Times in HDF5 count seconds.
+        std::thread::sleep(std::time::Duration::from_millis(1100));
+        assert!(first == bytes("b"));
     }
 
     #[test]

@@ -393,6 +393,30 @@ mod tests {
     }
 
     #[test]
+    fn after_a_kill_no_new_file_passes_for_the_old_one() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = Folder::new(root.path(), "s");
+        let old = tables();
+        publish(&folder, &old, manifest(&old));
+        let mut new = tables();
+        for (_, table) in &mut new[..2] {
+            *table = Table::from_rows(table.schema().clone(), vec![]).unwrap();
+        }
+        // The first new file happens to be as long as the old one; the second never comes.
+        let length = fs::metadata(folder.path().join("ste.curve.parquet")).unwrap().len();
+        let bytes = |_: &str, name: &str| match name {
+            "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
+            _ => Err(StoreError::InUse { path: "killed".to_owned() }),
+        };
+        assert!(folder.publish(manifest(&new), || unreachable!(), &bytes).is_err());
+        assert_eq!(folder.changes(&manifest(&old)).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
+        publish(&folder, &old, manifest(&old));
+        for record in &folder.manifest().unwrap().stages[1].tables {
+            folder.table(record).unwrap();
+        }
+    }
+
+    #[test]
     fn a_manifest_from_elsewhere_removes_nothing_outside() {
         let root = tempfile::tempdir().unwrap();
         let folder = Folder::new(root.path(), "s");

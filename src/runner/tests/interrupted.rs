@@ -39,18 +39,23 @@ fn a_stopped_run_goes_on_where_it_was() {
     assert_eq!(bench.computed(), ["a×17", "b"]);
 }
 
+/// Stops the run when `b` is finished.
+struct StopAfterB<'a>(&'a AtomicBool);
+
+impl Observer for StopAfterB<'_> {
+    fn event(&self, event: &Event<'_>) {
+        if matches!(event, Event::Finished { stage: "b", .. }) {
+            self.0.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
 #[test]
 fn a_running_stage_hears_that_it_should_stop() {
     let mut bench = Bench::new();
     let stop = AtomicBool::new(false);
     let study = bench.study(&[stage("a", 1.0).mode("until_stopped"), stage("b", 1.0)]);
-    let outcome = std::thread::scope(|scope| {
-        scope.spawn(|| {
-            std::thread::sleep(Duration::from_millis(50));
-            stop.store(true, Ordering::Relaxed);
-        });
-        execute(&study, &bench.cache(), &bench.options, &Silent, &stop).unwrap()
-    });
+    let outcome = execute(&study, &bench.cache(), &bench.options, &StopAfterB(&stop), &stop).unwrap();
     assert!(outcome.stopped);
     assert_eq!(outcome.stage("a").unwrap().state, State::Skipped);
     assert_eq!(outcome.stage("b").unwrap().state, State::Done);

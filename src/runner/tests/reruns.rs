@@ -64,6 +64,10 @@ fn a_new_seed_concerns_only_stages_that_draw() {
     let second = bench.run(&specs("b"));
     assert_eq!(bench.computed(), ["b", "c"]);
     assert_ne!(values(&bench, &first, "b"), values(&bench, &second, "b"));
+    // What draws without saying so is given the same numbers under every seed: its tables fit its key.
+    bench.options.force = Force::Stages(["a".to_owned()].into());
+    assert_eq!(bench.run(&specs("b")).stage("a").unwrap().state, State::Done);
+    bench.options.force = Force::Nothing;
     // The seed comes from the name, so a new name draws anew; a study without random numbers would not notice.
     bench.run(&specs("renamed_b"));
     assert_eq!(bench.computed(), ["c", "renamed_b"]);
