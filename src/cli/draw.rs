@@ -13,11 +13,7 @@ use crate::study::LoadError;
 pub fn invalid_study(error: &LoadError) {
     let mut stderr = std::io::stderr().lock();
     // Nothing sensible is left to do when standard error itself is gone.
-    let _ = if stderr.is_terminal() {
-        writeln!(stderr, "{}", framed(error))
-    } else {
-        writeln!(stderr, "{error}")
-    };
+    let _ = if stderr.is_terminal() { writeln!(stderr, "{}", framed(error)) } else { writeln!(stderr, "{error}") };
 }
 
 fn framed(error: &LoadError) -> String {

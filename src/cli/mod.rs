@@ -89,9 +89,14 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         }
         Command::Status { studies, json } => run::status(&load_all(studies)?, places, *json),
         Command::Report { studies } => run::report(&load_all(studies)?, places, quiet),
-        Command::Table { study, table, conditions, columns, format } => {
-            show::table(&load_all(std::slice::from_ref(study))?[0], places, table.as_deref(), conditions, columns, *format)
-        }
+        Command::Table { study, table, conditions, columns, format } => show::table(
+            &load_all(std::slice::from_ref(study))?[0],
+            places,
+            table.as_deref(),
+            conditions,
+            columns,
+            *format,
+        ),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => show::schema(),
@@ -100,12 +105,18 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
 
 /// Reads every study before anything runs, so that a slip in the second one costs nothing.
 fn load_all(paths: &[std::path::PathBuf]) -> Result<Vec<Study>, Ending> {
-    let studies: Vec<Study> =
-        paths.iter().map(|path| study::load(path)).collect::<Result<_, _>>().map_err(|error| Ending::Invalid(Box::new(error)))?;
+    let studies: Vec<Study> = paths
+        .iter()
+        .map(|path| study::load(path))
+        .collect::<Result<_, _>>()
+        .map_err(|error| Ending::Invalid(Box::new(error)))?;
     for (index, study) in studies.iter().enumerate() {
         if let Some(other) = studies[..index].iter().find(|other| other.name == study.name) {
             let (a, b) = (other.path.display(), study.path.display());
-            return Err(Ending::Usage(format!("{a} and {b} are both called `{}`; their results would overwrite each other", study.name)));
+            return Err(Ending::Usage(format!(
+                "{a} and {b} are both called `{}`; their results would overwrite each other",
+                study.name
+            )));
         }
     }
     Ok(studies)

@@ -31,11 +31,13 @@ pub fn are_there(folder: &Folder) -> bool {
 /// # Errors
 /// When a table cannot be read or a file not be written.
 pub fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
-    let rendered = report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
+    let rendered =
+        report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
     let figures = folder.path().join(FIGURES);
     let cannot = |path: &Path, error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
     fs::create_dir_all(&figures).map_err(|error| cannot(&figures, &error))?;
-    let put = |path: &Path, bytes: &[u8]| file::write(path, bytes, Durability::Lazy).map_err(|error| cannot(path, &error));
+    let put =
+        |path: &Path, bytes: &[u8]| file::write(path, bytes, Durability::Lazy).map_err(|error| cannot(path, &error));
     for (name, svg) in &rendered.figures {
         put(&figures.join(format!("{name}.svg")), svg.as_bytes())?;
     }

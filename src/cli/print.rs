@@ -41,11 +41,20 @@ fn pretty(table: &Table, rows: &[usize], columns: &[usize]) -> String {
     drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
     drawn.set_header(columns.iter().map(|&index| heading(&table.schema().columns[index])));
     for &row in rows {
-        drawn.add_row(Row::from(columns.iter().map(|&index| {
-            let data = &table.columns()[index];
-            let align = if matches!(data.kind(), Type::Float | Type::Integer) { CellAlignment::Right } else { CellAlignment::Left };
-            Cell::new(shown(data, row)).set_alignment(align)
-        }).collect::<Vec<_>>()));
+        drawn.add_row(Row::from(
+            columns
+                .iter()
+                .map(|&index| {
+                    let data = &table.columns()[index];
+                    let align = if matches!(data.kind(), Type::Float | Type::Integer) {
+                        CellAlignment::Right
+                    } else {
+                        CellAlignment::Left
+                    };
+                    Cell::new(shown(data, row)).set_alignment(align)
+                })
+                .collect::<Vec<_>>(),
+        ));
     }
     let count = if rows.len() == 1 { "1 row".to_owned() } else { format!("{} rows", rows.len()) };
     format!("{drawn}\n{count}\n")
@@ -77,7 +86,9 @@ fn trimmed(text: &str) -> &str {
 fn csv(table: &Table, rows: &[usize], columns: &[usize]) -> Result<String, String> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let broken = |error: &dyn std::fmt::Display| format!("the table could not be written as CSV: {error}");
-    writer.write_record(columns.iter().map(|&index| heading(&table.schema().columns[index]))).map_err(|error| broken(&error))?;
+    writer
+        .write_record(columns.iter().map(|&index| heading(&table.schema().columns[index])))
+        .map_err(|error| broken(&error))?;
     for &row in rows {
         let cells = columns.iter().map(|&index| table.columns()[index].cell(row).to_string());
         writer.write_record(cells).map_err(|error| broken(&error))?;

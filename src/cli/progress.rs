@@ -22,7 +22,8 @@ pub struct Watcher {
 impl Watcher {
     #[must_use]
     pub fn new(quiet: bool, width: usize) -> Self {
-        let bars = (!quiet && std::io::stdout().is_terminal() && std::io::stderr().is_terminal()).then(MultiProgress::new);
+        let bars =
+            (!quiet && std::io::stdout().is_terminal() && std::io::stderr().is_terminal()).then(MultiProgress::new);
         Self { quiet, width, bars, running: Mutex::default() }
     }
 

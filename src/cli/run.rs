@@ -79,8 +79,7 @@ fn stop_flag() -> Arc<AtomicBool> {
 fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, stop: &AtomicBool) -> Result<(), Ending> {
     let cache = Cache::open(&places.cache).map_err(|error| stored(&error))?;
     let folder = Folder::new(&places.results, &study.name);
-    let options =
-        Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection) };
+    let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection) };
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
         out(&plan_text(study, &plan));
@@ -206,7 +205,11 @@ pub fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), E
             continue;
         }
         let stale = words.iter().filter(|(_, state, _)| *state != "up to date").count();
-        let sum = if stale == 0 { "up to date".to_owned() } else { format!("{stale} of {} stages are not up to date", words.len()) };
+        let sum = if stale == 0 {
+            "up to date".to_owned()
+        } else {
+            format!("{stale} of {} stages are not up to date", words.len())
+        };
         out(&format!("{}: {sum}\n", study.name));
         let width = words.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
         for (name, state, why) in words.iter().filter(|(_, state, _)| *state != "up to date") {

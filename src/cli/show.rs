@@ -22,7 +22,8 @@ const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
 /// Writes a small study; never over a file that is there.
 pub fn new_study(file: &Path) -> Result<(), Ending> {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let name: String = stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    let name: String =
+        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
     // The first line points editors to this repository's schema, which a study elsewhere has not beside it.
     let text: String = TEMPLATE.lines().skip(1).map(|line| format!("{line}\n")).collect();
     let text = text.replacen("study: quick", &format!("study: {name}"), 1);

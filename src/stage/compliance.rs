@@ -18,7 +18,9 @@ const SERIES: &[(&str, &str, &str, fn(&ToothCompliance) -> &Series)] = &[
     ("shear", "nm/N", "Shear of the tooth, 1/k_s.", |tooth| &tooth.shear),
     ("axial", "nm/N", "Axial compression of the tooth, 1/k_a.", |tooth| &tooth.axial),
     ("body", "nm/N", "Gear body under the tooth's own load, 1/k_f.", |tooth| &tooth.body),
-    ("contact_depth", "mm", "From the contact point to the tooth's centreline along the load line.", |tooth| &tooth.contact_depth),
+    ("contact_depth", "mm", "From the contact point to the tooth's centreline along the load line.", |tooth| {
+        &tooth.contact_depth
+    }),
 ];
 
 #[must_use]
@@ -30,7 +32,11 @@ pub fn compliance_schema() -> Schema {
         Column::float("radius", "mm", "Radius of the loaded point."),
     ];
     columns.extend(SERIES.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    Schema::new("compliance", "Compliance of one tooth of each gear over its whole face width, along its active flank.", columns)
+    Schema::new(
+        "compliance",
+        "Compliance of one tooth of each gear over its whole face width, along its active flank.",
+        columns,
+    )
 }
 
 #[must_use]
@@ -43,7 +49,11 @@ pub fn neighbours_schema() -> Schema {
             Column::integer("neighbour", "How many pitches apart the two teeth are.").key(),
             Column::integer("node", "Chebyshev node, from 1.").key(),
             Column::float("roll_angle", "rad", "Roll angle of the tooth with the smaller roll angle."),
-            Column::float("compliance", "nm/N", "Deflection along the load line of one per load on the other; symmetric."),
+            Column::float(
+                "compliance",
+                "nm/N",
+                "Deflection along the load line of one per load on the other; symmetric.",
+            ),
         ],
     )
 }
@@ -66,10 +76,17 @@ pub fn model_schema() -> Schema {
 ///
 /// # Errors
 /// When a compliance is not finite.
-pub fn write(compliance: &PairCompliance, base_radii: [f64; 2], method: &str, root: &str) -> Result<[Table; 3], TableError> {
+pub fn write(
+    compliance: &PairCompliance,
+    base_radii: [f64; 2],
+    method: &str,
+    root: &str,
+) -> Result<[Table; 3], TableError> {
     let mut rows: Vec<Row> = Vec::new();
     let mut neighbours: Vec<Row> = Vec::new();
-    for ((name, tooth), base_radius) in [("pinion", &compliance.pinion), ("gear", &compliance.gear)].into_iter().zip(base_radii) {
+    for ((name, tooth), base_radius) in
+        [("pinion", &compliance.pinion), ("gear", &compliance.gear)].into_iter().zip(base_radii)
+    {
         let values: Vec<Vec<f64>> = SERIES.iter().map(|(.., series)| series(tooth).node_values()).collect();
         for (node, roll) in series_nodes(&tooth.bending).into_iter().enumerate() {
             let radius = base_radius * (1.0 + roll * roll).sqrt();
@@ -173,13 +190,16 @@ mod tests {
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
             neighbours: vec![Series::fit(0.07, 0.29, 12, |u| scale * 3e-10 * (1.0 - u))],
         };
-        let pair = PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
+        let pair =
+            PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
         let [compliance, neighbours, model] = write(&pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
         let back = read(&compliance, &neighbours, &model).unwrap();
         assert!(back.coupled && back.contact == ContactLaw::LoadDependent);
         for roll in [0.07, 0.2, 0.41, 0.62] {
             assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);
-            assert!((back.pinion.contact_depth.value(roll) / pair.pinion.contact_depth.value(roll) - 1.0).abs() < 1e-14);
+            assert!(
+                (back.pinion.contact_depth.value(roll) / pair.pinion.contact_depth.value(roll) - 1.0).abs() < 1e-14
+            );
         }
         assert!((back.pinion.neighbours[0].value(0.15) / pair.pinion.neighbours[0].value(0.15) - 1.0).abs() < 1e-14);
         assert_eq!(back.gear.neighbours.len(), 1);

@@ -122,7 +122,10 @@ fn flattened(prefix: &str, record: &Record) -> Vec<(String, f64, String)> {
 pub fn read(designs: &Table, elements: &Table, families: &[Member]) -> Result<Vec<NamedDesign>, Failure> {
     let mut order: Vec<usize> = (0..designs.rows()).collect();
     order.sort_by_key(|&row| designs.integers("order")[row]);
-    order.into_iter().map(|row| read_one(&designs.texts("design")[row], designs.integers("elements")[row], elements, families)).collect()
+    order
+        .into_iter()
+        .map(|row| read_one(&designs.texts("design")[row], designs.integers("elements")[row], elements, families))
+        .collect()
 }
 
 fn read_one(name: &str, count: i64, table: &Table, families: &[Member]) -> Result<NamedDesign, Failure> {
@@ -131,7 +134,8 @@ fn read_one(name: &str, count: i64, table: &Table, families: &[Member]) -> Resul
         let rows: Vec<usize> = (0..table.rows())
             .filter(|&row| table.texts("design")[row] == name && table.integers("element")[row] == index)
             .collect();
-        let first = *rows.first().ok_or_else(|| Failure::new(format!("design `{name}`: modification {index} has no rows")))?;
+        let first =
+            *rows.first().ok_or_else(|| Failure::new(format!("design `{name}`: modification {index} has no rows")))?;
         let word = &table.texts("family")[first];
         let family = families.iter().find(|family| family.name == word);
         let family = family.ok_or_else(|| Failure::new(format!("design `{name}`: unknown family `{word}`")))?;
@@ -145,7 +149,11 @@ fn read_one(name: &str, count: i64, table: &Table, families: &[Member]) -> Resul
     Ok(NamedDesign { name: name.to_owned(), elements })
 }
 
-fn rebuilt<'a>(prefix: &str, fields: &[Field], lookup: &impl Fn(&str) -> Option<(f64, &'a str)>) -> Result<Record, Failure> {
+fn rebuilt<'a>(
+    prefix: &str,
+    fields: &[Field],
+    lookup: &impl Fn(&str) -> Option<(f64, &'a str)>,
+) -> Result<Record, Failure> {
     let mut record = Record::default();
     for field in fields {
         let name = format!("{prefix}{}", field.name);
@@ -193,8 +201,10 @@ mod tests {
         let entry = |value| Entry { value, place: Place::default() };
         let both = ("gear", entry(Value::Choice("both")));
         let preset = Record { fields: vec![("factor", entry(Value::Number(1.25)))], place: Place::default() };
-        let with_amount = Record { fields: vec![both.clone(), ("amount", entry(Value::Quantity(7.81e-6)))], place: Place::default() };
-        let with_preset = Record { fields: vec![both, ("preset", entry(Value::Group(preset)))], place: Place::default() };
+        let with_amount =
+            Record { fields: vec![both.clone(), ("amount", entry(Value::Quantity(7.81e-6)))], place: Place::default() };
+        let with_preset =
+            Record { fields: vec![both, ("preset", entry(Value::Group(preset)))], place: Place::default() };
         let element = |record: &Record| Element { family: "relief", record: record.clone() };
         let designs = vec![
             NamedDesign { name: "z".into(), elements: vec![element(&with_amount), element(&with_preset)] },

@@ -13,12 +13,13 @@ use crate::table::schema::{Column, Schema};
 /// One row per gear.
 #[must_use]
 pub fn gears_schema() -> Schema {
-    let mut columns = vec![
-        Column::text("gear", "Which gear: pinion or gear.").key(),
-        Column::integer("teeth", "Number of teeth z."),
-    ];
+    let mut columns =
+        vec![Column::text("gear", "Which gear: pinion or gear.").key(), Column::integer("teeth", "Number of teeth z.")];
     columns.extend(SPECIFIED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    columns.push(Column::float("given_tip_radius", "mm", "Tip radius when it was given, NaN when it follows from the rack.").allows_nan());
+    columns.push(
+        Column::float("given_tip_radius", "mm", "Tip radius when it was given, NaN when it follows from the rack.")
+            .allows_nan(),
+    );
     columns.extend(DERIVED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
     Schema::new("gears", "Each gear: what was specified, and what follows from it.", columns)
 }
@@ -26,9 +27,20 @@ pub fn gears_schema() -> Schema {
 /// One row.
 #[must_use]
 pub fn pair_schema() -> Schema {
-    let mut columns = vec![Column::float("given_centre_distance", "mm", "Centre distance when it was given, NaN when it follows from zero backlash.").allows_nan()];
+    let mut columns = vec![
+        Column::float(
+            "given_centre_distance",
+            "mm",
+            "Centre distance when it was given, NaN when it follows from zero backlash.",
+        )
+        .allows_nan(),
+    ];
     columns.extend(PAIR.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    Schema::new("pair", "The pair on its centre distance. Path positions count from the pinion's tangent point T1.", columns)
+    Schema::new(
+        "pair",
+        "The pair on its centre distance. Path positions count from the pinion's tangent point T1.",
+        columns,
+    )
 }
 
 type Getter<T> = fn(&T) -> f64;
@@ -96,14 +108,19 @@ pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
         let row = gears.texts("gear").iter().position(|gear| gear == name);
         let row = row.ok_or_else(|| Failure::new(format!("the geometry has no row for the {name}")))?;
         let value = |column: &str| si(gears, column, row);
-        let teeth = u32::try_from(gears.integers("teeth")[row]).map_err(|_| Failure::new("the number of teeth is out of range"))?;
+        let teeth = u32::try_from(gears.integers("teeth")[row])
+            .map_err(|_| Failure::new("the number of teeth is out of range"))?;
         let given_tip_radius = value("given_tip_radius");
         Ok(Specification {
             teeth,
             module: value("module"),
             pressure_angle: value("pressure_angle"),
             profile_shift: value("profile_shift"),
-            rack: Rack { addendum: value("rack_addendum"), dedendum: value("rack_dedendum"), tip_radius: value("rack_tip_radius") },
+            rack: Rack {
+                addendum: value("rack_addendum"),
+                dedendum: value("rack_dedendum"),
+                tip_radius: value("rack_tip_radius"),
+            },
             tip_radius: given_tip_radius.is_finite().then_some(given_tip_radius),
             face_width: value("face_width"),
             bore_radius: value("bore_radius"),

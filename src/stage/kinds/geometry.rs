@@ -37,7 +37,8 @@ const FIELDS: &[Field] = &[
     Field::group("material", MATERIAL, "Material of both gears.").default("{}"),
     Field::group("pinion", GEAR, "The gear the torque is given on."),
     Field::group("gear", GEAR, "The mating gear."),
-    Field::quantity("centre_distance", LENGTH, 1e-6, 1e3, "Centre distance a_w; zero backlash when it is not given.").optional(),
+    Field::quantity("centre_distance", LENGTH, 1e-6, 1e3, "Centre distance a_w; zero backlash when it is not given.")
+        .optional(),
 ];
 
 const RACK: &[Field] = &[

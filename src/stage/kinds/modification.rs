@@ -6,6 +6,8 @@
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Entry, Record, Value};
+use crate::base::units::in_unit;
+use crate::gear::geometry::Side;
 use crate::gear::modification::template::Template;
 use crate::gear::modification::{self, Design};
 use crate::stage::designs::{self, Element, NamedDesign};
@@ -62,19 +64,44 @@ fn elements(entry: &Entry) -> Result<Vec<Element>, Diagnostic> {
     Ok(items.iter().filter_map(member).collect())
 }
 
+/// Resolved parameters that have a column of their own; others are not shown.
+const RESOLVED: &[(&str, &str, &str)] = &[
+    ("amount", "um", "Depth at its deepest place."),
+    ("length", "mm", "Length along the line of action, or across the face for an end relief."),
+    ("start_roll_angle", "deg", "Roll angle where a relief starts."),
+    ("start_diameter", "mm", "Diameter where a relief starts."),
+];
+
 fn resolved_schema() -> Schema {
+    let mut columns = vec![
+        Column::text("design", "Name of the design.").key(),
+        Column::text("gear", "Which gear: pinion or gear.").key(),
+        Column::integer("element", "Counts the modifications of a gear, from 1.").key(),
+        Column::text("family", "Family of the modification."),
+    ];
+    columns
+        .extend(RESOLVED.iter().map(|(name, unit, description)| Column::float(name, unit, description).allows_nan()));
     Schema::new(
         "resolved",
-        "What each modification comes to on the pair.",
-        vec![
-            Column::text("design", "Name of the design.").key(),
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::text("family", "Family of the modification."),
-            Column::text("parameter", "Name of the parameter."),
-            Column::integer("row", "Counts the parameters of a gear, from 1.").key(),
-            Column::float("value", "", "Value in SI: m and rad."),
-        ],
+        "What each modification comes to on the pair; NaN where a family has no such parameter.",
+        columns,
     )
+}
+
+fn resolved_rows(name: &str, design: &Design) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for side in [Side::Pinion, Side::Gear] {
+        for (index, part) in design.side(side).iter().enumerate() {
+            let values = part.modification.resolved();
+            let mut row: Row = vec![name.into(), side.name().into(), (index + 1).into(), part.family.into()];
+            row.extend(RESOLVED.iter().map(|(parameter, unit, _)| {
+                let found = values.iter().find(|(given, _)| given == parameter);
+                found.map_or(f64::NAN, |(_, value)| in_unit(*value, unit)).into()
+            }));
+            rows.push(row);
+        }
+    }
+    rows
 }
 
 impl Stage for Modification {
@@ -91,16 +118,7 @@ impl Stage for Modification {
         let mut rows: Vec<Row> = Vec::new();
         for named in &self.designs {
             let design = named.built(&pair)?;
-            for (index, (side, family, parameter, value)) in Design::resolved(&design).into_iter().enumerate() {
-                rows.push(vec![
-                    named.name.as_str().into(),
-                    side.name().into(),
-                    family.into(),
-                    parameter.into(),
-                    (index + 1).into(),
-                    value.into(),
-                ]);
-            }
+            rows.extend(resolved_rows(&named.name, &design));
         }
         let failed = |error: crate::table::data::TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);

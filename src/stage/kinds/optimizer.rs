@@ -47,9 +47,15 @@ const FIELDS: &[Field] = &[
     Field::group("at", AT, "The loads it is to be small at."),
     Field::new("design", ELEMENTS, "The modifications; a value given as [least, most] is a variable.").chooses(),
     Field::new("name", Shape::Text, "Name of the design that is found.").default("optimum"),
-    Field::integer("positions", 8, 10_000, "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.")
-        .default("64"),
-    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.").default("33"),
+    Field::integer(
+        "positions",
+        8,
+        10_000,
+        "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
+    )
+    .default("64"),
+    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
+        .default("33"),
 ];
 
 const AT: &[Field] = &[
@@ -144,7 +150,8 @@ impl Optimizer {
         ];
         // On a plateau many designs are as good: values of variables are compared loosely.
         columns.extend(self.template.variables().iter().map(|variable| {
-            Column::float(&column(variable), unit(variable), "Value of the variable in the best design.").tolerance(0.0, 1e-3)
+            Column::float(&column(variable), unit(variable), "Value of the variable in the best design.")
+                .tolerance(0.0, 1e-3)
         }));
         Schema::new("best", "The best design that was found.", columns)
     }
@@ -207,7 +214,13 @@ impl Optimizer {
             search.history().len().into(),
             reason.to_string().into(),
         ];
-        row.extend(self.template.variables().iter().zip(&best.point).map(|(variable, value)| in_unit(*value, unit(variable)).into()));
+        row.extend(
+            self.template
+                .variables()
+                .iter()
+                .zip(&best.point)
+                .map(|(variable, value)| in_unit(*value, unit(variable)).into()),
+        );
         let history = search.history().iter().enumerate().map(|(index, generation)| -> Row {
             let reciprocal = |value: f64| 1.0 / shown(value);
             vec![

@@ -38,9 +38,15 @@ const FIELDS: &[Field] = &[
     Field::quantity("torque", TORQUE, 0.0, 1e9, "Torque on the pinion.").axis(1),
     Field::quantity("accuracy", RATIO, 1e-9, 0.1, "Wanted relative accuracy of the peak-to-peak; sets the positions.")
         .optional(),
-    Field::integer("positions", 8, 100_000, "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.")
-        .default("64"),
-    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.").default("33"),
+    Field::integer(
+        "positions",
+        8,
+        100_000,
+        "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
+    )
+    .default("64"),
+    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
+        .default("33"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
 ];
 
@@ -90,16 +96,22 @@ fn summary_schema() -> Schema {
         Column::float("peak_to_peak", "um", "Largest less smallest transmission error.").tolerance(1e-12, 1e-9),
         Column::float("maximum", "um", "Largest transmission error."),
         Column::float("minimum", "um", "Smallest transmission error."),
-        Column::float("variance", "um^2", "Integral mean of the squared deviation from the mean.").tolerance(1e-15, 1e-9),
-        Column::float("reciprocal_variance", "1/um^2", "f = 1/variance (mei2016, equation 16); NaN where nothing varies.")
-            .allows_nan()
-            .tolerance(0.0, 1e-8),
+        Column::float("variance", "um^2", "Integral mean of the squared deviation from the mean.")
+            .tolerance(1e-15, 1e-9),
+        Column::float(
+            "reciprocal_variance",
+            "1/um^2",
+            "f = 1/variance (mei2016, equation 16); NaN where nothing varies.",
+        )
+        .allows_nan()
+        .tolerance(0.0, 1e-8),
         Column::float("unloaded_peak_to_peak", "um", "The same without load.").tolerance(1e-12, 1e-9),
         Column::float("loaded_contact_ratio", "", "Mean number of pairs that carry load."),
         Column::float("largest_load_share", "", "Largest share of the load on one pair."),
         Column::float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.").on_demand(),
         Column::integer("positions", "Positions per base pitch that were used."),
-        Column::float("error_estimate", "", "Relative change of the peak-to-peak from half the positions.").tolerance(1e-9, 0.0),
+        Column::float("error_estimate", "", "Relative change of the peak-to-peak from half the positions.")
+            .tolerance(1e-9, 0.0),
         Column::float("seconds", "s", "Time for this row.").volatile(),
     ]);
     Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
@@ -116,10 +128,16 @@ fn curve_schema() -> Schema {
         Column::integer("loaded_pairs", "Pairs that carry load."),
         Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
         Column::float("unloaded_transmission_error", "um", "The same without load.").tolerance(1e-12, 1e-9),
-        Column::float("newest_load_share", "", "Share of the load on the pair that came into contact last.").tolerance(1e-12, 1e-9),
-        Column::float("secant_stiffness", "N/m", "Load over loaded less unloaded transmission error; NaN without load.")
+        Column::float("newest_load_share", "", "Share of the load on the pair that came into contact last.")
+            .tolerance(1e-12, 1e-9),
+        Column::float(
+            "secant_stiffness",
+            "N/m",
+            "Load over loaded less unloaded transmission error; NaN without load.",
+        )
+        .allows_nan(),
+        Column::float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.")
             .allows_nan(),
-        Column::float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.").allows_nan(),
         Column::float("pressure", "MPa", "Largest Hertzian pressure of any pair.").on_demand(),
     ]);
     Schema::new(
@@ -169,16 +187,19 @@ impl Ste {
     }
 
     /// Cycles from half the positions up: two when no accuracy is asked for, as many as it may take otherwise.
-    fn cycles(&self, pair: &crate::gear::geometry::Pair, compliance: &crate::gear::compliance::PairCompliance) -> Result<Vec<MeshCycle>, Failure> {
+    fn cycles(
+        &self,
+        pair: &crate::gear::geometry::Pair,
+        compliance: &crate::gear::compliance::PairCompliance,
+    ) -> Result<Vec<MeshCycle>, Failure> {
         let (first, count) = match self.accuracy {
             Some(_) => (8, (MOST_POSITIONS / 8).ilog2() as usize + 1),
             None => (self.settings.positions.div_ceil(2), 2),
         };
         let base = MeshCycle::new(pair, compliance, self.settings)?;
-        let positions = |index: usize| if self.accuracy.is_none() && index == 1 { self.settings.positions } else { first << index };
-        Ok((0..count)
-            .map(|index| base.sampled(Settings { positions: positions(index), ..self.settings }))
-            .collect())
+        let positions =
+            |index: usize| if self.accuracy.is_none() && index == 1 { self.settings.positions } else { first << index };
+        Ok((0..count).map(|index| base.sampled(Settings { positions: positions(index), ..self.settings })).collect())
     }
 }
 

@@ -35,13 +35,20 @@ coupling: body
 
 const FIELDS: &[Field] = &[
     Field::reference("pair", &["geometry"], "The pair."),
-    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.").default("energy"),
+    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
+        .default("energy"),
     Field::choice("root", ROOTS, "The shape of the tooth below its involute.").default("trochoid"),
     Field::choice("contact", CONTACTS, "How the flanks flatten against each other.").default("linear"),
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("body"),
-    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.")
-        .optional(),
+    Field::quantity(
+        "torque",
+        TORQUE,
+        1e-12,
+        1e9,
+        "Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.",
+    )
+    .optional(),
     Field::integer("positions", 8, 100_000, "Positions per base pitch; the ends of contact come on top.").default("64"),
 ];
 
@@ -112,7 +119,11 @@ fn curve_schema() -> Schema {
         "Mesh stiffness over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.",
         vec![
             Column::integer("point", "Counts the positions, from 1.").key(),
-            Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action."),
+            Column::float(
+                "cycle_position",
+                "mm",
+                "Distance from where a pair starts contact, along the line of action.",
+            ),
             Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
             Column::integer("pairs", "Pairs in contact."),
             Column::float("stiffness", "N/m", "Mesh stiffness F/δ of the unmodified pair."),
