@@ -9,7 +9,7 @@ use crate::numeric::complementarity::{MOST, PerSpring, Springs};
 /// Pairs with the linear contact law.
 pub struct LinearPairs<'a> {
     pub stiffness: PerSpring,
-    pub face: &'a Face,
+    pub face: &'a Face<'a>,
 }
 
 impl Springs for LinearPairs<'_> {
@@ -27,7 +27,7 @@ pub struct LogarithmicPairs<'a> {
     /// b·c \[1/Pa\].
     pub compliance: PerSpring,
     pub width: f64,
-    pub face: &'a Face,
+    pub face: &'a Face<'a>,
 }
 
 impl LogarithmicPairs<'_> {

@@ -14,6 +14,8 @@ pub mod profile_slope;
 pub mod relief;
 pub mod root_relief;
 pub mod template;
+#[cfg(test)]
+mod tests;
 pub mod tip_relief;
 
 use std::fmt::Debug;

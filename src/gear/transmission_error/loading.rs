@@ -25,7 +25,7 @@ pub struct Loading<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
-    face: Face,
+    face: Face<'a>,
     profiles: [Vec<&'a dyn Modification>; 2],
     /// Cycle positions at which a profile is not smooth, ascending.
     breaks: Vec<f64>,
@@ -51,8 +51,7 @@ impl<'a> Loading<'a> {
     /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair only touches.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
-        let closed_form = matches!(cycle.elasticity, Elasticity::Linear(_));
-        let face = Face::new(design, cycle.face_width, cycle.settings.slices, closed_form);
+        let face = Face::new(design, cycle.face_width, &cycle.slices);
         let of = |side: Side| {
             let parts = design.side(side).iter().map(|part| part.modification.as_ref());
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()

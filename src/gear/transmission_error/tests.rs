@@ -180,10 +180,8 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
                 let fine = run(1000, design, torque);
                 for positions in [16, 64] {
                     let coarse = run(positions, design, torque);
-                    // Slices of a partly loaded face come and go at kinks of their own.
-                    let bound = if which == 2 && index > 0 { 1e-4 } else { 1e-9 };
                     assert!(
-                        (coarse / fine - 1.0).abs() < bound,
+                        (coarse / fine - 1.0).abs() < 1e-9,
                         "{which} {index} {torque} N m, {positions}: {coarse:e} {fine:e} {:e}",
                         coarse / fine - 1.0
                     );
