@@ -11,6 +11,9 @@ use super::crossing::crossing;
 /// The most springs one problem may have.
 pub const MOST: usize = 6;
 
+/// Share of the total below which what a Newton step leaves, being of second order, is rounding.
+const NEARLY: f64 = 1e-9;
+
 /// One number per spring.
 pub type PerSpring = [f64; MOST];
 /// Interference of one spring per load on another; symmetric, the diagonal is not read.
@@ -78,6 +81,7 @@ pub fn unloaded(gaps: &[f64]) -> Balance {
 /// Equilibrium without coupling. `total` > 0, the smallest gap is 0, and at `above` the springs carry `total` or more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> Balance {
     let mut found = Balance { approach: above, ..Balance::EMPTY };
+    let mut rises = [0.0; MOST];
     for _ in 0..200 {
         let (mut sum, mut slope) = (0.0, 0.0);
         for (spring, gap) in gaps.iter().enumerate() {
@@ -85,24 +89,36 @@ pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> 
             let (load, rise) = if interference > 0.0 { springs.response(spring, interference) } else { (0.0, 0.0) };
             found.interference[spring] = interference;
             found.loads[spring] = load;
+            rises[spring] = rise;
             sum += load;
             slope += rise;
         }
         found.slope = slope;
         let excess = sum - total;
         let next = found.approach - excess / slope;
-        // Rounding decides below this; convexity keeps every earlier excess positive.
-        if excess.abs() <= 1e-14 * total || !(next > 0.0 && next.is_finite()) {
+        if excess.abs() <= NEARLY * total || !(next > 0.0 && next.is_finite()) {
             break;
         }
         found.approach = next;
+    }
+    // The last step is so short that it needs no new responses.
+    let step = (total - found.loads[..gaps.len()].iter().sum::<f64>()) / found.slope;
+    if step.is_finite() {
+        found.approach += step;
+        for spring in 0..gaps.len() {
+            found.interference[spring] += step;
+            found.loads[spring] = (found.loads[spring] + rises[spring] * step).max(0.0);
+        }
     }
     found
 }
 
 /// Equilibrium with coupling; the rest as in [`balance`].
 pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
-    let start = balance(springs, gaps, total, above);
+    let mut start = Balance { approach: above, ..Balance::EMPTY };
+    for (interference, gap) in start.interference.iter_mut().zip(gaps) {
+        *interference = above - gap;
+    }
     newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }
 

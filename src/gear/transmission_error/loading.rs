@@ -6,11 +6,11 @@
 use super::cycle::{Elasticity, MeshCycle};
 use super::trace::{NODES, Span, Trace};
 use crate::gear::contact::face::Face;
-use crate::gear::contact::flattening::Logarithmic;
+use crate::gear::contact::flattening::{InSeries, Logarithmic};
 use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
-use crate::numeric::complementarity::{self, Balance, MOST, PerSpring, Springs};
+use crate::numeric::complementarity::{self, Balance, MOST, Springs};
 use crate::numeric::crossing::crossing;
 use crate::numeric::harmonics;
 
@@ -135,16 +135,14 @@ impl<'a> Loading<'a> {
     }
 
     fn logarithmic(&self, position: f64, pairs: usize) -> LogarithmicPairs<'_> {
-        let mut laws = [Logarithmic { constant: 0.0, rate: 0.0 }; MOST];
-        let mut compliances: PerSpring = [0.0; MOST];
+        let mut slices = [InSeries::NONE; MOST];
         if let Elasticity::Logarithmic { compliance, constant, rate } = &self.cycle.elasticity {
-            for pair in 0..pairs {
+            for (pair, slot) in slices.iter_mut().enumerate().take(pairs) {
                 let s = self.cycle.path_position(position, pair);
-                laws[pair] = Logarithmic { constant: constant.value(s), rate: *rate };
-                compliances[pair] = compliance.value(s);
+                *slot = Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s));
             }
         }
-        LogarithmicPairs { laws, compliance: compliances, width: self.cycle.face_width, face: &self.face }
+        LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face }
     }
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
@@ -158,7 +156,7 @@ impl<'a> Loading<'a> {
             Elasticity::Linear(panels) => {
                 panels.value(self.cycle.path_position(position, pair)) * interference / self.cycle.face_width
             }
-            Elasticity::Logarithmic { .. } => self.logarithmic(position, pair + 1).line_load(pair, interference).0,
+            Elasticity::Logarithmic { .. } => self.logarithmic(position, pair + 1).slices[pair].load(interference).0,
         }
     }
 

@@ -138,7 +138,9 @@ impl Trace {
                 let near = self.neighbourhood(rows, index, node, sign);
                 let sides = [near.before, near.after];
                 let low = sides.iter().flatten().fold(value, |low, side| low.min(side.1));
-                if sides.iter().flatten().any(|side| side.1 > value) || value + OVERSHOOT * (value - low) < best.value {
+                let topped = sides.iter().flatten().any(|side| side.1 > value);
+                // On a plateau there is nothing to look for.
+                if topped || low >= value || value + OVERSHOOT * (value - low) < best.value {
                     continue;
                 }
                 if node + 1 == NODES && near.after.is_some() {
