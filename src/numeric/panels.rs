@@ -97,7 +97,7 @@ mod tests {
             let x = -1.0 + f64::from(i) * 1e-3;
             assert!((panels.value(x) - function(x)).abs() < 3e-14, "{x}");
         }
-        assert!(Panels::fit(0.0, 1.0, 1e-14, |x| x.sqrt()).coefficients.len() == MOST_PANELS);
+        assert!(Panels::fit(0.0, 1.0, 1e-14, f64::sqrt).coefficients.len() == MOST_PANELS);
         assert!((Panels::fit(1.0, 1.0, 1e-14, |_| 7.0).value(1.0) - 7.0).abs() < 1e-14);
     }
 }

@@ -216,7 +216,7 @@ impl Piece {
 mod tests {
     use super::*;
     use crate::base::record::Value::{Choice, Number, Quantity};
-    use crate::gear::fixtures::{design, pair};
+    use crate::gear::fixtures::{Part, design, pair};
 
     const WIDTH: f64 = 18e-3;
 
@@ -225,9 +225,7 @@ mod tests {
         let end = |curve| [amount(9e-6), ("length", Quantity(5e-3)), ("curve", Choice(curve))];
         let one_end = [amount(4e-6), ("length", Quantity(12e-3)), ("curve", Choice("parabolic")), ("end", Choice("I"))];
         let pair = pair();
-        let of = |parts: &[(&str, &'static str, &[(&'static str, crate::base::record::Value)])]| {
-            design(&pair, parts).unwrap()
-        };
+        let of = |parts: &[Part]| design(&pair, parts).unwrap();
         vec![
             of(&[("lead_crowning", "pinion", &[amount(8e-6)])]),
             of(&[("helix_slope", "gear", &[amount(-6e-6)])]),

@@ -178,7 +178,7 @@ fn reliefs_add_up() {
 #[test]
 fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     let amount = ("amount", Quantity(AMOUNT));
-    let message = refused("tip_relief", &[amount.clone()]);
+    let message = refused("tip_relief", std::slice::from_ref(&amount));
     assert!(message.contains("exactly one of `length`"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("fraction", Number(1.0))]);
     assert!(message.contains("not both `length` and `fraction`"), "{message}");

@@ -93,15 +93,15 @@ impl<'a> Loading<'a> {
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> State {
         let mut gaps = [0.0; MOST];
+        let gaps = &mut gaps[..pairs];
         let mut smallest = f64::INFINITY;
-        for (pair, gap) in gaps.iter_mut().enumerate().take(pairs) {
+        for (pair, gap) in gaps.iter_mut().enumerate() {
             *gap = self.gap(self.cycle.path_position(position, pair));
             smallest = smallest.min(*gap);
         }
-        for gap in &mut gaps[..pairs] {
+        for gap in gaps.iter_mut() {
             *gap -= smallest;
         }
-        let gaps = &gaps[..pairs];
         let balance = if self.force > 0.0 { self.loaded(position, gaps) } else { complementarity::unloaded(gaps) };
         State { unloaded: smallest + self.face.offset, balance }
     }
@@ -110,7 +110,7 @@ impl<'a> Loading<'a> {
         match &self.cycle.elasticity {
             Elasticity::Linear(panels) => {
                 let mut stiffness = [0.0; MOST];
-                for (pair, slot) in stiffness.iter_mut().enumerate().take(gaps.len()) {
+                for (pair, slot) in stiffness[..gaps.len()].iter_mut().enumerate() {
                     *slot = panels.value(self.cycle.path_position(position, pair));
                 }
                 let above = complementarity::linear_approach(&stiffness, gaps, self.force) + self.face.mean;
@@ -137,7 +137,7 @@ impl<'a> Loading<'a> {
     fn logarithmic(&self, position: f64, pairs: usize) -> LogarithmicPairs<'_> {
         let mut slices = [InSeries::NONE; MOST];
         if let Elasticity::Logarithmic { compliance, constant, rate } = &self.cycle.elasticity {
-            for (pair, slot) in slices.iter_mut().enumerate().take(pairs) {
+            for (pair, slot) in slices[..pairs].iter_mut().enumerate() {
                 let s = self.cycle.path_position(position, pair);
                 *slot = Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s));
             }
