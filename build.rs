@@ -20,8 +20,7 @@ fn main() -> io::Result<()> {
     let mut stages = Vec::new();
     collect(&source.join("stage"), &mut stages)?;
     // Files of `stage/` that are no kind of their own (codecs, the trait) are shared by all kinds.
-    let (kinds, common): (Vec<_>, Vec<_>) =
-        stages.into_iter().partition(|path| path.parent() == Some(Path::new("src/stage/kinds")));
+    let (kinds, common): (Vec<_>, Vec<_>) = stages.into_iter().partition(|path| path.parent() == Some(Path::new("src/stage/kinds")));
     shared.extend(common);
     shared.sort();
     let base = digest(&shared)?;

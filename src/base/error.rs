@@ -90,9 +90,5 @@ pub fn suggest<'a>(name: &str, known: impl IntoIterator<Item = &'a str> + Clone)
         return format!("did you mean `{candidate}`?");
     }
     let names: Vec<_> = known.into_iter().map(|name| format!("`{name}`")).collect();
-    if names.is_empty() {
-        "there are none to choose from".to_owned()
-    } else {
-        format!("known here: {}", names.join(", "))
-    }
+    if names.is_empty() { "there are none to choose from".to_owned() } else { format!("known here: {}", names.join(", ")) }
 }

@@ -142,8 +142,11 @@ pub fn parse_quantity(text: &str) -> Result<Quantity, UnitError> {
         return Err(UnitError::NotANumber(text.to_owned()));
     }
     let unit_text = unit_text.trim();
-    let unit =
-        if unit_text.is_empty() { Unit { ten: 0, factor: 1.0, dimension: RATIO } } else { parse_unit(unit_text)? };
+    let unit = if unit_text.is_empty() {
+        Unit { ten: 0, factor: 1.0, dimension: RATIO }
+    } else {
+        parse_unit(unit_text)?
+    };
     let value = shifted(number, unit.ten)? * unit.factor;
     if !value.is_finite() {
         return Err(UnitError::NotFinite);
@@ -214,8 +217,10 @@ pub fn parse_unit(text: &str) -> Result<Unit, UnitError> {
                 }
                 rest = &rest[end..];
                 let power = take_power(&mut rest).ok_or_else(malformed)?;
-                let &(_, ten, factor, dimension) =
-                    UNITS.iter().find(|unit| unit.0 == symbol).ok_or_else(|| UnitError::Unknown(symbol.to_owned()))?;
+                let &(_, ten, factor, dimension) = UNITS
+                    .iter()
+                    .find(|unit| unit.0 == symbol)
+                    .ok_or_else(|| UnitError::Unknown(symbol.to_owned()))?;
                 let signed = sign * power;
                 unit.ten += ten * i32::from(signed);
                 #[allow(clippy::float_cmp)] // exactly 1 means: a power of ten, nothing to multiply
@@ -300,9 +305,7 @@ mod tests {
 
     #[test]
     fn shown_values_round_trip() {
-        for (text, unit, shown) in
-            [("7.81 um", "um", 7.81), ("14.079 mm", "mm", 14.079), ("2.738e8 N/m", "N/m", 2.738e8)]
-        {
+        for (text, unit, shown) in [("7.81 um", "um", 7.81), ("14.079 mm", "mm", 14.079), ("2.738e8 N/m", "N/m", 2.738e8)] {
             assert!((in_unit(si(text), unit) - shown).abs() <= f64::EPSILON * shown, "{text}");
         }
     }
