@@ -116,8 +116,11 @@ pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
     Record { fields, place: Place::default() }
 }
 
-/// A design of several modifications: family, gear, other values.
-pub fn design(pair: &Pair, parts: &[(&str, &'static str, &[(&'static str, Value)])]) -> Result<Design, Diagnostic> {
+/// A modification: family, gear, other values.
+pub type Part<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
+
+/// A design of several modifications.
+pub fn design(pair: &Pair, parts: &[Part]) -> Result<Design, Diagnostic> {
     let mut design = Design::default();
     for (name, gear, values) in parts {
         let values = [&[("gear", Value::Choice(gear))], *values].concat();

@@ -11,6 +11,11 @@ use super::crossing::crossing;
 /// The most springs one problem may have.
 pub const MOST: usize = 6;
 
+/// Share of the total below which what a Newton step leaves, being of second order, is rounding.
+const NEARLY: f64 = 1e-9;
+/// Share of the total that rounding leaves.
+const ROUNDING: f64 = 1e-14;
+
 /// One number per spring.
 pub type PerSpring = [f64; MOST];
 /// Interference of one spring per load on another; symmetric, the diagonal is not read.
@@ -78,31 +83,46 @@ pub fn unloaded(gaps: &[f64]) -> Balance {
 /// Equilibrium without coupling. `total` > 0, the smallest gap is 0, and at `above` the springs carry `total` or more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> Balance {
     let mut found = Balance { approach: above, ..Balance::EMPTY };
+    let mut rises = [0.0; MOST];
+    let (loads, rises) = (&mut found.loads[..gaps.len()], &mut rises[..gaps.len()]);
+    let mut excess = 0.0;
     for _ in 0..200 {
         let (mut sum, mut slope) = (0.0, 0.0);
         for (spring, gap) in gaps.iter().enumerate() {
             let interference = found.approach - gap;
             let (load, rise) = if interference > 0.0 { springs.response(spring, interference) } else { (0.0, 0.0) };
-            found.interference[spring] = interference;
-            found.loads[spring] = load;
+            (loads[spring], rises[spring]) = (load, rise);
             sum += load;
             slope += rise;
         }
         found.slope = slope;
-        let excess = sum - total;
-        let next = found.approach - excess / slope;
-        // Rounding decides below this; convexity keeps every earlier excess positive.
-        if excess.abs() <= 1e-14 * total || !(next > 0.0 && next.is_finite()) {
+        excess = sum - total;
+        let step = -excess / slope;
+        let next = found.approach + step;
+        // A spring that the last step would lift off has to be left out by a whole step.
+        let lifts = || loads.iter().zip(rises.iter()).any(|(load, rise)| load + rise * step < 0.0);
+        let settled = excess.abs() <= ROUNDING * total || (excess.abs() <= NEARLY * total && !lifts());
+        if settled || !(next > 0.0 && next.is_finite()) {
             break;
         }
         found.approach = next;
+    }
+    // The last step is so short that it needs no new responses.
+    let step = if found.slope > 0.0 { -excess / found.slope } else { 0.0 };
+    found.approach += step;
+    for (spring, gap) in gaps.iter().enumerate() {
+        found.interference[spring] = found.approach - gap;
+        loads[spring] = (loads[spring] + rises[spring] * step).max(0.0);
     }
     found
 }
 
 /// Equilibrium with coupling; the rest as in [`balance`].
 pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
-    let start = balance(springs, gaps, total, above);
+    let mut start = Balance { approach: above, ..Balance::EMPTY };
+    for (interference, gap) in start.interference.iter_mut().zip(gaps) {
+        *interference = above - gap;
+    }
     newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }
 
@@ -116,27 +136,24 @@ fn newton(
     let count = gaps.len();
     for _ in 0..60 {
         let mut rises = [0.0; MOST];
-        for spring in 0..count {
+        for (spring, rise) in rises[..count].iter_mut().enumerate() {
             let w = found.interference[spring];
-            (found.loads[spring], rises[spring]) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
+            (found.loads[spring], *rise) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
         }
         let mut residual = [0.0; MOST];
-        let mut settled = true;
+        // The largest residual against what it was made of.
+        let mut error = 0.0_f64;
         for j in 0..count {
             let w = found.interference[j];
             residual[j] = w + deflection(coupling, &found.loads, j, count) + gaps[j] - found.approach;
-            settled &= residual[j].abs() <= 1e-14 * (found.approach.abs() + gaps[j] + w.abs());
+            error = error.max(residual[j].abs() / (found.approach.abs() + gaps[j] + w.abs()));
         }
         let excess = found.loads[..count].iter().sum::<f64>() - total;
         let solved = Bordered::solve(coupling, &rises, &residual, count)?;
-        found.slope = solved.slope;
-        if settled && excess.abs() <= 1e-13 * total {
-            return Some(found);
-        }
         let shift = (-excess - solved.offset) / solved.slope;
         let mut change = [0.0; MOST];
-        for j in 0..count {
-            change[j] = solved.particular[j] + solved.unit[j] * shift;
+        for (j, change) in change[..count].iter_mut().enumerate() {
+            *change = solved.particular[j] + solved.unit[j] * shift;
         }
         for j in 0..count {
             found.interference[j] += if rises[j] > 0.0 {
@@ -146,6 +163,15 @@ fn newton(
             };
         }
         found.approach += shift;
+        found.slope = solved.slope;
+        let error = error.max(excess.abs() / total);
+        let lifts = || found.loads.iter().zip(change).any(|(load, change)| load + change < 0.0);
+        if error <= ROUNDING || (error <= NEARLY && !lifts()) {
+            for (load, change) in found.loads.iter_mut().zip(change) {
+                *load = (*load + change).max(0.0);
+            }
+            return Some(found);
+        }
         if !found.approach.is_finite() {
             return None;
         }
@@ -171,11 +197,9 @@ impl Bordered {
     fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
         let mut loaded = [0; MOST];
         let mut size = 0;
-        for spring in 0..count {
-            if rises[spring] > 0.0 {
-                loaded[size] = spring;
-                size += 1;
-            }
+        for (spring, _) in rises[..count].iter().enumerate().filter(|(_, rise)| **rise > 0.0) {
+            loaded[size] = spring;
+            size += 1;
         }
         let mut factor = [[0.0; MOST]; MOST];
         let (mut a, mut b) = ([0.0; MOST], [0.0; MOST]);
@@ -221,8 +245,8 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64
         found.approach = approach;
         for _ in 0..20_000 {
             let mut change = 0.0_f64;
-            for j in 0..count {
-                let w = approach - gaps[j] - deflection(coupling, &found.loads, j, count);
+            for (j, gap) in gaps.iter().enumerate() {
+                let w = approach - gap - deflection(coupling, &found.loads, j, count);
                 let load = if w > 0.0 { springs.response(j, w).0 } else { 0.0 };
                 change = change.max((load - found.loads[j]).abs());
                 (found.interference[j], found.loads[j]) = (w, load);

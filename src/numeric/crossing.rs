@@ -4,6 +4,7 @@
 
 /// Where `function` is zero between `a` and `b`, at which it has the values `value_a` and `value_b` of unlike signs; to
 /// within `tolerance` in the argument.
+#[allow(clippy::float_cmp)] // asks whether two points are the same one, not whether numbers agree
 pub fn crossing(
     mut function: impl FnMut(f64) -> f64,
     (mut a, mut value_a): (f64, f64),

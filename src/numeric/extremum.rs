@@ -8,6 +8,7 @@ const GOLDEN: f64 = 0.381_966_011_250_105_1;
 
 /// Argument and value of the maximum of `function` in `lower..=upper`; the argument to within `tolerance`, so that the
 /// error of the value is of second order in it.
+#[allow(clippy::float_cmp)] // asks whether two points are the same one, not whether numbers agree
 pub fn maximum(mut function: impl FnMut(f64) -> f64, lower: f64, guess: f64, upper: f64, tolerance: f64) -> (f64, f64) {
     let (mut a, mut b) = (lower, upper);
     let mut best = (guess, function(guess));

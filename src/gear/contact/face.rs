@@ -9,13 +9,15 @@ use crate::gear::modification::Design;
 use crate::numeric::lobatto::Rule;
 
 /// The deviation over the common face width of a pair.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Face {
+#[derive(Clone, Debug)]
+pub struct Face<'a> {
     /// The smallest deviation: what both flanks lose all along the face.
     pub offset: f64,
     /// The mean deviation above the smallest.
     pub mean: f64,
     shape: Shape,
+    /// Where slices lie on a smooth stretch.
+    rule: &'a Rule,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -39,15 +41,14 @@ struct Piece {
     weight: f64,
 }
 
-impl Face {
-    /// The common face of width `width`, centred, of gears with this design. `slices` is the number of slices on each
-    /// stretch on which the deviation is smooth, where there is no closed form, or where `closed_form` is not wanted
-    /// because the load is no linear function of the interference.
+impl<'a> Face<'a> {
+    /// The common face of width `width`, centred, of gears with this design. `rule` places the slices where something
+    /// has no closed form: on the part of each quadratic stretch that is in contact, or on each stretch of another kind.
     #[must_use]
-    pub fn new(design: &Design, width: f64, slices: usize, closed_form: bool) -> Self {
+    pub fn new(design: &Design, width: f64, rule: &'a Rule) -> Self {
         let parts = || design.pinion.iter().chain(&design.gear).map(|part| &part.modification);
         if !parts().any(|part| part.varies_along_face()) {
-            return Self { offset: 0.0, mean: 0.0, shape: Shape::Flat };
+            return Self { offset: 0.0, mean: 0.0, shape: Shape::Flat, rule };
         }
         let mut cuts = vec![-0.5 * width, 0.5 * width];
         for z in parts().flat_map(|part| part.lead_breaks()).flatten() {
@@ -63,16 +64,14 @@ impl Face {
                 .try_fold([0.0; 3], |sum, part| part.map(|part| [sum[0] + part[0], sum[1] + part[1], sum[2] + part[2]]))
         };
         let stretches = || cuts.windows(2).map(|cut| (cut[0], cut[1]));
-        if closed_form {
-            let polynomials: Option<Vec<_>> = stretches().map(|(from, to)| quadratic(0.5 * (from + to))).collect();
-            if let Some(polynomials) = polynomials {
-                return Self::quadratic(stretches().zip(polynomials), width);
-            }
+        let polynomials: Option<Vec<_>> = stretches().map(|(from, to)| quadratic(0.5 * (from + to))).collect();
+        match polynomials {
+            Some(polynomials) => Self::quadratic(stretches().zip(polynomials), width, rule),
+            None => Self::sliced(stretches(), width, rule, |z| design.lead(z)),
         }
-        Self::sliced(stretches(), width, slices, |z| design.lead(z))
     }
 
-    fn quadratic(stretches: impl Iterator<Item = ((f64, f64), [f64; 3])>, width: f64) -> Self {
+    fn quadratic(stretches: impl Iterator<Item = ((f64, f64), [f64; 3])>, width: f64, rule: &'a Rule) -> Self {
         let mut pieces = Vec::with_capacity(4);
         for ((from, to), polynomial) in stretches {
             let vertex = -0.5 * polynomial[1] / polynomial[2];
@@ -93,16 +92,15 @@ impl Face {
             }
         }
         let mean = merged.iter().map(Piece::mean).sum();
-        Self { offset, mean, shape: Shape::Quadratic(merged) }
+        Self { offset, mean, shape: Shape::Quadratic(merged), rule }
     }
 
     fn sliced(
         stretches: impl Iterator<Item = (f64, f64)>,
         width: f64,
-        slices: usize,
+        rule: &'a Rule,
         lead: impl Fn(f64) -> f64,
     ) -> Self {
-        let rule = Rule::new(slices);
         let mut found = Vec::new();
         for (from, to) in stretches {
             for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
@@ -114,7 +112,7 @@ impl Face {
             slice.1 -= offset;
         }
         let mean = found.iter().map(|slice| slice.0 * slice.1).sum();
-        Self { offset, mean, shape: Shape::Sliced(found) }
+        Self { offset, mean, shape: Shape::Sliced(found), rule }
     }
 
     /// Whether both flanks run parallel across the face.
@@ -142,18 +140,31 @@ impl Face {
         }
     }
 
-    /// Width means of `response` (value and slope at a local interference > 0) over the slices.
+    /// Width means of `response` (value and slope at a local interference > 0), by slices.
     #[must_use]
     pub fn summed(&self, interference: f64, response: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
-        let Shape::Sliced(slices) = &self.shape else { return response(interference) };
         let (mut sum, mut slope) = (0.0, 0.0);
-        for (share, deviation) in slices {
-            let depth = interference - deviation;
+        let mut add = |share: f64, depth: f64| {
             if depth > 0.0 {
                 let (value, rise) = response(depth);
                 sum += share * value;
                 slope += share * rise;
             }
+        };
+        match &self.shape {
+            Shape::Flat => add(1.0, interference),
+            Shape::Quadratic(pieces) => {
+                for piece in pieces {
+                    let depth = interference - piece.base;
+                    let reach = if depth > 0.0 { piece.reach(depth) } else { 0.0 };
+                    for (node, weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
+                        let distance = reach * node;
+                        let rise = distance * (piece.slope + distance * piece.bend);
+                        add(piece.weight * reach * weight, depth - rise);
+                    }
+                }
+            }
+            Shape::Sliced(slices) => slices.iter().for_each(|(share, deviation)| add(*share, interference - deviation)),
         }
         (sum, slope)
     }
@@ -178,20 +189,115 @@ impl Piece {
         weight * length * (base + length * (0.5 * slope + length * bend / 3.0))
     }
 
+    /// How far h stays below base + `depth`, for `depth` > 0.
+    #[inline]
+    fn reach(&self, depth: f64) -> f64 {
+        if depth >= self.rise {
+            return self.length;
+        }
+        // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
+        let root = (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt();
+        (2.0 * depth / (self.slope + root)).min(self.length)
+    }
+
     #[inline]
     fn passed(&self, interference: f64) -> (f64, f64) {
         let depth = interference - self.base;
         if depth <= 0.0 {
             return (0.0, 0.0);
         }
-        let reach = if depth >= self.rise {
-            self.length
-        } else {
-            // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
-            let root = (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt();
-            (2.0 * depth / (self.slope + root)).min(self.length)
-        };
+        let reach = self.reach(depth);
         let width = self.weight * reach;
         (width * (depth - reach * (0.5 * self.slope + reach * self.bend / 3.0)), width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::base::record::Value::{Choice, Number, Quantity};
+    use crate::gear::fixtures::{Part, design, pair};
+
+    const WIDTH: f64 = 18e-3;
+
+    fn designs() -> Vec<Design> {
+        let amount = |value: f64| ("amount", Quantity(value));
+        let end = |curve| [amount(9e-6), ("length", Quantity(5e-3)), ("curve", Choice(curve))];
+        let one_end = [amount(4e-6), ("length", Quantity(12e-3)), ("curve", Choice("parabolic")), ("end", Choice("I"))];
+        let pair = pair();
+        let of = |parts: &[Part]| design(&pair, parts).unwrap();
+        vec![
+            of(&[("lead_crowning", "pinion", &[amount(8e-6)])]),
+            of(&[("helix_slope", "gear", &[amount(-6e-6)])]),
+            of(&[("lead_crowning", "pinion", &[amount(8e-6)]), ("helix_slope", "gear", &[amount(5e-6)])]),
+            of(&[("end_relief", "gear", &end("linear"))]),
+            of(&[("end_relief", "pinion", &end("parabolic")), ("lead_crowning", "both", &[amount(3e-6)])]),
+            of(&[("end_relief", "gear", &one_end), ("helix_slope", "pinion", &[amount(40e-6)])]),
+        ]
+    }
+
+    #[test]
+    fn the_closed_form_agrees_with_fine_slices_of_the_deviation() {
+        let rule = Rule::new(17);
+        for (index, design) in designs().iter().enumerate() {
+            let face = Face::new(design, WIDTH, &rule);
+            let count = 200_000;
+            let heights: Vec<f64> =
+                (0..count).map(|i| design.lead(WIDTH * ((f64::from(i) + 0.5) / f64::from(count) - 0.5))).collect();
+            let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
+            assert!((face.offset - lowest).abs() < 1e-9, "{index}");
+            let mean = heights.iter().map(|h| h - face.offset).sum::<f64>() / f64::from(count);
+            assert!((face.mean / mean - 1.0).abs() < 1e-7, "{index}");
+            for interference in [1e-8, 3e-7, 2e-6, 5e-6, 9e-6, 30e-6, 1e-3] {
+                let depths = heights.iter().map(|h| (interference + face.offset - h).max(0.0));
+                let exact = depths.clone().sum::<f64>() / f64::from(count);
+                let share = depths.filter(|depth| *depth > 0.0).count() as f64 / f64::from(count);
+                let (passed, width) = face.passed(interference);
+                let grid = 1e-7 + 1.0 / (share * f64::from(count)) / (share * f64::from(count));
+                assert!((passed / exact - 1.0).abs() < grid, "{index} {interference}: {passed:e} {exact:e}");
+                assert!((width - share).abs() < 2e-5, "{index} {interference}: {width} {share}");
+                let (summed, _) = face.summed(interference, |depth| (depth, 1.0));
+                assert!((summed / passed - 1.0).abs() < 1e-12, "slices are exact for what is quadratic");
+            }
+        }
+    }
+
+    #[test]
+    fn crowning_alone_is_the_known_formula_down_to_vanishing_interference() {
+        let rule = Rule::new(5);
+        let pair = pair();
+        for crown in [1e-300, 1e-15, 8e-6] {
+            let face = Face::new(
+                &design(&pair, &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap(),
+                WIDTH,
+                &rule,
+            );
+            for interference in [1e-25, 1e-12, 3e-6, 7.999e-6, 8e-6, 1e-3] {
+                let t = f64::min(1.0, f64::sqrt(interference / crown));
+                let exact = interference * t - crown * t * t * t / 3.0;
+                assert!((face.passed(interference).0 / exact - 1.0).abs() < 1e-13, "{crown} {interference}");
+            }
+        }
+    }
+
+    #[test]
+    fn other_curves_are_sliced_and_agree_where_they_are_quadratic_after_all() {
+        let pair = pair();
+        let relief = |exponent: f64| {
+            let values = [
+                ("amount", Quantity(9e-6)),
+                ("length", Quantity(5e-3)),
+                ("curve", Choice("power")),
+                ("exponent", Number(exponent)),
+            ];
+            design(&pair, &[("end_relief", "both", &values)]).unwrap()
+        };
+        let rule = Rule::new(400);
+        let (quadratic, near) = (Face::new(&relief(2.0), WIDTH, &rule), Face::new(&relief(2.0 + 1e-9), WIDTH, &rule));
+        assert!(matches!((&quadratic.shape, &near.shape), (Shape::Quadratic(_), Shape::Sliced(_))));
+        for interference in [1e-6, 4e-6, 30e-6] {
+            let ratio = quadratic.passed(interference).0 / near.passed(interference).0;
+            assert!((ratio - 1.0).abs() < 5e-6, "{ratio}");
+        }
     }
 }

@@ -67,28 +67,11 @@ impl Logarithmic {
         law
     }
 
-    /// Load per width p and dp/dw with `compliance` (interference per load per width, > 0) in series, at w > 0.
+    /// The law with `compliance` (interference per load per width, > 0) in series.
     #[must_use]
-    pub fn load(&self, compliance: f64, interference: f64) -> (f64, f64) {
-        let Self { constant, rate } = *self;
-        let last = libm::exp(constant / rate - 1.0);
-        if interference >= (compliance + rate) * last {
-            return ((interference - rate * last) / compliance, 1.0 / compliance);
-        }
-        // Newton on ln p: ln p + ln(c + α − β ln p) = ln w is almost straight, with a slope between 0 and 1.
-        let target = libm::log(interference);
-        let mut logarithm = target - libm::log(compliance + rate);
-        for _ in 0..50 {
-            let total = compliance + constant - rate * logarithm;
-            let step = (logarithm + libm::log(total) - target) / (1.0 - rate / total);
-            logarithm -= step;
-            // Converging quadratically, so the step after this one is below rounding.
-            if step.abs() <= 1e-8 {
-                break;
-            }
-        }
-        let total = compliance + constant - rate * logarithm;
-        (interference / total, 1.0 / (total - rate))
+    pub fn in_series(self, compliance: f64) -> InSeries {
+        let last = libm::exp(self.constant / self.rate - 1.0);
+        InSeries { law: self, compliance, last, start: libm::log(compliance + self.rate) }
     }
 
     /// The approach of the flanks at the load per width p.
@@ -97,6 +80,51 @@ impl Logarithmic {
         let last = libm::exp(self.constant / self.rate - 1.0);
         let load = load.min(last);
         if load > 0.0 { load * (self.constant - self.rate * libm::log(load)) } else { 0.0 }
+    }
+}
+
+/// Flanks and teeth in series, ready to be inverted many times.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct InSeries {
+    pub law: Logarithmic,
+    pub compliance: f64,
+    /// The load per width from which on the flanks' approach stays.
+    last: f64,
+    /// ln(c + β).
+    start: f64,
+}
+
+impl InSeries {
+    pub const NONE: Self =
+        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0 };
+
+    /// The interference at a load per width.
+    #[must_use]
+    pub fn interference(&self, load: f64) -> f64 {
+        self.compliance * load + self.law.approach(load)
+    }
+
+    /// Load per width p and dp/dw at the interference w > 0.
+    #[must_use]
+    pub fn load(&self, interference: f64) -> (f64, f64) {
+        let Self { law: Logarithmic { constant, rate }, compliance, last, start } = *self;
+        if interference >= (compliance + rate) * last {
+            return ((interference - rate * last) / compliance, 1.0 / compliance);
+        }
+        // Newton on ln p: ln p + ln(c + α − β ln p) = ln w is almost straight, with a slope between 0 and 1.
+        let target = libm::log(interference);
+        let mut logarithm = target - start;
+        for _ in 0..50 {
+            let total = compliance + constant - rate * logarithm;
+            let step = (logarithm + libm::log(total) - target) / (1.0 - rate / total);
+            logarithm -= step;
+            // Converging quadratically, so the step after this one is below rounding.
+            if step.abs() <= 1e-7 {
+                break;
+            }
+        }
+        let total = compliance + constant - rate * logarithm;
+        (interference / total, 1.0 / (total - rate))
     }
 }
 
@@ -134,17 +162,17 @@ mod tests {
     #[test]
     fn the_load_dependent_law_inverts_at_every_load() {
         let law = Logarithmic::new([&STEEL, &SOFT], 7e-3, [2.5e-3, 3e-3]);
-        let compliance = 4e-11;
+        let series = law.in_series(4e-11);
         let mut before = 0.0;
         for exponent in -300..=40 {
             let load = libm::pow(10.0, f64::from(exponent) * 0.5);
-            let interference = compliance * load + law.approach(load);
+            let interference = series.interference(load);
             assert!(interference > before, "monotonic at {load}");
             before = interference;
-            let (found, slope) = law.load(compliance, interference);
+            let (found, slope) = series.load(interference);
             assert!((found / load - 1.0).abs() < 1e-12, "{load} {found}");
             let step = 1e-5 * interference;
-            let difference = law.load(compliance, interference + step).0 - law.load(compliance, interference - step).0;
+            let difference = series.load(interference + step).0 - series.load(interference - step).0;
             assert!((difference / (2.0 * step) / slope - 1.0).abs() < 1e-5, "slope at {load}");
         }
     }

@@ -76,6 +76,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::float_cmp)] // the ends are exact
     fn curves_go_from_nothing_to_everything() {
         let curves = [
             Curve::Quadratic { linear: 1.0 },

@@ -14,6 +14,8 @@ pub mod profile_slope;
 pub mod relief;
 pub mod root_relief;
 pub mod template;
+#[cfg(test)]
+mod tests;
 pub mod tip_relief;
 
 use std::fmt::Debug;
@@ -35,6 +37,9 @@ pub const FAMILIES: &[Family] = &[
     end_relief::FAMILY,
 ];
 
+/// Builds the modification of one gear.
+pub type Build = fn(&Record, &Pair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
+
 /// A family as registered.
 #[derive(Clone, Copy)]
 pub struct Family {
@@ -43,7 +48,7 @@ pub struct Family {
     /// Refuses combinations of fields that no declaration can express; values may still be ranges.
     pub check: fn(&Record) -> Result<(), Diagnostic>,
     /// The modification of one gear. The record has passed `check` and holds no ranges.
-    pub build: fn(&Record, &Pair, Side) -> Result<Arc<dyn Modification>, Diagnostic>,
+    pub build: Build,
 }
 
 /// One modification of one gear, with everything resolved.
@@ -188,6 +193,7 @@ pub const GEAR: Field = Field::choice(
 /// The largest amount \[m\]: beyond it a relief is no longer small against the tooth.
 pub(crate) const MOST_AMOUNT: f64 = 5e-3;
 
+#[allow(clippy::unnecessary_wraps)] // has the type of every family's check
 pub(crate) fn no_check(_: &Record) -> Result<(), Diagnostic> {
     Ok(())
 }

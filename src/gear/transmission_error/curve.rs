@@ -91,8 +91,9 @@ impl Loading<'_> {
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
-            let joined =
-                points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
+            let joined = points
+                .last()
+                .is_some_and(|last| last.cycle_position.total_cmp(&span.start).is_eq() && last.pairs == span.pairs);
             let here: [Point; _] = std::array::from_fn(|node| {
                 self.point(span.position(rows, node), span.pairs, &states[node], wanted.pressure)
             });

@@ -11,6 +11,7 @@ use crate::gear::compliance::{ContactLaw, Material, PairCompliance};
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::geometry::Pair;
 use crate::numeric::complementarity::{Coupling, MOST, PerSpring};
+use crate::numeric::lobatto::Rule;
 use crate::numeric::panels::Panels;
 
 /// Relative accuracy of the quick copies.
@@ -23,13 +24,13 @@ const SHORTEST_ZONE: f64 = 1e-9;
 pub struct Settings {
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     pub positions: usize,
-    /// Slices on each smooth stretch of the face where its deviation has no closed form.
+    /// Slices on each smooth stretch of the face that is in contact, where there is no closed form.
     pub slices: usize,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { positions: 64, slices: 33 }
+        Self { positions: 64, slices: 17 }
     }
 }
 
@@ -53,6 +54,7 @@ pub struct MeshCycle {
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
     coupling: Vec<Panels>,
     pub(super) rows: Rows,
+    pub(super) slices: Rule,
 }
 
 /// Against the path position.
@@ -116,7 +118,8 @@ impl MeshCycle {
             })
             .collect();
         let zones = zones(ratio, pair.base_pitch);
-        Ok(Self { pair: pair.clone(), settings, face_width, zones, elasticity, coupling, rows: Rows::new() })
+        let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
+        Ok(Self { pair: pair.clone(), settings, face_width, zones, elasticity, coupling, rows, slices })
     }
 
     /// The same cycle, sampled otherwise.

@@ -6,11 +6,11 @@
 use super::cycle::{Elasticity, MeshCycle};
 use super::trace::{NODES, Span, Trace};
 use crate::gear::contact::face::Face;
-use crate::gear::contact::flattening::Logarithmic;
+use crate::gear::contact::flattening::{InSeries, Logarithmic};
 use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
-use crate::numeric::complementarity::{self, Balance, MOST, PerSpring, Springs};
+use crate::numeric::complementarity::{self, Balance, MOST, Springs};
 use crate::numeric::crossing::crossing;
 use crate::numeric::harmonics;
 
@@ -25,7 +25,7 @@ pub struct Loading<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
-    face: Face,
+    face: Face<'a>,
     profiles: [Vec<&'a dyn Modification>; 2],
     /// Cycle positions at which a profile is not smooth, ascending.
     breaks: Vec<f64>,
@@ -51,8 +51,7 @@ impl<'a> Loading<'a> {
     /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair only touches.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
-        let closed_form = matches!(cycle.elasticity, Elasticity::Linear(_));
-        let face = Face::new(design, cycle.face_width, cycle.settings.slices, closed_form);
+        let face = Face::new(design, cycle.face_width, &cycle.slices);
         let of = |side: Side| {
             let parts = design.side(side).iter().map(|part| part.modification.as_ref());
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
@@ -94,15 +93,15 @@ impl<'a> Loading<'a> {
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> State {
         let mut gaps = [0.0; MOST];
+        let gaps = &mut gaps[..pairs];
         let mut smallest = f64::INFINITY;
-        for (pair, gap) in gaps.iter_mut().enumerate().take(pairs) {
+        for (pair, gap) in gaps.iter_mut().enumerate() {
             *gap = self.gap(self.cycle.path_position(position, pair));
             smallest = smallest.min(*gap);
         }
-        for gap in &mut gaps[..pairs] {
+        for gap in gaps.iter_mut() {
             *gap -= smallest;
         }
-        let gaps = &gaps[..pairs];
         let balance = if self.force > 0.0 { self.loaded(position, gaps) } else { complementarity::unloaded(gaps) };
         State { unloaded: smallest + self.face.offset, balance }
     }
@@ -111,7 +110,7 @@ impl<'a> Loading<'a> {
         match &self.cycle.elasticity {
             Elasticity::Linear(panels) => {
                 let mut stiffness = [0.0; MOST];
-                for (pair, slot) in stiffness.iter_mut().enumerate().take(gaps.len()) {
+                for (pair, slot) in stiffness[..gaps.len()].iter_mut().enumerate() {
                     *slot = panels.value(self.cycle.path_position(position, pair));
                 }
                 let above = complementarity::linear_approach(&stiffness, gaps, self.force) + self.face.mean;
@@ -136,16 +135,14 @@ impl<'a> Loading<'a> {
     }
 
     fn logarithmic(&self, position: f64, pairs: usize) -> LogarithmicPairs<'_> {
-        let mut laws = [Logarithmic { constant: 0.0, rate: 0.0 }; MOST];
-        let mut compliances: PerSpring = [0.0; MOST];
+        let mut slices = [InSeries::NONE; MOST];
         if let Elasticity::Logarithmic { compliance, constant, rate } = &self.cycle.elasticity {
-            for pair in 0..pairs {
+            for (pair, slot) in slices[..pairs].iter_mut().enumerate() {
                 let s = self.cycle.path_position(position, pair);
-                laws[pair] = Logarithmic { constant: constant.value(s), rate: *rate };
-                compliances[pair] = compliance.value(s);
+                *slot = Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s));
             }
         }
-        LogarithmicPairs { laws, compliance: compliances, width: self.cycle.face_width, face: &self.face }
+        LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face }
     }
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
@@ -159,7 +156,7 @@ impl<'a> Loading<'a> {
             Elasticity::Linear(panels) => {
                 panels.value(self.cycle.path_position(position, pair)) * interference / self.cycle.face_width
             }
-            Elasticity::Logarithmic { .. } => self.logarithmic(position, pair + 1).line_load(pair, interference).0,
+            Elasticity::Logarithmic { .. } => self.logarithmic(position, pair + 1).slices[pair].load(interference).0,
         }
     }
 

@@ -134,14 +134,21 @@ impl Trace {
         for (index, (span, values)) in self.spans.iter().enumerate() {
             for node in 0..NODES {
                 let value = sign * values[node];
-                // The first node of a span stands for the last one of the span before it.
+                // Most nodes are out of the question at a glance.
+                let topped = (node > 0 && sign * values[node - 1] > value)
+                    || (node + 1 < NODES && sign * values[node + 1] > value)
+                    || value + OVERSHOOT * (value - lowest) < best.value;
+                if topped {
+                    continue;
+                }
                 let near = self.neighbourhood(rows, index, node, sign);
                 let sides = [near.before, near.after];
                 let low = sides.iter().flatten().fold(value, |low, side| low.min(side.1));
-                if sides.iter().flatten().any(|side| side.1 > value) || value + OVERSHOOT * (value - low) < best.value {
-                    continue;
-                }
-                if node + 1 == NODES && near.after.is_some() {
+                let topped = sides.iter().flatten().any(|side| side.1 > value);
+                // The first node of a span stands for the last one of the span before it.
+                let twin = node + 1 == NODES && near.after.is_some();
+                // On a plateau there is nothing to look for.
+                if topped || twin || low >= value || value + OVERSHOOT * (value - low) < best.value {
                     continue;
                 }
                 let found = near.maximum(|position| sign * function(position, span.pairs));
@@ -160,7 +167,8 @@ impl Trace {
         };
         let joined = |one: usize, two: usize| {
             let (one, two) = (self.spans.get(one), self.spans.get(two));
-            one.zip(two).is_some_and(|(one, two)| one.0.end == two.0.start && one.0.pairs == two.0.pairs)
+            one.zip(two)
+                .is_some_and(|(one, two)| one.0.end.total_cmp(&two.0.start).is_eq() && one.0.pairs == two.0.pairs)
         };
         let before = match node {
             0 => (index > 0 && joined(index - 1, index)).then(|| point(index - 1, NODES - 2)),

@@ -55,7 +55,7 @@ const FIELDS: &[Field] = &[
     )
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
-        .default("33"),
+        .default("17"),
 ];
 
 const AT: &[Field] = &[

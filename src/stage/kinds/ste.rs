@@ -46,7 +46,7 @@ const FIELDS: &[Field] = &[
     )
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
-        .default("33"),
+        .default("17"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
 ];
 
