@@ -10,12 +10,22 @@ use super::units::Dimension;
 #[derive(Clone, Copy)]
 pub enum Shape {
     /// A number with a unit, inside `least..=most` (SI).
-    Quantity { dimension: Dimension, least: f64, most: f64 },
+    Quantity {
+        dimension: Dimension,
+        least: f64,
+        most: f64,
+    },
     /// A number with any unit, or none: a published value.
     AnyQuantity,
     /// A plain number.
-    Number { least: f64, most: f64 },
-    Integer { least: i64, most: i64 },
+    Number {
+        least: f64,
+        most: f64,
+    },
+    Integer {
+        least: i64,
+        most: i64,
+    },
     Flag,
     Text,
     /// One of a few words.
@@ -87,7 +97,13 @@ impl Field {
 
     /// A quantity inside `least..=most` (SI).
     #[must_use]
-    pub const fn quantity(name: &'static str, dimension: Dimension, least: f64, most: f64, summary: &'static str) -> Self {
+    pub const fn quantity(
+        name: &'static str,
+        dimension: Dimension,
+        least: f64,
+        most: f64,
+        summary: &'static str,
+    ) -> Self {
         Self::new(name, Shape::Quantity { dimension, least, most }, summary)
     }
 

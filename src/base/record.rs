@@ -14,7 +14,11 @@ pub enum Value {
     /// SI.
     Quantity(f64),
     /// SI, with the dimension that was read and the unit as written.
-    AnyQuantity { value: f64, dimension: Dimension, unit: String },
+    AnyQuantity {
+        value: f64,
+        dimension: Dimension,
+        unit: String,
+    },
     /// The values of an axis, SI, ascending, without repeats; never empty.
     Axis(Vec<f64>),
     /// Bounds between which an optimiser chooses, SI, least < most.

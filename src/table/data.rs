@@ -176,7 +176,11 @@ impl Table {
             for (index, cell) in row.into_iter().enumerate() {
                 if let Err(cell) = columns[index].push(cell) {
                     let problem = format!("`{cell}` is no {}", schema.columns[index].kind.name());
-                    return Err(TableError::Column { column: schema.columns[index].name.clone(), table: schema.name, problem });
+                    return Err(TableError::Column {
+                        column: schema.columns[index].name.clone(),
+                        table: schema.name,
+                        problem,
+                    });
                 }
             }
         }
@@ -214,7 +218,10 @@ impl Table {
             return Ok(self);
         }
         let compare = |a: usize, b: usize| {
-            keys.iter().map(|&key| self.columns[key].compare(a, b)).find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+            keys.iter()
+                .map(|&key| self.columns[key].compare(a, b))
+                .find(|order| order.is_ne())
+                .unwrap_or(Ordering::Equal)
         };
         if !(1..self.rows).all(|row| compare(row - 1, row).is_lt()) {
             let mut order: Vec<usize> = (0..self.rows).collect();

@@ -75,7 +75,10 @@ impl Column {
     /// A number; two values agree within 1e-9 relative unless [`Column::tolerance`] says otherwise.
     #[must_use]
     pub fn float(name: &str, unit: &str, description: &str) -> Self {
-        Self { tolerance: Tolerance { absolute: 0.0, relative: 1e-9 }, ..Self::new(name, Type::Float, unit, description) }
+        Self {
+            tolerance: Tolerance { absolute: 0.0, relative: 1e-9 },
+            ..Self::new(name, Type::Float, unit, description)
+        }
     }
 
     #[must_use]

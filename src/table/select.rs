@@ -165,7 +165,10 @@ mod tests {
     #[test]
     fn cells_are_found_by_key_in_any_unit() {
         let name = CellName::parse("ste.summary[design=iso, torque=50000 N mm].peak_to_peak").unwrap();
-        assert_eq!((name.stage.as_str(), name.table.as_str(), name.column.as_str()), ("ste", "summary", "peak_to_peak"));
+        assert_eq!(
+            (name.stage.as_str(), name.table.as_str(), name.column.as_str()),
+            ("ste", "summary", "peak_to_peak")
+        );
         assert_eq!(rows_where(&table(), &name.conditions).unwrap(), vec![1]);
         assert_eq!(CellName::parse("a.b.c").unwrap().conditions, vec![]);
     }
