@@ -44,6 +44,7 @@ pub fn pair() -> Pair {
         pinion: gear(19, pinion_base, 20e-3),
         gear: gear(48, pinion_base * 48.0 / 19.0, 18e-3),
         centre_distance: 100.5e-3,
+        given_centre_distance: None,
         working_pressure_angle: 20_f64.to_radians(),
         tangent_length: 34.373_024_404_229_71e-3,
         start_of_contact: start,
