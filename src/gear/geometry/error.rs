@@ -24,5 +24,6 @@ impl GeometryError {
 
 /// A length for a message.
 pub(super) fn mm(length: f64) -> String {
-    format!("{:.6} mm", length * 1e3).replace(".000000 ", " ")
+    let text = format!("{:.6}", length * 1e3);
+    format!("{} mm", text.trim_end_matches('0').trim_end_matches('.'))
 }

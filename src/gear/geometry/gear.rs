@@ -75,7 +75,10 @@ impl Gear {
         };
         if gear.tip_thickness() <= 0.0 {
             let (tip, point) = (mm(tip_radius), mm(gear.point_radius()));
-            let problem = format!("its teeth come to a point at the radius {point}, below the tip radius {tip}");
+            let problem = format!(
+                "with x = {profile_shift} its teeth come to a point at the radius {point}; \
+                 the tip radius must be below that, not {tip}"
+            );
             return fail(if specification.tip_radius.is_some() { "tip_radius" } else { "profile_shift" }, problem);
         }
         Ok(gear)
@@ -136,6 +139,14 @@ impl Gear {
 }
 
 impl Side {
+    #[must_use]
+    pub fn mate(self) -> Self {
+        match self {
+            Self::Pinion => Self::Gear,
+            Self::Gear => Self::Pinion,
+        }
+    }
+
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {

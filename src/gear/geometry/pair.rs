@@ -65,30 +65,31 @@ impl Pair {
     }
 
     fn meshes(&self) -> Result<(), GeometryError> {
-        for (side, mate, deepest) in
-            [(Side::Pinion, Side::Gear, self.start_of_contact), (Side::Gear, Side::Pinion, self.end_of_contact)]
-        {
+        for (side, deepest) in [(Side::Pinion, self.start_of_contact), (Side::Gear, self.end_of_contact)] {
             let gear = self.side(side);
-            let (name, mate) = (side.name(), mate.name());
+            let (name, mate) = (side.name(), side.mate().name());
             let roll = self.roll(side, deepest);
             let form_roll = gear.roll_at(gear.form_radius);
             if roll < form_roll - 1e-9 {
-                let form = mm(gear.form_radius);
-                let problem = if roll < 0.0 {
-                    format!(
-                        "the tip of the {mate} reaches past the tangent point into the root of the {name} (interference)"
-                    )
+                let (other, form) = (self.side(side.mate()), mm(gear.form_radius));
+                // The tip that would reach just to the start of the involute.
+                let rest = self.tangent_length - form_roll * gear.base_radius;
+                let largest = mm((other.base_radius * other.base_radius + rest * rest).sqrt());
+                let tip = mm(other.tip_radius);
+                let reaches = if roll < 0.0 {
+                    let past = mm(-roll * gear.base_radius);
+                    format!("reaches {past} past the tangent point into the root of the {name}")
                 } else {
                     let reached = mm(gear.radius_at(roll));
-                    format!(
-                        "the tip of the {mate} reaches the {name} at radius {reached}, where the involute starts at {form} (interference)"
-                    )
+                    format!("reaches the {name} at radius {reached}, where its involute starts only at {form}")
                 };
+                let problem = format!(
+                    "interference: the tip of the {mate} {reaches}; the {mate} may have a tip radius of {largest} at most, not {tip}, \
+                     or the {name} more teeth or profile shift"
+                );
                 return fail(if side == Side::Pinion { "pinion.teeth" } else { "gear.teeth" }, problem);
             }
-            let clearance = self.centre_distance
-                - gear.root_radius
-                - self.side(if side == Side::Pinion { Side::Gear } else { Side::Pinion }).tip_radius;
+            let clearance = self.centre_distance - gear.root_radius - self.side(side.mate()).tip_radius;
             if clearance < 0.0 {
                 let problem =
                     format!("the tip of the {mate} cuts {} into the root circle of the {name}", mm(-clearance));
@@ -99,7 +100,9 @@ impl Pair {
             let ratio = self.contact_ratio;
             return fail(
                 "pinion.teeth",
-                format!("the contact ratio is {ratio:.4}; above 1 a pair takes over before the last one leaves"),
+                format!(
+                    "the contact ratio is {ratio:.4}; it must be above 1, so that a pair takes over before the last one leaves"
+                ),
             );
         }
         Ok(())

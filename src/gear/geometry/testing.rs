@@ -23,7 +23,7 @@ pub fn specification(teeth: u32, profile_shift: f64) -> Specification {
 pub fn pair_19_48(bore_ratio: f64) -> Pair {
     let gear = |teeth: u32, width: f64| {
         let mut gear = specification(teeth, 0.0);
-        gear.rack.tip_radius = 0.25 / (1.0 - gear.pressure_angle.sin());
+        gear.rack.tip_radius = 0.25 / (1.0 - libm::sin(gear.pressure_angle));
         gear.face_width = width;
         gear.bore_radius *= 1.75 / bore_ratio;
         gear

@@ -101,6 +101,30 @@ fn the_zone_ends_and_shifts_are_iso_21771s() {
     assert!((thickness(&shifted.pinion) + thickness(&shifted.gear) - pitch).abs() < 1e-15, "backlash");
 }
 
+/// What the message of an interference proposes is the border between what is accepted and what is refused.
+#[test]
+fn an_interference_names_the_largest_tip_that_meshes() {
+    for (pinion, gear) in [(12, 48), (14, 100), (17, 19), (48, 12)] {
+        let with_tip = |radius: Option<f64>| {
+            let mut specifications = [specification(pinion, 0.0), specification(gear, 0.0)];
+            specifications[usize::from(gear > pinion)].tip_radius = radius;
+            let [first, second] = specifications;
+            Pair::new(first, second, None)
+        };
+        let Err(error) = with_tip(None) else {
+            assert_eq!((pinion, gear), (17, 19));
+            continue;
+        };
+        let message = error.to_string();
+        let largest = message.split("a tip radius of ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+        let largest = largest.parse::<f64>().unwrap() * 1e-3;
+        assert!(with_tip(Some(largest + 2e-9)).is_err(), "{message}");
+        let below = with_tip(Some(largest - 2e-9)).map_err(|error| error.to_string());
+        // Where so much of the tip has to go, contact may be too short: that is the next message.
+        assert!(below.as_ref().err().is_none_or(|error| error.contains("contact ratio")), "{below:?}");
+    }
+}
+
 #[test]
 fn impossible_gears_and_pairs_are_refused_with_values_and_place() {
     let bored = |teeth: u32, shift: f64| specification(teeth, shift);

@@ -57,10 +57,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
         name: name.to_owned(),
         kind: kind.to_owned(),
         version: 1,
-        keys: vec![KeyRecord {
-            key: "8f3a90c1d2e4b7".repeat(4),
-            ..KeyRecord::default()
-        }],
+        keys: vec![KeyRecord { key: "8f3a90c1d2e4b7".repeat(4), ..KeyRecord::default() }],
         status: status.to_owned(),
         why: why.to_owned(),
         seconds,
