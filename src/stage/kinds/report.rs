@@ -61,7 +61,7 @@ const PUBLISHED: &[Field] = &[
 pub const KIND: Kind = Kind {
     name: "report",
     version: 1,
-    summary: "a verdict on every published number, and the figures",
+    summary: "A verdict on every published number, and the figures of the report.",
     fields: &[
         Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "the paper's numbers and claims").optional(),
         Field::new("figures", Shape::List(&Shape::Group(figure::FIELDS)), "the figures of the report").optional(),
@@ -82,7 +82,7 @@ figures:
   - name: transmission_error
     title: Static transmission error over the mesh cycle at 50 N m
     table: ste.curve
-    x: position
+    x: cycle_position
     y: transmission_error
     series: design
     where: { torque: 50 N m }
