@@ -125,7 +125,7 @@ impl MeshCycle {
     /// The same cycle, sampled otherwise.
     #[must_use]
     pub fn sampled(&self, settings: Settings) -> Self {
-        Self { settings, ..self.clone() }
+        Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
     }
 
     /// p_b \[m\].
