@@ -32,6 +32,8 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
         tip_radius: reference_radius + module,
         root_radius: reference_radius - 1.25 * module,
         form_radius: base_radius,
+        form_roll: 0.0,
+        undercut: false,
         half_base_angle: 0.09,
     }
 }

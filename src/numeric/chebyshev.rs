@@ -35,18 +35,74 @@ impl Series {
     #[must_use]
     pub fn from_values(lower: f64, upper: f64, values: &[f64]) -> Self {
         let count = values.len();
+        // All angles are multiples of π/2n, so one turn of cosines serves every order.
+        let turn = 4 * count;
+        let cosines: Vec<f64> = (0..turn).map(|j| libm::cos(PI * j as f64 / (2 * count) as f64)).collect();
         let coefficients = (0..count)
             .map(|order| {
-                let sum: f64 = values
-                    .iter()
-                    .enumerate()
-                    // Ascending nodes are cos(π − θ), which flips the sign of the odd orders.
-                    .map(|(k, value)| value * libm::cos(order as f64 * (PI - angle(k, count))))
-                    .sum();
+                // Ascending nodes are cos(π − θ): the last value belongs to the smallest angle.
+                let sum: f64 =
+                    values.iter().rev().enumerate().map(|(k, value)| value * cosines[order * (2 * k + 1) % turn]).sum();
                 sum * if order == 0 { 1.0 } else { 2.0 } / count as f64
             })
             .collect();
         Self { lower, upper, coefficients }
+    }
+
+    /// Several functions of one argument, fitted together with as many nodes as they need: the count is doubled from
+    /// 16 until the last eighth of the coefficients is below 1e-14 of the largest, or below 1e-11 and no longer falling:
+    /// then they are rounding in the functions themselves. `None` when 512 nodes do not suffice: the functions are not
+    /// smooth there.
+    pub fn converged<const N: usize>(
+        lower: f64,
+        upper: f64,
+        mut function: impl FnMut(f64) -> [f64; N],
+    ) -> Option<[Self; N]> {
+        let mut count = 16;
+        let mut before = f64::INFINITY;
+        while count <= 512 {
+            let values: Vec<[f64; N]> = nodes(lower, upper, count).into_iter().map(&mut function).collect();
+            let series: [Self; N] = std::array::from_fn(|index| {
+                Self::from_values(lower, upper, &values.iter().map(|row| row[index]).collect::<Vec<_>>())
+            });
+            let tail = series.iter().map(|one| one.tail(count / 8)).fold(0.0, f64::max);
+            if tail <= 1e-14 || (tail <= 1e-11 && tail > 0.1 * before) {
+                return Some(series.map(Self::trimmed));
+            }
+            (count, before) = (2 * count, tail);
+        }
+        None
+    }
+
+    /// The sum of series on one interval; `None` when they are on different ones, or there are none.
+    #[must_use]
+    pub fn sum(series: &[&Self]) -> Option<Self> {
+        let first = series.first()?;
+        #[allow(clippy::float_cmp)] // the same interval, not a near one
+        if series.iter().any(|one| one.lower != first.lower || one.upper != first.upper) {
+            return None;
+        }
+        let count = series.iter().map(|one| one.coefficients.len()).max()?;
+        let coefficient = |k: usize| series.iter().filter_map(|one| one.coefficients.get(k)).sum();
+        Some(Self { lower: first.lower, upper: first.upper, coefficients: (0..count).map(coefficient).collect() })
+    }
+
+    /// The largest of the last `count` coefficients over the largest of all; infinite where one is not finite.
+    fn tail(&self, count: usize) -> f64 {
+        if self.coefficients.iter().any(|c| !c.is_finite()) {
+            return f64::INFINITY;
+        }
+        let all = largest(&self.coefficients);
+        if all > 0.0 { largest(&self.coefficients[self.coefficients.len() - count..]) / all } else { 0.0 }
+    }
+
+    /// Without the last coefficients, as far as they are rounding.
+    fn trimmed(mut self) -> Self {
+        let negligible = 2.0 * f64::EPSILON * largest(&self.coefficients);
+        while self.coefficients.len() > 1 && self.coefficients.last().is_some_and(|c| c.abs() <= negligible) {
+            self.coefficients.pop();
+        }
+        self
     }
 
     #[must_use]
@@ -99,6 +155,10 @@ impl Series {
     }
 }
 
+fn largest(coefficients: &[f64]) -> f64 {
+    coefficients.iter().fold(0.0, |most: f64, c| most.max(c.abs()))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -112,6 +172,36 @@ mod tests {
             let exact = libm::exp(x) - libm::exp(0.5);
             assert!((integral.value(x) - exact).abs() < 4e-14 * libm::exp(3.0), "integral at {x}");
         }
+    }
+
+    #[test]
+    fn the_count_follows_the_function() {
+        let near_pole = |x: f64| 1.0 / (1.05 - x);
+        let [smooth, steep] = Series::converged(-1.0, 1.0, |x| [libm::exp(x), near_pole(x)]).unwrap();
+        assert!(smooth.coefficients().len() < 20 && steep.coefficients().len() > 60);
+        for x in [-1.0, -0.3, 0.99, 1.0] {
+            assert!((smooth.value(x) / libm::exp(x) - 1.0).abs() < 1e-14, "exp at {x}");
+            assert!((steep.value(x) / near_pole(x) - 1.0).abs() < 1e-12, "pole at {x}");
+        }
+        assert!(Series::converged(-1.0, 1.0, |x| [x.abs()]).is_none());
+        assert!(Series::converged(-1.0, 1.0, |x| [1.0 / (x - 2.0).max(0.0)]).is_none());
+        assert_eq!(Series::converged(0.0, 1.0, |_| [0.0]).unwrap()[0].coefficients(), [0.0]);
+    }
+
+    #[test]
+    fn a_function_s_own_rounding_is_not_chased() {
+        // Rounded to eleven digits or so, by cancelling.
+        let rough = |x: f64| (libm::exp(x) + 1e4) - 1e4;
+        let [series] = Series::converged(-1.0, 1.0, |x| [rough(x)]).unwrap();
+        assert!((series.value(0.3) / libm::exp(0.3) - 1.0).abs() < 1e-11);
+    }
+
+    #[test]
+    fn sums_are_those_of_the_values() {
+        let (one, two) = (Series::fit(0.0, 2.0, 20, libm::exp), Series::fit(0.0, 2.0, 5, |x| x * x));
+        let sum = Series::sum(&[&one, &two]).unwrap();
+        assert!((sum.value(1.3) - libm::exp(1.3) - 1.69).abs() < 1e-13);
+        assert!(Series::sum(&[&one, &Series::fit(0.0, 2.5, 5, |x| x)]).is_none() && Series::sum(&[]).is_none());
     }
 
     #[test]

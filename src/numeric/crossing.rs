@@ -2,6 +2,19 @@
 //!
 //! Source: Brent, Algorithms for Minimization without Derivatives, chapter 4. Must not know: what crosses zero.
 
+/// The zero of `function` between `a` and `b`, to the last bits of the argument; `None` unless the signs at the ends
+/// differ (a zero at an end counts).
+pub fn bracketed(a: f64, b: f64, mut function: impl FnMut(f64) -> f64) -> Option<f64> {
+    let (at_a, at_b) = (function(a), function(b));
+    if !at_a.is_finite() || !at_b.is_finite() || (at_a > 0.0 && at_b > 0.0) || (at_a < 0.0 && at_b < 0.0) {
+        return None;
+    }
+    if at_a == 0.0 {
+        return Some(a);
+    }
+    Some(crossing(function, (a, at_a), (b, at_b), 0.0))
+}
+
 /// Where `function` is zero between `a` and `b`, at which it has the values `value_a` and `value_b` of unlike signs; to
 /// within `tolerance` in the argument.
 #[allow(clippy::float_cmp)] // asks whether two points are the same one, not whether numbers agree
@@ -82,5 +95,28 @@ mod tests {
         assert!((crossing(kink, (0.0, kink(0.0)), (1.0, kink(1.0)), 1e-13) - 0.3).abs() < 1e-13);
         let jump = |x: f64| if x < 0.7 { -1.0 } else { 1e-9 };
         assert!((crossing(jump, (0.0, -1.0), (1.0, 1e-9), 1e-12) - 0.7).abs() < 1e-12);
+    }
+
+    #[test]
+    fn known_zeros_are_found_to_the_last_bits() {
+        let mut calls = 0;
+        let zero = bracketed(0.0, 4.0, |x| {
+            calls += 1;
+            x * x - 2.0
+        });
+        assert!((zero.unwrap() - 2f64.sqrt()).abs() <= 2.0 * f64::EPSILON);
+        assert!(calls < 20, "{calls} evaluations");
+        let zero = bracketed(3.0, 0.0, |x| libm::cos(x) - x).unwrap();
+        assert!((zero - 0.739_085_133_215_160_6).abs() <= 2.0 * f64::EPSILON);
+        // A triple zero, where interpolation is of no help.
+        assert!(bracketed(-1.0, 1.5, |x| x * x * x).unwrap().abs() < 1e-15);
+    }
+
+    #[test]
+    fn ends_count_and_a_missing_change_of_sign_is_told() {
+        assert!(bracketed(1.0, 2.0, |x| x - 1.0).unwrap() <= 1.0);
+        assert!(bracketed(1.0, 2.0, |x| 2.0 - x).unwrap() >= 2.0);
+        assert_eq!(bracketed(1.0, 2.0, |x| x), None);
+        assert_eq!(bracketed(1.0, 2.0, |_| f64::NAN), None);
     }
 }

@@ -39,6 +39,7 @@ const fn axis(chunk: usize) -> Field {
         shape: Shape::Number { least: 0.0, most: 1e9 },
         presence: Presence::Required,
         span: Span::Axis { chunk },
+        chooses: false,
         summary: "",
     }
 }

@@ -87,11 +87,10 @@ pub fn write(
     for ((name, tooth), base_radius) in
         [("pinion", &compliance.pinion), ("gear", &compliance.gear)].into_iter().zip(base_radii)
     {
-        let values: Vec<Vec<f64>> = SERIES.iter().map(|(.., series)| series(tooth).node_values()).collect();
-        for (node, roll) in series_nodes(&tooth.bending).into_iter().enumerate() {
+        for (node, roll) in common_nodes(tooth).into_iter().enumerate() {
             let radius = base_radius * (1.0 + roll * roll).sqrt();
             let mut row: Row = vec![name.into(), (node + 1).into(), roll.into(), in_unit(radius, "mm").into()];
-            row.extend(SERIES.iter().zip(&values).map(|((_, unit, ..), values)| in_unit(values[node], unit).into()));
+            row.extend(SERIES.iter().map(|(_, unit, _, series)| in_unit(series(tooth).value(roll), unit).into()));
             rows.push(row);
         }
         for (index, series) in tooth.neighbours.iter().enumerate() {
@@ -117,6 +116,12 @@ pub fn write(
         Table::from_rows(neighbours_schema(), neighbours)?,
         Table::from_rows(model_schema(), vec![model])?,
     ])
+}
+
+/// Nodes that hold every series of a tooth: those of the longest one. All run over the same flank.
+fn common_nodes(tooth: &ToothCompliance) -> Vec<f64> {
+    let count = SERIES.iter().map(|(.., series)| series(tooth).coefficients().len()).max().unwrap_or(1);
+    nodes(tooth.bending.lower(), tooth.bending.upper(), count)
 }
 
 fn series_nodes(series: &Series) -> Vec<f64> {
@@ -184,7 +189,7 @@ mod tests {
     fn compliances_come_back_to_the_last_bits() {
         let tooth = |scale: f64| ToothCompliance {
             bending: Series::fit(0.07, 0.62, 24, |u| scale * 1e-9 * libm::exp(u)),
-            shear: Series::fit(0.07, 0.62, 24, |u| scale * 4e-10 * (1.0 + u)),
+            shear: Series::fit(0.07, 0.62, 17, |u| scale * 4e-10 * (1.0 + u)),
             axial: Series::fit(0.07, 0.62, 24, |u| scale * 1e-11 * u * u),
             body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),

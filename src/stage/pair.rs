@@ -16,10 +16,6 @@ pub fn gears_schema() -> Schema {
     let mut columns =
         vec![Column::text("gear", "Which gear: pinion or gear.").key(), Column::integer("teeth", "Number of teeth z.")];
     columns.extend(SPECIFIED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    columns.push(
-        Column::float("given_tip_radius", "mm", "Tip radius when it was given, NaN when it follows from the rack.")
-            .allows_nan(),
-    );
     columns.extend(DERIVED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
     Schema::new("gears", "Each gear: what was specified, and what follows from it.", columns)
 }
@@ -27,15 +23,7 @@ pub fn gears_schema() -> Schema {
 /// One row.
 #[must_use]
 pub fn pair_schema() -> Schema {
-    let mut columns = vec![
-        Column::float(
-            "given_centre_distance",
-            "mm",
-            "Centre distance when it was given, NaN when it follows from zero backlash.",
-        )
-        .allows_nan(),
-    ];
-    columns.extend(PAIR.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
+    let columns = PAIR.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)).collect();
     Schema::new(
         "pair",
         "The pair on its centre distance. Path positions count from the pinion's tangent point T1.",
@@ -85,13 +73,11 @@ pub fn write(pair: &Pair) -> Result<[Table; 2], TableError> {
     let row = |name: &str, gear: &Gear| -> Row {
         let mut row: Row = vec![name.into(), gear.specification.teeth.into()];
         row.extend(SPECIFIED.iter().map(|(_, unit, _, get)| in_unit(get(&gear.specification), unit).into()));
-        row.push(gear.specification.tip_radius.map_or(f64::NAN, |radius| in_unit(radius, "mm")).into());
         row.extend(DERIVED.iter().map(|(_, unit, _, get)| in_unit(get(gear), unit).into()));
         row
     };
     let gears = Table::from_rows(gears_schema(), vec![row("pinion", &pair.pinion), row("gear", &pair.gear)])?;
-    let mut values: Row = vec![pair.given_centre_distance.map_or(f64::NAN, |distance| in_unit(distance, "mm")).into()];
-    values.extend(PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()));
+    let values: Row = PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()).collect();
     Ok([gears, Table::from_rows(pair_schema(), vec![values])?])
 }
 
@@ -110,7 +96,6 @@ pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
         let value = |column: &str| si(gears, column, row);
         let teeth = u32::try_from(gears.integers("teeth")[row])
             .map_err(|_| Failure::new("the number of teeth is out of range"))?;
-        let given_tip_radius = value("given_tip_radius");
         Ok(Specification {
             teeth,
             module: value("module"),
@@ -121,14 +106,14 @@ pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
                 dedendum: value("rack_dedendum"),
                 tip_radius: value("rack_tip_radius"),
             },
-            tip_radius: given_tip_radius.is_finite().then_some(given_tip_radius),
+            tip_radius: Some(value("tip_radius")),
             face_width: value("face_width"),
             bore_radius: value("bore_radius"),
             material: Material { youngs_modulus: value("youngs_modulus"), poisson_ratio: value("poisson_ratio") },
         })
     };
-    let distance = si(pair, "given_centre_distance", 0);
-    Pair::new(specification(Side::Pinion)?, specification(Side::Gear)?, distance.is_finite().then_some(distance))
+    let distance = si(pair, "centre_distance", 0);
+    Pair::new(specification(Side::Pinion)?, specification(Side::Gear)?, Some(distance))
         .map_err(|error| Failure::new(error.to_string()))
 }
 

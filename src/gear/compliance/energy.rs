@@ -1,155 +1,218 @@
-//! The energy method: a tooth as a cantilever of variable section on an elastic body.
+//! The energy method: a tooth as a cantilever of varying section on an elastic body.
 //!
-//! Bending, shear and axial compression after `energy_ga` (section "Analytical calculation of mesh stiffness"), with
-//! the arm in its closed form r_b − y cos a1; the body after Sainsot; neighbours through the body by the ring. Compliances
-//! in m/N over the tooth's whole face width. Must not know: micro-geometry, load.
+//! With the load angle α_1 = u − ψ_b, the load line passes the section at height y at the distance r_b − y cos α_1, so
+//! 1/k_b = ∫(r_b − y cos α_1)²/(E I) dy, I = (2x)³ b/12; 1/k_s = 1.2 cos²α_1 ∫dy/(G A); 1/k_a = sin²α_1 ∫dy/(E A),
+//! A = 2xb: four integrals over the tooth serve every load. Source: Yang and Lin, Journal of Mechanisms, Transmissions
+//! and Automation in Design 109 (1987) 189–196, with the root included; plane stress. The gear body comes from
+//! `sainsot` or `ring`. Must not know: modification, load.
 
-use std::f64::consts::PI;
-
-use crate::base::parameter::Member;
+use super::ring::Ring;
+use super::sainsot::Body;
+use super::{Assumptions, ComplianceError, Method, PairCompliance, Tabulated, ToothCompliance};
+use crate::base::parameter::{Choice, Field};
 use crate::base::record::Record;
-use crate::gear::compliance::ring::{Load, Ring};
-use crate::gear::compliance::sainsot::Body;
-use crate::gear::compliance::sections::Sections;
-use crate::gear::compliance::{ComplianceError, Method, Setting, ToothCompliance};
+use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
 use crate::numeric::chebyshev::Series;
+use crate::numeric::quadrature::GaussLegendre;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "energy",
-        summary: "Strain energy of a cantilever of variable section on an elastic body (Sainsot); plane stress.",
-        fields: &[],
-    },
-    tooth: |_: &Record, pair, side, setting| tabulate(pair, side, setting),
-};
+/// Points per piece of the root: twice what 1e-12 takes.
+const ROOT_POINTS: usize = 40;
+/// Below this bore ratio the fitted body formula gives 1.3 to 1.8 times what the ring it was fitted to gives, and it does
+/// not vanish as the bore reaches the root.
+const LEAST_BORE_RATIO: f64 = 1.2;
 
-/// Shear factor of a rectangular section.
-const SHEAR_FACTOR: f64 = 1.2;
-/// Nodes in roll angle; 1e-12 relative on every gear the tests try.
-const NODES: usize = 40;
+const BODIES: &[Choice] = &[
+    Choice { name: "sainsot", summary: "the formula that Sainsot, Velex and Duverger fitted to the elastic ring" },
+    Choice { name: "ring", summary: "the elastic ring itself, for any bore and root angle" },
+];
 
-/// One tooth, ready to be loaded anywhere on its flank.
-pub struct Tooth {
-    sections: Sections,
-    body: Body,
-    base_radius: f64,
-    half_base_angle: f64,
-    clamped_height: f64,
-    /// 1/(E b) and 1/(G b).
-    per_modulus: f64,
-    per_shear_modulus: f64,
+const FIELDS: &[Field] = &[
+    Field::number("shear_factor", 1.0, 2.0, "how much more a section shears than under a uniform shear stress")
+        .default("1.2"),
+    Field::choice("body", BODIES, "what the gear body under the tooth is taken from").default("sainsot"),
+];
+
+/// The method as registered.
+pub struct Energy;
+
+impl Method for Energy {
+    fn name(&self) -> &'static str {
+        "energy"
+    }
+
+    fn summary(&self) -> &'static str {
+        "cantilever of varying section (bending, shear, compression) on an elastic gear body"
+    }
+
+    fn fields(&self) -> &'static [Field] {
+        FIELDS
+    }
+
+    fn tabulate(&self, options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+        let mut warnings = Vec::new();
+        let mut side = |side| {
+            let (compliance, warning) = tabulate_side(options, pair, side, assumptions)?;
+            warnings.extend(warning);
+            Ok::<_, ComplianceError>(compliance)
+        };
+        let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+        let Assumptions { contact, coupled, .. } = assumptions;
+        Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings })
+    }
 }
 
-/// 1/k_b, 1/k_s, 1/k_a, 1/k_f \[m/N\].
+/// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.
+#[derive(Clone, Debug)]
+pub struct Beam<'a> {
+    gear: &'a Gear,
+    shear_factor: f64,
+    /// Integrals over the root.
+    root: [f64; 4],
+    /// Integrals over the flank from its start, against v = −ln(u_p − u).
+    flank: [Series; 4],
+    apex_roll: f64,
+}
+
+/// Compliances \[m/N\] under a load at one roll angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Components {
+pub struct Parts {
     pub bending: f64,
     pub shear: f64,
     pub axial: f64,
-    pub body: f64,
+    /// Distance from the contact point to the tooth's centreline along the load line \[m\].
+    pub contact_depth: f64,
 }
 
-impl Tooth {
+/// dy/x³ · (1, η, η²) and dy/x with the height η over the base radius, where the arm nearly vanishes under the load.
+fn integrands(gear: &Gear, section: Section) -> [f64; 4] {
+    let Section { half_thickness: x, height, height_rate } = section;
+    let (eta, cubed) = (height - gear.base_radius, height_rate / (x * x * x));
+    [cubed, eta * cubed, eta * eta * cubed, height_rate / x]
+}
+
+impl<'a> Beam<'a> {
+    /// `None` when the flank cannot be integrated to rounding: the tip is all but pointed.
     #[must_use]
-    pub fn new(gear: &Gear, root: &Root) -> Self {
-        let material = gear.specification.material;
-        let per_modulus = 1.0 / (material.youngs_modulus * gear.specification.face_width);
-        Self {
-            sections: Sections::new(gear, root),
-            body: Body::new(gear, root),
-            base_radius: gear.base_radius,
-            half_base_angle: gear.half_base_angle,
-            clamped_height: root.clamped_height,
-            per_modulus,
-            per_shear_modulus: 2.0 * (1.0 + material.poisson_ratio) * per_modulus,
+    pub fn new(gear: &'a Gear, root: &Root, shear_factor: f64) -> Option<Self> {
+        let rule = GaussLegendre::new(ROOT_POINTS);
+        let mut root_integrals = [0.0; 4];
+        for piece in &root.pieces {
+            let (lower, upper) = piece.range();
+            let part = rule.integrate(lower, upper, |parameter| integrands(gear, piece.section(parameter)));
+            for (total, value) in root_integrals.iter_mut().zip(part) {
+                *total += value;
+            }
         }
+        let apex_roll = gear.apex_roll();
+        let logarithm = |roll: f64| -libm::log(apex_roll - roll);
+        let flank = Series::converged(logarithm(root.form_roll), logarithm(gear.tip_roll()), |v| {
+            let distance = libm::exp(-v);
+            integrands(gear, gear.flank(apex_roll - distance)).map(|value| value * distance)
+        })?;
+        let flank = flank.map(|series| series.integral());
+        Some(Self { gear, shear_factor, root: root_integrals, flank, apex_roll })
     }
 
-    /// The compliances with the load at a roll angle.
+    /// The compliances under a load at a roll angle on the involute.
     #[must_use]
-    pub fn components(&self, roll: f64) -> Components {
-        let angle = roll - self.half_base_angle;
-        let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-        let [inertia, first, second, area] = self.sections.up_to(roll);
-        // The arm at the clamped section; counted from there the sum does not cancel.
-        let arm = self.base_radius - self.clamped_height * cos;
-        Components {
-            bending: self.per_modulus * (arm * arm * inertia - 2.0 * arm * cos * first + cos * cos * second),
-            shear: self.per_shear_modulus * SHEAR_FACTOR * cos * cos * area,
-            axial: self.per_modulus * sin * sin * area,
-            body: self.body.compliance(roll),
+    pub fn parts(&self, roll: f64) -> Parts {
+        let v = -libm::log(self.apex_roll - roll);
+        let mut integrals = self.root;
+        for (total, series) in integrals.iter_mut().zip(&self.flank) {
+            *total += series.value(v);
+        }
+        let angle = self.gear.load_angle(roll);
+        let (sine, cosine) = libm::sincos(angle);
+        // The arm r_b − y cos α_1 as (1 − cos α_1) r_b − η cos α_1, without cancelling.
+        let half = libm::sin(0.5 * angle);
+        let offset = 2.0 * self.gear.base_radius * half * half;
+        let [constant, linear, square, area] = integrals;
+        let material = self.gear.specification.material;
+        let stretch = material.youngs_modulus * self.gear.specification.face_width;
+        let shear = stretch / (2.0 * (1.0 + material.poisson_ratio));
+        let moment = offset * offset * constant - 2.0 * offset * cosine * linear + cosine * cosine * square;
+        Parts {
+            bending: 1.5 * moment / stretch,
+            shear: self.shear_factor * cosine * cosine * area / (2.0 * shear),
+            axial: sine * sine * area / (2.0 * stretch),
+            contact_depth: self.gear.flank(roll).half_thickness / cosine,
         }
     }
 }
 
-fn tabulate(pair: &Pair, side: Side, setting: &Setting) -> Result<(ToothCompliance, Vec<String>), ComplianceError> {
+/// The gear body by either theory.
+enum Foundation {
+    Formula(Body),
+    Ring,
+}
+
+/// One gear's tables, and a warning.
+fn tabulate_side(
+    options: &Record,
+    pair: &Pair,
+    side: Side,
+    assumptions: Assumptions,
+) -> Result<(ToothCompliance, Option<String>), ComplianceError> {
     let gear = pair.side(side);
-    let root = Root::new(gear, setting.root);
-    let tooth = Tooth::new(gear, &root);
-    let warnings = tooth.body.warning(side.name()).into_iter().collect();
-    let deepest = match side {
-        Side::Pinion => pair.roll(side, pair.start_of_contact),
-        Side::Gear => pair.roll(side, pair.end_of_contact),
-    };
-    let (lower, upper) = (deepest, gear.roll_at(gear.tip_radius));
-    if lower < root.junction_roll - 1e-9 {
-        return Err(ComplianceError::Root {
-            gear: side.name(),
-            reached: gear.radius_at(lower),
-            starts: gear.radius_at(root.junction_roll),
-        });
-    }
-    let lower = lower.max(root.junction_roll);
-    let fit =
-        |component: fn(Components) -> f64| Series::fit(lower, upper, NODES, |roll| component(tooth.components(roll)));
-    let compliance = ToothCompliance {
-        bending: fit(|c| c.bending),
-        shear: fit(|c| c.shear),
-        axial: fit(|c| c.axial),
-        body: fit(|c| c.body),
-        contact_depth: Series::fit(lower, upper, NODES, |roll| {
-            let angle = roll - gear.half_base_angle;
-            gear.base_radius * (roll - libm::tan(angle))
-        }),
-        neighbours: if setting.coupled {
-            neighbours(pair, gear, &root, &tooth.body, (lower, upper))
-        } else {
-            Vec::new()
-        },
-    };
-    let worst = compliance.body.node_values().into_iter().fold(f64::INFINITY, f64::min);
-    if worst.is_nan() || worst <= 0.0 {
-        let Body { radius_ratio, half_angle, .. } = tooth.body;
-        return Err(ComplianceError::Body { gear: side.name(), radius_ratio, half_angle });
-    }
-    Ok((compliance, warnings))
-}
+    let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
+    let (lower, upper) = (root.form_roll, gear.tip_roll());
+    let unresolved = ComplianceError::Unresolved { side, thickness: gear.tip_thickness() };
+    let beam = Beam::new(gear, &root, options.number("shear_factor")).ok_or_else(|| unresolved.clone())?;
 
-/// The ring gives how strongly two teeth are correlated, Sainsot's formula how much each moves: their product keeps
-/// the matrix positive definite and agrees with the formula on the diagonal.
-fn neighbours(pair: &Pair, gear: &Gear, root: &Root, body: &Body, (lower, upper): (f64, f64)) -> Vec<Series> {
-    let ring =
-        Ring::new(gear.specification.bore_radius, gear.root_radius, root.half_angle, &gear.specification.material);
-    let load = |roll: f64| {
-        let angle = roll - gear.half_base_angle;
-        Load { across: libm::cos(angle), outwards: -libm::sin(angle), moment: gear.base_radius }
+    let bore_ratio = gear.root_radius / gear.specification.bore_radius;
+    let (foundation, warning) = if options.choice("body") == "ring" {
+        (Foundation::Ring, None)
+    } else {
+        let body = Body::new(root.half_angle, bore_ratio);
+        if bore_ratio < LEAST_BORE_RATIO {
+            return Err(ComplianceError::ThinRing { side, bore_ratio, least: LEAST_BORE_RATIO });
+        }
+        let name = if side == Side::Pinion { "pinion" } else { "gear" };
+        (Foundation::Formula(body), body.range_warning().map(|warning| format!("{name}: {warning}")))
     };
-    let pitch = 2.0 * PI / f64::from(gear.specification.teeth);
-    let own = ring.influence(0.0);
-    let mut series = Vec::new();
-    let mut apart = 1.0;
-    while pair.contact_ratio > apart && lower + apart * pitch < upper {
-        let angle = apart * pitch;
-        let across = ring.influence(angle);
-        series.push(Series::fit(lower, upper - angle, NODES / 2, |roll| {
-            let (behind, ahead) = (load(roll), load(roll + angle));
-            let alone = own.compliance(behind, behind) * own.compliance(ahead, ahead);
-            let correlation = across.compliance(ahead, behind) / alone.sqrt();
-            correlation * (body.compliance(roll) * body.compliance(roll + angle)).sqrt()
-        }));
-        apart += 1.0;
+
+    let pitch = std::f64::consts::TAU / f64::from(gear.specification.teeth);
+    let steps: Vec<f64> = if assumptions.coupled {
+        let most = gear.specification.teeth;
+        (1..most).map(|k| f64::from(k) * pitch).take_while(|step| upper - step > lower + 1e-3 * pitch).collect()
+    } else {
+        Vec::new()
+    };
+    let ring = Ring::new(gear, root.half_angle);
+    let needs_ring = assumptions.coupled || matches!(foundation, Foundation::Ring);
+    let offsets: Vec<f64> = std::iter::once(0.0).chain(steps.iter().copied()).collect();
+    let influences = if needs_ring { ring.influences(&offsets) } else { Vec::new() };
+    let by_ring = |influence: &[[f64; 3]; 3], on: f64, by: f64| {
+        ring.compliance(influence, ring.tractions(gear, on), ring.tractions(gear, by))
+    };
+    let body_at = |roll: f64| match foundation {
+        Foundation::Formula(body) => body.compliance(gear, roll),
+        Foundation::Ring => by_ring(&influences[0], roll, roll),
+    };
+
+    let series = Series::converged(lower, upper, |roll| {
+        let parts = beam.parts(roll);
+        [parts.bending, parts.shear, parts.axial, body_at(roll), parts.contact_depth]
+    });
+    let [bending, shear, axial, body, contact_depth] = series.ok_or_else(|| unresolved.clone())?;
+    let ends = [lower, upper].map(|roll| body.value(roll));
+    if let Some(compliance) = body.node_values().into_iter().chain(ends).find(|value| *value <= 0.0) {
+        return Err(ComplianceError::NegativeBody { side, compliance, half_angle: root.half_angle, bore_ratio });
     }
-    series
+
+    let mut neighbours = Vec::new();
+    for (step, influence) in steps.iter().zip(influences.iter().skip(1)) {
+        let cross = Series::converged(lower, upper - step, |roll| {
+            let cross = by_ring(influence, roll + step, roll);
+            // The ring says how alike the two roots move, the formula how much: the matrix of all teeth stays
+            // positive definite.
+            let own = by_ring(&influences[0], roll, roll) * by_ring(&influences[0], roll + step, roll + step);
+            [cross / own.sqrt() * (body_at(roll) * body_at(roll + step)).sqrt()]
+        });
+        let [cross] = cross.ok_or_else(|| unresolved.clone())?;
+        neighbours.push(cross);
+    }
+    Ok((ToothCompliance { bending, shear, axial, body, contact_depth, neighbours }, warning))
 }

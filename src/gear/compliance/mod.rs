@@ -7,78 +7,95 @@ pub mod energy;
 pub mod iso6336;
 pub mod ring;
 pub mod sainsot;
-pub mod sections;
-
 #[cfg(test)]
 mod tests;
 
-use crate::base::parameter::Member;
+use std::sync::LazyLock;
+
+use super::geometry::error::{GeometryError, Millimetres, Plain};
+use super::geometry::root::RootShape;
+use super::geometry::{Pair, Side};
+use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
-use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Pair, Side};
 use crate::numeric::chebyshev::Series;
 
-/// A way to find a tooth's compliance.
-pub struct Method {
-    pub member: Member,
-    /// The compliances of one gear of a pair, and what the user should know about them.
-    pub tooth: fn(&Record, &Pair, Side, &Setting) -> Result<(ToothCompliance, Vec<String>), ComplianceError>,
+/// Every way to the compliance of a pair, one line per member.
+pub const METHODS: &[&dyn Method] = &[&energy::Energy];
+
+/// A way to the compliance of a pair.
+pub trait Method: Send + Sync {
+    fn name(&self) -> &'static str;
+
+    fn summary(&self) -> &'static str;
+
+    /// What this method alone can be told.
+    fn fields(&self) -> &'static [Field];
+
+    /// The tables of a pair, with sentences for the user where a formula is used outside its range.
+    ///
+    /// # Errors
+    /// When the method does not hold for this pair.
+    fn tabulate(&self, options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError>;
 }
 
-/// The methods, one line each.
-pub const METHODS: &[Method] = &[energy::METHOD];
+/// What every method is asked for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Assumptions {
+    pub root: RootShape,
+    pub contact: ContactLaw,
+    /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
+    pub coupled: bool,
+}
 
-const MEMBERS: &[Member] = &[METHODS[0].member];
-
-/// The methods as a user sees them.
-#[must_use]
-pub fn members() -> &'static [Member] {
-    MEMBERS
+/// What a method gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tabulated {
+    pub compliance: PairCompliance,
+    pub warnings: Vec<String>,
 }
 
 /// The method called `name`.
 #[must_use]
-pub fn method(name: &str) -> Option<&'static Method> {
-    METHODS.iter().find(|method| method.member.name == name)
+pub fn method(name: &str) -> Option<&'static dyn Method> {
+    METHODS.iter().copied().find(|method| method.name() == name)
 }
 
-/// What every method is told.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Setting {
-    pub root: RootShape,
-    pub contact: ContactLaw,
-    /// Whether loaded neighbours deflect each other through the body.
-    pub coupled: bool,
+/// The methods as a study names them.
+#[must_use]
+pub fn members() -> &'static [Member] {
+    static MEMBERS: LazyLock<Vec<Member>> = LazyLock::new(|| {
+        let member =
+            |method: &&dyn Method| Member { name: method.name(), summary: method.summary(), fields: method.fields() };
+        METHODS.iter().map(member).collect()
+    });
+    &MEMBERS
 }
 
-impl PairCompliance {
-    /// The compliances of both gears by one method.
-    ///
-    /// # Errors
-    /// When the method has no answer for one of the gears.
-    pub fn new(
-        method: &Method,
-        options: &Record,
-        pair: &Pair,
-        setting: &Setting,
-    ) -> Result<(Self, Vec<String>), ComplianceError> {
-        let (pinion, mut warnings) = (method.tooth)(options, pair, Side::Pinion, setting)?;
-        let (gear, more) = (method.tooth)(options, pair, Side::Gear, setting)?;
-        warnings.extend(more);
-        Ok((Self { pinion, gear, contact: setting.contact, coupled: setting.coupled }, warnings))
-    }
-}
-
-/// Why a method has no answer.
+/// Why a method gives no compliance for a pair.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ComplianceError {
-    #[error("contact reaches the {gear} at radius {:.6} mm, below {:.6} mm where its root begins; choose another root", reached * 1e3, starts * 1e3)]
-    Root { gear: &'static str, reached: f64, starts: f64 },
-    #[error(
-        "the body formula of Sainsot et al. gives a negative compliance for the {gear} (h = r_f/r_bore = {radius_ratio:.3}, \
-         θ_f = {half_angle:.4} rad); it was fitted for h from 1.4 to 7 and θ_f from 0.01 to 0.12 rad"
-    )]
-    Body { gear: &'static str, radius_ratio: f64, half_angle: f64 },
+    #[error(transparent)]
+    Root(GeometryError),
+    #[error("{}: the tip is too near to a point to be integrated: it is {} thick", .side.name(), Millimetres(*.thickness))]
+    Unresolved { side: Side, thickness: f64 },
+    #[error("{}: the root radius is {} times the bore radius, but must be at least {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(*.least))]
+    ThinRing { side: Side, bore_ratio: f64, least: f64 },
+    #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
+    NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+}
+
+impl ComplianceError {
+    /// The parameter it is about, as a path such as `pinion.bore_radius` or `root`.
+    #[must_use]
+    pub fn field(&self) -> &'static str {
+        let own = |side: Side, pinion, gear| if side == Side::Pinion { pinion } else { gear };
+        match self {
+            Self::Root(error) => error.field(),
+            Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
+            Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::NegativeBody { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
+        }
+    }
 }
 
 /// Linear elastic, isotropic.
@@ -113,6 +130,12 @@ impl ToothCompliance {
     pub fn total(&self, roll: f64) -> f64 {
         self.bending.value(roll) + self.shear.value(roll) + self.axial.value(roll) + self.body.value(roll)
     }
+
+    /// Everything but the contact as one table, four times as fast to read; `None` when the parts' ranges differ.
+    #[must_use]
+    pub fn total_series(&self) -> Option<Series> {
+        Series::sum(&[&self.bending, &self.shear, &self.axial, &self.body])
+    }
 }
 
 /// How two flanks flatten against each other.
@@ -122,6 +145,24 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
+}
+
+/// The contact laws as a study names them.
+pub const CONTACT_LAWS: &[Choice] = &[
+    Choice { name: "linear", summary: "4(1 − ν²)/(π E b), whatever the load" },
+    Choice { name: "load_dependent", summary: "Weber and Banaschek: grows with the logarithm of the load" },
+];
+
+impl ContactLaw {
+    /// The law called `name` in [`CONTACT_LAWS`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "linear" => Some(Self::Linear),
+            "load_dependent" => Some(Self::LoadDependent),
+            _ => None,
+        }
+    }
 }
 
 /// Everything the contact solver needs to know of a pair's elasticity.

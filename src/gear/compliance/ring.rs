@@ -1,246 +1,245 @@
-//! The gear body as a plane elastic ring: how a load on one tooth moves its neighbours.
+//! The gear body as a plane elastic ring: what a tooth's load does to its own root and to those of its neighbours.
 //!
-//! Outer radius r_f, clamped at the bore; a tooth's load enters as tractions on its root arc ±θ_f: a constant normal
-//! stress, a normal stress linear along the arc, a constant shear stress, with the resultants of the load (the
-//! assumptions of Sainsot, Velex and Duverger 2004). The displacement of a tooth is the one that does work with its own
-//! tractions, so Betti's theorem holds exactly and the matrix of any set of teeth is positive definite. Fourier series;
-//! fields from Michell's solution (Barber, Elasticity, tables 8.1 and 9.1), plane stress. Lengths in m, per unit width.
-//! Must not know: the tooth above its root.
+//! The bore is clamped. A tooth acts on its root arc |θ| ≤ θ_f by tractions that are uniform along the radius, uniform
+//! across it, and linear in θ along the radius (bending): the assumptions behind the fitted formula in `sainsot`. They
+//! are matched to the resultant of the load line; a root moves by what does work with these tractions, so influences
+//! are reciprocal and self influences positive. Solved by Fourier series in the Kolosov–Muskhelishvili form
+//! (Muskhelishvili, Some Basic Problems of the Mathematical Theory of Elasticity, §§ 56–59): for harmonic n the potentials
+//! z^(n+1), z^(1−n) and z^(n−1), z^(−n−1) give four displacement fields proportional to powers of r.
+//!
+//! Lengths here are in units of the outer radius r_f, stresses in units of the shear modulus.
+//! Must not know: the tooth above the root circle.
+
+#[cfg(test)]
+mod tests;
 
 use std::f64::consts::PI;
 
-use crate::gear::compliance::Material;
+use crate::gear::geometry::Gear;
 
-/// Harmonics kept. Stresses jump at the ends of the arc, so the terms fall like n⁻³ only: at 1000 the self compliance is
-/// within 3e-5 of its limit and the neighbour's within 3e-6, far below what the plane ring leaves out.
-const HARMONICS: u32 = 1000;
+/// Harmonics kept, times the half root angle: waves much shorter than the root arc. Influences are then within 1e-5 of
+/// their limit, in units of a root's own, which a test compares.
+const HARMONICS_BY_ANGLE: f64 = 100.0;
+/// Below this a field that decays from one rim does not reach the other.
+const UNFELT: f64 = 1e-18;
 
-/// Resultants of a load on a tooth, per unit load: across the tooth, along it (outwards), and the moment about the
-/// gear's centre \[m\].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Load {
-    pub across: f64,
-    pub outwards: f64,
-    pub moment: f64,
+type Matrix3 = [[f64; 3]; 3];
+
+/// One displacement field of harmonic n: u_r = radial · cos nθ, u_θ = tangential · sin nθ, and the tractions with them.
+#[derive(Clone, Copy, Debug)]
+struct Field {
+    radial: f64,
+    tangential: f64,
+    normal_stress: f64,
+    shear_stress: f64,
 }
 
-/// Boundary compliance of the ring, harmonic by harmonic, for unit width \[m²/N\].
+/// A ring whose outer rim carries teeth.
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ring {
-    outer: f64,
+    /// r_bore/r_f.
+    bore: f64,
+    /// θ_f \[rad\].
     half_angle: f64,
-    /// Per harmonic n ≥ 1: displacements (u_r, u_θ) per traction (t_r, t_θ).
-    harmonics: Vec<[[f64; 2]; 2]>,
-    radial: f64,
-    torsional: f64,
+    /// κ = (3 − ν)/(1 + ν): plane stress.
+    kappa: f64,
+    /// 1/(G b) \[m/N\].
+    flexibility: f64,
+    harmonics: usize,
 }
 
 impl Ring {
-    /// A ring between `inner` and `outer` radius whose teeth have root arcs of ±`half_angle`.
+    /// The body of a gear whose roots are clamped over ±`half_angle`.
     #[must_use]
-    pub fn new(inner: f64, outer: f64, half_angle: f64, material: &Material) -> Self {
-        Self::with_harmonics(inner, outer, half_angle, material, HARMONICS)
-    }
-
-    fn with_harmonics(inner: f64, outer: f64, half_angle: f64, material: &Material, count: u32) -> Self {
+    pub fn new(gear: &Gear, half_angle: f64) -> Self {
+        let material = gear.specification.material;
         let nu = material.poisson_ratio;
-        let shear_modulus = 0.5 * material.youngs_modulus / (1.0 + nu);
-        let kappa = (3.0 - nu) / (1.0 + nu);
-        // In units of the outer radius and of 2μ.
-        let scale = outer / (2.0 * shear_modulus);
-        let ratio = inner / outer;
-        let harmonics =
-            (1..=count).map(|n| harmonic(n, ratio, kappa).map(|row| row.map(|value| value * scale))).collect();
-        let squared = ratio * ratio;
         Self {
-            outer,
+            bore: gear.specification.bore_radius / gear.root_radius,
             half_angle,
-            harmonics,
-            // u_r = a(κ − 1)r − b/r with u_r(inner) = 0; σ_rr = 2a + b/r².
-            radial: scale * (kappa - 1.0) * (1.0 - squared) / (2.0 + (kappa - 1.0) * squared),
-            // u_θ = a r − b/r with u_θ(inner) = 0; σ_rθ = b/r².
-            torsional: scale * (1.0 / squared - 1.0),
+            kappa: (3.0 - nu) / (1.0 + nu),
+            flexibility: 2.0 * (1.0 + nu) / (material.youngs_modulus * gear.specification.face_width),
+            harmonics: harmonics(half_angle),
         }
     }
 
-    /// How a tooth answers a load on the tooth `angle` \[rad\] behind it (0: on itself).
+    /// The tractions of a unit load at a roll angle, whose resultants at the gear's centre are the force
+    /// (−sin α_1, cos α_1) along and across the tooth, and the torque r_b: uniform radial, uniform tangential, and
+    /// radial in proportion to θ/θ_f.
     #[must_use]
-    pub fn influence(&self, angle: f64) -> Influence {
+    pub fn tractions(&self, gear: &Gear, roll: f64) -> [f64; 3] {
+        let (load_sine, load_cosine) = libm::sincos(gear.load_angle(roll));
         let theta = self.half_angle;
-        let mean = 2.0 * theta * theta / (PI * PI);
-        // Rows and columns: constant normal, linear normal, constant shear.
-        let mut sums = [[mean * self.radial, 0.0, 0.0], [0.0; 3], [0.0, 0.0, mean * self.torsional]];
-        for (index, [[rr, rt], [tr, tt]]) in self.harmonics.iter().enumerate() {
-            let n = (index + 1) as f64;
-            let (sin, cos) = (libm::sin(n * theta), libm::cos(n * theta));
-            let constant = 2.0 * sin / (n * PI);
-            let linear = 2.0 * (sin / n - theta * cos) / (n * PI);
-            let (s, c) = (libm::sin(n * angle), libm::cos(n * angle));
-            let terms = [[rr * c, rr * s, -rt * s], [-rr * s, rr * c, -rt * c], [tr * s, -tr * c, tt * c]];
-            let sizes = [constant, linear, constant];
-            for (row, own) in sizes.iter().enumerate() {
-                for (column, other) in sizes.iter().enumerate() {
-                    sums[row][column] += own * other * terms[row][column];
+        let (sine, cosine) = libm::sincos(theta);
+        let tangential = gear.base_radius / gear.root_radius / (2.0 * theta);
+        let uniform = -load_sine / (2.0 * sine);
+        let linear = (load_cosine - 2.0 * tangential * sine) * theta / (2.0 * (sine - theta * cosine));
+        [uniform, tangential, linear]
+    }
+
+    /// Displacement along the load line of one tooth \[m\] per load \[N\] on another.
+    #[must_use]
+    pub fn compliance(&self, influence: &Matrix3, on: [f64; 3], by: [f64; 3]) -> f64 {
+        let moved = influence.map(|row| row[0] * by[0] + row[1] * by[1] + row[2] * by[2]);
+        (on[0] * moved[0] + on[1] * moved[1] + on[2] * moved[2]) * self.flexibility
+    }
+
+    /// The influence of the tractions of a tooth at the angle 0 on the roots that stand `offsets` behind it
+    /// (in the direction against a positive torque), rows by the affected root's traction.
+    #[must_use]
+    pub fn influences(&self, offsets: &[f64]) -> Vec<Matrix3> {
+        let theta = self.half_angle;
+        let mut result = vec![[[0.0; 3]; 3]; offsets.len()];
+        let [radial, _, _, tangential] = self.mean();
+        for matrix in &mut result {
+            // ∫ over the whole turn of the mean of a traction over the turn, θ_f/π: twice θ_f²/π.
+            let weight = 2.0 * theta * theta / PI;
+            matrix[0][0] += weight * radial;
+            matrix[1][1] += weight * tangential;
+        }
+        for n in 1..=self.harmonics {
+            let order = n as f64;
+            let [rr, rt, tr, tt] = self.flexibility_of(n);
+            let (sine, cosine) = libm::sincos(order * theta);
+            // Coefficients of cos nθ of a uniform traction and of sin nθ of a linear one.
+            let uniform = 2.0 * sine / (order * PI);
+            let linear = 2.0 / (PI * theta) * (sine / order - theta * cosine) / order;
+            for (matrix, offset) in result.iter_mut().zip(offsets) {
+                let (s, c) = libm::sincos(-order * offset);
+                let (uu, ul, ll) = (PI * uniform * uniform, PI * uniform * linear, PI * linear * linear);
+                let terms: Matrix3 = [
+                    [rr * uu * c, -rt * uu * s, rr * ul * s],
+                    [tr * uu * s, tt * uu * c, -tr * ul * c],
+                    [-rr * ul * s, -rt * ul * c, rr * ll * c],
+                ];
+                for (row, term) in matrix.iter_mut().zip(terms) {
+                    for (total, value) in row.iter_mut().zip(term) {
+                        *total += value;
+                    }
                 }
             }
         }
-        Influence { outer: self.outer, half_angle: theta, sums }
-    }
-}
-
-/// Work of the tractions of one tooth on the displacements that those of another cause.
-pub struct Influence {
-    outer: f64,
-    half_angle: f64,
-    sums: [[f64; 3]; 3],
-}
-
-impl Influence {
-    /// Work-conjugate displacement of a tooth under `own` unit load, caused by `other`; for unit width \[m²/N\].
-    #[must_use]
-    pub fn compliance(&self, own: Load, other: Load) -> f64 {
-        let (own, other) = (self.tractions(own), self.tractions(other));
-        let mut sum = 0.0;
-        for (row, a) in self.sums.iter().zip(own) {
-            for (value, b) in row.iter().zip(other) {
-                sum += a * value * b;
+        // The rest of a root's own series: far up the rim moves as that of a half plane, (κ + 1)/4n, and the squares of
+        // sine and cosine are ½ in the mean. Neighbours' terms change sign and add up to nothing.
+        let rest = (self.kappa + 1.0) / (4.0 * PI * (self.harmonics as f64 + 0.5) * (self.harmonics as f64 + 0.5));
+        for (matrix, _) in result.iter_mut().zip(offsets).filter(|(_, offset)| offset.abs() <= 0.0) {
+            for (k, row) in matrix.iter_mut().enumerate() {
+                row[k] += rest;
             }
         }
-        PI * self.outer * sum
+        result
     }
 
-    /// Constant normal, linear normal (t_r = value·φ) and constant shear stress with the load's resultants.
-    fn tractions(&self, load: Load) -> [f64; 3] {
-        let (theta, r) = (self.half_angle, self.outer);
-        let (sin, cos) = (libm::sin(theta), libm::cos(theta));
-        let shear = load.moment / (2.0 * theta * r * r);
-        [load.outwards / (2.0 * sin * r), (load.across / (2.0 * r) - shear * sin) / (sin - theta * cos), shear]
+    /// Displacement of the outer rim by uniform tractions: [radial by radial, 0, 0, tangential by tangential].
+    fn mean(&self) -> [f64; 4] {
+        let (kappa, square) = (self.kappa, self.bore * self.bore);
+        let radial = (1.0 - square) * (kappa - 1.0) / ((kappa + 1.0) * (1.0 + square) + (3.0 - kappa) * (1.0 - square));
+        [radial, 0.0, 0.0, 0.5 * (1.0 / square - 1.0)]
+    }
+
+    /// Displacement amplitudes of the outer rim by traction amplitudes of harmonic n ≥ 1:
+    /// [radial by normal, radial by shear, tangential by normal, tangential by shear].
+    fn flexibility_of(&self, n: usize) -> [f64; 4] {
+        let outer = self.fields(n, 1.0);
+        let order = n as f64;
+        if n > 1 && libm::pow(self.bore, order - 1.0) < UNFELT {
+            // A full disc: only the two fields that are finite inside.
+            let [a, c] = [outer[0], outer[1]];
+            let determinant = a.normal_stress * c.shear_stress - c.normal_stress * a.shear_stress;
+            let solve = |normal: f64, shear: f64| {
+                let x = (normal * c.shear_stress - c.normal_stress * shear) / determinant;
+                let y = (a.normal_stress * shear - normal * a.shear_stress) / determinant;
+                [x * a.radial + y * c.radial, x * a.tangential + y * c.tangential]
+            };
+            let ([rr, tr], [rt, tt]) = (solve(1.0, 0.0), solve(0.0, 1.0));
+            return [rr, rt, tr, tt];
+        }
+        let inner = self.fields(n, self.bore);
+        // Stresses grow with n; bringing the rows to one size keeps the pivots meaningful.
+        let scale = 1.0 / order;
+        let row = |fields: [Field; 4], part: fn(Field) -> f64, normal: f64, shear: f64| {
+            let [a, b, c, d] = fields.map(part);
+            [a, b, c, d, normal, shear]
+        };
+        let solution = solve([
+            row(inner, |field| field.radial, 0.0, 0.0),
+            row(inner, |field| field.tangential, 0.0, 0.0),
+            row(outer, |field| field.normal_stress, 1.0, 0.0).map(|value| value * scale),
+            row(outer, |field| field.shear_stress, 0.0, 1.0).map(|value| value * scale),
+        ]);
+        let sum = |column: usize, part: fn(&Field) -> f64| -> f64 {
+            solution.iter().zip(&outer).map(|(amplitude, field)| amplitude[column] * part(field)).sum()
+        };
+        [
+            sum(0, |field| field.radial),
+            sum(1, |field| field.radial),
+            sum(0, |field| field.tangential),
+            sum(1, |field| field.tangential),
+        ]
+    }
+
+    /// The four fields of harmonic n at radius r: two that grow outwards, then two that decay, each 1 in size at its rim.
+    fn fields(&self, n: usize, r: f64) -> [Field; 4] {
+        let (kappa, order) = (self.kappa, n as f64);
+        let power = |radial: f64, tangential: f64, exponent: f64, rim: f64| {
+            let size = libm::pow(r / rim, exponent);
+            let stretch = (kappa + 1.0) * exponent * radial + (3.0 - kappa) * (radial + order * tangential);
+            Field {
+                radial: radial * size,
+                tangential: tangential * size,
+                normal_stress: stretch / (kappa - 1.0) * size / r,
+                shear_stress: ((exponent - 1.0) * tangential - order * radial) * size / r,
+            }
+        };
+        let third = if n == 1 {
+            // The two potentials of a rigid shift coincide; the logarithm carries the resultant force instead.
+            let logarithm = 2.0 * kappa * libm::log(r);
+            Field {
+                radial: logarithm - 1.0,
+                tangential: -logarithm - 1.0,
+                normal_stress: 2.0 * (kappa + 3.0) / r,
+                shear_stress: 2.0 * (1.0 - kappa) / r,
+            }
+        } else {
+            power(kappa + order - 1.0, order - 1.0 - kappa, 1.0 - order, self.bore)
+        };
+        [
+            power(kappa - order - 1.0, kappa + order + 1.0, order + 1.0, 1.0),
+            power(-1.0, 1.0, order - 1.0, 1.0),
+            third,
+            power(-1.0, -1.0, -order - 1.0, self.bore),
+        ]
     }
 }
 
-/// Outer displacements per outer traction of harmonic `n`, inner boundary clamped; radii in units of the outer one.
-fn harmonic(n: u32, ratio: f64, kappa: f64) -> [[f64; 2]; 2] {
-    // Each solution: (u_r, u_θ, σ_rr, σ_rθ) as functions of r; growing ones are 1 at the outer, falling ones at the inner radius.
-    let inner = fields(n, ratio, ratio, kappa);
-    let outer = fields(n, 1.0, ratio, kappa);
-    let mut system = [[0.0; 6]; 4];
+/// How many harmonics a root arc needs.
+fn harmonics(half_angle: f64) -> usize {
+    // Root angles are π/z at least for what a rack can cut, so this is far inside the range.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let count = libm::ceil(HARMONICS_BY_ANGLE / half_angle) as usize;
+    count
+}
+
+/// Gaussian elimination with partial pivoting, two right-hand sides beside the matrix.
+fn solve(mut rows: [[f64; 6]; 4]) -> [[f64; 2]; 4] {
     for column in 0..4 {
-        system[0][column] = inner[column][0];
-        system[1][column] = inner[column][1];
-        system[2][column] = outer[column][2];
-        system[3][column] = outer[column][3];
-    }
-    system[2][4] = 1.0;
-    system[3][5] = 1.0;
-    let weights = solved(system);
-    let displacement =
-        |component: usize, load: usize| (0..4).map(|column| outer[column][component] * weights[column][load]).sum();
-    [[displacement(0, 0), displacement(0, 1)], [displacement(1, 0), displacement(1, 1)]]
-}
-
-fn fields(n: u32, r: f64, inner: f64, kappa: f64) -> [[f64; 4]; 4] {
-    if n == 1 {
-        // The combination of rθ sin θ and r ln r cos θ that is single-valued carries the net force.
-        let (a, b) = (kappa + 1.0, -(kappa - 1.0));
-        let log = libm::log(r);
-        let radial = 0.5 * (-(a + b) + (a * (kappa + 1.0) + b * (kappa - 1.0)) * log);
-        let across = 0.5 * (-(a + b) - (a * (kappa + 1.0) + b * (kappa - 1.0)) * log);
-        let fall = inner / r;
-        return [
-            [(kappa - 2.0) * r * r, (kappa + 2.0) * r * r, 2.0 * r, 2.0 * r],
-            [fall * fall, fall * fall, -2.0 * fall * fall / r, -2.0 * fall * fall / r],
-            [radial, across, (2.0 * a + b) / r, b / r],
-            [1.0, -1.0, 0.0, 0.0],
-        ];
-    }
-    let order = f64::from(n);
-    let grown = libm::pow(r, order - 1.0);
-    let fallen = libm::pow(inner / r, order - 1.0);
-    let fallen_more = fallen * (inner / r) * (inner / r);
-    let (r2, n1, n2) = (r * r, order + 1.0, order - 1.0);
-    [
-        [-order * grown, order * grown, -order * n2 * grown / r, order * n2 * grown / r],
-        [(kappa - n1) * grown * r2, (kappa + n1) * grown * r2, -n1 * (order - 2.0) * grown * r, order * n1 * grown * r],
-        [order * fallen_more, order * fallen_more, -order * n1 * fallen_more / r, -order * n1 * fallen_more / r],
-        [(kappa + n2) * fallen, -(kappa - n2) * fallen, -(order + 2.0) * n2 * fallen / r, -order * n2 * fallen / r],
-    ]
-}
-
-/// Solves a 4 × 4 system with two right-hand sides by elimination with partial pivoting.
-fn solved(mut system: [[f64; 6]; 4]) -> [[f64; 2]; 4] {
-    for column in 0..4 {
-        let pivot =
-            (column..4).max_by(|&a, &b| system[a][column].abs().total_cmp(&system[b][column].abs())).unwrap_or(column);
-        system.swap(column, pivot);
-        for row in column + 1..4 {
-            let factor = system[row][column] / system[column][column];
-            for entry in column..6 {
-                system[row][entry] -= factor * system[column][entry];
+        let larger = |a: usize, b: usize| if rows[b][column].abs() > rows[a][column].abs() { b } else { a };
+        let pivot = (column..4).fold(column, larger);
+        rows.swap(column, pivot);
+        let above = rows[column];
+        for row in &mut rows[column + 1..] {
+            let factor = row[column] / above[column];
+            for (value, pivot) in row.iter_mut().zip(above).skip(column) {
+                *value -= factor * pivot;
             }
         }
     }
     let mut solution = [[0.0; 2]; 4];
     for row in (0..4).rev() {
         for side in 0..2 {
-            let known: f64 = (row + 1..4).map(|column| system[row][column] * solution[column][side]).sum();
-            solution[row][side] = (system[row][4 + side] - known) / system[row][row];
+            let known: f64 = (row + 1..4).map(|column| rows[row][column] * solution[column][side]).sum();
+            solution[row][side] = (rows[row][4 + side] - known) / rows[row][row];
         }
     }
     solution
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-
-    fn load(roll_angle: f64, base_radius: f64) -> Load {
-        Load { across: libm::cos(roll_angle), outwards: -libm::sin(roll_angle), moment: base_radius }
-    }
-
-    /// Betti: a load's work on another's displacement is mutual.
-    #[test]
-    fn compliances_are_reciprocal() {
-        let ring = Ring::new(0.014, 0.024_75, 0.14, &STEEL);
-        let (a, b) = (load(0.1, 0.0268), load(0.43, 0.0268));
-        for angle in [0.0, 0.33, 0.66] {
-            let (there, back) = (ring.influence(angle).compliance(a, b), ring.influence(-angle).compliance(b, a));
-            assert!((there - back).abs() < 1e-13 * there.abs(), "{there} and {back} at {angle}");
-        }
-    }
-
-    #[test]
-    fn the_series_converges_as_stated() {
-        let of = |count| Ring::with_harmonics(0.014, 0.024_75, 0.14, &STEEL, count);
-        let (few, many) = (of(HARMONICS), of(16_000));
-        let (a, b) = (load(0.1, 0.0268), load(0.43, 0.0268));
-        let error =
-            |angle| (few.influence(angle).compliance(a, b) / many.influence(angle).compliance(a, b) - 1.0).abs();
-        assert!(error(0.0) < 3e-5 && error(0.0) > 1e-9, "{}", error(0.0));
-        assert!(error(0.330_69) < 3e-6, "{}", error(0.330_69));
-    }
-
-    /// A thin ring clamped just below its surface hardly moves; a large one moves like a half plane, whatever its bore.
-    #[test]
-    fn limits_are_right() {
-        let a = load(0.2, 0.0268);
-        let compliance = |bore: f64| Ring::new(bore, 0.024_75, 0.14, &STEEL).influence(0.0).compliance(a, a);
-        assert!(compliance(0.0245) < 0.2 * compliance(0.015));
-        // Rigid torsion of a disc clamped at a small shaft: the twist 1/(4πG)(1/r_i² − 1/r²) times the moment dominates.
-        let shear_modulus = 206e9 / 2.6;
-        let (bore, outer) = (1e-4, 0.024_75);
-        let twist = 0.0268 * 0.0268 / (4.0 * PI * shear_modulus) * (1.0 / (bore * bore) - 1.0 / (outer * outer));
-        assert!((compliance(bore) / twist - 1.0).abs() < 1e-3, "{}", compliance(bore) / twist);
-    }
-
-    /// Uniform radial pull on the whole rim: Lamé's solution for a disc on a rigid shaft.
-    #[test]
-    fn uniform_tension_is_lames_solution() {
-        let (inner, outer) = (0.01_f64, 0.03_f64);
-        let ring = Ring::new(inner, outer, 0.1, &STEEL);
-        let (e, nu) = (206e9, 0.3);
-        let (a2, b2) = (inner * inner, outer * outer);
-        let lame = outer / e * (1.0 - nu * nu) * (b2 - a2) / (b2 * (1.0 + nu) + a2 * (1.0 - nu));
-        assert!((ring.radial / lame - 1.0).abs() < 1e-13, "{} {lame}", ring.radial);
-    }
 }

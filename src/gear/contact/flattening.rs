@@ -131,6 +131,7 @@ impl InSeries {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::quadrature::GaussLegendre;
 
     const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
     const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25 };
@@ -190,5 +191,27 @@ mod tests {
         let exact = load * (body(&STEEL, depths[0]) + body(&SOFT, depths[1]));
         let law = Logarithmic::new([&STEEL, &SOFT], radius, depths);
         assert!((law.approach(load) / exact - 1.0).abs() < 1e-13);
+    }
+
+    /// Tier: second method; the strain under a Hertz pressure (Johnson, Contact Mechanics, eq. 4.49), integrated.
+    #[test]
+    fn the_load_dependent_law_is_the_integral_of_the_strain() {
+        let (load, radius, depth) = (2e5_f64, 8e-3, 3e-3);
+        let steel = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+        let half = half_width([&steel; 2], radius) * load.sqrt();
+        let peak = pressure([&steel; 2], radius, load);
+        let strain = |z: f64| {
+            let root = libm::hypot(half, z);
+            let along = -peak * half / root;
+            let across = -peak * ((half * half + 2.0 * z * z) / (half * root) - 2.0 * z / half);
+            (1.3 / 206e9) * (0.7 * along - 0.3 * across)
+        };
+        // z = b_H sinh w spreads the peak.
+        let rule = GaussLegendre::new(60);
+        let [integral] =
+            rule.integrate(0.0, libm::asinh(depth / half), |w| [-strain(half * libm::sinh(w)) * half * libm::cosh(w)]);
+        let approach = Logarithmic::new([&steel; 2], radius, [depth; 2]).approach(load);
+        // The closed form drops terms of the order of (b_H/t)².
+        assert!((approach / (2.0 * integral) - 1.0).abs() < (half / depth).powi(2), "{approach} for {integral}");
     }
 }

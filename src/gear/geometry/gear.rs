@@ -1,146 +1,144 @@
-//! One gear: everything that follows from its specification, and what makes a specification no gear.
+//! One gear from its specification, or why there is none.
 //!
-//! Terms and symbols of ISO 21771. Lengths in m, angles in rad. Must not know: the mating gear.
+//! r = m z/2, r_b = r cos α, r_a = r + m(h_aP + x), r_f = r − m(h_fP − x), ψ_b = (π/2 + 2x tan α)/z + inv α.
+//! Source: ISO 21771-1:2024, sections 5 and 7. Must not know: the mate.
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
+use std::ops::RangeInclusive;
 
-use super::error::{GeometryError, mm};
-use super::involute::{inv, inverse_roll, point_angle};
-use super::trochoid::Trochoid;
-use super::{Gear, Side, Specification};
+use super::error::{Degrees, GeometryError, Millimetres, Parameter, Plain, Problem};
+use super::involute::involute;
+use super::trochoid::{self, Trochoid};
+use super::{Gear, Specification};
+
+/// Degrees to radians, for the range of the pressure angle.
+const DEGREE: f64 = std::f64::consts::PI / 180.0;
+
+/// Least bore radius over root radius: a body held at a point would turn about it without limit.
+const LEAST_BORE: f64 = 1e-3;
 
 impl Gear {
     /// # Errors
-    /// When the rack cannot exist, the tooth is pointed or cut through, or the bore does not leave a body.
-    pub fn new(side: Side, specification: &Specification) -> Result<Self, GeometryError> {
-        let fail = |field, problem| Err(GeometryError::Gear { gear: side.name(), field, problem });
+    /// When no such gear can be cut: a value out of its range, an impossible rack, no involute left by undercut,
+    /// pointed teeth, a bore that reaches the root.
+    pub fn new(specification: &Specification) -> Result<Self, GeometryError> {
+        check_ranges(specification)?;
+        check_rack(specification)?;
         let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = *specification;
-        let positive = |value: f64| value.is_finite() && value > 0.0;
-        if teeth < 4 || !positive(module) || !(positive(pressure_angle) && pressure_angle < FRAC_PI_2) {
-            let problem = format!("{teeth} teeth, module {}, pressure angle {pressure_angle} rad", mm(module));
-            return fail("teeth", problem);
-        }
-        if !positive(specification.face_width) {
-            return fail(
-                "face_width",
-                format!("its face width is {}; it must be positive", mm(specification.face_width)),
-            );
-        }
         let reference_radius = 0.5 * module * f64::from(teeth);
         let base_radius = reference_radius * libm::cos(pressure_angle);
         let root_radius = reference_radius - module * (rack.dedendum - profile_shift);
-        let nominal_tip = reference_radius + module * (rack.addendum + profile_shift);
-        let tip_radius = specification.tip_radius.unwrap_or(nominal_tip);
+        let tip_radius =
+            specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
+        if root_radius <= 0.0 {
+            let largest = 0.5 * f64::from(teeth) + profile_shift;
+            return Err(out_of_range(
+                Parameter::RackDedendum,
+                &Plain(rack.dedendum),
+                format!("below {} modules, where the root circle vanishes", Plain(largest)),
+            ));
+        }
         let half_base_angle =
-            (FRAC_PI_2 + 2.0 * profile_shift * libm::tan(pressure_angle)) / f64::from(teeth) + inv(pressure_angle);
-
-        let trochoid = Trochoid::new(specification);
-        if trochoid.rack_tip_land() < -1e-12 * module {
-            let (sin, cos, tan) = (libm::sin(pressure_angle), libm::cos(pressure_angle), libm::tan(pressure_angle));
-            let full_round = (0.25 * PI - rack.dedendum * tan) * cos / (1.0 - sin);
-            let problem = if full_round < 0.0 {
-                format!("a rack with dedendum {} comes to a point before its tip at this pressure angle", rack.dedendum)
-            } else {
-                format!("the rack's tip radius {} is larger than its full round {full_round:.5}", rack.tip_radius)
-            };
-            return fail("rack.tip_radius", problem);
+            (FRAC_PI_2 + 2.0 * profile_shift * libm::tan(pressure_angle)) / f64::from(teeth) + involute(pressure_angle);
+        if half_base_angle <= 0.0 {
+            let least = -FRAC_PI_4 / libm::tan(pressure_angle);
+            return Err(out_of_range(
+                Parameter::ProfileShift,
+                &Plain(profile_shift),
+                format!("above {} modules, where the tooth vanishes", Plain(least)),
+            ));
         }
-        if rack.tip_radius < 0.0 {
-            return fail("rack.tip_radius", format!("the rack's tip radius {} is negative", rack.tip_radius));
-        }
-        if !positive(root_radius) {
-            return fail("teeth", format!("its root circle has the radius {}; it must be positive", mm(root_radius)));
-        }
-        if !(specification.bore_radius >= 0.0 && specification.bore_radius < root_radius) {
-            let (bore, root) = (mm(specification.bore_radius), mm(root_radius));
-            return fail(
-                "bore_radius",
-                format!("its bore radius {bore} must be from 0 to below the root radius {root}"),
-            );
-        }
-        let (_, form_roll) = trochoid.junction(base_radius, half_base_angle);
-        let form_radius = base_radius * (1.0 + form_roll * form_roll).sqrt();
-        if tip_radius <= form_radius {
-            let (tip, form) = (mm(tip_radius), mm(form_radius));
-            return fail("tip_radius", format!("its tip radius {tip} is not above {form}, where the involute starts"));
-        }
+        let (_, joint) = Trochoid::generate(specification, base_radius, half_base_angle);
         let gear = Self {
             specification: *specification,
             reference_radius,
             base_radius,
             tip_radius,
             root_radius,
-            form_radius,
+            form_radius: joint.radius,
+            form_roll: joint.roll,
+            undercut: joint.undercut,
             half_base_angle,
         };
-        if gear.tip_thickness() <= 0.0 {
-            let (tip, point) = (mm(tip_radius), mm(gear.point_radius()));
-            let problem = format!("its teeth come to a point at the radius {point}, below the tip radius {tip}");
-            return fail(if specification.tip_radius.is_some() { "tip_radius" } else { "profile_shift" }, problem);
-        }
+        gear.check()?;
         Ok(gear)
     }
 
-    /// Half the angle of the tooth at `radius` on the involute \[rad\].
-    #[must_use]
-    pub fn half_angle(&self, radius: f64) -> f64 {
-        point_angle(self.roll_at(radius), self.half_base_angle)
-    }
-
-    /// Arc thickness of the tooth at the tip \[m\]; not positive when the tooth would be pointed.
-    #[must_use]
-    pub fn tip_thickness(&self) -> f64 {
-        2.0 * self.tip_radius * self.half_angle(self.tip_radius)
-    }
-
-    /// Roll angle of the involute's point at `radius` \[rad\]; 0 at and below the base circle.
-    #[must_use]
-    pub fn roll_at(&self, radius: f64) -> f64 {
-        inverse_roll(radius, self.base_radius)
-    }
-
-    /// Radius of the involute's point at a roll angle \[m\].
-    #[must_use]
-    pub fn radius_at(&self, roll: f64) -> f64 {
-        self.base_radius * (1.0 + roll * roll).sqrt()
-    }
-
-    /// Roll angle u_p at which the two flanks would meet: u_p − arctan u_p = ψ_b.
-    #[must_use]
-    pub fn point_roll(&self) -> f64 {
-        let psi = self.half_base_angle;
-        // u³/3 is the leading term; from above Newton's method converges monotonically, the function being convex.
-        let mut roll = libm::cbrt(3.0 * psi) * (1.0 + psi);
-        for _ in 0..60 {
-            let step = (roll - libm::atan(roll) - psi) * (1.0 + roll * roll) / (roll * roll);
-            roll -= step;
-            if step.abs() <= f64::EPSILON * roll {
-                break;
+    fn check(&self) -> Result<(), GeometryError> {
+        let Specification { teeth, bore_radius, tip_radius, .. } = self.specification;
+        // Named for what must hold, so that a NaN fails too.
+        let has_flank = self.tip_radius > self.form_radius;
+        if !has_flank {
+            return Err(Problem::NoFlank {
+                form: Millimetres(self.form_radius),
+                tip: Millimetres(self.tip_radius),
+                teeth,
+                least: Plain(self.least_shift_without_undercut()),
             }
+            .into());
         }
-        roll
-    }
-
-    fn point_radius(&self) -> f64 {
-        self.radius_at(self.point_roll())
-    }
-
-    /// The smallest profile shift x at which the rack does not undercut.
-    #[must_use]
-    pub fn smallest_shift_without_undercut(&self) -> f64 {
-        let gear = &self.specification;
-        let sin = libm::sin(gear.pressure_angle);
-        let needed = gear.rack.dedendum - gear.rack.tip_radius * (1.0 - sin);
-        needed - 0.5 * f64::from(gear.teeth) * sin * sin
+        let has_land = self.tip_thickness() > 0.0;
+        if !has_land {
+            return Err(Problem::Pointed {
+                tip: Millimetres(self.tip_radius),
+                apex: Millimetres(self.radius_at(self.apex_roll())),
+                tip_is_given: tip_radius.is_some(),
+            }
+            .into());
+        }
+        let least = LEAST_BORE * self.root_radius;
+        if !(bore_radius >= least && bore_radius < self.root_radius) {
+            let [bore, least, root] = [bore_radius, least, self.root_radius].map(Millimetres);
+            return Err(Problem::Bore { bore, least, root }.into());
+        }
+        Ok(())
     }
 }
 
-impl Side {
-    #[must_use]
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Pinion => "pinion",
-            Self::Gear => "gear",
+fn out_of_range(parameter: Parameter, found: &impl ToString, range: String) -> GeometryError {
+    Problem::OutOfRange { parameter, found: found.to_string(), range }.into()
+}
+
+fn check_ranges(specification: &Specification) -> Result<(), GeometryError> {
+    type Show = fn(f64) -> String;
+    type Row = (Parameter, f64, RangeInclusive<f64>, Show, &'static str);
+    let length: Show = |value| Millimetres(value).to_string();
+    let angle: Show = |value| Degrees(value).to_string();
+    let plain: Show = |value| Plain(value).to_string();
+    let Specification { teeth, module, pressure_angle, profile_shift, rack, face_width, material, .. } = *specification;
+    let rows: [Row; 10] = [
+        (Parameter::Teeth, teeth.into(), 4.0..=10_000.0, plain, ""),
+        (Parameter::Module, module, 1e-6..=10.0, length, ""),
+        (Parameter::PressureAngle, pressure_angle, DEGREE..=45.0 * DEGREE, angle, ""),
+        (Parameter::ProfileShift, profile_shift, -5.0..=5.0, plain, " modules"),
+        (Parameter::RackAddendum, rack.addendum, 0.1..=5.0, plain, " modules"),
+        (Parameter::RackDedendum, rack.dedendum, 0.1..=5.0, plain, " modules"),
+        (Parameter::RackTipRadius, rack.tip_radius, 0.0..=5.0, plain, " modules"),
+        (Parameter::FaceWidth, face_width, 1e-6..=100.0, length, ""),
+        (Parameter::YoungsModulus, material.youngs_modulus, 1.0..=1e15, plain, " Pa"),
+        (Parameter::PoissonRatio, material.poisson_ratio, 0.0..=0.5, plain, ""),
+    ];
+    for (parameter, value, range, show, unit) in rows {
+        if !range.contains(&value) {
+            let range = format!("{} to {}{unit}", show(*range.start()), show(*range.end()));
+            return Err(out_of_range(parameter, &(show(value) + unit), range));
         }
     }
+    Ok(())
+}
+
+fn check_rack(specification: &Specification) -> Result<(), GeometryError> {
+    let Specification { pressure_angle, rack, .. } = *specification;
+    let largest = trochoid::full_round(specification);
+    if largest <= 0.0 {
+        let largest = Degrees(libm::atan(FRAC_PI_4 / rack.dedendum));
+        return Err(
+            Problem::NoTipLand { dedendum: Plain(rack.dedendum), angle: Degrees(pressure_angle), largest }.into()
+        );
+    }
+    // Full round is allowed, so it must be reachable by a decimal number.
+    if rack.tip_radius > largest * (1.0 + 1e-9) {
+        return Err(Problem::TipRoundTooLarge { radius: Plain(rack.tip_radius), largest: Plain(largest) }.into());
+    }
+    Ok(())
 }

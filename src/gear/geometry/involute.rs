@@ -1,20 +1,130 @@
-//! The involute of a circle, by its roll angle. Angles in rad. Must not know: which circle it is.
+//! The involute: its function, its inverse, and what a gear's flank has at a radius or a roll angle.
+//!
+//! The roll angle of a flank point is u = tan α_y, so the point is r_b u away from the tangent point of its normal.
+//! Tooth frame: y along the tooth's centreline from the gear's centre, x across. Source: ISO 21771-1:2024, section 5.
+//! Must not know: how the tooth ends at the root.
+
+use super::Gear;
 
 /// inv α = tan α − α.
 #[must_use]
-pub fn inv(angle: f64) -> f64 {
+pub fn involute(angle: f64) -> f64 {
     libm::tan(angle) - angle
 }
 
-/// Roll angle u of the point at `radius`: u² = (r/r_b)² − 1; 0 at and below the base circle.
+/// The angle whose involute function is `value` ≥ 0, below 1.5 rad; `start` is a guess, exact when it is the answer.
 #[must_use]
-pub fn inverse_roll(radius: f64, base_radius: f64) -> f64 {
-    // Factored, so that it stays exact near the base circle.
-    ((radius - base_radius) * (radius + base_radius)).max(0.0).sqrt() / base_radius
+pub fn inverse_involute(value: f64, start: f64) -> f64 {
+    // The function is convex: after one step Newton's method comes down from above without overshooting.
+    let mut angle = start;
+    for _ in 0..100 {
+        let tangent = libm::tan(angle);
+        let next = (angle - (tangent - angle - value) / (tangent * tangent)).clamp(1e-9, 1.5);
+        let done = (next - angle).abs() <= f64::EPSILON * angle;
+        angle = next;
+        if done {
+            break;
+        }
+    }
+    angle
 }
 
-/// Angle of the flank's point at roll angle u from the tooth's centreline: ψ = ψ_b − (u − arctan u).
-#[must_use]
-pub fn point_angle(roll: f64, half_base_angle: f64) -> f64 {
-    half_base_angle - (roll - libm::atan(roll))
+/// A point of a tooth's right half and its rate: half thickness x, height y, dy per parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// x \[m\].
+    pub half_thickness: f64,
+    /// y \[m\].
+    pub height: f64,
+    /// dy/d(parameter).
+    pub height_rate: f64,
+}
+
+impl Gear {
+    /// u at a radius \[m\] ≥ r_b.
+    #[must_use]
+    pub fn roll_at(&self, radius: f64) -> f64 {
+        // As a product: the difference of squares would lose the digits near the base circle.
+        ((radius - self.base_radius) * (radius + self.base_radius)).max(0.0).sqrt() / self.base_radius
+    }
+
+    /// Radius \[m\] at a roll angle.
+    #[must_use]
+    pub fn radius_at(&self, roll: f64) -> f64 {
+        self.base_radius * (1.0 + roll * roll).sqrt()
+    }
+
+    /// ψ_y, half the angle of the tooth at a roll angle: ψ_b − inv α_y.
+    #[must_use]
+    pub fn half_angle_at_roll(&self, roll: f64) -> f64 {
+        self.half_base_angle - (roll - libm::atan(roll))
+    }
+
+    /// ψ_y at a radius \[m\] ≥ r_b.
+    #[must_use]
+    pub fn half_angle(&self, radius: f64) -> f64 {
+        self.half_angle_at_roll(self.roll_at(radius))
+    }
+
+    /// s_a, the tooth's thickness along the tip circle \[m\].
+    #[must_use]
+    pub fn tip_thickness(&self) -> f64 {
+        2.0 * self.tip_radius * self.half_angle(self.tip_radius)
+    }
+
+    /// Roll angle at the tip.
+    #[must_use]
+    pub fn tip_roll(&self) -> f64 {
+        self.roll_at(self.tip_radius)
+    }
+
+    /// Roll angle at which the two flanks of a tooth would meet: inv α = ψ_b.
+    #[must_use]
+    pub fn apex_roll(&self) -> f64 {
+        libm::tan(inverse_involute(self.half_base_angle, 1.0))
+    }
+
+    /// The angle between the load line at a flank point and the normal of the tooth's centreline: α_1 = u − ψ_b.
+    #[must_use]
+    pub fn load_angle(&self, roll: f64) -> f64 {
+        roll - self.half_base_angle
+    }
+
+    /// The flank point at a roll angle, with dy/du.
+    #[must_use]
+    pub fn flank(&self, roll: f64) -> Section {
+        let (sine, cosine) = libm::sincos(self.load_angle(roll));
+        Section {
+            half_thickness: self.base_radius * (roll * cosine - sine),
+            height: self.base_radius * (cosine + roll * sine),
+            height_rate: self.base_radius * roll * cosine,
+        }
+    }
+
+    /// x_min: the least profile shift \[modules\] at which this rack does not undercut this number of teeth.
+    #[must_use]
+    pub fn least_shift_without_undercut(&self) -> f64 {
+        super::trochoid::least_shift_without_undercut(&self.specification)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_inverse_undoes_the_function() {
+        for degrees in [0.5_f64, 5.0, 14.5, 20.0, 32.0, 60.0, 80.0] {
+            let angle = degrees.to_radians();
+            for start in [0.1, 0.35, 1.0, 1.4] {
+                // inv α ≈ α³/3 at small angles, so the inverse has a third of the digits to lose there.
+                let tolerance = 1e-15 / (libm::tan(angle) * libm::tan(angle)) + 1e-14;
+                assert!((inverse_involute(involute(angle), start) - angle).abs() < tolerance, "{degrees} from {start}");
+            }
+        }
+        let angle = 20f64.to_radians();
+        assert_eq!(inverse_involute(involute(angle), angle).to_bits(), angle.to_bits());
+        // ISO 21771 and every handbook: inv 20° = 0.014904.
+        assert!((involute(angle) - 0.014_904_38).abs() < 1e-8);
+    }
 }

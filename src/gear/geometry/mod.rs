@@ -7,11 +7,10 @@ pub mod gear;
 pub mod involute;
 pub mod pair;
 pub mod root;
-#[cfg(test)]
-pub mod testing;
+pub mod trochoid;
+
 #[cfg(test)]
 mod tests;
-pub mod trochoid;
 
 use super::compliance::Material;
 
@@ -54,6 +53,16 @@ pub enum Side {
     Gear,
 }
 
+impl Side {
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Pinion => "pinion",
+            Self::Gear => "gear",
+        }
+    }
+}
+
 /// One gear with everything that follows from its specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gear {
@@ -68,6 +77,10 @@ pub struct Gear {
     pub root_radius: f64,
     /// Radius at which the generated root curve meets the involute.
     pub form_radius: f64,
+    /// Roll angle at the form radius \[rad\]; known better than the form radius where that is near the base circle.
+    pub form_roll: f64,
+    /// Whether the rack cuts into the involute: the root curve then crosses it at an angle.
+    pub undercut: bool,
     /// ψ_b: half the angle of the tooth at the base circle \[rad\].
     pub half_base_angle: f64,
 }
@@ -79,8 +92,6 @@ pub struct Pair {
     pub gear: Gear,
     /// a_w \[m\].
     pub centre_distance: f64,
-    /// a_w as it was given \[m\]; `None` when it follows from zero backlash.
-    pub given_centre_distance: Option<f64>,
     /// α_w \[rad\].
     pub working_pressure_angle: f64,
     /// L = a_w sin α_w, the length T1T2 \[m\].
@@ -93,4 +104,23 @@ pub struct Pair {
     pub base_pitch: f64,
     /// ε_α.
     pub contact_ratio: f64,
+}
+
+impl Pair {
+    #[must_use]
+    pub fn side(&self, side: Side) -> &Gear {
+        match side {
+            Side::Pinion => &self.pinion,
+            Side::Gear => &self.gear,
+        }
+    }
+
+    /// The roll angle \[rad\] of a gear's contact point at path position `s`: u1 = s/r_b1, u2 = (L − s)/r_b2.
+    #[must_use]
+    pub fn roll(&self, side: Side, s: f64) -> f64 {
+        match side {
+            Side::Pinion => s / self.pinion.base_radius,
+            Side::Gear => (self.tangent_length - s) / self.gear.base_radius,
+        }
+    }
 }

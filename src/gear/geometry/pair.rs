@@ -1,139 +1,159 @@
-//! Two gears on their centre distance: path of contact, contact ratio, and what keeps them from meshing.
+//! Two gears on their centre distance, or why they cannot run together.
 //!
-//! Path positions s \[m\] count from the pinion's tangent point T1. Must not know: loads.
+//! Without a given centre distance the flanks touch on both sides (no backlash):
+//! inv α_w = inv α + 2 tan α (x1 + x2)/(z1 + z2). Source: ISO 21771-1:2024, section 8.
+//! Must not know: stiffness, load.
 
-use super::error::{GeometryError, mm};
-use super::involute::inv;
+use super::error::{GeometryError, Millimetres, Parameter, Plain, Problem, Reached};
+use super::involute::{inverse_involute, involute};
 use super::{Gear, Pair, Side, Specification};
 
+/// The named points of the path of contact, as path positions s \[m\].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ZonePoints {
+    /// A, start of contact.
+    pub a: f64,
+    /// B, one base pitch before E: with 1 < ε_α < 2 the start of single contact.
+    pub b: f64,
+    /// C, the pitch point.
+    pub c: f64,
+    /// D, one base pitch after A: with 1 < ε_α < 2 the end of single contact.
+    pub d: f64,
+    /// E, end of contact.
+    pub e: f64,
+}
+
+/// How much nearer than without backlash the gears may stand \[modules\]: room for a rounded centre distance.
+const OVERLAP: f64 = 1e-3;
+
 impl Pair {
-    /// Meshes two gears; without a centre distance they run without backlash.
-    ///
     /// # Errors
-    /// When a gear is impossible, they interfere, jam, or lose contact before the next pair takes over.
+    /// When a gear cannot be, the gears do not belong together, the teeth do not fit into each other, contact would
+    /// lie below a form radius, or the contact ratio is not above 1.
     pub fn new(
         pinion: Specification,
         gear: Specification,
-        given_centre_distance: Option<f64>,
+        centre_distance: Option<f64>,
     ) -> Result<Self, GeometryError> {
-        let (pinion, gear) = (Gear::new(Side::Pinion, &pinion)?, Gear::new(Side::Gear, &gear)?);
-        let base_radii = pinion.base_radius + gear.base_radius;
-        let tight_angle = tight_pressure_angle(&pinion, &gear)?;
-        let tight = base_radii / libm::cos(tight_angle);
-        let centre_distance = given_centre_distance.unwrap_or(tight);
-        if centre_distance < tight * (1.0 - 1e-9) || !centre_distance.is_finite() {
-            let (given, tight) = (mm(centre_distance), mm(tight));
-            return fail("centre_distance", format!("the centre distance is {given}; below {tight} the flanks jam"));
+        let pinion = Gear::new(&pinion).map_err(|error| error.on(Side::Pinion))?;
+        let gear = Gear::new(&gear).map_err(|error| error.on(Side::Gear))?;
+        check_same_rack(&pinion, &gear)?;
+        let without_backlash = angle_without_backlash(&pinion, &gear)?;
+        let base_sum = pinion.base_radius + gear.base_radius;
+        let nearest = base_sum / libm::cos(without_backlash);
+        let centre_distance = centre_distance.unwrap_or(nearest);
+        let least = nearest - OVERLAP * pinion.specification.module;
+        if !(centre_distance >= least && centre_distance.is_finite()) {
+            let (found, least) = (Millimetres(centre_distance), Millimetres(nearest));
+            return Err(Problem::CentreDistance { found, least }.into());
         }
-        let working_pressure_angle =
-            if given_centre_distance.is_none() { tight_angle } else { libm::acos(base_radii / centre_distance) };
-        let tangent_length = base_radii * libm::tan(working_pressure_angle);
-        let reach = |gear: &Gear| gear.base_radius * gear.roll_at(gear.tip_radius);
-        let (start_of_contact, end_of_contact) = (tangent_length - reach(&gear), reach(&pinion));
+        let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
         let base_pitch =
             std::f64::consts::PI * pinion.specification.module * libm::cos(pinion.specification.pressure_angle);
+        let start_of_contact = tangent_length - gear.base_radius * gear.tip_roll();
+        let end_of_contact = pinion.base_radius * pinion.tip_roll();
         let pair = Self {
+            working_pressure_angle: libm::atan2(tangent_length, base_sum),
             contact_ratio: (end_of_contact - start_of_contact) / base_pitch,
             pinion,
             gear,
             centre_distance,
-            given_centre_distance,
-            working_pressure_angle,
             tangent_length,
             start_of_contact,
             end_of_contact,
             base_pitch,
         };
-        pair.meshes().map(|()| pair)
+        pair.check()?;
+        Ok(pair)
     }
 
-    /// The roll angle \[rad\] of a gear's contact point at path position `s`: u1 = s/r_b1, u2 = (L − s)/r_b2.
-    #[must_use]
-    pub fn roll(&self, side: Side, s: f64) -> f64 {
-        match side {
-            Side::Pinion => s / self.pinion.base_radius,
-            Side::Gear => (self.tangent_length - s) / self.gear.base_radius,
+    fn check(&self) -> Result<(), GeometryError> {
+        for (side, mate_side) in [(Side::Pinion, Side::Gear), (Side::Gear, Side::Pinion)] {
+            let (own, mate) = (self.side(side), self.side(mate_side));
+            let clearance = self.centre_distance - own.tip_radius - mate.root_radius;
+            if clearance <= 0.0 {
+                let (tip, clearance) = (Millimetres(own.tip_radius), Millimetres(clearance));
+                return Err(GeometryError::from(Problem::NoClearance { tip, clearance }).on(side));
+            }
         }
-    }
-
-    #[must_use]
-    pub fn side(&self, side: Side) -> &Gear {
-        match side {
-            Side::Pinion => &self.pinion,
-            Side::Gear => &self.gear,
+        // Before interference: with flanks that short nothing touches down there.
+        let takes_over = self.contact_ratio > 1.0;
+        if !takes_over {
+            return Err(Problem::ContactRatio { ratio: Plain(self.contact_ratio) }.into());
         }
-    }
-
-    fn meshes(&self) -> Result<(), GeometryError> {
-        for (side, mate, deepest) in
+        for (side, mate_side, s) in
             [(Side::Pinion, Side::Gear, self.start_of_contact), (Side::Gear, Side::Pinion, self.end_of_contact)]
         {
-            let gear = self.side(side);
-            let (name, mate) = (side.name(), mate.name());
-            let roll = self.roll(side, deepest);
-            let form_roll = gear.roll_at(gear.form_radius);
-            if roll < form_roll - 1e-9 {
-                let form = mm(gear.form_radius);
-                let problem = if roll < 0.0 {
-                    format!(
-                        "the tip of the {mate} reaches past the tangent point into the root of the {name} (interference)"
-                    )
-                } else {
-                    let reached = mm(gear.radius_at(roll));
-                    format!(
-                        "the tip of the {mate} reaches the {name} at radius {reached}, where the involute starts at {form} (interference)"
-                    )
-                };
-                return fail(if side == Side::Pinion { "pinion.teeth" } else { "gear.teeth" }, problem);
+            let (own, mate, roll) = (self.side(side), self.side(mate_side), self.roll(side, s));
+            // A rounding's worth of overlap is none.
+            if roll < own.form_roll - 1e-12 {
+                let reach = self.tangent_length - own.base_radius * own.form_roll;
+                return Err(GeometryError::from(Problem::Interference {
+                    mate_tip: Millimetres(mate.tip_radius),
+                    reached: if roll < 0.0 {
+                        Reached::InsideBaseCircle
+                    } else {
+                        Reached::Radius(Millimetres(own.radius_at(roll)))
+                    },
+                    form: Millimetres(own.form_radius),
+                    largest: Millimetres(libm::hypot(mate.base_radius, reach)),
+                })
+                .on(side));
             }
-            let clearance = self.centre_distance
-                - gear.root_radius
-                - self.side(if side == Side::Pinion { Side::Gear } else { Side::Pinion }).tip_radius;
-            if clearance < 0.0 {
-                let problem =
-                    format!("the tip of the {mate} cuts {} into the root circle of the {name}", mm(-clearance));
-                return fail("rack.dedendum", problem);
-            }
-        }
-        if self.contact_ratio.is_nan() || self.contact_ratio <= 1.0 {
-            let ratio = self.contact_ratio;
-            return fail(
-                "pinion.teeth",
-                format!("the contact ratio is {ratio:.4}; above 1 a pair takes over before the last one leaves"),
-            );
         }
         Ok(())
     }
-}
 
-fn fail<T>(field: &'static str, problem: String) -> Result<T, GeometryError> {
-    Err(GeometryError::Pair { field, problem })
-}
-
-/// α_w without backlash: inv α_w = inv α + 2 tan α (x1 + x2)/(z1 + z2).
-fn tight_pressure_angle(pinion: &Gear, gear: &Gear) -> Result<f64, GeometryError> {
-    let (a, b) = (&pinion.specification, &gear.specification);
-    let shift = a.profile_shift + b.profile_shift;
-    if shift == 0.0 {
-        return Ok(a.pressure_angle);
-    }
-    let teeth = f64::from(a.teeth) + f64::from(b.teeth);
-    let wanted = inv(a.pressure_angle) + 2.0 * libm::tan(a.pressure_angle) * shift / teeth;
-    if wanted <= 0.0 {
-        return fail(
-            "gear.profile_shift",
-            format!("with x1 + x2 = {shift} the teeth cannot come together without backlash"),
-        );
-    }
-    // inv is convex and increasing, so from above Newton's method decreases monotonically.
-    let mut angle = libm::cbrt(3.0 * wanted).min(1.5).max(a.pressure_angle);
-    for _ in 0..100 {
-        let tan = libm::tan(angle);
-        let step = (tan - angle - wanted) / (tan * tan);
-        angle -= step;
-        if step.abs() <= f64::EPSILON * angle {
-            break;
+    #[must_use]
+    pub fn zone_points(&self) -> ZonePoints {
+        ZonePoints {
+            a: self.start_of_contact,
+            b: self.end_of_contact - self.base_pitch,
+            c: self.pinion.base_radius * libm::tan(self.working_pressure_angle),
+            d: self.start_of_contact + self.base_pitch,
+            e: self.end_of_contact,
         }
     }
-    Ok(angle)
+
+    /// The path position of a gear's flank point, from its roll angle: the inverse of [`Pair::roll`].
+    #[must_use]
+    pub fn path_position(&self, side: Side, roll: f64) -> f64 {
+        match side {
+            Side::Pinion => roll * self.pinion.base_radius,
+            Side::Gear => self.tangent_length - roll * self.gear.base_radius,
+        }
+    }
+
+    /// The smaller of the two face widths \[m\]: what is in contact.
+    #[must_use]
+    pub fn contact_width(&self) -> f64 {
+        self.pinion.specification.face_width.min(self.gear.specification.face_width)
+    }
+}
+
+fn check_same_rack(pinion: &Gear, gear: &Gear) -> Result<(), GeometryError> {
+    let (one, two) = (&pinion.specification, &gear.specification);
+    let same = |a: f64, b: f64| (a - b).abs() <= 1e-12 * a;
+    let differs = |parameter, pinion: String, gear: String| Problem::Differs { parameter, pinion, gear };
+    if !same(one.module, two.module) {
+        let shown = |value| Millimetres(value).to_string();
+        return Err(differs(Parameter::Module, shown(one.module), shown(two.module)).into());
+    }
+    if !same(one.pressure_angle, two.pressure_angle) {
+        let shown = |value| super::error::Degrees(value).to_string();
+        return Err(differs(Parameter::PressureAngle, shown(one.pressure_angle), shown(two.pressure_angle)).into());
+    }
+    Ok(())
+}
+
+fn angle_without_backlash(pinion: &Gear, gear: &Gear) -> Result<f64, GeometryError> {
+    let angle = pinion.specification.pressure_angle;
+    let teeth = f64::from(pinion.specification.teeth) + f64::from(gear.specification.teeth);
+    let sum = pinion.specification.profile_shift + gear.specification.profile_shift;
+    let value = involute(angle) + 2.0 * libm::tan(angle) * sum / teeth;
+    if value <= 0.0 {
+        let least = Plain(-0.5 * involute(angle) * teeth / libm::tan(angle));
+        return Err(Problem::ProfileShiftSum { sum: Plain(sum), least }.into());
+    }
+    Ok(inverse_involute(value, angle))
 }

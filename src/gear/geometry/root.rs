@@ -1,146 +1,154 @@
-//! Root shapes: the half section of a tooth from where it is clamped up to where its involute starts.
+//! The shapes a tooth's root may be given, as sections from the clamped end up to the involute.
 //!
-//! Frame of the tooth as in `trochoid.rs`. Every shape is a list of smooth pieces, each parametrised so that Gauss
-//! quadrature converges fast. Must not know: what is integrated along it.
+//! - `Trochoid`: what the rack cuts; clamped where it touches the root circle.
+//! - `CircularFillet`: an arc of the rack's tip radius ρ_fP, tangent to the root circle and to the flank, the flank
+//!   being the involute and, below the base circle, the radial line at ψ_b; clamped at the root circle.
+//! - `BaseCircle`: no root at all, the involute clamped at the base circle, or at the root circle where that is larger
+//!   (from 42 teeth on with a dedendum of 1.25): a tooth clamped inside its own body would be integrated through it.
+//!
+//! Must not know: stiffness, load.
 
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::Gear;
-use super::involute::{inv, point_angle};
-use super::trochoid::{Point, Trochoid};
+use super::error::{GeometryError, Millimetres, Problem};
+use super::involute::Section;
+use super::trochoid::Trochoid;
+use crate::base::parameter::Choice;
 
-/// The shape of the tooth below its involute.
+/// How a tooth ends at its root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RootShape {
-    /// As the rack's tip round cuts it.
     Trochoid,
-    /// A circular arc with the rack's tip radius, tangent to the root circle and to the flank; where the arc would touch
-    /// below the base circle, a radial line continues the flank down to it.
     CircularFillet,
-    /// None: the tooth is clamped where its involute starts, at the base circle or, if that lies inside the body, at the
-    /// root circle.
     BaseCircle,
 }
 
-/// One smooth piece of a root curve, from the root up.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Piece {
-    /// Parameter q with cot γ = sinh q: evens out the curve's sharp turn near the root.
-    Trochoid { curve: Trochoid, start: f64, end: f64 },
-    /// Parameter: direction from the centre, measured from the y axis.
-    Arc { centre: (f64, f64), radius: f64, start: f64, end: f64 },
-    /// Parameter: radius, along the direction ψ.
-    Radial { angle: f64, start: f64, end: f64 },
-}
+/// The shapes as a study names them.
+pub const ROOT_SHAPES: &[Choice] = &[
+    Choice { name: "trochoid", summary: "the root curve that the rack generates" },
+    Choice { name: "circular_fillet", summary: "an arc of the rack's tip radius between flank and root circle" },
+    Choice {
+        name: "base_circle",
+        summary: "no root: the involute clamped at the base circle (or root circle, if larger)",
+    },
+];
 
-/// The root of one tooth: pieces, and the roll angle at which the involute takes over.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Root {
-    pieces: Vec<Piece>,
-    /// Roll angle of the involute's lowest point that is part of the tooth.
-    pub junction_roll: f64,
-    /// θ_f: half the angle of the tooth where it is clamped \[rad\].
-    pub half_angle: f64,
-    /// y of the section where it is clamped \[m\].
-    pub clamped_height: f64,
-}
-
-impl Root {
+impl RootShape {
+    /// The shape called `name` in [`ROOT_SHAPES`].
     #[must_use]
-    pub fn new(gear: &Gear, shape: RootShape) -> Self {
-        let (pieces, junction_roll) = match shape {
-            RootShape::Trochoid => trochoid(gear),
-            RootShape::CircularFillet => circular_fillet(gear),
-            RootShape::BaseCircle => (Vec::new(), gear.roll_at(gear.root_radius)),
-        };
-        let foot = pieces.first().map(|piece| piece.point(piece.ends().0));
-        let (half_angle, clamped_height) = foot.map_or_else(
-            || {
-                let angle = point_angle(junction_roll, gear.half_base_angle);
-                (angle, gear.radius_at(junction_roll) * libm::cos(angle))
-            },
-            |foot| (foot.angle(), foot.y),
-        );
-        Self { pieces, junction_roll, half_angle, clamped_height }
-    }
-
-    /// Calls `integrate(start, end, point)` for every piece; `point` gives the section at a parameter in between.
-    pub fn for_each(&self, mut integrate: impl FnMut(f64, f64, &dyn Fn(f64) -> Point)) {
-        for piece in &self.pieces {
-            let (start, end) = piece.ends();
-            integrate(start, end, &|parameter| piece.point(parameter));
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "trochoid" => Some(Self::Trochoid),
+            "circular_fillet" => Some(Self::CircularFillet),
+            "base_circle" => Some(Self::BaseCircle),
+            _ => None,
         }
     }
+}
+
+/// A tooth's root of a certain shape.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Root {
+    /// θ_f: half the tooth's angle at the clamped end.
+    pub half_angle: f64,
+    /// Roll angle at which the involute begins.
+    pub form_roll: f64,
+    pub pieces: Vec<Piece>,
+}
+
+/// A smooth piece of a root, from the clamped end upwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Piece {
+    /// Over q = asinh(cot γ).
+    Trochoid(Trochoid),
+    /// Over the angle about its centre, 0 where it touches the root circle.
+    Arc { centre_radius: f64, centre_angle: f64, radius: f64, extent: f64 },
+    /// Over the radius.
+    Radial { angle: f64, lower: f64, upper: f64 },
 }
 
 impl Piece {
-    fn ends(&self) -> (f64, f64) {
-        match *self {
-            Self::Trochoid { start, end, .. } | Self::Arc { start, end, .. } | Self::Radial { start, end, .. } => {
-                (start, end)
-            }
+    /// The range of the parameter.
+    #[must_use]
+    pub fn range(&self) -> (f64, f64) {
+        match self {
+            Self::Trochoid(curve) => (0.0, curve.joint_parameter()),
+            Self::Arc { extent, .. } => (0.0, *extent),
+            Self::Radial { lower, upper, .. } => (*lower, *upper),
         }
     }
 
-    fn point(&self, parameter: f64) -> Point {
+    /// The section at a parameter.
+    #[must_use]
+    pub fn section(&self, parameter: f64) -> Section {
         match *self {
-            Self::Trochoid { ref curve, .. } => {
-                let (sinh, cosh) = (libm::sinh(parameter), libm::cosh(parameter));
-                let Point { x, y, dx, dy } = curve.point(libm::atan2(1.0, sinh));
-                // dγ/dq = −1/cosh q.
-                Point { x, y, dx: -dx / cosh, dy: -dy / cosh }
-            }
-            Self::Arc { centre, radius, .. } => {
-                let (sin, cos) = (libm::sin(parameter), libm::cos(parameter));
-                Point { x: centre.0 + radius * sin, y: centre.1 + radius * cos, dx: radius * cos, dy: -radius * sin }
+            Self::Trochoid(curve) => curve.section(parameter),
+            Self::Arc { centre_radius, centre_angle, radius, .. } => {
+                let (sine, cosine) = libm::sincos(centre_angle);
+                let (arc_sine, arc_cosine) = libm::sincos(centre_angle + parameter);
+                Section {
+                    half_thickness: centre_radius * sine - radius * arc_sine,
+                    height: centre_radius * cosine - radius * arc_cosine,
+                    height_rate: radius * arc_sine,
+                }
             }
             Self::Radial { angle, .. } => {
-                let (sin, cos) = (libm::sin(angle), libm::cos(angle));
-                Point { x: parameter * sin, y: parameter * cos, dx: sin, dy: cos }
+                let (sine, cosine) = libm::sincos(angle);
+                Section { half_thickness: parameter * sine, height: parameter * cosine, height_rate: cosine }
             }
         }
     }
 }
 
-fn trochoid(gear: &Gear) -> (Vec<Piece>, f64) {
-    let curve = Trochoid::new(&gear.specification);
-    let (gamma, roll) = curve.junction(gear.base_radius, gear.half_base_angle);
-    let end = libm::asinh(1.0 / libm::tan(gamma));
-    (vec![Piece::Trochoid { curve, start: 0.0, end }], roll)
-}
-
-fn circular_fillet(gear: &Gear) -> (Vec<Piece>, f64) {
-    let radius = gear.specification.rack.tip_radius * gear.specification.module;
-    let centre_radius = gear.root_radius + radius;
-    // The centre lies on the parallel of the involute at the distance ρ: an involute that starts ρ/r_b earlier.
-    let on_involute = (centre_radius > gear.base_radius)
-        .then(|| {
-            let angle = libm::acos(gear.base_radius / centre_radius);
-            (
-                libm::tan(angle) - radius / gear.base_radius,
-                gear.half_base_angle + radius / gear.base_radius - inv(angle),
-            )
-        })
-        .filter(|(roll, _)| *roll >= 0.0);
-    let (junction_roll, centre_angle, touching_radius) = match on_involute {
-        Some((roll, angle)) => (roll, angle, gear.radius_at(roll)),
-        None => {
-            let touching = ((centre_radius - radius) * (centre_radius + radius)).sqrt();
-            (0.0, gear.half_base_angle + libm::asin(radius / centre_radius), touching)
+impl Gear {
+    /// The root of this gear's teeth in a certain shape.
+    ///
+    /// # Errors
+    /// When circular fillets of neighbouring teeth would overlap.
+    pub fn root(&self, shape: RootShape) -> Result<Root, GeometryError> {
+        match shape {
+            RootShape::Trochoid => {
+                let curve = self.trochoid();
+                Ok(Root {
+                    half_angle: curve.root_half_angle(),
+                    form_roll: self.form_roll,
+                    pieces: vec![Piece::Trochoid(curve)],
+                })
+            }
+            RootShape::CircularFillet => self.circular_fillet(),
+            RootShape::BaseCircle => {
+                let form_roll = self.roll_at(self.root_radius.max(self.base_radius));
+                Ok(Root { half_angle: self.half_angle_at_roll(form_roll), form_roll, pieces: Vec::new() })
+            }
         }
-    };
-    let touching_angle = point_angle(junction_roll, gear.half_base_angle);
-    let centre = (centre_radius * libm::sin(centre_angle), centre_radius * libm::cos(centre_angle));
-    let touching = (touching_radius * libm::sin(touching_angle), touching_radius * libm::cos(touching_angle));
-    // From the root circle, straight below the centre, to the flank, on the side towards the tooth.
-    let start = centre_angle - 2.0 * FRAC_PI_2;
-    let mut end = libm::atan2(touching.0 - centre.0, touching.1 - centre.1);
-    if end < start {
-        end += 4.0 * FRAC_PI_2;
     }
-    let mut pieces = vec![Piece::Arc { centre, radius, start, end }];
-    if on_involute.is_none() && touching_radius < gear.base_radius {
-        pieces.push(Piece::Radial { angle: gear.half_base_angle, start: touching_radius, end: gear.base_radius });
+
+    fn circular_fillet(&self) -> Result<Root, GeometryError> {
+        let radius = self.specification.rack.tip_radius * self.specification.module;
+        let centre_radius = self.root_radius + radius;
+        // A circle tangent to an involute has its centre on the flank's normal, which is tangent to the base circle.
+        let along = ((centre_radius - self.base_radius) * (centre_radius + self.base_radius)).max(0.0).sqrt();
+        let on_involute = along >= radius && centre_radius > self.base_radius;
+        let mut pieces = Vec::new();
+        let (form_roll, centre_angle) = if on_involute {
+            let roll = (along - radius) / self.base_radius;
+            (roll, self.half_base_angle - roll + libm::atan(along / self.base_radius))
+        } else {
+            (0.0, self.half_base_angle + libm::asin(radius / centre_radius))
+        };
+        let extent = FRAC_PI_2 + self.half_base_angle - form_roll - centre_angle;
+        if radius > 0.0 {
+            pieces.push(Piece::Arc { centre_radius, centre_angle, radius, extent });
+        }
+        if !on_involute {
+            let lower = ((centre_radius - radius) * (centre_radius + radius)).sqrt();
+            pieces.push(Piece::Radial { angle: self.half_base_angle, lower, upper: self.base_radius });
+        }
+        let overlap = 2.0 * self.root_radius * (centre_angle - PI / f64::from(self.specification.teeth));
+        if overlap > 1e-9 * self.root_radius {
+            return Err(Problem::FilletDoesNotFit { radius: Millimetres(radius), overlap: Millimetres(overlap) }.into());
+        }
+        Ok(Root { half_angle: centre_angle, form_roll, pieces })
     }
-    (pieces, junction_roll)
 }

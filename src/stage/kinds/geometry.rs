@@ -72,7 +72,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     .map_err(|error| {
         let place = match error.field().split_once('.') {
             Some((group, field)) => record.maybe_group(group).map_or(record.place, |group| group.place_of(field)),
-            None => record.place_of(&error.field()),
+            None => record.place_of(error.field()),
         };
         Diagnostic::new(error.to_string()).at(place)
     })?;

@@ -7,9 +7,9 @@ use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
 use crate::base::units::{TORQUE, in_unit};
 use crate::gear::compliance::iso6336;
-use crate::gear::compliance::{self, ContactLaw, Method, PairCompliance, Setting};
+use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method, Tabulated};
 use crate::gear::geometry::Pair;
-use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::stiffness::stiffness;
 use crate::stage::compliance as codec;
@@ -37,8 +37,8 @@ const FIELDS: &[Field] = &[
     Field::reference("pair", &["geometry"], "The pair."),
     Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
         .default("energy"),
-    Field::choice("root", ROOTS, "The shape of the tooth below its involute.").default("trochoid"),
-    Field::choice("contact", CONTACTS, "How the flanks flatten against each other.").default("linear"),
+    Field::choice("root", ROOT_SHAPES, "The shape of the tooth below its involute.").default("trochoid"),
+    Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("body"),
     Field::quantity(
@@ -52,17 +52,6 @@ const FIELDS: &[Field] = &[
     Field::integer("positions", 8, 100_000, "Positions per base pitch; the ends of contact come on top.").default("64"),
 ];
 
-const ROOTS: &[Choice] = &[
-    Choice { name: "trochoid", summary: "as the rack's tip round cuts it" },
-    Choice { name: "circular_fillet", summary: "an arc of the rack's tip radius, tangent to root circle and flank" },
-    Choice { name: "base_circle", summary: "none: clamped where the involute starts" },
-];
-
-const CONTACTS: &[Choice] = &[
-    Choice { name: "linear", summary: "4(1 − ν²)/(πEb), whatever the load" },
-    Choice { name: "load_dependent", summary: "the logarithmic law of Weber and Banaschek" },
-];
-
 const COUPLINGS: &[Choice] = &[
     Choice { name: "none", summary: "pair stiffnesses are summed" },
     Choice { name: "body", summary: "a load on one tooth moves its neighbours" },
@@ -73,9 +62,9 @@ const ANY_TORQUE: f64 = 1.0;
 
 struct Stiffness {
     pair: String,
-    method: &'static Method,
+    method: &'static dyn Method,
     options: Record,
-    setting: Setting,
+    assumptions: Assumptions,
     root: &'static str,
     torque: f64,
     settings: Settings,
@@ -84,29 +73,25 @@ struct Stiffness {
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let (name, options) = record.member("method");
     let method = compliance::method(name).ok_or_else(|| Diagnostic::new(format!("unknown method `{name}`")))?;
-    let contact = if record.choice("contact") == "linear" { ContactLaw::Linear } else { ContactLaw::LoadDependent };
+    let (root, contact) = (record.choice("root"), record.choice("contact"));
+    let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
+    let assumptions = Assumptions {
+        root: RootShape::named(root).ok_or_else(|| unknown(root))?,
+        contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
+        coupled: record.choice("coupling") == "body",
+    };
     let torque = record.maybe_quantity("torque");
-    if contact == ContactLaw::LoadDependent && torque.is_none() {
+    if assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
             .at(record.place_of("contact"))
             .help("add for example `torque: 50 N m`"));
     }
-    let root = record.choice("root");
-    let setting = Setting {
-        root: match root {
-            "circular_fillet" => RootShape::CircularFillet,
-            "base_circle" => RootShape::BaseCircle,
-            _ => RootShape::Trochoid,
-        },
-        contact,
-        coupled: record.choice("coupling") == "body",
-    };
     let positions = usize::try_from(record.integer("positions")).unwrap_or(64);
     Ok(Box::new(Stiffness {
         pair: record.reference("pair").to_owned(),
         method,
         options: options.clone(),
-        setting,
+        assumptions,
         root,
         torque: torque.unwrap_or(ANY_TORQUE),
         settings: Settings { positions, ..Settings::default() },
@@ -163,11 +148,11 @@ fn iso_schema() -> Schema {
 
 fn iso_table(pair: &Pair) -> Result<Table, TableError> {
     let (pinion, gear) = (&pair.pinion.specification, &pair.gear.specification);
-    let found = iso6336::stiffness(&iso6336::Input {
+    let found = iso6336::stiffness(&iso6336::Inputs {
         teeth: [f64::from(pinion.teeth), f64::from(gear.teeth)],
-        profile_shifts: [pinion.profile_shift, gear.profile_shift],
+        profile_shift: [pinion.profile_shift, gear.profile_shift],
         helix_angle: 0.0,
-        dedendum: 0.5 * (pinion.rack.dedendum + gear.rack.dedendum),
+        dedendum: [pinion.rack.dedendum, gear.rack.dedendum],
         pressure_angle: pinion.pressure_angle,
         contact_ratio: pair.contact_ratio,
     });
@@ -194,9 +179,9 @@ impl Stage for Stiffness {
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = vec![Omission::new(
             "finite-element mesh and factorisation",
-            format!("method `{}` needs none", self.method.member.name),
+            format!("method `{}` needs none", self.method.name()),
         )];
-        if !self.setting.coupled {
+        if !self.assumptions.coupled {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
         }
         omissions
@@ -204,15 +189,16 @@ impl Stage for Stiffness {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let (compliance, warnings) = PairCompliance::new(self.method, &self.options, &pair, &self.setting)
+        let Tabulated { compliance, warnings } = self
+            .method
+            .tabulate(&self.options, &pair, self.assumptions)
             .map_err(|error| Failure::new(error.to_string()))?;
         for warning in warnings {
             (context.warn)(warning);
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
-        let mut tables =
-            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root).map_err(failed)?);
+        let mut tables = Vec::from(codec::write(&compliance, radii, self.method.name(), self.root).map_err(failed)?);
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
