@@ -4,9 +4,8 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::record::Record;
 use gearstudy::base::seed::Seed;
-use gearstudy::gear::compliance::{self, ContactLaw, PairCompliance, Setting};
+use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
 use gearstudy::gear::geometry::Pair;
 use gearstudy::gear::geometry::root::RootShape;
 use gearstudy::gear::modification::{self, Design};
@@ -14,6 +13,8 @@ use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearstudy::stage::{Context, Demand, Inputs, designs, pair};
 use gearstudy::study::{self, Node, Study};
 use gearstudy::table::data::Table;
+
+use crate::support::record;
 
 /// \[N m\], the load of the article's Table 2.
 pub const TORQUE: f64 = 50.0;
@@ -101,18 +102,19 @@ impl Stages {
 }
 
 /// What the study's `stiffness` and `stiffness_coupled` say, with either contact law.
-pub fn setting(contact: ContactLaw, coupled: bool) -> Setting {
-    Setting { root: RootShape::CircularFillet, contact, coupled }
+pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
+    Assumptions { root: RootShape::CircularFillet, contact, coupled }
 }
 
 /// The energy method on a pair.
-pub fn compliance(pair: &Pair, setting: &Setting) -> PairCompliance {
+pub fn compliance(pair: &Pair, assumptions: Assumptions) -> PairCompliance {
     let method = compliance::method("energy").expect("it is registered");
-    PairCompliance::new(method, &Record::default(), pair, setting).expect("the study runs with it").0
+    let options = record(method.fields(), &[]);
+    method.tabulate(&options, pair, assumptions).expect("the study runs with it").compliance
 }
 
 /// 64 positions, 33 slices.
 pub fn cycle(pair: &Pair, contact: ContactLaw, coupled: bool) -> MeshCycle {
-    let compliance = compliance(pair, &setting(contact, coupled));
+    let compliance = compliance(pair, assumptions(contact, coupled));
     MeshCycle::new(pair, &compliance, Settings::default()).expect("its contact ratio is 1.65")
 }

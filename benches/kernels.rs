@@ -9,7 +9,7 @@ use gearstudy::gear::transmission_error::curve::Wanted;
 use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearstudy::gear::transmission_error::loading::Loading;
 
-use crate::article::{Stages, TORQUE, compliance, cycle, setting};
+use crate::article::{Stages, TORQUE, assumptions, compliance, cycle};
 use crate::brief;
 
 criterion_group!(name = benches; config = brief(); targets = tables, curves, stages);
@@ -23,11 +23,11 @@ fn tables(criterion: &mut Criterion) {
         bencher.iter(|| Pair::new(black_box(specifications.0), specifications.1, None));
     });
     for (name, coupled) in [("uncoupled", false), ("coupled", true)] {
-        let setting = setting(Linear, coupled);
+        let assumptions = assumptions(Linear, coupled);
         group.bench_function(format!("compliance {name}"), |bencher| {
-            bencher.iter(|| compliance(black_box(&pair), &setting));
+            bencher.iter(|| compliance(black_box(&pair), assumptions));
         });
-        let compliance = compliance(&pair, &setting);
+        let compliance = compliance(&pair, assumptions);
         group.bench_function(format!("cycle {name}"), |bencher| {
             bencher.iter(|| MeshCycle::new(black_box(&pair), &compliance, Settings::default()));
         });
