@@ -77,7 +77,10 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     let quiet = arguments.quiet;
     match &arguments.command {
         Command::New { file } => show::new_study(file),
-        Command::Check { studies } => show::check(&load_all(studies)?, quiet),
+        Command::Check { studies } => {
+            show::check(&load_all(studies)?, quiet);
+            Ok(())
+        }
         Command::Plan { studies, selection, json } => run::plan(&load_all(studies)?, places, selection, *json),
         Command::Run { studies, selection, explain, dry_run: true, .. } => {
             let _ = explain;
@@ -99,7 +102,10 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         ),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
-        Command::Schema => show::schema(),
+        Command::Schema => {
+            show::schema();
+            Ok(())
+        }
     }
 }
 

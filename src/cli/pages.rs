@@ -16,13 +16,13 @@ const PAGE: &str = "report.html";
 const FIGURES: &str = "figures";
 
 #[must_use]
-pub fn path(folder: &Folder) -> PathBuf {
+pub(super) fn path(folder: &Folder) -> PathBuf {
     folder.path().join(PAGE)
 }
 
 /// Whether the page was written.
 #[must_use]
-pub fn are_there(folder: &Folder) -> bool {
+pub(super) fn are_there(folder: &Folder) -> bool {
     path(folder).is_file()
 }
 
@@ -30,7 +30,7 @@ pub fn are_there(folder: &Folder) -> bool {
 ///
 /// # Errors
 /// When a table cannot be read or a file not be written.
-pub fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
+pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
     let rendered =
         report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
     let figures = folder.path().join(FIGURES);
@@ -86,7 +86,7 @@ fn summary(folder: &Folder, manifest: &Manifest) -> String {
 ///
 /// # Errors
 /// When the table of verdicts is not one.
-pub fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
+pub(super) fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
     let width = terminal_width();
     let tables = of_reports(folder, manifest, "verdicts");
     let shown: Result<Vec<String>, String> =

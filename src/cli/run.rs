@@ -23,10 +23,10 @@ use crate::store::results::{Changes, Folder};
 use crate::study::Study;
 
 /// How to run.
-pub struct How {
-    pub explain: bool,
-    pub keep_going: bool,
-    pub jobs: Option<usize>,
+pub(super) struct How {
+    pub(super) explain: bool,
+    pub(super) keep_going: bool,
+    pub(super) jobs: Option<usize>,
     pub quiet: bool,
 }
 
@@ -49,7 +49,7 @@ fn stored(error: &StoreError) -> Ending {
     Ending::Usage(error.to_string())
 }
 
-pub fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
+pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
     let stop = stop_flag();
     let mut failures = Vec::new();
     for study in studies {
@@ -135,7 +135,7 @@ fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, En
     plan::plan(study, &cache, options).map_err(|error| unknown(&error))
 }
 
-pub fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
+pub(super) fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
     let mut all = Vec::new();
     for study in studies {
         let plan = plan_of(study, places, &options(selection))?;
@@ -184,7 +184,7 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
     json!({ "study": study.name, "file": study.path, "up_to_date": plan.is_up_to_date(), "stages": stages })
 }
 
-pub fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), Ending> {
+pub(super) fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), Ending> {
     let mut all = Vec::new();
     for study in studies {
         let plan = plan_of(study, places, &Options::default())?;
@@ -222,7 +222,7 @@ pub fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), E
     Ok(())
 }
 
-pub fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
+pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
     for study in studies {
         let (folder, manifest) = last_run(study, places)?;
         let text = pages::write(&folder, &manifest).map_err(Ending::Usage)?;
@@ -234,7 +234,7 @@ pub fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), End
     Ok(())
 }
 
-pub fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending> {
+pub(super) fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending> {
     let age = std::time::Duration::from_secs(u64::from(days) * 86_400);
     let removed = Cache::clean(&places.cache, Remove::OlderThan(age), dry_run).map_err(|error| stored(&error))?;
     let word = if dry_run { "would delete" } else { "deleted" };

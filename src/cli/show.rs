@@ -20,12 +20,12 @@ use crate::table::data::Table;
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
 
 /// Writes a small study; never over a file that is there.
-pub fn new_study(file: &Path) -> Result<(), Ending> {
+pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
     let name: String =
         stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
     // The first line points editors to this repository's schema, which a study elsewhere has not beside it.
-    let text: String = TEMPLATE.lines().skip(1).map(|line| format!("{line}\n")).collect();
+    let text: String = TEMPLATE.split_inclusive('\n').skip(1).collect();
     let text = text.replacen("study: quick", &format!("study: {name}"), 1);
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
@@ -35,14 +35,13 @@ pub fn new_study(file: &Path) -> Result<(), Ending> {
 }
 
 /// Says that the studies are valid: reading them has found nothing wrong.
-pub fn check(studies: &[Study], quiet: bool) -> Result<(), Ending> {
+pub(super) fn check(studies: &[Study], quiet: bool) {
     for study in studies.iter().filter(|_| !quiet) {
         out(&format!("{}: `{}` is valid, {} stages\n", study.path.display(), study.name, study.nodes.len()));
     }
-    Ok(())
 }
 
-pub fn kinds(name: Option<&str>) -> Result<(), Ending> {
+pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
     let Some(name) = name else {
         out(&describe::list(KINDS));
         return Ok(());
@@ -55,13 +54,12 @@ pub fn kinds(name: Option<&str>) -> Result<(), Ending> {
     Ok(())
 }
 
-pub fn schema() -> Result<(), Ending> {
+pub(super) fn schema() {
     out(&studies::schema_text(KINDS));
-    Ok(())
 }
 
 /// Prints a table of the last run, or which tables there are.
-pub fn table(
+pub(super) fn table(
     study: &Study,
     places: &Places,
     name: Option<&str>,
@@ -89,7 +87,7 @@ pub fn table(
 }
 
 /// The results folder of a study and the manifest in it.
-pub fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
+pub(super) fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
     let folder = Folder::new(&places.results, &study.name);
     let manifest = folder.manifest().ok_or_else(|| {
         let (path, file) = (folder.path().display(), study.path.display());

@@ -12,8 +12,10 @@ use crate::table::schema::{Column, Schema};
 
 use super::pair::si;
 
+type Getter = fn(&ToothCompliance) -> &Series;
+
 /// Column and meaning of each series of a tooth.
-const SERIES: &[(&str, &str, &str, fn(&ToothCompliance) -> &Series)] = &[
+const SERIES: &[(&str, &str, &str, Getter)] = &[
     ("bending", "nm/N", "Bending of the tooth, 1/k_b.", |tooth| &tooth.bending),
     ("shear", "nm/N", "Shear of the tooth, 1/k_s.", |tooth| &tooth.shear),
     ("axial", "nm/N", "Axial compression of the tooth, 1/k_a.", |tooth| &tooth.axial),

@@ -11,6 +11,9 @@ use crate::gear::modification::{self, Design};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
+/// A design as a study writes it: a list of members of the modification families.
+pub const ELEMENTS: Shape = Shape::List(&Shape::Member(modification::members));
+
 /// One modification: the family and its parameters.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Element {

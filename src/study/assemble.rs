@@ -48,7 +48,9 @@ pub struct Draft {
 /// # Errors
 /// The first thing that is wrong with it.
 pub fn study(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<Study, Diagnostic> {
-    let empty = || Diagnostic::new("the file is empty").help("a study starts with `study: NAME` and `stages:`");
+    let start = Place { line: 1, column: 1, ..Place::default() };
+    let help = "a study starts with `study: NAME` and `stages:`";
+    let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());

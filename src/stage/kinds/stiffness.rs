@@ -62,7 +62,7 @@ const ANY_TORQUE: f64 = 1.0;
 
 struct Stiffness {
     pair: String,
-    method: &'static dyn Method,
+    method: &'static Method,
     options: Record,
     assumptions: Assumptions,
     root: &'static str,
@@ -179,7 +179,7 @@ impl Stage for Stiffness {
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = vec![Omission::new(
             "finite-element mesh and factorisation",
-            format!("method `{}` needs none", self.method.name()),
+            format!("method `{}` needs none", self.method.member.name),
         )];
         if !self.assumptions.coupled {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
@@ -189,16 +189,15 @@ impl Stage for Stiffness {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let Tabulated { compliance, warnings } = self
-            .method
-            .tabulate(&self.options, &pair, self.assumptions)
+        let Tabulated { compliance, warnings } = (self.method.tabulate)(&self.options, &pair, self.assumptions)
             .map_err(|error| Failure::new(error.to_string()))?;
         for warning in warnings {
             (context.warn)(warning);
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
-        let mut tables = Vec::from(codec::write(&compliance, radii, self.method.name(), self.root).map_err(failed)?);
+        let mut tables =
+            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root).map_err(failed)?);
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;

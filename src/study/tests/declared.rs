@@ -190,13 +190,14 @@ fn walk(fields: &'static [Field], see: &mut impl FnMut(&'static Field), met: &mu
 #[test]
 fn every_declared_field_is_one_that_a_study_can_give() {
     for kind in KINDS.iter().chain(crate::stage::kinds::KINDS) {
+        assert!(kind.fields.iter().all(|field| field.name != "kind"), "`kind` of {} is taken", kind.name);
         walk(
             kind.fields,
             &mut |field| {
                 let name = format!("{} of {}", field.name, kind.name);
                 let plain =
                     field.name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_');
-                assert!(plain && field.name != "kind", "{name}");
+                assert!(plain, "{name}");
                 assert!(field.summary.len() > 3, "{name} says nothing");
                 if let Shape::Quantity { dimension, least, most } = field.shape {
                     assert!(least < most, "{name}: {least} is not below {most}");

@@ -5,6 +5,7 @@ mod declared;
 mod files;
 mod messages;
 mod properties;
+mod texts;
 mod values;
 
 use std::path::Path;

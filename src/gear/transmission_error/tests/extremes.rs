@@ -1,0 +1,199 @@
+//! Balance, complementarity and the traps: vanishing and absurd loads, crowning of every size, reliefs too deep or too
+//! short.
+
+use super::*;
+
+/// Without gaps everything is proportional to the torque, from 1e-12 to 1e9 N·m.
+#[test]
+fn without_gaps_everything_is_proportional_to_the_torque() {
+    let pair = pair();
+    for compliance in [varying(), coupled()] {
+        let cycle = cycle(&pair, &compliance);
+        let design = Design::default();
+        let unit = Loading::new(&cycle, &design, 1.0).summary(Wanted::default());
+        for torque in [1e-12, 1e-3, 50.0, 1e6, 1e9] {
+            let scaled = Loading::new(&cycle, &design, torque).summary(Wanted::default());
+            close(scaled.peak_to_peak, torque * unit.peak_to_peak, 1e-12);
+            close(scaled.mean, torque * unit.mean, 1e-13);
+        }
+    }
+}
+
+/// Loads are never negative and add up to the force, in every model.
+#[test]
+fn loads_balance_the_torque() {
+    let pair = pair_with_contact_ratio(2.3);
+    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
+        for compliance in [varying(), coupled()] {
+            let compliance = PairCompliance { contact, ..compliance };
+            let cycle = cycle(&pair, &compliance);
+            for crown in [0.0, 20e-6] {
+                for torque in [1e-12, 1.0, 50.0, 1e9] {
+                    let design = ga_design(&pair, 15e-6, 5e-3, crown);
+                    for point in Loading::new(&cycle, &design, torque).curve(Wanted::default()) {
+                        assert!(point.loads.iter().all(|load| *load >= 0.0));
+                        close(point.loads.iter().sum(), torque / pair.pinion.base_radius, 1e-12);
+                        assert!(point.loaded_pairs >= 1 && point.loaded_pairs <= point.pairs);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where the bodies couple, a state must fulfil the conditions it was solved from, with the compliances taken anew.
+#[test]
+fn coupled_states_fulfil_complementarity() {
+    let pair = pair_with_contact_ratio(2.3);
+    let compliance = coupled();
+    let cycle = cycle(&pair, &compliance);
+    let design = ga_design(&pair, 9e-6, 5e-3, 0.0);
+    let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
+    for point in Loading::new(&cycle, &design, 80.0).curve(Wanted::default()) {
+        for j in 0..point.pairs {
+            let s = |pair_index: usize| point.path_position + BASE_PITCH * pair_index as f64;
+            let u1 = |index: usize| s(index) / pair.pinion.base_radius;
+            let u2 = |index: usize| (pair.tangent_length - s(index)) / pair.gear.base_radius;
+            let mut deflection =
+                point.loads[j] * (compliance.pinion.total(u1(j)) + compliance.gear.total(u2(j)) + contact);
+            for k in (0..point.pairs).filter(|k| *k != j) {
+                let between = j.abs_diff(k) - 1;
+                let pinion = compliance.pinion.neighbours[between].value(u1(j.min(k)));
+                deflection += point.loads[k] * (pinion + compliance.gear.neighbours[between].value(u2(j.max(k))));
+            }
+            let gap = design.depth(Pinion, u1(j)) + design.depth(Gear, u2(j));
+            let open = gap + deflection - point.transmission_error;
+            if point.loads[j] > 0.0 {
+                assert!(open.abs() < 1e-12 * point.transmission_error, "{open:e}");
+            } else {
+                assert!(open > -1e-12 * point.transmission_error, "{open:e}");
+            }
+        }
+    }
+}
+
+#[test]
+fn coupling_of_nothing_is_no_coupling_and_coupling_softens_double_contact() {
+    let pair = pair();
+    let mut nothing = coupled();
+    for tooth in [&mut nothing.pinion, &mut nothing.gear] {
+        tooth.neighbours = vec![fixtures::tooth(|_| 0.0).body];
+    }
+    let design = ga_design(&pair, 6.93e-6, 3.41e-3, 5.67e-6);
+    let of =
+        |compliance: &PairCompliance| Loading::new(&cycle(&pair, compliance), &design, 50.0).summary(Wanted::default());
+    let (summed, zero) = (of(&varying()), of(&nothing));
+    close(zero.peak_to_peak, summed.peak_to_peak, 1e-10);
+    close(zero.variance, summed.variance, 1e-10);
+    let (_, summed) = stiffness(&cycle(&pair, &varying()), 50.0);
+    let (_, softer) = stiffness(&cycle(&pair, &coupled()), 50.0);
+    close(softer.fewest.most, summed.fewest.most, 1e-12);
+    assert!(softer.most.unwrap().most < 0.95 * summed.most.unwrap().most);
+}
+
+/// The law's own closed form: one pair of constant stiffness under crowning C obeys F/k = w t − C t³/3.
+#[test]
+fn crowning_has_its_closed_form_at_every_size() {
+    let pair = pair_with_contact_ratio(1.0);
+    let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+    for crown in [0.0, 1e-300, 1e-15, 6e-6, 20e-6] {
+        for torque in [1e-12, 1e-3, 50.0, 1e9] {
+            let design = crowned(&pair, crown);
+            let point = Loading::new(&cycle, &design, torque).curve(Wanted::default())[3];
+            let (w, edge) = (point.transmission_error, crown * 0.81);
+            let t = if w >= edge { 1.0 } else { (w / edge).sqrt() };
+            let force = STIFFNESS * (w * t - edge * t * t * t / 3.0);
+            close(force, torque / pair.pinion.base_radius, 1e-11);
+            close(point.tangent_stiffness, STIFFNESS * t, 1e-9);
+        }
+    }
+}
+
+/// Relief beyond the deflection: contact is lost there, first touches are found, and the rest stays in order.
+#[test]
+fn relief_above_the_deflection_shortens_the_contact() {
+    let pair = pair();
+    let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+    let force = 500.0;
+    let (amount, length) = (50e-6, 2.5e-3);
+    let linear = [("amount", Quantity(amount)), ("length", Quantity(length))];
+    let design = design(&pair, &[("tip_relief", "both", &linear)]).unwrap();
+    let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted::default());
+    // A relieved pair carries load as long as its gap is below F/k, at each end of the path.
+    let lost = 2.0 * length * (1.0 - force / STIFFNESS / amount);
+    close(summary.loaded_contact_ratio, pair.contact_ratio - lost / BASE_PITCH, 1e-9);
+    close(summary.largest_load_share, 1.0, 1e-12);
+}
+
+#[test]
+fn the_load_dependent_law_survives_vanishing_and_absurd_loads() {
+    let pair = pair();
+    let cycle = cycle(&pair, &PairCompliance { contact: ContactLaw::LoadDependent, ..varying() });
+    let mut before = 0.0;
+    for exponent in -12..=9 {
+        let torque = libm::pow(10.0, f64::from(exponent));
+        for design in [Design::default(), crowned(&pair, 5e-6)] {
+            let summary = Loading::new(&cycle, &design, torque).summary(Wanted { harmonics: 2, pressure: true });
+            assert!(summary.mean.is_finite() && summary.peak_to_peak > 0.0 && summary.variance > 0.0, "{torque}");
+        }
+        let (_, stiffness) = stiffness(&cycle, torque);
+        assert!(stiffness.mean > before, "stiffer under more load");
+        before = stiffness.mean;
+    }
+    assert_eq!(Loading::new(&cycle, &Design::default(), 0.0).peak_to_peak(), 0.0);
+}
+
+/// The driven gear's tip meets the driver's root: relieving either is the same.
+#[test]
+fn root_relief_is_the_other_gears_tip_relief() {
+    let pair = pair();
+    let cycle = cycle(&pair, &varying());
+    for counted in ["tip", "single_zone", "zone_end"] {
+        let values = |counted: &'static str| {
+            [
+                ("amount", Quantity(8e-6)),
+                ("length", Quantity(2.2e-3)),
+                ("curve", Choice("parabolic")),
+                ("counted_from", Choice(counted)),
+            ]
+        };
+        let root =
+            design(&pair, &[("root_relief", "pinion", &values(if counted == "tip" { "root" } else { counted }))])
+                .unwrap();
+        let tip = design(&pair, &[("tip_relief", "gear", &values(counted))]).unwrap();
+        let of = |design: &Design| Loading::new(&cycle, design, 50.0).summary(Wanted::default());
+        close(of(&root).peak_to_peak, of(&tip).peak_to_peak, 1e-11);
+        close(of(&root).variance, of(&tip).variance, 1e-11);
+    }
+}
+
+/// A relief of vanishing length is no relief, and lengths near it lead there.
+#[test]
+fn relief_of_no_length_is_the_limit_of_short_ones() {
+    let pair = pair();
+    let cycle = cycle(&pair, &varying());
+    let of = |design: &Design| Loading::new(&cycle, design, 50.0).summary(Wanted::default());
+    let plain = of(&Design::default());
+    for length in [0.0, 1e-300, 1e-15, 1e-9] {
+        let found = of(&ga_design(&pair, 7e-6, length, 0.0));
+        close(found.peak_to_peak, plain.peak_to_peak, 1e-6);
+        close(found.variance, plain.variance, 1e-5);
+    }
+}
+
+/// A torque so large that relief no longer matters, and positions that fall on B and D: both one-sided limits are there.
+#[test]
+fn both_limits_at_the_ends_of_the_zones_are_sampled() {
+    let pair = pair();
+    let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+    let design = Design::default();
+    let points = Loading::new(&cycle, &design, torque(1000.0)).curve(Wanted::default());
+    let shared = pair.end_of_contact - pair.start_of_contact - BASE_PITCH;
+    let at_b: Vec<usize> =
+        points.iter().filter(|point| (point.cycle_position - shared).abs() < 1e-15).map(|point| point.pairs).collect();
+    assert_eq!(at_b, [2, 1]);
+    let (first, last) = (points[0], points[points.len() - 1]);
+    assert_eq!((first.cycle_position, first.pairs), (0.0, 2));
+    assert_eq!((last.cycle_position, last.pairs), (BASE_PITCH, 1));
+    assert!(points.windows(2).all(|two| two[0].cycle_position < two[1].cycle_position || two[0].pairs != two[1].pairs));
+}

@@ -1,0 +1,98 @@
+//! Texts that are no study at all, each with its whole message.
+
+use super::refused;
+
+/// Whole texts.
+const TEXTS: &[(&str, &str)] = &[
+    ("", "1:1: the file is empty\n  help: a study starts with `study: NAME` and `stages:`"),
+    ("# only\n", "1:1: the file is empty\n  help: a study starts with `study: NAME` and `stages:`"),
+    ("---\n", "1:1: the file is empty\n  help: a study starts with `study: NAME` and `stages:`"),
+    ("~", "1:1: the file is empty\n  help: a study starts with `study: NAME` and `stages:`"),
+    ("3", "1:1: a study is a mapping that starts with `study: NAME`, not `3`"),
+    ("[a]", "1:1: a study is a mapping that starts with `study: NAME`, not a list"),
+    (
+        "study: a\nstages: []",
+        "2:9: `stages` is a list; a mapping from names to stages is expected\n  help: stages are written `NAME: { kind: KIND, … }`",
+    ),
+    (
+        "study: a\nstages: {}",
+        "2:9: a study has at least one stage\n  help: stages are written `NAME: { kind: KIND, … }`",
+    ),
+    (
+        "study: a\nstages:",
+        "2:1: `stages` is nothing; a mapping from names to stages is expected\n  help: stages are written `NAME: { kind: KIND, … }`",
+    ),
+    ("study: a", "1:1: the study has no `stages`\n  help: stages are written `NAME: { kind: KIND, … }`"),
+    ("study: a\nstages:\n\tpair: 3", "3:1: a tab stands where YAML allows only spaces\n  help: indent with spaces"),
+    ("study: a\n\tb: c", "2:1: a tab stands where YAML allows only spaces\n  help: indent with spaces"),
+    (
+        "a: b: c",
+        "1:5: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    ("a: \"b", "1:4: a quote is opened and never closed"),
+    ("a: [b", "1:4: `[` is opened and never closed"),
+    ("a: *b", "1:4: this alias has no anchor (`&name`) before it"),
+    ("a: &a [*a]", "1:8: this alias stands inside the value it stands for"),
+    ("a: !!str b", "1:4: YAML tags have no meaning in a study\n  help: the type of a value follows from its field"),
+    ("%YAML 1.2\n---\na: b", "1:1: YAML directives (`%…`) have no meaning in a study"),
+    (
+        "study: a\n---\nstudy: b\n",
+        "2:1: a study is one YAML document; a second one starts here\n  help: put it into a file of its own",
+    ),
+    ("[a]: b", "1:1: a name is expected before the colon"),
+    ("? [a]\n: b", "1:3: a name is expected before the colon"),
+    (": b", "1:1: a name is missing before the colon"),
+    ("a: &a b\n<<: 3\n", "2:1: `<<` merges a mapping, or a list of mappings"),
+    (
+        "µ: ä: b",
+        "1:5: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    (
+        "study: µ\r\ntitle: b\r\nstages:\r\n  ä: 3",
+        "1:8: `µ` cannot be the name of a study\n  help: lower-case letters, digits, `-` and `_` make a name, at most 64 of them",
+    ),
+    (
+        "a: |\n  µ\nb: 'c\n  d'\n",
+        "1:1: unknown field `a` of the study\n  help: known here: `stages`, `study`, `title`, `source`, `seed`",
+    ),
+    (
+        "study: a\nstages: {pair: {kind: geometry, module: 'µµµ\n  µ'}}",
+        "2:41: `µµµ µ` is not a number; a length (for example `3 mm`) is expected",
+    ),
+    (
+        "\u{feff}µ: 3",
+        "1:1: unknown field `µ` of the study\n  help: known here: `stages`, `study`, `title`, `source`, `seed`",
+    ),
+    (
+        "a: \0",
+        "1:4: `\\u{0}` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    (
+        "a: @b",
+        "1:4: `@` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    (
+        "a: `b",
+        "1:4: ``` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    (
+        "- a\nb: c",
+        "2:1: not valid YAML: while parsing a block collection, did not find expected '-' indicator\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+    (
+        "a:\n  b\n c: d",
+        "3:3: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+    ),
+];
+
+#[test]
+fn a_text_that_is_no_study_gets_its_message() {
+    let mut wrong = Vec::new();
+    for (text, expected) in TEXTS {
+        let message = refused(text);
+        if message != format!("t.yaml:{expected}") {
+            wrong.push(format!("{text:?}\n expected {expected:?}\n but got  {message:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
