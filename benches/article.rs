@@ -109,8 +109,8 @@ pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
 /// The energy method on a pair.
 pub fn compliance(pair: &Pair, assumptions: Assumptions) -> PairCompliance {
     let method = compliance::method("energy").expect("it is registered");
-    let options = record(method.fields(), &[]);
-    method.tabulate(&options, pair, assumptions).expect("the study runs with it").compliance
+    let options = record(method.member.fields, &[]);
+    (method.tabulate)(&options, pair, assumptions).expect("the study runs with it").compliance
 }
 
 /// 64 positions, 33 slices.
