@@ -3,6 +3,8 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use serde_json::Value;
+
 use crate::program::Process;
 
 /// Bench or process, its target \[s\], what is compared.
@@ -14,25 +16,41 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("ste/curve uncoupled", 20e-6, "64 positions, crowned, both tips relieved, one thread"),
 ];
 
+/// One row of the table.
+struct Measured {
+    name: String,
+    median: f64,
+    /// Whatever else the machine does only adds, so this is the steadier figure on one that is not idle.
+    fastest: f64,
+    how: String,
+}
+
 pub fn print(processes: &[Process]) {
-    let mut rows: Vec<(String, f64, String)> = processes
-        .iter()
-        .map(|process| (process.name.to_owned(), process.seconds, format!("median of {}", process.times)))
-        .collect();
-    let measured = measured().into_iter().map(|(name, seconds)| (name, seconds, "median by criterion".to_owned()));
-    rows.extend(measured);
-    println!("\nEverything, against its target on this machine\n");
-    println!("{:<34} {:>10} {:>10} {:>8}  compared", "what", "measured", "target", "ratio");
-    for (name, seconds, how) in rows {
+    let mut rows: Vec<Measured> = Vec::new();
+    for &Process { name, median, fastest, times } in processes {
+        rows.push(Measured { name: name.to_owned(), median, fastest, how: format!("{times} starts") });
+    }
+    rows.extend(measured());
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
+    let load = load.split(' ').next().unwrap_or_default().to_owned();
+    println!("\nEverything, against its target; {threads} processors, load {load}; ratios are to the target\n");
+    println!(
+        "{:<40} {:>10} {:>10} {:>10} {:>6} {:>7}  compared",
+        "what", "median", "fastest", "target", "median", "fastest"
+    );
+    for Measured { name, median, fastest, how } in rows {
         let target = TARGETS.iter().find(|(target, ..)| *target == name);
-        let (limit, ratio, compared) = match target {
+        let (limit, ratios, compared) = match target {
             Some((_, limit, compared)) => {
-                let verdict = if seconds <= *limit { "" } else { ": MISSED" };
-                (duration(*limit), format!("{:.2}", seconds / limit), format!("{compared}; {how}{verdict}"))
+                let verdict = if median <= *limit { "met" } else { "MISSED" };
+                let ratios = format!("{:>6.2} {:>7.2}", median / limit, fastest / limit);
+                (duration(*limit), ratios, format!("{verdict}: {compared}; {how}"))
             }
-            None => ("-".to_owned(), "-".to_owned(), how),
+            None => ("-".to_owned(), format!("{:>6} {:>7}", "-", "-"), how),
         };
-        println!("{name:<34} {:>10} {limit:>10} {ratio:>8}  {compared}", duration(seconds));
+        let (median, fastest) = (duration(median), duration(fastest));
+        println!("{name:<40} {median:>10} {fastest:>10} {limit:>10} {ratios}  {compared}");
     }
 }
 
@@ -45,23 +63,30 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// The medians that criterion left \[s\], by name: `group/bench`.
-fn measured() -> Vec<(String, f64)> {
+/// What criterion left, by name: `group/bench`.
+fn measured() -> Vec<Measured> {
     let target = std::env::var_os("CARGO_TARGET_DIR").map_or_else(|| PathBuf::from("target"), PathBuf::from);
     let folder = std::env::var_os("CRITERION_HOME").map_or_else(|| target.join("criterion"), PathBuf::from);
     let mut found = Vec::new();
     collect(&folder, &mut found);
-    found.sort_by(|one, two| one.0.cmp(&two.0));
+    found.sort_by(|one, two| one.name.cmp(&two.name));
     found
 }
 
-fn collect(folder: &Path, found: &mut Vec<(String, f64)>) {
-    let read = |name: &str| -> Option<serde_json::Value> {
-        serde_json::from_slice(&fs::read(folder.join("new").join(name)).ok()?).ok()
-    };
-    if let (Some(bench), Some(estimates)) = (read("benchmark.json"), read("estimates.json")) {
-        let name = bench["full_id"].as_str().unwrap_or("?").to_owned();
-        found.extend(estimates["median"]["point_estimate"].as_f64().map(|nanoseconds| (name, nanoseconds * 1e-9)));
+fn collect(folder: &Path, found: &mut Vec<Measured>) {
+    let read =
+        |name: &str| -> Option<Value> { serde_json::from_slice(&fs::read(folder.join("new").join(name)).ok()?).ok() };
+    if let (Some(bench), Some(estimates), Some(sample)) =
+        (read("benchmark.json"), read("estimates.json"), read("sample.json"))
+    {
+        let numbers = |name: &str| sample[name].as_array().into_iter().flatten().filter_map(Value::as_f64);
+        let fastest = numbers("times").zip(numbers("iters")).map(|(time, count)| time / count);
+        found.push(Measured {
+            name: bench["full_id"].as_str().unwrap_or("?").to_owned(),
+            median: estimates["median"]["point_estimate"].as_f64().unwrap_or(f64::NAN) * 1e-9,
+            fastest: fastest.fold(f64::INFINITY, f64::min) * 1e-9,
+            how: format!("{} samples by criterion", numbers("iters").count()),
+        });
         return;
     }
     let mut folders: Vec<PathBuf> =
