@@ -35,11 +35,11 @@ fn main() -> io::Result<()> {
     }
     shared.sort();
     let base = digest(&shared)?;
-    let mut lines = format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n");
-    for (kind, paths) in kinds {
-        lines += &format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?);
-    }
-    lines += "];\n";
+    let digests = kinds.into_iter().map(|(kind, paths)| Ok(format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?)));
+    let digests = digests.collect::<io::Result<Vec<_>>>()?.concat();
+    let lines = format!(
+        "pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n{digests}];\n"
+    );
     fs::write(Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("code.rs"), lines)
 }
 

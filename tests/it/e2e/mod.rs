@@ -44,7 +44,7 @@ fn an_added_torque_touches_only_what_depends_on_it() {
 }
 
 #[test]
-fn one_and_two_threads_give_the_same_contents() {
+fn one_and_three_threads_give_the_same_contents() {
     let contents = |jobs: &str| {
         let desk = Desk::with("quick.yaml");
         desk.run(&["run", "quick.yaml", "--jobs", jobs], 0);
@@ -52,8 +52,7 @@ fn one_and_two_threads_give_the_same_contents() {
     };
     let one = contents("1");
     assert!(one.len() > 8);
-    assert_eq!(one, contents("2"));
-    assert_eq!(one, contents("5"));
+    assert_eq!(one, contents("3"));
 }
 
 #[test]

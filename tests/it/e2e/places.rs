@@ -73,8 +73,9 @@ fn a_cache_that_cannot_be_made_or_written_is_one_message() {
     for byte in 0..=255_u8 {
         fs::write(desk.path(&format!("kept/entries/{byte:02x}")), "").unwrap();
     }
-    let (_, error) = desk.run(&["run", "quick.yaml", "--cache", "kept"], 1);
-    one_message(&error, "kept/entries");
+    let (_, error) = desk.run(&["run", "quick.yaml", "--cache", "kept"], 3);
+    one_message(&error, "pair failed");
+    assert!(error.contains("pair: failed: cannot make the cache folder `kept/entries/"), "{error}");
 }
 
 #[test]

@@ -44,9 +44,11 @@ pub fn walk(study: &Study) -> BTreeMap<String, Ran> {
             for (port, stage) in &sources {
                 inputs.ports.insert(port.clone(), done[stage].tables.iter().collect());
             }
-            let minimal = run(study.seed, &node.name, node.stage.as_ref(), &inputs, false);
-            let ran = run(study.seed, &node.name, node.stage.as_ref(), &inputs, true);
-            assert!(minimal.tables.len() <= ran.tables.len());
+            let stage = node.stage.as_ref();
+            if demand(stage, false) != demand(stage, true) {
+                run(study.seed, &node.name, stage, &inputs, false);
+            }
+            let ran = run(study.seed, &node.name, stage, &inputs, true);
             done.insert(node.name.clone(), ran);
         }
         assert!(done.len() > before, "nothing can go on");
