@@ -3,8 +3,9 @@
 use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table as Drawn, presets};
 use serde_json::{Map, Value, json};
 
+use crate::store::csv::{self, heading};
 use crate::table::data::{Data, Table};
-use crate::table::schema::{Column, Type};
+use crate::table::schema::Type;
 use crate::table::select::{parse_conditions, rows_where, unknown_column};
 
 use super::arguments::Format;
@@ -30,10 +31,6 @@ pub fn table(table: &Table, conditions: &[String], columns: &[String], format: F
         Format::Csv => csv(table, &rows, &chosen),
         Format::Json => Ok(json_rows(table, &rows, &chosen)),
     }
-}
-
-fn heading(column: &Column) -> String {
-    if column.unit.is_empty() { column.name.clone() } else { format!("{} [{}]", column.name, column.unit) }
 }
 
 fn pretty(table: &Table, rows: &[usize], columns: &[usize]) -> String {
@@ -84,16 +81,9 @@ fn trimmed(text: &str) -> &str {
 }
 
 fn csv(table: &Table, rows: &[usize], columns: &[usize]) -> Result<String, String> {
-    let mut writer = csv::Writer::from_writer(Vec::new());
+    let mut bytes = Vec::new();
     let broken = |error: &dyn std::fmt::Display| format!("the table could not be written as CSV: {error}");
-    writer
-        .write_record(columns.iter().map(|&index| heading(&table.schema().columns[index])))
-        .map_err(|error| broken(&error))?;
-    for &row in rows {
-        let cells = columns.iter().map(|&index| table.columns()[index].cell(row).to_string());
-        writer.write_record(cells).map_err(|error| broken(&error))?;
-    }
-    let bytes = writer.into_inner().map_err(|error| broken(&error))?;
+    csv::write(table, columns, rows, &mut bytes).map_err(|error| broken(&error))?;
     String::from_utf8(bytes).map_err(|error| broken(&error))
 }
 
@@ -119,7 +109,7 @@ fn json_rows(table: &Table, rows: &[usize], columns: &[usize]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::schema::Schema;
+    use crate::table::schema::{Column, Schema};
 
     fn sample() -> Table {
         let columns = vec![Column::text("design", "").key(), Column::float("peak_to_peak", "um", "").allows_nan()];
@@ -131,7 +121,7 @@ mod tests {
     fn every_format_shows_the_same_cells() {
         let print = |format| table(&sample(), &[], &[], format).unwrap();
         assert!(print(Format::Pretty).contains("0.72812346") && print(Format::Pretty).contains("peak_to_peak [um]"));
-        assert_eq!(print(Format::Csv), "design,peak_to_peak [um]\n\"iso, long\",0.728123456789\nnone,NaN\n");
+        assert_eq!(print(Format::Csv), "design,peak_to_peak [um]\n\"iso, long\",0.728123456789\nnone,\n");
         let parsed: Value = serde_json::from_str(&print(Format::Json)).unwrap();
         assert_eq!(parsed[0]["peak_to_peak"], 0.728_123_456_789);
         assert_eq!(parsed[1]["peak_to_peak"], Value::Null);

@@ -2,8 +2,9 @@
 //!
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
-use super::compliance::{ContactLaw, Material, PairCompliance, ToothCompliance};
+use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use super::geometry::{Gear, Pair, Rack, Specification};
+use super::material::Material;
 use super::modification::{Design, family};
 use crate::base::error::{Diagnostic, Place};
 use crate::base::record::{Entry, Record, Value};

@@ -7,5 +7,6 @@ pub mod contact;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod geometry;
+pub mod material;
 pub mod modification;
 pub mod transmission_error;

@@ -5,8 +5,8 @@
 
 use crate::base::error::Failure;
 use crate::base::units::{in_unit, parse_unit};
-use crate::gear::compliance::Material;
 use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use crate::gear::material::Material;
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 

@@ -93,15 +93,6 @@ impl ComplianceError {
     }
 }
 
-/// Linear elastic, isotropic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
-    /// E \[Pa\].
-    pub youngs_modulus: f64,
-    /// ν.
-    pub poisson_ratio: f64,
-}
-
 /// The compliances \[m/N\] of one gear's tooth over the whole of its face width, against the roll angle \[rad\] of the
 /// contact point.
 #[derive(Clone, Debug, PartialEq)]

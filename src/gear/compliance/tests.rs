@@ -8,10 +8,10 @@ use super::sainsot::Body;
 use super::{Assumptions, ComplianceError, ContactLaw, Tabulated, ToothCompliance, members, method};
 use crate::base::error::Place;
 use crate::base::record::{Entry, Record, Value};
-use crate::gear::compliance::Material;
 use crate::gear::contact::flattening;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use crate::gear::material::Material;
 use crate::numeric::crossing::bracketed;
 use crate::numeric::quadrature::GaussLegendre;
 

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use crate::gear::compliance::Material;
+use crate::gear::material::Material;
 
 /// (1 − ν²)/E \[1/Pa\].
 #[must_use]

@@ -12,7 +12,7 @@ pub mod trochoid;
 #[cfg(test)]
 mod tests;
 
-use super::compliance::Material;
+use super::material::Material;
 
 /// Basic rack (ISO 53), in units of the module.
 #[derive(Clone, Copy, Debug, PartialEq)]

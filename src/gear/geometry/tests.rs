@@ -9,7 +9,7 @@ use proptest::prelude::*;
 use super::error::{GeometryError, Problem};
 use super::root::RootShape;
 use super::{Gear, Pair, Rack, Side, Specification};
-use crate::gear::compliance::Material;
+use crate::gear::material::Material;
 use crate::numeric::crossing::bracketed;
 
 const DEGREE: f64 = PI / 180.0;

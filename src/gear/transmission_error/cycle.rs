@@ -7,9 +7,10 @@
 
 use super::trace::Rows;
 use crate::base::error::Failure;
-use crate::gear::compliance::{ContactLaw, Material, PairCompliance, ToothCompliance};
+use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::geometry::Pair;
+use crate::gear::material::Material;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::{Coupling, MOST, PerSpring};
 use crate::numeric::lobatto::Rule;

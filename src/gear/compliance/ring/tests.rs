@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 
 use super::*;
-use crate::gear::compliance::Material;
 use crate::gear::compliance::sainsot::Body;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Rack, Specification};
+use crate::gear::material::Material;
 
 fn gear(teeth: u32, bore_ratio: f64) -> Gear {
     let mut specification = Specification {
