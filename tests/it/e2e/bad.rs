@@ -71,12 +71,18 @@ fn what_is_no_file_of_text_has_no_line_but_a_reason() {
 #[test]
 fn ten_megabytes_of_nesting_are_refused_at_once() {
     let desk = Desk::with("quick.yaml");
-    let indented = (0..4000).map(|depth| format!("{}a:\n", " ".repeat(depth))).collect::<String>();
+    let indented: Vec<_> = (0..4000)
+        .map(|depth| {
+            " ".repeat(depth)
+                + "a:
+"
+        })
+        .collect();
     for (name, text) in [
         ("brackets.yaml", "[".repeat(10_000_000)),
         ("braces.yaml", "{a: ".repeat(2_500_000)),
         ("dashes.yaml", "- ".repeat(5_000_000)),
-        ("indented.yaml", indented),
+        ("indented.yaml", indented.concat()),
     ] {
         fs::write(desk.path(name), text).unwrap();
         assert!(refused(&desk, name).contains("too large for a study"), "{name}");

@@ -151,7 +151,7 @@ fn every_optimiser_finds_something_better_than_nothing() {
     let row = |design: &str| summary.texts("design").iter().position(|name| name == design).unwrap();
     for name in &all {
         let best = &ran[name].tables[0];
-        assert_eq!(best.texts("design"), [name.clone()]);
+        assert_eq!(best.texts("design"), std::slice::from_ref(name));
         let (amount, fraction) = (best.floats("tip_relief_amount")[0], best.floats("tip_relief_fraction")[0]);
         assert!((0.0..=30.0).contains(&amount) && (0.2..=1.0).contains(&fraction), "{name}: {amount} {fraction}");
         assert!(best.floats("objective")[0] < 4.0, "{name}: {}", best.floats("objective")[0]);
