@@ -24,6 +24,7 @@ pub fn print() {
     positions(&cycle_of(Linear), &design);
     nodes(&pair);
     slices(&cycle_of(LoadDependent), &design);
+    growth(&cycle_of(Linear), &design);
 }
 
 /// Seconds that `once` takes: the best of several rounds of 2 ms, because whatever else the machine does only adds.
@@ -141,5 +142,21 @@ fn slices(cycle: &MeshCycle, design: &Design) {
         let cycle = sampled(slices);
         let found = || Loading::new(&cycle, design, TORQUE).peak_to_peak();
         println!("{slices:>9} | {:>12.1e} {:>12.1}", relative(found(), reference), seconds(found) * 1e6);
+    }
+}
+
+/// Torques, and with them designs, on one thread: every curve for itself, whatever is kept between them.
+fn growth(cycle: &MeshCycle, design: &Design) {
+    println!("\nGrowth: torques from 25 to 100 N m, curve, summary and 8 harmonics each, one thread\n");
+    println!("{:>9} | {:>12} {:>12}", "torques", "ms", "µs each");
+    let wanted = Wanted { harmonics: 8, pressure: false };
+    for torques in [1, 4, 16, 64, 256] {
+        let time = seconds(|| {
+            for index in 0..torques {
+                let torque = 25.0 + 75.0 * f64::from(index) / f64::from(torques);
+                black_box(Loading::new(cycle, design, torque).curve_and_summary(wanted));
+            }
+        });
+        println!("{torques:>9} | {:>12.3} {:>12.1}", time * 1e3, time * 1e6 / f64::from(torques));
     }
 }

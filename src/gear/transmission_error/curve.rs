@@ -177,6 +177,7 @@ impl Loading<'_> {
 /// Where two spans join smoothly their common point is taken once.
 #[allow(clippy::float_cmp)] // the end of one span is the very number that starts the next
 fn extend(points: &mut Vec<Point>, span: &Span, here: &[Point; NODES]) {
+    #[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
     let joined = points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
     points.extend_from_slice(&here[usize::from(joined)..]);
 }
