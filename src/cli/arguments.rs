@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, 4 differences found, \
+#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, \
     70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -119,6 +119,9 @@ pub struct Selection {
     /// Only these stages, and what they need.
     #[arg(long, value_name = "STAGE,…", value_delimiter = ',')]
     pub only: Vec<String>,
+    /// Also what is computed on demand only: tables (`stage.table`) and columns (`stage.table.column`).
+    #[arg(long, value_name = "TABLE,…", value_delimiter = ',')]
+    pub want: Vec<String>,
     /// Compute even what is in the cache: everything, or `--force=STAGE,…` only these stages.
     #[arg(long, value_name = "STAGE,…", value_delimiter = ',', num_args = 0.., require_equals = true)]
     pub force: Option<Vec<String>>,

@@ -14,9 +14,10 @@ use super::progress::{Watcher, duration, out};
 use super::show::last_run;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
-use crate::runner::options::{Force, Options};
+use crate::runner::options::{Force, Options, Wanted};
 use crate::runner::outcome::Outcome;
 use crate::runner::plan::{self, Action, Plan};
+use crate::stage::Want;
 use crate::store::cache::{Cache, Remove};
 use crate::store::error::StoreError;
 use crate::store::results::{Changes, Folder};
@@ -30,13 +31,26 @@ pub(super) struct How {
     pub quiet: bool,
 }
 
-fn options(selection: &Selection) -> Options {
+/// # Errors
+/// A name that is neither `stage.table` nor `stage.table.column`.
+fn options(selection: &Selection) -> Result<Options, Ending> {
     let force = match &selection.force {
         None => Force::Nothing,
         Some(names) if names.is_empty() => Force::All,
         Some(names) => Force::Stages(names.iter().cloned().collect()),
     };
-    Options { only: selection.only.clone(), force, ..Options::default() }
+    let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
+    Ok(Options { only: selection.only.clone(), force, wanted, ..Options::default() })
+}
+
+fn wanted(name: &str) -> Result<Wanted, Ending> {
+    let mut parts = name.split('.').map(str::to_owned);
+    match (parts.next(), parts.next(), parts.next(), parts.next()) {
+        (Some(stage), Some(table), column, None) => {
+            Ok(Wanted { stage, want: Want { table, columns: column.into_iter().collect() } })
+        }
+        _ => Err(Ending::Usage(format!("`{name}` is no table or column; write `stage.table` or `stage.table.column`"))),
+    }
 }
 
 /// A name on the command line that no stage has.
@@ -79,7 +93,7 @@ fn stop_flag() -> Arc<AtomicBool> {
 fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, stop: &AtomicBool) -> Result<(), Ending> {
     let cache = Cache::open(&places.cache).map_err(|error| stored(&error))?;
     let folder = Folder::new(&places.results, &study.name);
-    let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection) };
+    let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection)? };
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
         out(&plan_text(study, &plan));
@@ -114,7 +128,7 @@ fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&st
     let line = match (outcome.ran(), verdicts) {
         (0, None) => format!("nothing to do, {} up to date", count(outcome.stages.len())),
         (ran, verdicts) => {
-            let verdicts = verdicts.map(|text| format!("; {text}")).unwrap_or_default();
+            let verdicts = verdicts.filter(|text| !text.is_empty()).map(|text| format!("; {text}")).unwrap_or_default();
             format!("{} ran in {}{verdicts}", count(ran), duration(outcome.seconds))
         }
     };
@@ -138,7 +152,7 @@ fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, En
 pub(super) fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
     let mut all = Vec::new();
     for study in studies {
-        let plan = plan_of(study, places, &options(selection))?;
+        let plan = plan_of(study, places, &options(selection)?)?;
         if as_json {
             all.push(plan_json(study, &plan));
         } else {
@@ -228,7 +242,8 @@ pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<
         let text = pages::write(&folder, &manifest).map_err(Ending::Usage)?;
         if !quiet {
             out(&pages::verdicts(&folder, &manifest).map_err(Ending::Usage)?);
-            out(&format!("{}: {text}; {}\n", study.name, pages::path(&folder).display()));
+            let text = if text.is_empty() { String::new() } else { format!("{text}; ") };
+            out(&format!("{}: {text}{}\n", study.name, pages::path(&folder).display()));
         }
     }
     Ok(())

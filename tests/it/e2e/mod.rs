@@ -88,6 +88,21 @@ fn tables_are_printed_and_filtered() {
 }
 
 #[test]
+fn what_is_computed_on_demand_can_be_asked_for() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml"], 0);
+    desk.run(&["table", "quick.yaml", "stiffness.iso6336"], 1);
+    desk.run(&["run", "quick.yaml", "--want", "stiffness.iso6336,ste.summary.largest_pressure"], 0);
+    let (iso, _) = desk.run(&["table", "quick.yaml", "stiffness.iso6336", "--format", "csv"], 0);
+    assert!(iso.starts_with("theoretical [N/(mm um)]") && iso.lines().count() == 2, "{iso}");
+    let (pressure, _) = desk.run(&["table", "quick.yaml", "ste.summary", "--columns", "largest_pressure"], 0);
+    assert!(pressure.contains("largest_pressure [MPa]"), "{pressure}");
+    let (_, error) = desk.run(&["plan", "quick.yaml", "--want", "stiffness.iso633"], 1);
+    assert!(error.contains("did you mean `iso6336`"), "{error}");
+    desk.run(&["plan", "quick.yaml", "--want", "stiffness"], 1);
+}
+
+#[test]
 fn only_force_and_dry_run_do_what_they_say() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["run", "quick.yaml", "--dry-run"], 0);
