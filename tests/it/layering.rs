@@ -80,7 +80,6 @@ const NEVER_IN_KERNELS: &[&str] = &[
 /// A crate and the only files or folders that may name it.
 const OWNERS: &[(&str, &[&str])] = &[
     ("petgraph", &["runner/graph.rs"]),
-    ("kuva", &["report/"]),
     ("minijinja", &["report/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),

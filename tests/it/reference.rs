@@ -94,6 +94,39 @@ fn a_study_s_tables_meet_the_reference() {
     close("contact_ratio", pair.floats("contact_ratio")[0], reference["contact_ratio"], 1e-14);
 }
 
+/// Invariant: what the summary says of a curve is what the rows of the curve say.
+#[test]
+fn summaries_agree_with_their_curves() {
+    let ran = chain();
+    let (summary, curve) = (table(&ran, "ste", "summary"), table(&ran, "ste", "curve"));
+    for row in 0..summary.rows() {
+        let (design, torque) = (&summary.texts("design")[row], summary.floats("torque")[row]);
+        let its = |at: &usize| curve.texts("design")[*at] == *design && curve.floats("torque")[*at] == torque;
+        let points: Vec<usize> = (0..curve.rows()).filter(its).collect();
+        assert!(points.len() >= 64, "{design}");
+        let value = |column: &str| summary.floats(column)[row];
+        let along = |column: &str| points.iter().map(|at| curve.floats(column)[*at]).collect::<Vec<f64>>();
+        let (least, most) = (f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
+        let error = along("transmission_error");
+        let [lowest, highest] =
+            [(f64::INFINITY, least), (0.0, most)].map(|(from, pick)| error.iter().copied().fold(from, pick));
+        // Extrema between the points are found too, so the summary may go a little further than its rows.
+        let (minimum, maximum, slack) = (value("minimum"), value("maximum"), 1e-3 * value("peak_to_peak"));
+        assert!(minimum <= lowest + 1e-12 && lowest < minimum + slack, "{design} {torque}: {minimum} {lowest}");
+        assert!(maximum >= highest - 1e-12 && highest > maximum - slack, "{design} {torque}: {maximum} {highest}");
+        assert!((maximum - minimum - value("peak_to_peak")).abs() < 1e-12, "{design} {torque}");
+        assert!(minimum < value("mean") && value("mean") < maximum);
+        // Popoviciu's bound on a variance.
+        assert!(value("variance") <= 0.25 * value("peak_to_peak").powi(2) * (1.0 + 1e-12));
+        assert!((value("variance") * value("reciprocal_variance") - 1.0).abs() < 1e-14);
+        let share =
+            along("newest_load_share").into_iter().fold(0.0, |most: f64, share| most.max(share).max(1.0 - share));
+        assert!(share <= value("largest_load_share") + 1e-12, "{design} {torque}");
+        let pressure = along("pressure").into_iter().fold(0.0, f64::max);
+        assert!((pressure / value("largest_pressure") - 1.0).abs() < 1e-3, "{design} {torque}: {pressure}");
+    }
+}
+
 /// What another stage reads from the tables is the pair, the compliance and the designs, to the last digits.
 #[test]
 fn modified_designs_meet_the_reference_at_three_mesh_positions() {

@@ -38,7 +38,7 @@ def same(one, other, kind, place):
 
 def from_csv(text, kind):
     if kind == "float":
-        return float(text)
+        return float(text) if text else float("nan")  # an empty cell: not applicable
     if kind == "integer":
         return int(text)
     if kind == "flag":

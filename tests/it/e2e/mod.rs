@@ -28,6 +28,23 @@ fn a_study_runs_once_and_then_there_is_nothing_to_do() {
 }
 
 #[test]
+fn a_figure_that_is_no_more_is_removed_and_what_is_not_ours_stays() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml"], 0);
+    fs::write(desk.path("results/quick/figures/notes.txt"), "mine").unwrap();
+    fs::write(desk.path("results/quick/notes.txt"), "mine").unwrap();
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let renamed = text.replace("- name: torque\n", "- name: sweep\n").replace("  optimum:\n", "  found:\n");
+    let renamed = renamed.replace("designs: [designs, optimum]", "designs: [designs, found]");
+    fs::write(desk.path("quick.yaml"), renamed).unwrap();
+    desk.run(&["run", "quick.yaml"], 0);
+    let there = |name: &str| desk.path("results/quick").join(name).exists();
+    assert!(there("figures/sweep.svg") && !there("figures/torque.svg"));
+    assert!(there("found.best.parquet") && !there("optimum.best.parquet"));
+    assert!(there("figures/notes.txt") && there("notes.txt"));
+}
+
+#[test]
 fn an_added_torque_touches_only_what_depends_on_it() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["run", "quick.yaml"], 0);
