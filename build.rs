@@ -12,6 +12,7 @@ use std::{env, fs, io};
 const SHARED: [&str; 5] = ["base", "numeric", "gear", "optimize", "table"];
 
 fn main() -> io::Result<()> {
+    prefer_static_hdf5()?;
     let source = PathBuf::from("src");
     let rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())).arg("--version").output()?;
     println!("cargo:rustc-env=GEARSTUDY_RUSTC={}", String::from_utf8_lossy(&rustc.stdout).trim());
@@ -34,12 +35,41 @@ fn main() -> io::Result<()> {
     }
     shared.sort();
     let base = digest(&shared)?;
-    let mut lines = format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n");
-    for (kind, paths) in kinds {
-        lines += &format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?);
-    }
-    lines += "];\n";
+    let digests = kinds.into_iter().map(|(kind, paths)| Ok(format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?)));
+    let digests = digests.collect::<io::Result<Vec<_>>>()?.concat();
+    let lines = format!(
+        "pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n{digests}];\n"
+    );
     fs::write(Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("code.rs"), lines)
+}
+
+/// Debian's libhdf5 brings thirty other shared libraries along (its network driver needs curl, and that the rest), which
+/// cost every start 4 ms. Where the archive lies beside the shared library it is linked instead: the network driver is
+/// not used, so its object and curl stay out. Where anything is missing, nothing changes.
+fn prefer_static_hdf5() -> io::Result<()> {
+    let given = |name: &str| env::var_os(name).is_some();
+    let elsewhere =
+        given("HDF5_DIR") || given("CARGO_FEATURE_HDF5_STATIC") || env::var_os("HOST") != env::var_os("TARGET");
+    println!("cargo:rerun-if-env-changed=HDF5_DIR");
+    if elsewhere || !given("CARGO_FEATURE_HDF5") {
+        return Ok(());
+    }
+    let Ok(triplet) = Command::new("cc").arg("-print-multiarch").output() else { return Ok(()) };
+    let system = Path::new("/usr/lib").join(String::from_utf8_lossy(&triplet.stdout).trim());
+    let archive = system.join("hdf5/serial/libhdf5.a");
+    if ![archive.clone(), system.join("libz.so"), system.join("libsz.so")].iter().all(|file| file.exists()) {
+        return Ok(());
+    }
+    // A folder with the archive alone, searched before the one with both.
+    let folder = PathBuf::from(env::var_os("OUT_DIR").expect("cargo sets OUT_DIR")).join("hdf5");
+    fs::create_dir_all(&folder)?;
+    fs::copy(&archive, folder.join("libhdf5.a"))?;
+    println!("cargo:rerun-if-changed={}", archive.display());
+    println!("cargo:rustc-link-search=native={}", folder.display());
+    for library in ["z", "sz", "m", "dl"] {
+        println!("cargo:rustc-link-arg=-l{library}");
+    }
+    Ok(())
 }
 
 /// The kind that `src/stage/kinds/<kind>.rs` or a file of `src/stage/kinds/<kind>/` belongs to.

@@ -1,9 +1,43 @@
-//! All benchmarks, in one binary: `make bench` prints them. A layer's benches are a module here and a name in the list.
+//! All measurements, in one binary: `make bench` prints them. What is measured of a layer is a module here.
+//!
+//! Criterion measures what takes less than a second; whole runs of the program are started several times. At the end
+//! come the tables of error against run time, and one table of everything against its target. With a name on the command
+//! line only the benches whose names contain it are measured, and no table follows.
 
+mod accuracy;
+mod article;
+mod kernels;
+mod optimize;
+mod program;
+mod storage;
+mod summary;
 #[allow(dead_code, reason = "benches use a part of what tests share")]
 #[path = "../tests/it/support.rs"]
 mod support;
 
-mod optimize;
+use std::time::Duration;
 
-criterion::criterion_main!(optimize::benches);
+use criterion::Criterion;
+
+fn main() {
+    kernels::benches();
+    optimize::benches();
+    storage::benches();
+    program::benches();
+    brief().final_summary();
+    if std::env::args().skip(1).all(|word| word == "--bench") {
+        let processes = program::processes();
+        accuracy::print();
+        summary::print(&processes);
+    }
+}
+
+/// Half a second of warming up and two of measuring: medians repeat within a few per cent, and all takes two minutes.
+fn brief() -> Criterion {
+    Criterion::default()
+        .warm_up_time(Duration::from_millis(300))
+        .measurement_time(Duration::from_millis(1500))
+        .sample_size(30)
+        .without_plots()
+        .configure_from_args()
+}

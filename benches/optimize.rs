@@ -7,9 +7,10 @@ use gearstudy::base::seed::Seed;
 use gearstudy::optimize::bounds::Bounds;
 use gearstudy::optimize::{METHODS, optimizer};
 
+use crate::brief;
 use crate::support::record;
 
-criterion_group!(benches, methods);
+criterion_group!(name = benches; config = brief(); targets = methods);
 
 fn methods(criterion: &mut Criterion) {
     let bench = |criterion: &mut Criterion, name: &str, method: &str, given: &[(&str, Value)]| {

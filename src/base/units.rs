@@ -255,13 +255,26 @@ fn take_power(rest: &mut &str) -> Option<i8> {
 /// When `unit` is no unit. Units of columns are literals of this program, and a test reads every one of them.
 #[must_use]
 pub fn in_unit(si: f64, unit: &str) -> f64 {
-    if unit.is_empty() {
-        return si;
+    showing(unit)(si)
+}
+
+/// [`in_unit`] for many numbers in one unit.
+///
+/// # Panics
+/// As [`in_unit`].
+pub fn showing(unit: &str) -> impl Fn(f64) -> f64 + use<> {
+    let (factor, ten) = if unit.is_empty() {
+        (1.0, 0)
+    } else {
+        let unit = parse_unit(unit).expect("a column's unit can be parsed");
+        (unit.factor, unit.ten)
+    };
+    let power = 10f64.powi(ten.abs());
+    move |si| {
+        // Dividing by an exact power of ten rounds once; multiplying by an inexact 1e-6 would round twice.
+        let value = si / factor;
+        if ten >= 0 { value / power } else { value * power }
     }
-    let unit = parse_unit(unit).expect("a column's unit can be parsed");
-    // Dividing by an exact power of ten rounds once; multiplying by an inexact 1e-6 would round twice.
-    let value = si / unit.factor;
-    if unit.ten >= 0 { value / 10f64.powi(unit.ten) } else { value * 10f64.powi(-unit.ten) }
 }
 
 #[cfg(test)]

@@ -23,18 +23,22 @@ pub fn mean_and_variance(period: f64, nodes: &[Node]) -> (f64, f64) {
     (origin + offset, nodes.iter().map(spread).sum::<f64>() / period)
 }
 
-/// The amplitude of harmonic `order` (cycles per period): |2/P ∫ f e^{−2πi·order·t/P}|.
+/// The amplitudes of the harmonics 1 to `count` (cycles per period): |2/P ∫ f e^{−2πi·order·t/P}|.
 #[must_use]
-pub fn amplitude(period: f64, nodes: &[Node], order: usize) -> f64 {
+pub fn amplitudes(period: f64, nodes: &[Node], count: usize) -> Vec<f64> {
     let origin = nodes.first().map_or(0.0, |node| node.value);
-    let (mut cosine, mut sine) = (0.0, 0.0);
+    let mut sums = vec![(0.0, 0.0); count];
     for node in nodes {
-        let angle = TAU * order as f64 * (node.position / period);
+        let (sine, cosine) = libm::sincos(TAU * (node.position / period));
         let part = node.weight * (node.value - origin);
-        cosine += part * libm::cos(angle);
-        sine += part * libm::sin(angle);
+        // e^{iθ·order} by turning on: the error grows by one rounding per order, far below that of the quadrature.
+        let (mut x, mut y) = (part, 0.0);
+        for sum in &mut sums {
+            (x, y) = (x * cosine - y * sine, x * sine + y * cosine);
+            *sum = (sum.0 + x, sum.1 + y);
+        }
     }
-    2.0 / period * libm::hypot(cosine, sine)
+    sums.into_iter().map(|(cosine, sine)| 2.0 / period * libm::hypot(cosine, sine)).collect()
 }
 
 #[cfg(test)]
@@ -66,10 +70,24 @@ mod tests {
         assert!((mean - (high * share + low * (1.0 - share))).abs() < 1e-20);
         let exact = (high - low) * (high - low) * share * (1.0 - share);
         assert!((variance / exact - 1.0).abs() < 1e-14);
-        for order in 1..=5 {
-            let angle = std::f64::consts::PI * order as f64 * share;
-            let exact = 2.0 * (high - low) * libm::sin(angle).abs() / (std::f64::consts::PI * order as f64);
-            assert!((amplitude(3.0, &nodes, order) / exact - 1.0).abs() < 1e-9, "{order}");
+        for (order, amplitude) in (1..).zip(amplitudes(3.0, &nodes, 5)) {
+            let angle = std::f64::consts::PI * f64::from(order) * share;
+            let exact = 2.0 * (high - low) * libm::sin(angle).abs() / (std::f64::consts::PI * f64::from(order));
+            assert!((amplitude / exact - 1.0).abs() < 1e-9, "{order}");
+        }
+    }
+
+    /// Turning from order to order against the angle of each order by itself.
+    #[test]
+    fn two_hundred_harmonics_keep_their_digits() {
+        let nodes = wave(7e-6, 4e-6, 0.354, 60);
+        for (order, amplitude) in (1..).zip(amplitudes(3.0, &nodes, 200)) {
+            let part = |wave: fn(f64) -> f64| -> f64 {
+                let angle = |node: &Node| TAU * f64::from(order) * (node.position / 3.0);
+                nodes.iter().map(|node| node.weight * (node.value - 7e-6) * wave(angle(node))).sum()
+            };
+            let plain = 2.0 / 3.0 * libm::hypot(part(libm::cos), part(libm::sin));
+            assert!((amplitude - plain).abs() < 1e-13 * 7e-6, "{order}: {amplitude} {plain}");
         }
     }
 }

@@ -5,6 +5,9 @@
 //! last success; its status says so. Files that a manifest never listed are never touched. Must not know: the cache
 //! (tables come through a closure), stages.
 
+#[cfg(test)]
+mod tests;
+
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
@@ -133,8 +136,14 @@ impl Folder {
             new.files.push(self.record(&table.file)?);
         }
         self.write_hdf5(&mut new, changes.hdf5)?;
-        let Facts { program, machine, written } = facts();
-        new = Manifest { program, machine, written, ..new };
+        new = match old {
+            // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
+            Some(old) if essence(&old) == essence(&new) => Manifest { files: new.files, ..old },
+            _ => {
+                let Facts { program, machine, written } = facts();
+                Manifest { program, machine, written, ..new }
+            }
+        };
         self.write_manifest(&new)?;
         for name in &changes.remove {
             let path = self.path.join(name);
@@ -259,174 +268,4 @@ fn essence(manifest: &Manifest) -> Manifest {
         }
     }
     essence
-}
-
-#[cfg(test)]
-mod tests {
-    use std::cell::Cell;
-
-    use super::*;
-    use crate::store::parquet::tests::{assert_identical, everything};
-    use crate::table::schema::Schema;
-
-    fn tables() -> Vec<(&'static str, Table)> {
-        let named = |name: &str, rows| {
-            let table = everything(rows);
-            let schema = Schema { name: name.to_owned(), ..table.schema().clone() };
-            Table::from_columns(schema, table.columns().to_vec()).unwrap()
-        };
-        vec![("ste", named("curve", 30)), ("ste", named("summary", 3)), ("pair", named("geometry", 1))]
-    }
-
-    fn manifest(tables: &[(&str, Table)]) -> Manifest {
-        let stage = |name: &str| StageRecord {
-            name: name.to_owned(),
-            kind: name.to_owned(),
-            version: 1,
-            keys: vec![],
-            status: "ran".to_owned(),
-            why: "never ran".to_owned(),
-            seconds: 0.1,
-            warnings: vec![],
-            left_out: vec![],
-            tables: tables
-                .iter()
-                .filter(|(stage, _)| *stage == name)
-                .map(|(stage, table)| TableRecord {
-                    name: format!("{stage}.{}", table.name()),
-                    description: table.schema().description.clone(),
-                    rows: table.rows(),
-                    content: table.content_hash().to_string(),
-                    file: format!("{stage}.{}.parquet", table.name()),
-                    columns: vec![],
-                })
-                .collect(),
-        };
-        Manifest {
-            format: FORMAT,
-            study: "s".to_owned(),
-            stages: vec![stage("pair"), stage("ste")],
-            ..Manifest::default()
-        }
-    }
-
-    fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: Manifest) -> (Published, usize) {
-        let asked = Cell::new(0);
-        let bytes = |stage: &str, name: &str| {
-            asked.set(asked.get() + 1);
-            parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
-        };
-        let facts = || Facts { program: Program::default(), machine: Machine::default(), written: "now".into() };
-        (folder.publish(manifest, facts, &bytes).unwrap(), asked.get())
-    }
-
-    fn files(folder: &Folder) -> Vec<String> {
-        let entries = fs::read_dir(folder.path()).unwrap();
-        let mut names: Vec<_> = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-        names.sort();
-        names
-    }
-
-    #[test]
-    fn everything_is_written_once_and_reads_back() {
-        let root = tempfile::tempdir().unwrap();
-        let folder = Folder::new(root.path(), "s");
-        let tables = tables();
-        let (first, _) = publish(&folder, &tables, manifest(&tables));
-        assert_eq!(first.changes.tables.len(), 3);
-        for record in first.manifest.stages.iter().flat_map(|stage| &stage.tables) {
-            let (_, table) = tables.iter().find(|(stage, t)| format!("{stage}.{}", t.name()) == record.name).unwrap();
-            assert_identical(table, &folder.table(record).unwrap());
-            #[cfg(feature = "hdf5")]
-            {
-                let (stage, name) = split(&record.name);
-                assert_identical(table, &hdf5::read(&folder.path().join("s.h5"), stage, name).unwrap());
-            }
-        }
-        let stamp = |name: &str| fs::metadata(folder.path().join(name)).unwrap().modified().unwrap();
-        let stamps: Vec<_> = files(&folder).iter().map(|name| stamp(name)).collect();
-        let again = Manifest { seconds: 9.0, ..manifest(&tables) };
-        let panics = || panic!("nothing is written, so nobody asks for facts");
-        let second = folder.publish(again, panics, &|_, _| panic!("nothing is read")).unwrap();
-        assert_eq!(second.changes, Changes::default());
-        assert_eq!(stamps, files(&folder).iter().map(|name| stamp(name)).collect::<Vec<_>>());
-    }
-
-    #[test]
-    fn only_what_changed_is_asked_for() {
-        let root = tempfile::tempdir().unwrap();
-        let folder = Folder::new(root.path(), "s");
-        let mut tables = tables();
-        publish(&folder, &tables, manifest(&tables));
-        fs::write(folder.path().join("notes.txt"), "mine").unwrap();
-        tables[1].1 = Table::from_rows(tables[1].1.schema().clone(), vec![]).unwrap();
-        let (published, asked) = publish(&folder, &tables, manifest(&tables));
-        assert_eq!((published.changes.tables, asked), (vec!["ste.summary.parquet".to_owned()], 1));
-        // A file that was lost or cut comes back.
-        fs::write(folder.path().join("ste.curve.parquet"), "x").unwrap();
-        assert_eq!(folder.changes(&manifest(&tables)).tables, ["ste.curve.parquet"]);
-        assert_eq!(publish(&folder, &tables, manifest(&tables)).1, 1);
-        // A table that is no more takes its file along; what was never listed stays.
-        tables.remove(0);
-        let (published, asked) = publish(&folder, &tables, manifest(&tables));
-        assert_eq!((published.changes.remove, asked), (vec!["ste.curve.parquet".to_owned()], 0));
-        assert!(!files(&folder).contains(&"ste.curve.parquet".to_owned()));
-        assert!(files(&folder).contains(&"notes.txt".to_owned()));
-    }
-
-    #[test]
-    fn a_stage_that_failed_keeps_its_last_tables() {
-        let root = tempfile::tempdir().unwrap();
-        let folder = Folder::new(root.path(), "s");
-        let tables = tables();
-        let (first, _) = publish(&folder, &tables, manifest(&tables));
-        let mut failed = manifest(&tables);
-        let stage = &mut failed.stages[1];
-        (stage.status, stage.why) = ("failed".to_owned(), "no".to_owned());
-        stage.tables.clear();
-        let (second, asked) = publish(&folder, &tables, failed);
-        assert_eq!(asked, 0);
-        assert_eq!(second.manifest.stages[1].status, "failed");
-        assert_eq!(second.manifest.stages[1].tables, first.manifest.stages[1].tables);
-        assert!(publish(&folder, &tables, manifest(&tables)).0.changes.manifest);
-        assert_eq!(folder.manifest().unwrap().stages[1].status, "ran");
-    }
-
-    #[test]
-    fn after_a_kill_no_new_file_passes_for_the_old_one() {
-        let root = tempfile::tempdir().unwrap();
-        let folder = Folder::new(root.path(), "s");
-        let old = tables();
-        publish(&folder, &old, manifest(&old));
-        let mut new = tables();
-        for (_, table) in &mut new[..2] {
-            *table = Table::from_rows(table.schema().clone(), vec![]).unwrap();
-        }
-        // The first new file happens to be as long as the old one; the second never comes.
-        let length = fs::metadata(folder.path().join("ste.curve.parquet")).unwrap().len();
-        let bytes = |_: &str, name: &str| match name {
-            "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
-            _ => Err(StoreError::InUse { path: "killed".to_owned() }),
-        };
-        assert!(folder.publish(manifest(&new), || unreachable!(), &bytes).is_err());
-        assert_eq!(folder.changes(&manifest(&old)).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
-        publish(&folder, &old, manifest(&old));
-        for record in &folder.manifest().unwrap().stages[1].tables {
-            folder.table(record).unwrap();
-        }
-    }
-
-    #[test]
-    fn a_manifest_from_elsewhere_removes_nothing_outside() {
-        let root = tempfile::tempdir().unwrap();
-        let folder = Folder::new(root.path(), "s");
-        let tables = tables();
-        publish(&folder, &tables, manifest(&tables));
-        fs::write(root.path().join("precious"), "").unwrap();
-        let mut wicked = folder.manifest().unwrap();
-        wicked.files.push(FileRecord { file: "../precious".into(), bytes: 0 });
-        folder.write_manifest(&wicked).unwrap();
-        publish(&folder, &tables, Manifest { title: "new".into(), ..manifest(&tables) });
-        assert!(root.path().join("precious").exists());
-    }
 }

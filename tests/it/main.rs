@@ -3,8 +3,14 @@
 #![allow(clippy::float_cmp, reason = "tests say where a value must be met exactly")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
 
+mod desk;
+mod determinism;
 mod e2e;
 mod layering;
 mod optimize;
+mod python;
+mod reference;
+mod registry;
 mod report;
+mod schema;
 mod support;

@@ -3,7 +3,7 @@
 //! Must not know: tables, units other than SI.
 
 use super::loading::{Loading, State};
-use super::trace::{Extremum, Trace};
+use super::trace::{Extremum, NODES, Span, Trace};
 use crate::gear::contact::flattening;
 use crate::gear::geometry::Side;
 use crate::numeric::complementarity::PerSpring;
@@ -73,7 +73,11 @@ impl Loading<'_> {
     /// The curve, by position.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
-        self.curve_and_summary(wanted).0
+        let mut points = self.no_points(wanted);
+        self.walk(self.span_length(wanted.harmonics), |span, states| {
+            extend(&mut points, span, &self.points(span, states, wanted.pressure));
+        });
+        points
     }
 
     #[must_use]
@@ -86,18 +90,13 @@ impl Loading<'_> {
     pub fn curve_and_summary(&self, wanted: Wanted) -> (Vec<Point>, Summary) {
         let cycle = self.cycle;
         let rows = &cycle.rows;
-        let mut points: Vec<Point> = Vec::new();
+        let mut points = self.no_points(wanted);
         let (mut error, mut pressure) = (Trace::default(), Trace::default());
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
-            let joined = points
-                .last()
-                .is_some_and(|last| last.cycle_position.total_cmp(&span.start).is_eq() && last.pairs == span.pairs);
-            let here: [Point; _] = std::array::from_fn(|node| {
-                self.point(span.position(rows, node), span.pairs, &states[node], wanted.pressure)
-            });
-            points.extend_from_slice(&here[usize::from(joined)..]);
+            let here = self.points(span, states, wanted.pressure);
+            extend(&mut points, span, &here);
             if wanted.pressure {
                 pressure.spans.push((*span, here.map(|point| point.pressure.unwrap_or(0.0))));
             }
@@ -118,9 +117,7 @@ impl Loading<'_> {
             smallest,
             variance,
             reciprocal_variance: (variance > 0.0).then(|| 1.0 / variance),
-            harmonics: (1..=wanted.harmonics)
-                .map(|order| harmonics::amplitude(cycle.period(), &nodes, order))
-                .collect(),
+            harmonics: harmonics::amplitudes(cycle.period(), &nodes, wanted.harmonics),
             unloaded_peak_to_peak: self.without_load().peak_to_peak(),
             loaded_contact_ratio: loaded / cycle.period(),
             largest_load_share: if self.force > 0.0 { share / self.force } else { 0.0 },
@@ -129,6 +126,19 @@ impl Loading<'_> {
                 .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),
         };
         (points, summary)
+    }
+
+    /// Room for the curve: spans at zone ends, relief starts and first touches come on top.
+    fn no_points(&self, wanted: Wanted) -> Vec<Point> {
+        let spans = self.cycle.period() / self.span_length(wanted.harmonics) + 8.0;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2^53
+        Vec::with_capacity(spans as usize * NODES)
+    }
+
+    fn points(&self, span: &Span, states: &[State; NODES], pressure: bool) -> [Point; NODES] {
+        std::array::from_fn(|node| {
+            self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], pressure)
+        })
     }
 
     fn point(&self, position: f64, pairs: usize, state: &State, pressure: bool) -> Point {
@@ -162,4 +172,11 @@ impl Loading<'_> {
             })
             .fold(0.0, f64::max)
     }
+}
+
+/// Where two spans join smoothly their common point is taken once.
+#[allow(clippy::float_cmp)] // the end of one span is the very number that starts the next
+fn extend(points: &mut Vec<Point>, span: &Span, here: &[Point; NODES]) {
+    let joined = points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
+    points.extend_from_slice(&here[usize::from(joined)..]);
 }

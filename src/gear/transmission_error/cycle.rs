@@ -7,9 +7,10 @@
 
 use super::trace::Rows;
 use crate::base::error::Failure;
-use crate::gear::compliance::{ContactLaw, Material, PairCompliance};
+use crate::gear::compliance::{ContactLaw, Material, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::geometry::Pair;
+use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::{Coupling, MOST, PerSpring};
 use crate::numeric::lobatto::Rule;
 use crate::numeric::panels::Panels;
@@ -78,9 +79,13 @@ impl MeshCycle {
         let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
         let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
         let rolls = |s: f64| (s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius);
+        let (pinion_series, gear_series) = (compliance.pinion.total_series(), compliance.gear.total_series());
+        let total = |series: &Option<Series>, tooth: &ToothCompliance, roll: f64| {
+            series.as_ref().map_or_else(|| tooth.total(roll), |series| series.value(roll))
+        };
         let teeth = |s: f64| {
             let (pinion, gear) = rolls(s);
-            compliance.pinion.total(pinion) + compliance.gear.total(gear)
+            total(&pinion_series, &compliance.pinion, pinion) + total(&gear_series, &compliance.gear, gear)
         };
         let fit = |function: &dyn Fn(f64) -> f64| Panels::fit(path.0, path.1, ACCURACY, function);
         let law = |s: f64| {
@@ -125,7 +130,7 @@ impl MeshCycle {
     /// The same cycle, sampled otherwise.
     #[must_use]
     pub fn sampled(&self, settings: Settings) -> Self {
-        Self { settings, ..self.clone() }
+        Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
     }
 
     /// p_b \[m\].

@@ -61,7 +61,7 @@ const PUBLISHED: &[Field] = &[
 pub const KIND: Kind = Kind {
     name: "report",
     version: 1,
-    summary: "a verdict on every published number, and the figures",
+    summary: "A verdict on every published number, and the figures of the report.",
     fields: &[
         Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "the paper's numbers and claims").optional(),
         Field::new("figures", Shape::List(&Shape::Group(figure::FIELDS)), "the figures of the report").optional(),
@@ -82,7 +82,7 @@ figures:
   - name: transmission_error
     title: Static transmission error over the mesh cycle at 50 N m
     table: ste.curve
-    x: position
+    x: cycle_position
     y: transmission_error
     series: design
     where: { torque: 50 N m }
@@ -179,36 +179,36 @@ fn want(ports: &mut Vec<Port>, stage: &str, table: &str, columns: Vec<&str>) {
 fn verdicts() -> Schema {
     Schema::new(
         "verdicts",
-        "What the paper printed, what was computed, and what is to be said about it",
+        "What the paper printed, what was computed, and what is to be said about it.",
         vec![
-            Column::integer("number", "Number of the entry, in the order of the study").key(),
-            Column::text("label", "What it is, in words"),
-            Column::text("where", "Where the paper says it"),
-            Column::text("cell", "The computed cell, formula or claim"),
-            Column::text("with", "What the names in a formula or claim stand for"),
-            Column::text("kind", "value or claim"),
-            Column::text("published_text", "The published value as printed, with its unit"),
-            Column::float("published", "", "The published value in the row's unit; for a claim the number of rows"),
+            Column::integer("number", "Number of the entry, in the order of the study.").key(),
+            Column::text("label", "What it is, in words."),
+            Column::text("where", "Where the paper says it."),
+            Column::text("cell", "The computed cell, formula or claim."),
+            Column::text("with", "What the names in a formula or claim stand for."),
+            Column::text("kind", "Value or claim."),
+            Column::text("published_text", "The published value as printed, with its unit."),
+            Column::float("published", "", "The published value in the row's unit; for a claim the number of rows."),
             Column::float(
                 "computed",
                 "",
-                "The computed value in the row's unit; for a claim the rows in which it holds",
+                "The computed value in the row's unit; for a claim the rows in which it holds.",
             ),
-            Column::text("found", "For a claim: in how many rows it holds"),
-            Column::text("unit", "Unit of published, computed, difference, tolerance and expected"),
-            Column::float("difference", "", "computed − published").tolerance(1e-12, 1e-6),
-            Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0")
+            Column::text("found", "For a claim: in how many rows it holds."),
+            Column::text("unit", "Unit of published, computed, difference, tolerance and expected."),
+            Column::float("difference", "", "Computed − published.").tolerance(1e-12, 1e-6),
+            Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0.")
                 .allows_nan(),
-            Column::float("tolerance", "", "How far apart the two may be and still agree"),
-            Column::float("expected", "", "The value the study stands by").allows_nan(),
-            Column::float("expected_tolerance", "", "How far the computed value may be from the expected one")
+            Column::float("tolerance", "", "How far apart the two may be and still agree."),
+            Column::float("expected", "", "The value the study stands by.").allows_nan(),
+            Column::float("expected_tolerance", "", "How far the computed value may be from the expected one.")
                 .allows_nan(),
-            Column::text("verdict", "unexplained, moved, outdated, explained, refuted, reproduced or holds"),
-            Column::text("because", "Why they differ"),
-            Column::text("note", "A remark that claims no difference"),
-            Column::text("numbers", "The formula's names with their values"),
-            Column::text("proof", "The arithmetic that proves the reason, with its numbers"),
-            Column::text("failing", "For a claim: the rows in which it does not hold"),
+            Column::text("verdict", "Unexplained, moved, outdated, explained, refuted, reproduced or holds."),
+            Column::text("because", "Why they differ."),
+            Column::text("note", "A remark that claims no difference."),
+            Column::text("numbers", "The formula's names with their values."),
+            Column::text("proof", "The arithmetic that proves the reason, with its numbers."),
+            Column::text("failing", "For a claim: the rows in which it does not hold."),
         ],
     )
 }
@@ -216,13 +216,13 @@ fn verdicts() -> Schema {
 fn verdict_counts() -> Schema {
     Schema::new(
         "verdict_counts",
-        "How often each verdict was given, and what it means",
+        "How often each verdict was given, and what it means.",
         vec![
-            Column::integer("order", "What needs attention comes first").key(),
-            Column::text("verdict", "The verdict's word"),
-            Column::integer("count", "Entries with this verdict"),
-            Column::flag("needs_attention", "Whether somebody has to look at it"),
-            Column::text("meaning", "What it means"),
+            Column::integer("order", "What needs attention comes first.").key(),
+            Column::text("verdict", "The verdict's word."),
+            Column::integer("count", "Entries with this verdict."),
+            Column::flag("needs_attention", "Whether somebody has to look at it."),
+            Column::text("meaning", "What it means."),
         ],
     )
 }

@@ -9,13 +9,13 @@ use rayon::prelude::*;
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
-use crate::base::units::{RATIO, TORQUE, in_unit};
+use crate::base::units::{RATIO, TORQUE, in_unit, showing};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
 use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, designs, pair};
-use crate::table::data::{Row, Table};
+use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -169,18 +169,22 @@ impl Ste {
     fn answer(&self, cycles: &[MeshCycle], design: &Design, torque: f64, wanted: Wanted) -> Answer {
         let began = Instant::now();
         let coarse = |cycle: &MeshCycle| Loading::new(cycle, design, torque).peak_to_peak();
+        let change = |before: f64, now: f64| (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
         let mut before = coarse(&cycles[0]);
-        let mut error = f64::INFINITY;
-        let mut last = &cycles[0];
-        for cycle in &cycles[1..] {
-            let now = coarse(cycle);
-            error = (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
-            (last, before) = (cycle, now);
-            if self.accuracy.is_none_or(|accuracy| error <= accuracy) {
-                break;
+        let mut last = &cycles[1];
+        // The last one is summarised in any case.
+        if let Some(accuracy) = self.accuracy {
+            for (index, cycle) in cycles.iter().enumerate().skip(1) {
+                let now = coarse(cycle);
+                last = cycle;
+                if change(before, now) <= accuracy || index + 1 == cycles.len() {
+                    break;
+                }
+                before = now;
             }
         }
         let (points, summary) = Loading::new(last, design, torque).curve_and_summary(wanted);
+        let error = change(before, summary.peak_to_peak);
         let seconds = began.elapsed().as_secs_f64();
         Answer { points, summary, positions: last.settings.positions, error, seconds }
     }
@@ -255,13 +259,10 @@ impl Stage for Ste {
             })
             .collect::<Result<_, Failure>>()?;
 
-        let (mut summaries, mut curves, mut harmonics): (Vec<Row>, Vec<Row>, Vec<Row>) = Default::default();
+        let (mut summaries, mut harmonics): (Vec<Row>, Vec<Row>) = Default::default();
         for (&(design, torque), answer) in tasks.iter().zip(&answers) {
             let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
             summaries.push([key(), summary_row(answer, summary_pressure)].concat());
-            for (index, point) in answer.points.iter().enumerate() {
-                curves.push([key(), vec![(index + 1).into()], point_row(point, curve_pressure)].concat());
-            }
             for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
                 harmonics.push([key(), vec![(index + 1).into(), in_unit(*amplitude, "um").into()]].concat());
             }
@@ -272,13 +273,15 @@ impl Stage for Ste {
                 ));
             }
         }
-        let table = |schema: Schema, rows: Vec<Row>| {
-            Table::from_rows(context.demand.narrowed(schema), rows).map_err(|error| Failure::new(error.to_string()))
-        };
+        let keys: Vec<(&str, f64)> =
+            tasks.iter().map(|&(design, torque)| (designs[design].1.as_str(), torque)).collect();
+        let curves = curve_columns(&keys, &answers, curve_pressure);
+        let narrowed = |schema: Schema| context.demand.narrowed(schema);
+        let failed = |error: TableError| Failure::new(error.to_string());
         Ok(vec![
-            table(summary_schema(), summaries)?,
-            table(curve_schema(), curves)?,
-            table(harmonics_schema(), harmonics)?,
+            Table::from_rows(narrowed(summary_schema()), summaries).map_err(failed)?,
+            Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
+            Table::from_rows(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
         ])
     }
 }
@@ -305,21 +308,37 @@ fn summary_row(answer: &Answer, pressure: bool) -> Row {
     row
 }
 
-fn point_row(point: &Point, pressure: bool) -> Row {
-    let total: f64 = point.loads.iter().sum();
-    let mut row: Row = vec![
-        in_unit(point.cycle_position, "mm").into(),
-        in_unit(point.roll_angle, "deg").into(),
-        point.pairs.into(),
-        point.loaded_pairs.into(),
-        in_unit(point.transmission_error, "um").into(),
-        in_unit(point.unloaded_transmission_error, "um").into(),
-        (if total > 0.0 { point.loads[0] / total } else { 0.0 }).into(),
-        point.secant_stiffness.into(),
-        point.tangent_stiffness.into(),
+/// By columns, not rows: curves are by far the longest tables.
+fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Vec<Data> {
+    let keyed = || keys.iter().zip(answers).flat_map(|(key, answer)| answer.points.iter().map(move |_| *key));
+    let points = || answers.iter().flat_map(|answer| &answer.points);
+    let shown = |unit: &str, value: fn(&Point) -> f64| {
+        let show = showing(unit);
+        Data::Float(points().map(|point| show(value(point))).collect())
+    };
+    let counted = |value: fn(usize, &Point) -> usize| {
+        let values = answers.iter().flat_map(|answer| answer.points.iter().enumerate());
+        Data::Integer(values.map(|(index, point)| i64::try_from(value(index, point)).unwrap_or(i64::MAX)).collect())
+    };
+    let mut columns = vec![
+        Data::Text(keyed().map(|key| key.0.to_owned()).collect()),
+        Data::Float(keyed().map(|key| key.1).collect()),
+        counted(|index, _| index + 1),
+        shown("mm", |point| point.cycle_position),
+        shown("deg", |point| point.roll_angle),
+        counted(|_, point| point.pairs),
+        counted(|_, point| point.loaded_pairs),
+        shown("um", |point| point.transmission_error),
+        shown("um", |point| point.unloaded_transmission_error),
+        shown("", |point| {
+            let total: f64 = point.loads.iter().sum();
+            if total > 0.0 { point.loads[0] / total } else { 0.0 }
+        }),
+        shown("N/m", |point| point.secant_stiffness),
+        shown("N/m", |point| point.tangent_stiffness),
     ];
     if pressure {
-        row.push(in_unit(point.pressure.unwrap_or(f64::NAN), "MPa").into());
+        columns.push(shown("MPa", |point| point.pressure.unwrap_or(f64::NAN)));
     }
-    row
+    columns
 }

@@ -1,69 +1,16 @@
 //! The program as a user runs it: real commands on real studies in an empty folder.
 
+mod bad;
+mod ended;
+mod places;
+mod python;
+mod readme;
+
 use std::fs;
-use std::path::{Path, PathBuf};
 
-use assert_cmd::Command;
 use serde_json::Value;
-use tempfile::TempDir;
 
-/// An empty folder with one study in it.
-struct Desk {
-    folder: TempDir,
-}
-
-impl Desk {
-    fn with(study: &str) -> Self {
-        let folder = tempfile::tempdir().unwrap();
-        let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(study);
-        fs::copy(source, folder.path().join(study)).unwrap();
-        Self { folder }
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.path().join(name)
-    }
-
-    fn command(&self, words: &[&str]) -> Command {
-        let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
-        command.current_dir(self.folder.path()).env_remove("GEARSTUDY_CACHE").args(words);
-        command
-    }
-
-    /// Runs a command that must end with `code`; its standard output and standard error.
-    fn run(&self, words: &[&str], code: i32) -> (String, String) {
-        let output = self.command(words).output().unwrap();
-        let text = |bytes: &[u8]| String::from_utf8(bytes.to_vec()).unwrap();
-        let (out, err) = (text(&output.stdout), text(&output.stderr));
-        assert_eq!(output.status.code(), Some(code), "{words:?}\n{out}\n{err}");
-        (out, err)
-    }
-
-    fn manifest(&self, study: &str) -> Value {
-        let path = self.path("results").join(study).join("manifest.json");
-        serde_json::from_slice(&fs::read(path).unwrap()).unwrap()
-    }
-
-    /// `stage.table` and its content hash, for every table of the last run.
-    fn contents(&self, study: &str) -> Vec<(String, String)> {
-        let manifest = self.manifest(study);
-        let stages = manifest["stages"].as_array().unwrap();
-        let tables = stages.iter().flat_map(|stage| stage["tables"].as_array().unwrap().clone());
-        let text = |value: &Value| value.as_str().unwrap().to_owned();
-        tables.map(|table| (text(&table["name"]), text(&table["content"]))).collect()
-    }
-
-    fn statuses(&self, study: &str) -> Vec<(String, String)> {
-        let manifest = self.manifest(study);
-        let text = |value: &Value| value.as_str().unwrap().to_owned();
-        manifest["stages"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|stage| (text(&stage["name"]), text(&stage["status"])))
-            .collect()
-    }
-}
+use crate::desk::Desk;
 
 #[test]
 fn a_study_runs_once_and_then_there_is_nothing_to_do() {
@@ -92,13 +39,12 @@ fn an_added_torque_touches_only_what_depends_on_it() {
     let (plan, _) = desk.run(&["plan", "quick.yaml"], 0);
     assert!(plan.contains("1 of 6"), "the plan says that one chunk of six is missing:\n{plan}");
     desk.run(&["run", "quick.yaml"], 0);
-    let ran: Vec<String> =
-        desk.statuses("quick").into_iter().filter(|(_, status)| status == "ran").map(|(name, _)| name).collect();
-    assert_eq!(ran, ["ste", "report"]);
+    // The report reads the table at 150 N m, whose content has one row more.
+    assert_eq!(desk.ran("quick"), ["ste", "report"]);
 }
 
 #[test]
-fn one_and_two_threads_give_the_same_contents() {
+fn one_and_three_threads_give_the_same_contents() {
     let contents = |jobs: &str| {
         let desk = Desk::with("quick.yaml");
         desk.run(&["run", "quick.yaml", "--jobs", jobs], 0);
@@ -106,8 +52,7 @@ fn one_and_two_threads_give_the_same_contents() {
     };
     let one = contents("1");
     assert!(one.len() > 8);
-    assert_eq!(one, contents("2"));
-    assert_eq!(one, contents("5"));
+    assert_eq!(one, contents("3"));
 }
 
 #[test]
@@ -148,9 +93,7 @@ fn only_force_and_dry_run_do_what_they_say() {
     desk.run(&["run", "quick.yaml", "--dry-run"], 0);
     assert!(!desk.path("results").exists() && !desk.path(".gearstudy").exists(), "a dry run writes nothing");
     desk.run(&["run", "quick.yaml", "--only", "stiffness"], 0);
-    let names: Vec<String> =
-        desk.statuses("quick").into_iter().filter(|(_, status)| status == "ran").map(|(name, _)| name).collect();
-    assert_eq!(names, ["pair", "stiffness"]);
+    assert_eq!(desk.ran("quick"), ["pair", "stiffness"]);
     desk.run(&["run", "quick.yaml"], 0);
     let before = desk.contents("quick");
     let (out, _) = desk.run(&["run", "quick.yaml", "--force", "--explain"], 0);
@@ -169,10 +112,10 @@ fn results_and_cache_go_where_they_are_told() {
     let output =
         desk.command(&["run", "quick.yaml", "--results", "elsewhere"]).env("GEARSTUDY_CACHE", "kept").output().unwrap();
     assert!(output.status.success());
-    assert!(
-        desk.statuses_in("elsewhere").iter().all(|status| status == "hit"),
-        "all came from the cache that was named"
-    );
+    let manifest = fs::read(desk.path("elsewhere/quick/manifest.json")).unwrap();
+    let manifest: Value = serde_json::from_slice(&manifest).unwrap();
+    let all_hits = manifest["stages"].as_array().unwrap().iter().all(|stage| stage["status"] == "hit");
+    assert!(all_hits, "all came from the cache that was named");
 }
 
 #[test]
@@ -201,17 +144,4 @@ fn what_a_user_asks_about_the_program_is_answered() {
     desk.run(&["new", "mine.yaml"], 0);
     desk.run(&["check", "mine.yaml"], 0);
     desk.run(&["new", "mine.yaml"], 1);
-}
-
-impl Desk {
-    fn statuses_in(&self, results: &str) -> Vec<String> {
-        let path = self.path(results).join("quick/manifest.json");
-        let manifest: Value = serde_json::from_slice(&fs::read(path).unwrap()).unwrap();
-        manifest["stages"]
-            .as_array()
-            .unwrap()
-            .iter()
-            .map(|stage| stage["status"].as_str().unwrap().to_owned())
-            .collect()
-    }
 }

@@ -1,0 +1,120 @@
+//! What the benches measure on: the study `energy_ga`, its stages run one by one, its pair and its design `ga`.
+
+use std::collections::BTreeMap;
+use std::path::PathBuf;
+use std::sync::atomic::AtomicBool;
+
+use gearstudy::base::seed::Seed;
+use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
+use gearstudy::gear::geometry::Pair;
+use gearstudy::gear::geometry::root::RootShape;
+use gearstudy::gear::modification::{self, Design};
+use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearstudy::stage::{Context, Demand, Inputs, designs, pair};
+use gearstudy::study::{self, Node, Study};
+use gearstudy::table::data::Table;
+
+use crate::support::record;
+
+/// \[N m\], the load of the article's Table 2.
+pub const TORQUE: f64 = 50.0;
+
+/// Where the study lies.
+pub fn path() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("studies/energy_ga.yaml")
+}
+
+/// The study, and the tables of the stages that were run.
+pub struct Stages {
+    study: Study,
+    tables: BTreeMap<String, Vec<Table>>,
+}
+
+impl Stages {
+    pub fn new() -> Self {
+        let study = study::load(&path()).unwrap_or_else(|error| panic!("{error}"));
+        Self { study, tables: BTreeMap::new() }
+    }
+
+    fn node(&self, name: &str) -> &Node {
+        self.study.nodes.iter().find(|node| node.name == name).unwrap_or_else(|| panic!("no stage `{name}`"))
+    }
+
+    /// Runs what a stage reads, not the stage.
+    pub fn prepare(&mut self, name: &str) {
+        let needed: Vec<String> = self.node(name).stage.inputs().into_iter().map(|port| port.stage).collect();
+        for stage in needed {
+            if !self.tables.contains_key(&stage) {
+                self.prepare(&stage);
+                let tables = self.run(&stage);
+                self.tables.insert(stage, tables);
+            }
+        }
+    }
+
+    /// Runs a stage alone, on what [`Self::prepare`] left.
+    pub fn run(&self, name: &str) -> Vec<Table> {
+        let node = self.node(name);
+        let mut inputs = Inputs::default();
+        for port in node.stage.inputs() {
+            let stage = match port.through {
+                None => port.stage,
+                Some(through) => {
+                    let ports = self.node(&port.stage).stage.inputs();
+                    ports.into_iter().find(|port| port.name == through).map(|port| port.stage).unwrap_or_default()
+                }
+            };
+            inputs.ports.insert(port.name, self.tables[&stage].iter().collect());
+        }
+        let schemas = node.stage.outputs();
+        let tables =
+            schemas.iter().filter(|schema| !schema.on_demand).map(|schema| (schema.name.clone(), <_>::default()));
+        let demand = Demand { tables: tables.collect() };
+        let context = Context {
+            seed: Seed::of_stage(self.study.seed, name),
+            demand: &demand,
+            stop: &AtomicBool::new(false),
+            progress: &|_| {},
+            warn: &|_| {},
+        };
+        node.stage.run(&context, &inputs).unwrap_or_else(|error| panic!("{name}: {error:?}"))
+    }
+
+    /// The article's pair.
+    pub fn pair(&mut self) -> Pair {
+        self.prepare("stiffness");
+        let tables = &self.tables["pair"];
+        let table = |name: &str| tables.iter().find(|table| table.name() == name).expect("the stage gives it");
+        pair::read(table("gears"), table("pair")).expect("it was just written")
+    }
+
+    /// A design of the stage `designs`.
+    pub fn design(&mut self, name: &str) -> Design {
+        let pair = self.pair();
+        self.prepare("ste");
+        let tables = &self.tables["designs"];
+        let table = |name: &str| tables.iter().find(|table| table.name() == name).expect("the stage gives it");
+        let designs = designs::read(table("designs"), table("elements"), modification::members());
+        let designs = designs.expect("it was just written");
+        let named = designs.iter().find(|design| design.name == name).expect("the study has it");
+        named.built(&pair).expect("it fits the pair")
+    }
+}
+
+/// What the study's `stiffness` and `stiffness_coupled` say, with either contact law.
+pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
+    Assumptions { root: RootShape::CircularFillet, contact, coupled }
+}
+
+/// The energy method on a pair.
+pub fn compliance(pair: &Pair, assumptions: Assumptions) -> PairCompliance {
+    let method = compliance::method("energy").expect("it is registered");
+    let options = record(method.member.fields, &[]);
+    (method.tabulate)(&options, pair, assumptions).expect("the study runs with it").compliance
+}
+
+/// 64 positions, 33 slices.
+pub fn cycle(pair: &Pair, contact: ContactLaw, coupled: bool) -> MeshCycle {
+    let compliance = compliance(pair, assumptions(contact, coupled));
+    MeshCycle::new(pair, &compliance, Settings::default()).expect("its contact ratio is 1.65")
+}

@@ -1,0 +1,68 @@
+//! Gears: geometry, compliance tables, mesh cycle, curves of the transmission error.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group};
+use gearstudy::gear::compliance::ContactLaw::{Linear, LoadDependent};
+use gearstudy::gear::geometry::Pair;
+use gearstudy::gear::transmission_error::curve::Wanted;
+use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearstudy::gear::transmission_error::loading::Loading;
+
+use crate::article::{Stages, TORQUE, assumptions, compliance, cycle};
+use crate::brief;
+
+criterion_group!(name = benches; config = brief(); targets = tables, curves, stages);
+
+/// What no modification changes.
+fn tables(criterion: &mut Criterion) {
+    let pair = Stages::new().pair();
+    let mut group = criterion.benchmark_group("gear");
+    group.bench_function("geometry", |bencher| {
+        let specifications = (pair.pinion.specification, pair.gear.specification);
+        bencher.iter(|| Pair::new(black_box(specifications.0), specifications.1, None));
+    });
+    for (name, coupled) in [("uncoupled", false), ("coupled", true)] {
+        let assumptions = assumptions(Linear, coupled);
+        group.bench_function(format!("compliance {name}"), |bencher| {
+            bencher.iter(|| compliance(black_box(&pair), assumptions));
+        });
+        let compliance = compliance(&pair, assumptions);
+        group.bench_function(format!("cycle {name}"), |bencher| {
+            bencher.iter(|| MeshCycle::new(black_box(&pair), &compliance, Settings::default()));
+        });
+    }
+}
+
+/// Tip relief on both gears and crowning, 64 positions; with the summary, and the lean path of optimisers.
+fn curves(criterion: &mut Criterion) {
+    let mut stages = Stages::new();
+    let (pair, design) = (stages.pair(), stages.design("ga"));
+    let mut group = criterion.benchmark_group("ste");
+    for (name, contact, coupled) in
+        [("uncoupled", Linear, false), ("coupled", Linear, true), ("load-dependent", LoadDependent, false)]
+    {
+        let cycle = cycle(&pair, contact, coupled);
+        let wanted = Wanted { harmonics: 8, pressure: false };
+        group.bench_function(format!("curve {name}"), |bencher| {
+            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+        });
+        group.bench_function(format!("curve and summary {name}"), |bencher| {
+            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve_and_summary(wanted));
+        });
+        group.bench_function(format!("peak-to-peak {name}"), |bencher| {
+            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).peak_to_peak());
+        });
+    }
+}
+
+/// Stages of the study alone, on all threads.
+fn stages(criterion: &mut Criterion) {
+    let mut stages = Stages::new();
+    let mut group = criterion.benchmark_group("stage");
+    group.sample_size(10);
+    for name in ["stiffness", "ste", "ste_coupled", "optimum", "optimum_de"] {
+        stages.prepare(name);
+        group.bench_function(name, |bencher| bencher.iter(|| stages.run(name)));
+    }
+}

@@ -1,0 +1,105 @@
+//! Folders that cannot be written, files where folders should be: one message, no panic, and nothing lost.
+//!
+//! Everything is tried with paths that run through a regular file, which no user, root included, can make a folder of.
+
+use std::fs;
+
+use crate::desk::Desk;
+
+/// The last line of standard error is the program's; it must be one sentence that names the path.
+fn one_message(error: &str, path: &str) {
+    let own: Vec<&str> = error.lines().filter(|line| line.starts_with("gearstudy: ")).collect();
+    assert_eq!(own.len(), 1, "{error}");
+    assert!(own[0].contains(path) && !error.contains("panicked"), "{error}");
+}
+
+#[test]
+fn results_that_cannot_be_written_are_one_message_and_the_work_is_kept() {
+    let desk = Desk::with("quick.yaml");
+    fs::write(desk.path("file"), "").unwrap();
+    for results in ["file", "file/below"] {
+        let (_, error) = desk.run(&["run", "quick.yaml", "--results", results], 1);
+        one_message(&error, results);
+    }
+    desk.run(&["run", "quick.yaml"], 0);
+    let statuses = desk.statuses("quick");
+    assert!(statuses.iter().all(|(_, status)| status == "hit"), "what was computed is kept: {statuses:?}");
+}
+
+#[test]
+fn a_file_where_the_study_s_folder_should_be_is_left_alone() {
+    let desk = Desk::with("quick.yaml");
+    fs::create_dir(desk.path("results")).unwrap();
+    fs::write(desk.path("results/quick"), "mine").unwrap();
+    let (_, error) = desk.run(&["run", "quick.yaml"], 1);
+    one_message(&error, "results/quick");
+    assert_eq!(fs::read_to_string(desk.path("results/quick")).unwrap(), "mine");
+}
+
+/// Where a table should go there is a folder: the table cannot be renamed into place.
+#[test]
+fn a_table_that_cannot_be_put_in_place_is_named() {
+    let desk = Desk::with("quick.yaml");
+    fs::create_dir_all(desk.path("results/quick/ste.curve.parquet")).unwrap();
+    let (_, error) = desk.run(&["run", "quick.yaml"], 1);
+    one_message(&error, "ste.curve.parquet");
+    let left: Vec<_> = fs::read_dir(desk.path("results/quick"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().to_string_lossy().into_owned())
+        .filter(|name| name.starts_with('.'))
+        .collect();
+    assert!(left.is_empty(), "{left:?}");
+    fs::remove_dir(desk.path("results/quick/ste.curve.parquet")).unwrap();
+    desk.run(&["run", "quick.yaml"], 0);
+    desk.run(&["table", "quick.yaml", "ste.curve"], 0);
+}
+
+#[test]
+fn a_cache_that_cannot_be_made_or_written_is_one_message() {
+    let desk = Desk::with("quick.yaml");
+    fs::write(desk.path("file"), "").unwrap();
+    for cache in ["file", "file/below"] {
+        let (_, error) = desk.run(&["run", "quick.yaml", "--cache", cache], 1);
+        one_message(&error, cache);
+        assert!(!desk.path("results").exists());
+    }
+    // Where there is no folder yet a plan asks for none; a file is no cache for it either.
+    desk.run(&["plan", "quick.yaml", "--cache", "file/below"], 0);
+    one_message(&desk.run(&["plan", "quick.yaml", "--cache", "file"], 1).1, "file");
+    // The cache can be opened, but nothing can be kept in it.
+    desk.run(&["run", "quick.yaml", "--only", "pair", "--cache", "kept"], 0);
+    fs::remove_dir_all(desk.path("kept/entries")).unwrap();
+    fs::create_dir(desk.path("kept/entries")).unwrap();
+    for byte in 0..=255_u8 {
+        fs::write(desk.path(&format!("kept/entries/{byte:02x}")), "").unwrap();
+    }
+    let (_, error) = desk.run(&["run", "quick.yaml", "--cache", "kept"], 3);
+    one_message(&error, "pair failed");
+    assert!(error.contains("pair: failed: cannot make the cache folder `kept/entries/"), "{error}");
+}
+
+#[test]
+fn damage_in_the_cache_or_the_results_is_mended() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml"], 0);
+    let before = desk.contents("quick");
+    fs::write(desk.path("results/quick/ste.curve.parquet"), "no table").unwrap();
+    fs::remove_file(desk.path("results/quick/quick.h5")).unwrap();
+    fs::write(desk.path("results/quick/manifest.json"), "{ \"format\": ").unwrap();
+    let mut cut = 0;
+    for folder in fs::read_dir(desk.path(".gearstudy/cache/entries")).unwrap() {
+        for entry in fs::read_dir(folder.unwrap().path()).unwrap() {
+            let path = entry.unwrap().path();
+            let bytes = fs::read(&path).unwrap();
+            fs::write(&path, &bytes[..bytes.len() / 2]).unwrap();
+            cut += 1;
+        }
+    }
+    assert!(cut > 8);
+    let (plan, _) = desk.run(&["plan", "quick.yaml"], 0);
+    assert!(plan.contains("object damaged"), "{plan}");
+    desk.run(&["run", "quick.yaml"], 0);
+    assert_eq!(before, desk.contents("quick"));
+    desk.run(&["table", "quick.yaml", "ste.curve"], 0);
+    assert!(desk.run(&["run", "quick.yaml"], 0).0.contains("nothing to do"));
+}

@@ -1,0 +1,162 @@
+//! Every modification family, compliance method and optimiser runs on a standard pair and gives finite tables that
+//! differ from those without it.
+
+use std::collections::BTreeSet;
+
+use gearstudy::gear::compliance::METHODS;
+use gearstudy::gear::modification::{FAMILIES, members};
+use gearstudy::optimize;
+
+use super::is_name;
+use super::walk::{load, walk};
+
+const PAIR: &str = "
+  pair:
+    kind: geometry
+    module: 3 mm
+    pinion: { teeth: 24, face_width: 20 mm, bore_radius: 18 mm }
+    gear: { teeth: 36, face_width: 20 mm, bore_radius: 28 mm }
+";
+
+fn study(stages: &str) -> String {
+    format!("study: t\nseed: 5\nstages:{PAIR}{stages}")
+}
+
+/// Ways to write each family; every one must do something to the transmission error.
+const FAMILY_USES: &[(&str, &str)] = &[
+    ("tip_relief", "{ gear: both, amount: 6 um, length: 4 mm }"),
+    ("tip_relief", "{ gear: pinion, amount: 6 um, fraction: 1, curve: parabolic }"),
+    ("tip_relief", "{ gear: gear, amount: 6 um, fraction: 0.8, curve: power, exponent: 1.5 }"),
+    ("tip_relief", "{ gear: both, amount: 6 um, length: 1 mm, counted_from: single_zone }"),
+    ("tip_relief", "{ gear: both, amount: 6 um, length: 2 mm, counted_from: zone_end }"),
+    ("tip_relief", "{ gear: pinion, amount: 6 um, start_roll_angle: 24 deg }"),
+    ("tip_relief", "{ gear: pinion, amount: 6 um, start_diameter: 73 mm }"),
+    (
+        "tip_relief",
+        "{ gear: both, length: 4 mm, iso_amount: { tangential_load: 4000 N, mesh_stiffness: 19 N/(mm um) } }",
+    ),
+    ("root_relief", "{ gear: both, amount: 6 um, length: 4 mm }"),
+    ("root_relief", "{ gear: pinion, amount: 6 um, fraction: 1, curve: parabolic }"),
+    ("root_relief", "{ gear: gear, amount: 6 um, length: 1 mm, counted_from: single_zone }"),
+    ("profile_crowning", "{ gear: both, amount: 5 um }"),
+    ("profile_slope", "{ gear: pinion, amount: 5 um }"),
+    ("profile_slope", "{ gear: gear, amount: -5 um }"),
+    ("lead_crowning", "{ gear: pinion, amount: 5 um }"),
+    ("helix_slope", "{ gear: gear, amount: -5 um }"),
+    ("end_relief", "{ gear: both, amount: 5 um, length: 3 mm }"),
+    ("end_relief", "{ gear: pinion, amount: 5 um, length: 3 mm, end: I, curve: parabolic }"),
+    ("end_relief", "{ gear: pinion, amount: 5 um, length: 3 mm, end: II, curve: power, exponent: 3 }"),
+];
+
+#[test]
+fn every_family_changes_the_transmission_error() {
+    let used: BTreeSet<_> = FAMILY_USES.iter().map(|(family, _)| *family).collect();
+    let known: BTreeSet<_> = FAMILIES.iter().map(|family| family.member.name).collect();
+    assert_eq!(used, known, "a family without a use here, or the reverse");
+    assert!(members().iter().map(|member| member.name).eq(FAMILIES.iter().map(|family| family.member.name)));
+    let mut designs =
+        "  designs:\n    kind: modification\n    pair: pair\n    designs:\n      unmodified: []\n".to_owned();
+    for (index, (family, fields)) in FAMILY_USES.iter().enumerate() {
+        assert!(is_name(family));
+        designs += &format!("      d{index}: [{family}: {fields}]\n");
+    }
+    for coupling in ["none", "body"] {
+        let text = study(&format!(
+            "  k: {{ kind: stiffness, pair: pair, coupling: {coupling} }}\n{designs}  ste: {{ kind: ste, stiffness: k, designs: designs, torque: 150 N m, positions: 16 }}\n"
+        ));
+        let ran = walk(&load(&text));
+        let summary = ran["ste"].tables.iter().find(|table| table.name() == "summary").unwrap();
+        let value = |column: &str, design: &str| {
+            let row = summary.texts("design").iter().position(|name| name == design).unwrap();
+            summary.floats(column)[row]
+        };
+        let columns = ["mean", "maximum", "minimum", "variance", "largest_pressure"];
+        let plain = columns.map(|column| value(column, "unmodified"));
+        for (index, (family, fields)) in FAMILY_USES.iter().enumerate() {
+            let values = columns.map(|column| value(column, &format!("d{index}")));
+            assert!(values.iter().all(|value| value.is_finite() && *value > 0.0), "{family}: {fields}: {values:?}");
+            // Material was only taken off: the approach cannot be smaller anywhere, so not in the mean.
+            assert!(values[0] > plain[0] * (1.0 + 1e-6), "{family}: {fields}: {} {}", values[0], plain[0]);
+        }
+        let resolved = ran["designs"].tables.iter().find(|table| table.name() == "resolved").unwrap();
+        assert!(resolved.rows() >= FAMILY_USES.len());
+        assert!(resolved.floats("amount").iter().all(|amount| amount.abs() > 1.0), "every amount is shown, in µm");
+    }
+}
+
+#[test]
+fn every_compliance_method_runs_with_every_root_contact_and_coupling() {
+    let mut stages = String::new();
+    let mut count = 0;
+    for method in METHODS {
+        assert!(is_name(method.member.name) && !method.member.summary.is_empty());
+        for root in ["trochoid", "circular_fillet", "base_circle"] {
+            for contact in ["linear", "load_dependent"] {
+                for coupling in ["none", "body"] {
+                    let name = method.member.name;
+                    stages += &format!(
+                        "  k{count}: {{ kind: stiffness, pair: pair, method: {name}, root: {root}, contact: {contact}, coupling: {coupling}, torque: 150 N m }}\n"
+                    );
+                    count += 1;
+                }
+            }
+        }
+    }
+    let ran = walk(&load(&study(&stages)));
+    let summary = |index: usize, column: &str| {
+        let tables = &ran[&format!("k{index}")].tables;
+        tables.iter().find(|table| table.name() == "summary").unwrap().floats(column)[0]
+    };
+    for index in 0..count {
+        let [single, double] = ["single_max", "double_max"].map(|column| summary(index, column));
+        assert!(
+            (2e8..6e8).contains(&single) && double > 1.2 * single && double < 2.0 * single,
+            "{index}: {single} {double}"
+        );
+        // Uncoupled and coupled differ where two pairs are in contact, and only there.
+        if index % 2 == 1 {
+            assert!((summary(index - 1, "single_max") / single - 1.0).abs() < 1e-12);
+            assert!(summary(index - 1, "double_max") > 1.01 * double);
+        }
+    }
+}
+
+#[test]
+fn every_optimiser_finds_something_better_than_nothing() {
+    let methods = [
+        ("genetic", "{ population: 12, generations: 6 }"),
+        ("differential_evolution", "{ population: 8, generations: 8, polish: nelder_mead }"),
+        ("nelder_mead", "{ evaluations: 80 }"),
+        ("grid", "{ levels: 6 }"),
+        ("latin_hypercube", "{ points: 40 }"),
+        ("sobol", "{ points: 32 }"),
+    ];
+    let known: BTreeSet<_> = optimize::members().iter().map(|member| member.name).collect();
+    assert_eq!(known, methods.iter().map(|(name, _)| *name).collect(), "a method without a run here, or the reverse");
+    let mut stages = "  k: { kind: stiffness, pair: pair }\n  none: { kind: modification, pair: pair, designs: { unmodified: [] } }\n".to_owned();
+    for objective in ["peak_to_peak", "variance"] {
+        for (name, fields) in methods {
+            stages += &format!(
+                "  {name}_{objective}:\n    kind: optimizer\n    stiffness: k\n    name: {name}_{objective}\n    method: {{ {name}: {fields} }}\n    minimize: {objective}\n    positions: 8\n    at: {{ torque: [100 N m, 150 N m], combine: mean }}\n    design:\n      - tip_relief: {{ gear: both, amount: [0 um, 30 um], fraction: [0.2, 1] }}\n"
+            );
+        }
+    }
+    let all = methods
+        .iter()
+        .flat_map(|(name, _)| ["peak_to_peak", "variance"].map(|objective| format!("{name}_{objective}")));
+    let all: Vec<String> = all.collect();
+    stages += &format!("  ste: {{ kind: ste, stiffness: k, designs: [none, {}], torque: 150 N m }}\n", all.join(", "));
+    let ran = walk(&load(&study(&stages)));
+    let summary = ran["ste"].tables.iter().find(|table| table.name() == "summary").unwrap();
+    let row = |design: &str| summary.texts("design").iter().position(|name| name == design).unwrap();
+    for name in &all {
+        let best = &ran[name].tables[0];
+        assert_eq!(best.texts("design"), [name.clone()]);
+        let (amount, fraction) = (best.floats("tip_relief_amount")[0], best.floats("tip_relief_fraction")[0]);
+        assert!((0.0..=30.0).contains(&amount) && (0.2..=1.0).contains(&fraction), "{name}: {amount} {fraction}");
+        assert!(best.floats("objective")[0] < 4.0, "{name}: {}", best.floats("objective")[0]);
+        // What the search promises is what the stage `ste` finds for the design it wrote.
+        let (found, plain) = (summary.floats("variance")[row(name)], summary.floats("variance")[row("unmodified")]);
+        assert!(found < 0.6 * plain, "{name}: {found} {plain}");
+    }
+}

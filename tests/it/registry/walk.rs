@@ -1,0 +1,94 @@
+//! A runner of a dozen lines, without cache, threads or demand from downstream: the second method for what the real one
+//! does, and a way to see single stages.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::AtomicBool;
+
+use gearstudy::base::seed::Seed;
+use gearstudy::stage::{Context, Demand, Inputs, Stage};
+use gearstudy::study::{self, Study};
+use gearstudy::table::data::Table;
+
+/// All tables of a stage, in its own order, and what it warned of.
+pub struct Ran {
+    pub tables: Vec<Table>,
+    pub warnings: Vec<String>,
+}
+
+pub fn load(text: &str) -> Study {
+    study::load_text(text, Path::new("t.yaml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Everything the stage can give, or only what is not on demand.
+pub fn demand(stage: &dyn Stage, everything: bool) -> Demand {
+    let schemas = stage.outputs().into_iter().filter(|schema| everything || !schema.on_demand);
+    let columns = |columns: &[gearstudy::table::schema::Column]| -> BTreeSet<String> {
+        columns.iter().filter(|column| everything && column.on_demand).map(|column| column.name.clone()).collect()
+    };
+    Demand { tables: schemas.map(|schema| (schema.name.clone(), columns(&schema.columns))).collect() }
+}
+
+/// Runs the stages of a study one after the other, each with all that the ones before it can give.
+pub fn walk(study: &Study) -> BTreeMap<String, Ran> {
+    let mut done: BTreeMap<String, Ran> = BTreeMap::new();
+    while done.len() < study.nodes.len() {
+        let before = done.len();
+        for node in &study.nodes {
+            let sources = sources(study, node.stage.as_ref());
+            if done.contains_key(&node.name) || !sources.values().all(|stage| done.contains_key(stage)) {
+                continue;
+            }
+            let mut inputs = Inputs::default();
+            for (port, stage) in &sources {
+                inputs.ports.insert(port.clone(), done[stage].tables.iter().collect());
+            }
+            let stage = node.stage.as_ref();
+            if demand(stage, false) != demand(stage, true) {
+                run(study.seed, &node.name, stage, &inputs, false);
+            }
+            let ran = run(study.seed, &node.name, stage, &inputs, true);
+            done.insert(node.name.clone(), ran);
+        }
+        assert!(done.len() > before, "nothing can go on");
+    }
+    done
+}
+
+/// The stage behind each port.
+fn sources(study: &Study, stage: &dyn Stage) -> BTreeMap<String, String> {
+    let resolve = |name: &str, through: Option<&str>| {
+        let Some(through) = through else { return name.to_owned() };
+        let middle = study.nodes.iter().find(|node| node.name == name).unwrap();
+        middle.stage.inputs().into_iter().find(|port| port.name == through).unwrap().stage
+    };
+    stage.inputs().into_iter().map(|port| (port.name.clone(), resolve(&port.stage, port.through))).collect()
+}
+
+/// Runs one stage, and holds it to giving exactly what it was asked for.
+fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bool) -> Ran {
+    let demand = demand(stage, everything);
+    let (stop, warnings) = (AtomicBool::new(false), Mutex::new(Vec::new()));
+    let last = Mutex::new(0.0);
+    let progress = |share: f64| {
+        assert!((0.0..=1.0).contains(&share), "`{name}` is done to {share}");
+        *last.lock().unwrap() = share;
+    };
+    let context = Context {
+        seed: Seed::of_stage(seed, name),
+        demand: &demand,
+        stop: &stop,
+        progress: &progress,
+        warn: &|text| warnings.lock().unwrap().push(text),
+    };
+    let tables = stage.run(&context, inputs).unwrap_or_else(|failure| panic!("`{name}`: {failure}"));
+    let wanted: Vec<_> = stage.outputs().into_iter().filter(|schema| demand.table(&schema.name)).collect();
+    let wanted: Vec<_> = wanted.into_iter().map(|schema| demand.narrowed(schema)).collect();
+    let given: Vec<_> = tables.iter().map(|table| table.schema().clone()).collect();
+    assert_eq!(given, wanted, "`{name}` gives other tables than it was asked for");
+    let mut warnings = warnings.into_inner().unwrap();
+    warnings.sort();
+    warnings.dedup();
+    Ran { tables, warnings }
+}
