@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, 4 differences found, \
+#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, \
     70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
