@@ -77,10 +77,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     let quiet = arguments.quiet;
     match &arguments.command {
         Command::New { file } => show::new_study(file),
-        Command::Check { studies } => {
-            show::check(&load_all(studies)?, quiet);
-            Ok(())
-        }
+        Command::Check { studies } => show::check(studies, quiet),
         Command::Plan { studies, selection, json } => run::plan(&load_all(studies)?, places, selection, *json),
         Command::Run { studies, selection, explain, dry_run: true, .. } => {
             let _ = explain;

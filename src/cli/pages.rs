@@ -5,25 +5,37 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use crate::base::digest::Writer;
 use crate::report;
 use crate::report::text;
 use crate::store::file::{self, Durability};
 use crate::store::manifest::Manifest;
-use crate::store::results::Folder;
+use crate::store::results::{Folder, MANIFEST};
 use crate::table::data::Table;
 
 const PAGE: &str = "report.html";
 const FIGURES: &str = "figures";
+const MARK_END: &str = "-->";
 
 #[must_use]
 pub(super) fn path(folder: &Folder) -> PathBuf {
     folder.path().join(PAGE)
 }
 
-/// Whether the page was written.
+/// Whether the page is there with its figures, and is that of the manifest as it stands: a run may have been killed
+/// between the two.
 #[must_use]
-pub(super) fn are_there(folder: &Folder) -> bool {
-    path(folder).is_file()
+pub(super) fn are_current(folder: &Folder) -> bool {
+    let Ok(page) = fs::read_to_string(path(folder)) else { return false };
+    let Some(figures) = page.lines().last().and_then(|line| line.strip_prefix(&mark(folder))) else { return false };
+    let names = figures.trim_end_matches(MARK_END).split_whitespace();
+    names.map(|name| folder.path().join(FIGURES).join(name)).all(|figure| figure.is_file())
+}
+
+/// How the last line of a page begins: of which manifest it is.
+fn mark(folder: &Folder) -> String {
+    let manifest = fs::read_to_string(folder.path().join(MANIFEST)).unwrap_or_default();
+    format!("<!-- manifest {} figures ", Writer::new("page").text(&manifest).finish())
 }
 
 /// Draws the page and the figures of a run; one sentence about the verdicts.
@@ -33,12 +45,17 @@ pub(super) fn are_there(folder: &Folder) -> bool {
 pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
     let rendered =
         report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
+    let _lock = folder.lock().map_err(|error| error.to_string())?;
     let figures = folder.path().join(FIGURES);
     let cannot = |path: &Path, error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
     fs::create_dir_all(&figures).map_err(|error| cannot(&figures, &error))?;
     let put =
         |path: &Path, bytes: &[u8]| file::write(path, bytes, Durability::Lazy).map_err(|error| cannot(path, &error));
+    file::sweep(&figures);
+    file::sweep(folder.path());
+    let mut page = rendered.html + "\n" + &mark(folder);
     for (name, svg) in &rendered.figures {
+        page += &format!("{name}.svg ");
         put(&figures.join(format!("{name}.svg")), svg.as_bytes())?;
     }
     // Figures that are no more would be taken for current ones.
@@ -49,7 +66,7 @@ pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, Stri
             fs::remove_file(entry.path()).map_err(|error| cannot(&entry.path(), &error))?;
         }
     }
-    put(&path(folder), rendered.html.as_bytes())?;
+    put(&path(folder), (page + MARK_END + "\n").as_bytes())?;
     Ok(summary(folder, manifest))
 }
 

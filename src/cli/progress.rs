@@ -3,7 +3,7 @@
 //! Must not know: what stages compute.
 
 use std::collections::BTreeMap;
-use std::io::{IsTerminal, Write};
+use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::Mutex;
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
@@ -34,7 +34,7 @@ impl Watcher {
         match &self.bars {
             // Above the bars; when the terminal is gone there is nobody to tell.
             Some(bars) => drop(bars.println(text)),
-            None => out(&format!("{text}\n")),
+            None => tell(&format!("{text}\n")),
         }
     }
 
@@ -109,10 +109,25 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// Writes to standard output; a reader that has closed it (`| head`) ends the program quietly.
+/// Writes to standard output what was asked for; a reader that has closed it (`| head`) ends the program quietly.
 pub fn out(text: &str) {
-    let mut stdout = std::io::stdout().lock();
-    if stdout.write_all(text.as_bytes()).and_then(|()| stdout.flush()).is_err() {
-        std::process::exit(0);
+    match write(text) {
+        Ok(()) => {}
+        Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(0),
+        Err(error) => {
+            eprintln!("gearstudy: cannot write to standard output: {error}");
+            std::process::exit(1);
+        }
     }
+}
+
+/// Writes to standard output how the work goes; the work goes on when nobody reads it.
+pub fn tell(text: &str) {
+    let _ = write(text);
+}
+
+fn write(text: &str) -> std::io::Result<()> {
+    let mut stdout = std::io::stdout().lock();
+    stdout.write_all(text.as_bytes())?;
+    stdout.flush()
 }

@@ -10,7 +10,7 @@ use serde_json::json;
 use super::Ending;
 use super::arguments::{Places, Selection};
 use super::pages;
-use super::progress::{Watcher, duration, out};
+use super::progress::{Watcher, duration, out, tell};
 use super::show::last_run;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
@@ -96,7 +96,7 @@ fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, sto
     let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection)? };
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
-        out(&plan_text(study, &plan));
+        tell(&plan_text(study, &plan));
     }
     let width = study.nodes.iter().map(|node| node.name.chars().count()).max().unwrap_or(0);
     let watcher = Watcher::new(how.quiet, width);
@@ -105,7 +105,7 @@ fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, sto
             RunError::Study(diagnostic) => unknown(&diagnostic),
             other => Ending::Usage(other.to_string()),
         })?;
-    let page = if published.changes == Changes::default() && pages::are_there(&folder) {
+    let page = if published.changes == Changes::default() && pages::are_current(&folder) {
         None
     } else {
         Some(pages::write(&folder, &published.manifest).map_err(Ending::Usage)?)
@@ -128,11 +128,15 @@ fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&st
     let line = match (outcome.ran(), verdicts) {
         (0, None) => format!("nothing to do, {} up to date", count(outcome.stages.len())),
         (ran, verdicts) => {
-            let verdicts = verdicts.filter(|text| !text.is_empty()).map(|text| format!("; {text}")).unwrap_or_default();
-            format!("{} ran in {}{verdicts}", count(ran), duration(outcome.seconds))
+            let work = match ran {
+                0 => "nothing to compute, results brought up to date".to_owned(),
+                ran => format!("{} ran in {}", count(ran), duration(outcome.seconds)),
+            };
+            let verdicts = verdicts.filter(|text| !text.is_empty()).map(|text| format!("; {text}"));
+            work + &verdicts.unwrap_or_default()
         }
     };
-    out(&format!("{}: {line}; {}\n", study.name, pages::path(folder).display()));
+    tell(&format!("{}: {line}; {}\n", study.name, pages::path(folder).display()));
     Ok(())
 }
 
@@ -242,8 +246,8 @@ pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<
         let text = pages::write(&folder, &manifest).map_err(Ending::Usage)?;
         if !quiet {
             out(&pages::verdicts(&folder, &manifest).map_err(Ending::Usage)?);
-            let text = if text.is_empty() { String::new() } else { format!("{text}; ") };
-            out(&format!("{}: {text}{}\n", study.name, pages::path(&folder).display()));
+            let text = if text.is_empty() { "no verdicts" } else { &text };
+            out(&format!("{}: {text}; {}\n", study.name, pages::path(&folder).display()));
         }
     }
     Ok(())

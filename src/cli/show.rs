@@ -4,17 +4,17 @@
 
 use std::fs::OpenOptions;
 use std::io::Write;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::Ending;
 use super::arguments::{Format, Places};
-use super::print;
 use super::progress::out;
+use super::{draw, print};
 use crate::base::error::suggest;
 use crate::stage::{self, kinds::KINDS};
 use crate::store::manifest::{Manifest, TableRecord};
 use crate::store::results::Folder;
-use crate::study::{Study, describe, schema as studies};
+use crate::study::{Study, describe, load, load_text, schema as studies};
 use crate::table::data::Table;
 
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
@@ -22,11 +22,14 @@ const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
 /// Writes a small study; never over a file that is there.
 pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
-    let name: String =
-        stem.chars().map(|c| if c.is_ascii_alphanumeric() || "-_".contains(c) { c } else { '-' }).collect();
+    let allowed = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' };
+    let name: String = stem.chars().map(allowed).take(64).collect();
+    let name = name.trim_matches(['-', '_']);
     // The first line points editors to this repository's schema, which a study elsewhere has not beside it.
     let text: String = TEMPLATE.split_inclusive('\n').skip(1).collect();
-    let text = text.replacen("study: quick", &format!("study: {name}"), 1);
+    let named = |name: &str| text.replacen("study: quick", &format!("study: {name}"), 1);
+    // Nothing is left of some names, and YAML reads `null` otherwise.
+    let text = Some(named(name)).filter(|text| load_text(text, file).is_ok()).unwrap_or_else(|| named("study"));
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
     opened.write_all(text.as_bytes()).map_err(cannot)?;
@@ -34,11 +37,23 @@ pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
     Ok(())
 }
 
-/// Says that the studies are valid: reading them has found nothing wrong.
-pub(super) fn check(studies: &[Study], quiet: bool) {
-    for study in studies.iter().filter(|_| !quiet) {
-        out(&format!("{}: `{}` is valid, {} stages\n", study.path.display(), study.name, study.nodes.len()));
+/// Says of every file whether it is a valid study.
+pub(super) fn check(files: &[PathBuf], quiet: bool) -> Result<(), Ending> {
+    let mut last = None;
+    for file in files {
+        match load(file) {
+            Ok(study) if !quiet => {
+                out(&format!("{}: `{}` is valid, {} stages\n", file.display(), study.name, study.nodes.len()));
+            }
+            Ok(_) => {}
+            Err(error) => {
+                if let Some(earlier) = last.replace(error) {
+                    draw::invalid_study(&earlier);
+                }
+            }
+        }
     }
+    last.map_or(Ok(()), |error| Err(Ending::Invalid(Box::new(error))))
 }
 
 pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {

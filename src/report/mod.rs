@@ -11,7 +11,7 @@ mod scale;
 pub mod text;
 mod verdict;
 
-use crate::store::manifest::Manifest;
+use crate::store::manifest::{Manifest, StageRecord};
 use crate::table::data::{Data, Table};
 
 /// What a run's results look like.
@@ -39,31 +39,38 @@ pub enum ReportError {
 /// # Errors
 /// When a report stage's table, or one that a figure draws, is missing or of another shape.
 pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Rendered, ReportError> {
-    let stages: Vec<&str> = manifest
-        .stages
-        .iter()
-        .filter(|stage| stage.kind == "report" && matches!(stage.status.as_str(), "hit" | "ran"))
-        .map(|stage| stage.name.as_str())
-        .collect();
+    let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == "report").collect();
     let mut parts = Vec::new();
     for stage in &stages {
-        let table = |name: &str| {
-            let name = format!("{stage}.{name}");
-            tables(&name).ok_or(ReportError::Missing(name))
-        };
-        let mut figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
-        if stages.len() > 1 {
-            for figure in &mut figures {
-                figure.name = format!("{stage}-{}", figure.name);
+        let finished = matches!(stage.status.as_str(), "hit" | "ran");
+        match part(&stage.name, tables) {
+            Ok(mut part) => {
+                if stages.len() > 1 {
+                    for figure in &mut part.figures {
+                        figure.name = format!("{}-{}", stage.name, figure.name);
+                    }
+                }
+                parts.push(part);
             }
+            // What is left of an earlier run is shown where it can be; the page says that the stage did not finish.
+            Err(_) if !finished => {}
+            Err(error) => return Err(error),
         }
-        let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
-        parts.push(page::Part { stage: (*stage).to_owned(), verdicts, counts, figures });
     }
     let html = page::html(manifest, &parts, tables)?;
     let figures =
         parts.iter().flat_map(|part| &part.figures).map(|figure| (figure.name.clone(), figure.plot.svg(true)));
     Ok(Rendered { html, figures: figures.collect() })
+}
+
+fn part(stage: &str, tables: &dyn Fn(&str) -> Option<Table>) -> Result<page::Part, ReportError> {
+    let table = |name: &str| {
+        let name = format!("{stage}.{name}");
+        tables(&name).ok_or(ReportError::Missing(name))
+    };
+    let figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
+    let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
+    Ok(page::Part { stage: stage.to_owned(), verdicts, counts, figures })
 }
 
 fn column<'a>(table: &'a Table, name: &str) -> Result<&'a Data, ReportError> {

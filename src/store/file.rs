@@ -3,7 +3,7 @@
 //! Written under a temporary name in the same folder and renamed. The folder itself is not fsynced: should a power cut
 //! undo the rename, the file is missing, which every reader of these files is ready for. Must not know: contents.
 
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Write;
 use std::path::Path;
 
@@ -56,6 +56,16 @@ pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), St
     let mut file = temporary(path.parent().unwrap_or(Path::new(".")))?;
     file.write_all(bytes).map_err(StoreError::io("write", path))?;
     persist(file, path, durability)
+}
+
+/// Removes what killed runs left in a folder that nobody else writes to now.
+pub fn sweep(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        if entry.file_name().to_string_lossy().starts_with(TEMPORARY) {
+            // A leftover that cannot be removed does no harm.
+            let _ = fs::remove_file(entry.path());
+        }
+    }
 }
 
 /// Whether locks work here; where they do not (some network disks) a run goes on without.

@@ -71,7 +71,13 @@ fn unlocked() -> FileBuilder {
 }
 
 fn format(table: String, error: &hdf5_metno::Error) -> StoreError {
-    StoreError::Format { table, problem: error.to_string() }
+    StoreError::Format { table, problem: short(&error.to_string()) }
+}
+
+/// What the system said, where the library adds times, descriptors and addresses to it.
+fn short(error: &str) -> String {
+    let said = error.split_once("error message = '").and_then(|(_, rest)| rest.split_once('\''));
+    said.map_or_else(|| error.replace('\n', " "), |(said, _)| said.to_owned())
 }
 
 fn group(parent: &Group, name: &str) -> hdf5_metno::Result<Group> {
@@ -231,6 +237,14 @@ mod tests {
         writer.finish(&path).unwrap();
         assert_eq!(read(&path, "ste", "summary").unwrap().rows(), 0);
         assert_eq!(read(&path, "ste", "curve").unwrap().rows(), 2);
+    }
+
+    #[test]
+    fn a_message_is_what_the_system_said() {
+        let long = "H5F__close_cb(): can't close file: file write failed: time = Sat Nov 21 06:16:37 2026\n, filename = \
+                    '/r/.partial-S', errno = 28, error message = 'No space left on device', buf = 0x562b, offset = 0";
+        assert_eq!(short(long), "No space left on device");
+        assert_eq!(short("a\nb"), "a b");
     }
 
     #[test]

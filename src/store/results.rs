@@ -117,6 +117,7 @@ impl Folder {
         }
         fs::create_dir_all(&self.path).map_err(StoreError::io("make the results folder", &self.path))?;
         let _lock = self.lock()?;
+        file::sweep(&self.path);
         // Another run may have published while this one waited.
         let old = self.manifest();
         let mut new = self.with_earlier_tables(old.as_ref(), manifest);
@@ -158,7 +159,10 @@ impl Folder {
     }
 
     /// One publisher at a time; a folder can be locked itself, so nothing is left behind.
-    fn lock(&self) -> Result<Option<File>, StoreError> {
+    ///
+    /// # Errors
+    /// When the folder cannot be opened or locked.
+    pub fn lock(&self) -> Result<Option<File>, StoreError> {
         if !cfg!(unix) {
             return Ok(None);
         }

@@ -22,6 +22,9 @@ const ROOT_POINTS: usize = 40;
 /// Below this bore ratio the fitted body formula gives 1.3 to 1.8 times what the ring it was fitted to gives, and it does
 /// not vanish as the bore reaches the root.
 const LEAST_BORE_RATIO: f64 = 1.2;
+/// θ_f \[rad\] below which the fitted formula is all 1/θ_f²: half of what it was fitted for. It goes negative there, and
+/// for still more teeth comes back hundreds of times too large.
+const LEAST_HALF_ANGLE: f64 = 0.005;
 
 const BODIES: &[Choice] = &[
     Choice { name: "sainsot", summary: "the formula that Sainsot, Velex and Duverger fitted to the elastic ring" },
@@ -160,6 +163,10 @@ fn tabulate_side(
         let body = Body::new(root.half_angle, bore_ratio);
         if bore_ratio < LEAST_BORE_RATIO {
             return Err(ComplianceError::ThinRing { side, bore_ratio, least: LEAST_BORE_RATIO });
+        }
+        if root.half_angle < LEAST_HALF_ANGLE {
+            let (half_angle, least) = (root.half_angle, LEAST_HALF_ANGLE);
+            return Err(ComplianceError::ManyTeeth { side, half_angle, least });
         }
         let name = if side == Side::Pinion { "pinion" } else { "gear" };
         (Foundation::Formula(body), body.range_warning().map(|warning| format!("{name}: {warning}")))

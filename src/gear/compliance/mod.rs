@@ -75,6 +75,8 @@ pub enum ComplianceError {
     Unresolved { side: Side, thickness: f64 },
     #[error("{}: the root radius is {} times the bore radius, but must be at least {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(*.least))]
     ThinRing { side: Side, bore_ratio: f64, least: f64 },
+    #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.least))]
+    ManyTeeth { side: Side, half_angle: f64, least: f64 },
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
     NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
 }
@@ -88,7 +90,7 @@ impl ComplianceError {
             Self::Root(error) => error.field(),
             Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
             Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
-            Self::NegativeBody { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
+            Self::NegativeBody { side, .. } | Self::ManyTeeth { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
         }
     }
 }

@@ -17,7 +17,7 @@ use crate::numeric::harmonics;
 /// Cuts closer than this share of the base pitch are one.
 const CLOSEST: f64 = 1e-10;
 /// Cuts that one span may be given for pairs that take up or lose load.
-const DEEPEST: usize = 24;
+const MOST_CUTS: usize = 24;
 
 /// A design under a torque.
 #[derive(Clone)]
@@ -178,7 +178,8 @@ impl<'a> Loading<'a> {
                 while panel <= panels {
                     let to = if panel < panels { start + width * panel } else { end };
                     let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
-                    first = self.smooth(&span, first, DEEPEST, &mut visit);
+                    let mut cuts = MOST_CUTS;
+                    first = self.smooth(&span, first, &mut cuts, &mut visit);
                     from = to;
                     panel += 1.0;
                 }
@@ -188,19 +189,28 @@ impl<'a> Loading<'a> {
     }
 
     /// Visits a span, in parts if the set of loaded pairs changes inside it. Returns the state at its end.
-    fn smooth(&self, span: &Span, first: State, cuts: usize, visit: &mut impl FnMut(&Span, &[State; NODES])) -> State {
+    ///
+    /// All parts share `cuts`: where gaps are equal but for rounding, the changes that rounding makes have no end.
+    fn smooth(
+        &self,
+        span: &Span,
+        first: State,
+        cuts: &mut usize,
+        visit: &mut impl FnMut(&Span, &[State; NODES]),
+    ) -> State {
         let rows = &self.cycle.rows;
         let mut states = [first; NODES];
         for (node, state) in states.iter_mut().enumerate().skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        if cuts > 0
+        if *cuts > 0
             && let Some((position, pair)) = self.change(span, &states)
         {
+            *cuts -= 1;
             let before = Span { end: position, touches: [span.touches[0], Some(pair)], ..*span };
             let after = Span { start: position, touches: [Some(pair), span.touches[1]], ..*span };
-            let middle = self.smooth(&before, first, cuts - 1, visit);
-            return self.smooth(&after, middle, cuts - 1, visit);
+            let middle = self.smooth(&before, first, cuts, visit);
+            return self.smooth(&after, middle, cuts, visit);
         }
         visit(span, &states);
         states[NODES - 1]

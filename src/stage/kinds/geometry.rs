@@ -32,7 +32,8 @@ gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
 
 const FIELDS: &[Field] = &[
     Field::quantity("module", LENGTH, 1e-5, 1.0, "Module m."),
-    Field::quantity("pressure_angle", ANGLE, 0.08, 0.79, "Pressure angle α of the basic rack.").default("20 deg"),
+    Field::quantity("pressure_angle", ANGLE, 0.08, std::f64::consts::FRAC_PI_4, "Pressure angle α of the basic rack.")
+        .default("20 deg"),
     Field::group("rack", RACK, "Basic rack that cuts both gears, in modules (ISO 53).").default("{}"),
     Field::group("material", MATERIAL, "Material of both gears.").default("{}"),
     Field::group("pinion", GEAR, "The gear the torque is given on."),
@@ -48,13 +49,13 @@ const RACK: &[Field] = &[
 ];
 
 const MATERIAL: &[Field] = &[
-    Field::quantity("youngs_modulus", STRESS, 1.0, 1e16, "Young's modulus E.").default("206 GPa"),
+    Field::quantity("youngs_modulus", STRESS, 1.0, 1e15, "Young's modulus E.").default("206 GPa"),
     Field::number("poisson_ratio", 0.0, 0.4999, "Poisson's ratio ν.").default("0.3"),
 ];
 
 const GEAR: &[Field] = &[
-    Field::integer("teeth", 4, 100_000, "Number of teeth z."),
-    Field::quantity("face_width", LENGTH, 1e-7, 1e3, "Face width b."),
+    Field::integer("teeth", 4, 10_000, "Number of teeth z."),
+    Field::quantity("face_width", LENGTH, 1e-6, 100.0, "Face width b."),
     Field::quantity("bore_radius", LENGTH, 0.0, 1e4, "Radius of the bore, where the body is clamped."),
     Field::number("profile_shift", -2.0, 3.0, "Profile shift coefficient x.").default("0.0"),
     Field::quantity("tip_radius", LENGTH, 1e-6, 1e4, "Tip radius r_a, when it is not m(z/2 + h_aP* + x).").optional(),

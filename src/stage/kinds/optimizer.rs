@@ -97,6 +97,12 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         _ => None,
     };
     let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
+    let name = record.text("name");
+    if name.is_empty() || name.chars().count() > 64 || !name.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) {
+        return Err(Diagnostic::new(format!("`{}` cannot be the name of a design", name.escape_debug()))
+            .at(record.place_of("name"))
+            .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"));
+    }
     let optimizer = Optimizer {
         stiffness: record.reference("stiffness").to_owned(),
         method: (method, options.clone()),
@@ -105,7 +111,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         worst: at.choice("combine") == "worst",
         elements: items.iter().filter_map(|item| element(&item.value)).collect(),
         template,
-        name: record.text("name").to_owned(),
+        name: name.to_owned(),
         settings: Settings { positions: whole("positions"), slices: whole("slices") },
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
@@ -183,6 +189,18 @@ impl Optimizer {
         if self.worst { values.fold(0.0, f64::max) } else { values.sum::<f64>() / self.torques.len() as f64 }
     }
 
+    /// Why a search found no design at all, by the one in the middle of the box.
+    fn nothing_built(&self, pair: &Pair) -> Failure {
+        let variables = self.template.variables();
+        let middle: Vec<f64> = variables.iter().map(|variable| 0.5 * (variable.least + variable.most)).collect();
+        let reason =
+            self.template.design(pair, &middle).err().map(|error| format!("; in the middle: {}", error.message));
+        Failure::new(format!(
+            "none of the designs that were tried in the box can be built on this pair{}",
+            reason.unwrap_or_default()
+        ))
+    }
+
     /// The elements with the values of the best point in the place of the ranges.
     fn best_elements(&self, point: &[f64]) -> Vec<Element> {
         let mut values = point.iter();
@@ -198,7 +216,7 @@ impl Optimizer {
     }
 
     fn tables(&self, search: &Search, reason: Reason, pair: &Pair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
-        let best = search.best().ok_or_else(|| Failure::new("no design in the box can be built on this pair"))?;
+        let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
         let peak_to_peak =

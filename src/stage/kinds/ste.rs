@@ -72,6 +72,12 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     if designs.is_empty() {
         return Err(Diagnostic::new("no designs are given").at(record.place_of("designs")));
     }
+    for (index, name) in designs.iter().enumerate() {
+        if designs[..index].contains(name) {
+            let place = record.list("designs")[index].place;
+            return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(place));
+        }
+    }
     Ok(Box::new(Ste {
         stiffness: record.reference("stiffness").to_owned(),
         designs,
@@ -238,12 +244,20 @@ impl Stage for Ste {
         let read = |table| inputs.table("stiffness", table);
         let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
         let cycles = self.cycles(&pair, &compliance)?;
-        let mut designs = Vec::new();
-        for index in 1..=self.designs.len() {
+        let mut designs: Vec<(Design, String)> = Vec::new();
+        let mut givers: Vec<&str> = Vec::new();
+        for (index, giver) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
             let (names, elements) = (inputs.table(&port, "designs")?, inputs.table(&port, "elements")?);
             for named in designs::read(names, elements, modification::members())? {
+                if let Some(earlier) = designs.iter().position(|(_, name)| *name == named.name) {
+                    return Err(Failure::new(format!(
+                        "`{}` and `{giver}` both give a design called `{}`; one of them needs another name",
+                        givers[earlier], named.name
+                    )));
+                }
                 designs.push((named.built(&pair)?, named.name));
+                givers.push(giver);
             }
         }
         let summary_pressure = context.demand.column("summary", "largest_pressure");

@@ -5,6 +5,7 @@ mod ended;
 mod places;
 mod python;
 mod readme;
+mod stubborn;
 
 use std::fs;
 

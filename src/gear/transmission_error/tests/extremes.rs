@@ -197,3 +197,16 @@ fn both_limits_at_the_ends_of_the_zones_are_sampled() {
     assert_eq!((last.cycle_position, last.pairs), (BASE_PITCH, 1));
     assert!(points.windows(2).all(|two| two[0].cycle_position < two[1].cycle_position || two[0].pairs != two[1].pairs));
 }
+
+/// Slopes on both flanks whose gaps add up to a constant: without load all pairs touch at once, but for rounding.
+#[test]
+fn gaps_that_are_equal_but_for_rounding_are_walked_once() {
+    let pair = pair();
+    let cycle = cycle(&pair, &varying());
+    let design = design(&pair, &[("profile_slope", "both", &[("amount", Quantity(8e-6))])]).unwrap();
+    for torque in [0.0, 1e-12] {
+        let mut visits = 0;
+        Loading::new(&cycle, &design, torque).walk(cycle.period() / 16.0, |_, _| visits += 1);
+        assert!(visits < 1000, "{visits} spans");
+    }
+}

@@ -199,7 +199,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
         if si.is_finite() {
             Ok(Outcome::Number(Number { si, dimension }))
         } else {
-            Err(format!("`{node}` is {si}, which is no finite number"))
+            Err(format!("`{}` gives {si}, which is no finite number", node.operator().to_string().trim()))
         }
     };
     match node.operator() {
