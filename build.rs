@@ -37,9 +37,8 @@ fn main() -> io::Result<()> {
     let base = digest(&shared)?;
     let digests = kinds.into_iter().map(|(kind, paths)| Ok(format!("    ({kind:?}, \"{}\"),\n", digest(&paths)?)));
     let digests = digests.collect::<io::Result<Vec<_>>>()?.concat();
-    let lines = format!(
-        "pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n{digests}];\n"
-    );
+    let lines =
+        format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n{digests}];\n");
     fs::write(Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("code.rs"), lines)
 }
 
