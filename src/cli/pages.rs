@@ -6,8 +6,8 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::base::digest::Writer;
-use crate::report;
 use crate::report::text;
+use crate::report::{self, ReportError};
 use crate::store::file::{self, Durability};
 use crate::store::manifest::Manifest;
 use crate::store::results::{Folder, MANIFEST};
@@ -43,8 +43,8 @@ fn mark(folder: &Folder) -> String {
 /// # Errors
 /// When a table cannot be read or a file not be written.
 pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, String> {
-    let rendered =
-        report::render(manifest, &|name| table(folder, manifest, name)).map_err(|error| error.to_string())?;
+    let rendered = report::render(manifest, &|name| table(folder, manifest, name))
+        .map_err(|error| damage(folder, manifest, &error).unwrap_or_else(|| error.to_string()))?;
     let _lock = folder.lock().map_err(|error| error.to_string())?;
     let figures = folder.path().join(FIGURES);
     let cannot = |path: &Path, error: &dyn std::fmt::Display| format!("cannot write {}: {error}", path.display());
@@ -68,6 +68,13 @@ pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, Stri
     }
     put(&path(folder), (page + MARK_END + "\n").as_bytes())?;
     Ok(summary(folder, manifest))
+}
+
+/// What is wrong with the file of a table that a report misses although it is listed.
+fn damage(folder: &Folder, manifest: &Manifest, error: &ReportError) -> Option<String> {
+    let ReportError::Missing(name) = error else { return None };
+    let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == *name)?;
+    folder.table(record).err().map(|error| error.to_string())
 }
 
 fn table(folder: &Folder, manifest: &Manifest, name: &str) -> Option<Table> {

@@ -83,7 +83,11 @@ impl Folder {
     pub fn table(&self, record: &TableRecord) -> Result<Table, StoreError> {
         let path = self.path.join(&record.file);
         let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
-        let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
+        // Runs look at sizes only, so a file of the right size with wrong bytes has to be pointed out.
+        let damaged = |problem: String| StoreError::Damaged {
+            path: path.display().to_string(),
+            problem: format!("{problem}; delete it, and the next run writes it anew"),
+        };
         let table = parquet::read(bytes).map_err(damaged)?;
         if table.content_hash().to_string() == record.content {
             Ok(table)
