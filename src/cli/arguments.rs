@@ -68,7 +68,7 @@ pub enum Command {
         #[arg(long)]
         keep_going: bool,
         /// How many threads to use [default: one per processor].
-        #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+        #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
     },
     /// Say what is up to date, stale or missing, and why.

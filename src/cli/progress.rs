@@ -21,9 +21,7 @@ pub struct Watcher {
 
 impl Watcher {
     #[must_use]
-    pub fn new(quiet: bool, width: usize) -> Self {
-        let bars =
-            (!quiet && std::io::stdout().is_terminal() && std::io::stderr().is_terminal()).then(MultiProgress::new);
+    pub fn new(quiet: bool, width: usize, bars: Option<MultiProgress>) -> Self {
         Self { quiet, width, bars, running: Mutex::default() }
     }
 
@@ -87,13 +85,27 @@ impl Observer for Watcher {
             Event::Failed { stage, fault } => {
                 self.end(stage);
                 // A failure is told even to those who want to hear nothing else.
-                eprintln!("  {stage}: failed: {fault}");
+                aside(self.bars.as_ref(), &format!("  {stage}: failed: {fault}"));
             }
             Event::Skipped { stage, why } => {
                 self.end(stage);
                 self.stage(stage, "skipped", why);
             }
         }
+    }
+}
+
+/// Bars, where there is somebody to look at them.
+#[must_use]
+pub fn bars(quiet: bool) -> Option<MultiProgress> {
+    (!quiet && std::io::stdout().is_terminal() && std::io::stderr().is_terminal()).then(MultiProgress::new)
+}
+
+/// Says something on standard error while bars may be drawn there.
+pub fn aside(bars: Option<&MultiProgress>, text: &str) {
+    match bars {
+        Some(bars) => bars.suspend(|| eprintln!("{text}")),
+        None => eprintln!("{text}"),
     }
 }
 

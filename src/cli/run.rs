@@ -5,12 +5,13 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use indicatif::MultiProgress;
 use serde_json::json;
 
 use super::Ending;
 use super::arguments::{Places, Selection};
 use super::pages;
-use super::progress::{Watcher, duration, out, tell};
+use super::progress::{self, Watcher, aside, duration, out, tell};
 use super::show::last_run;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
@@ -64,10 +65,11 @@ fn stored(error: &StoreError) -> Ending {
 }
 
 pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
-    let stop = stop_flag();
+    let bars = progress::bars(how.quiet);
+    let stop = stop_flag(bars.clone());
     let mut failures = Vec::new();
     for study in studies {
-        match run_one(study, places, selection, how, &stop) {
+        match run_one(study, places, selection, how, bars.as_ref(), &stop) {
             Err(Ending::Failed(message)) if how.keep_going => failures.push(message),
             Err(ending) => return Err(ending),
             Ok(()) => {}
@@ -77,7 +79,7 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
 }
 
 /// Set by Ctrl-C; pressed twice, the program ends at once.
-fn stop_flag() -> Arc<AtomicBool> {
+fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     // Without a handler Ctrl-C ends the program at once; what is finished is kept in that case too.
@@ -85,12 +87,19 @@ fn stop_flag() -> Arc<AtomicBool> {
         if flag.swap(true, Ordering::Relaxed) {
             std::process::exit(130);
         }
-        eprintln!("gearstudy: stopping; once more to stop at once");
+        aside(bars.as_ref(), "gearstudy: stopping; once more to stop at once");
     });
     stop
 }
 
-fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, stop: &AtomicBool) -> Result<(), Ending> {
+fn run_one(
+    study: &Study,
+    places: &Places,
+    selection: &Selection,
+    how: &How,
+    bars: Option<&MultiProgress>,
+    stop: &AtomicBool,
+) -> Result<(), Ending> {
     let cache = Cache::open(&places.cache).map_err(|error| stored(&error))?;
     let folder = Folder::new(&places.results, &study.name);
     let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection)? };
@@ -99,7 +108,7 @@ fn run_one(study: &Study, places: &Places, selection: &Selection, how: &How, sto
         tell(&plan_text(study, &plan));
     }
     let width = study.nodes.iter().map(|node| node.name.chars().count()).max().unwrap_or(0);
-    let watcher = Watcher::new(how.quiet, width);
+    let watcher = Watcher::new(how.quiet, width, bars.cloned());
     let (outcome, published) =
         execute::run(study, &cache, &options, &watcher, stop, &folder).map_err(|error| match error {
             RunError::Study(diagnostic) => unknown(&diagnostic),
