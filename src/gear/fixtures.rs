@@ -9,6 +9,7 @@ use super::modification::{Design, family};
 use crate::base::error::{Diagnostic, Place};
 use crate::base::record::{Entry, Record, Value};
 use crate::numeric::chebyshev::Series;
+use crate::numeric::surface::Surface;
 
 pub const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 pub const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
@@ -95,7 +96,10 @@ pub fn coupled() -> PairCompliance {
     let mut compliance = varying();
     for tooth in [&mut compliance.pinion, &mut compliance.gear] {
         tooth.neighbours = (1..5)
-            .map(|pitches| Series::fit(0.0, 2.0, 20, |u| 0.35e-9 / f64::from(pitches) * (1.0 + 0.2 * u)))
+            .map(|pitches| {
+                let value = |u: f64, v: f64| 0.35e-9 / f64::from(pitches) * (1.0 + 0.2 * u + 0.1 * v * v);
+                Surface::fit([0.0; 2], [2.0; 2], [2, 3], value)
+            })
             .collect();
     }
     PairCompliance { coupled: true, ..compliance }

@@ -10,3 +10,4 @@ pub mod harmonics;
 pub mod lobatto;
 pub mod panels;
 pub mod quadrature;
+pub mod surface;

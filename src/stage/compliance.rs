@@ -7,6 +7,7 @@ use crate::base::error::Failure;
 use crate::base::units::in_unit;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::numeric::chebyshev::{Series, nodes};
+use crate::numeric::surface::Surface;
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -45,12 +46,14 @@ pub fn compliance_schema() -> Schema {
 pub fn neighbours_schema() -> Schema {
     Schema::new(
         "neighbours",
-        "Deflection of a tooth through the gear body per load on a neighbour.",
+        "Deflection of a tooth per load on a neighbour, through the gear body.",
         vec![
             Column::text("gear", "Which gear: pinion or gear.").key(),
             Column::integer("neighbour", "How many pitches apart the two teeth are.").key(),
-            Column::integer("node", "Chebyshev node, from 1.").key(),
-            Column::float("roll_angle", "rad", "Roll angle of the tooth with the smaller roll angle."),
+            Column::integer("node", "Chebyshev node of the first tooth, from 1.").key(),
+            Column::integer("further_node", "Chebyshev node of the further tooth, from 1.").key(),
+            Column::float("roll_angle", "rad", "Roll angle of the loaded point of the first tooth."),
+            Column::float("further_roll_angle", "rad", "Roll angle on the further tooth, where roll angles grow."),
             Column::float(
                 "compliance",
                 "nm/N",
@@ -95,15 +98,21 @@ pub fn write(
             row.extend(SERIES.iter().map(|(_, unit, _, series)| in_unit(series(tooth).value(roll), unit).into()));
             rows.push(row);
         }
-        for (index, series) in tooth.neighbours.iter().enumerate() {
-            for (node, (roll, value)) in series_nodes(series).into_iter().zip(series.node_values()).enumerate() {
-                neighbours.push(vec![
-                    name.into(),
-                    (index + 1).into(),
-                    (node + 1).into(),
-                    roll.into(),
-                    in_unit(value, "nm/N").into(),
-                ]);
+        for (index, surface) in tooth.neighbours.iter().enumerate() {
+            let [first, further] = surface_nodes(surface);
+            let mut values = surface.node_values().into_iter();
+            for (node, &roll) in first.iter().enumerate() {
+                for ((other, &further), value) in further.iter().enumerate().zip(&mut values) {
+                    neighbours.push(vec![
+                        name.into(),
+                        (index + 1).into(),
+                        (node + 1).into(),
+                        (other + 1).into(),
+                        roll.into(),
+                        further.into(),
+                        in_unit(value, "nm/N").into(),
+                    ]);
+                }
             }
         }
     }
@@ -126,8 +135,8 @@ fn common_nodes(tooth: &ToothCompliance) -> Vec<f64> {
     nodes(tooth.bending.lower(), tooth.bending.upper(), count)
 }
 
-fn series_nodes(series: &Series) -> Vec<f64> {
-    nodes(series.lower(), series.upper(), series.coefficients().len())
+fn surface_nodes(surface: &Surface) -> [Vec<f64>; 2] {
+    std::array::from_fn(|axis| nodes(surface.lower()[axis], surface.upper()[axis], surface.counts()[axis]))
 }
 
 /// The compliances that [`write`] wrote.
@@ -159,7 +168,7 @@ fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothComplianc
         if rows.is_empty() {
             break;
         }
-        across.push(series_from(neighbours, "compliance", &rows)?);
+        across.push(surface_from(neighbours, &rows));
     }
     Ok(ToothCompliance {
         bending: series("bending")?,
@@ -173,14 +182,37 @@ fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothComplianc
 
 fn series_from(table: &Table, column: &str, rows: &[usize]) -> Result<Series, Failure> {
     let rolls: Vec<f64> = rows.iter().map(|&row| table.floats("roll_angle")[row]).collect();
-    let (Some(first), Some(last)) = (rolls.first(), rolls.last()) else {
+    if rolls.is_empty() {
         return Err(Failure::new(format!("table `{}` has no rows for this gear", table.name())));
-    };
-    // The outermost nodes are the interval's ends drawn in by cos(π/2n): undo that.
-    let shrink = libm::cos(std::f64::consts::PI / (2 * rolls.len()) as f64);
-    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first) / shrink);
+    }
+    let (lower, upper) = interval(&rolls);
     let values: Vec<f64> = rows.iter().map(|&row| si(table, column, row)).collect();
-    Ok(Series::from_values(middle - half, middle + half, &values))
+    Ok(Series::from_values(lower, upper, &values))
+}
+
+/// The interval whose Chebyshev nodes are `nodes`: the outermost ones are its ends drawn in by cos(π/2n).
+fn interval(nodes: &[f64]) -> (f64, f64) {
+    let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    let shrink = libm::cos(std::f64::consts::PI / (2 * nodes.len()) as f64);
+    let (middle, half) = (0.5 * (first + last), 0.5 * (last - first) / shrink);
+    (middle - half, middle + half)
+}
+
+/// `rows` are not empty and in order of their keys.
+fn surface_from(table: &Table, rows: &[usize]) -> Surface {
+    let column = |name: &str| table.floats(name);
+    let first_node = table.integers("node")[rows[0]];
+    let across = rows.iter().take_while(|&&row| table.integers("node")[row] == first_node).count();
+    let first: Vec<f64> = rows.iter().step_by(across).map(|&row| column("roll_angle")[row]).collect();
+    let further: Vec<f64> = rows[..across].iter().map(|&row| column("further_roll_angle")[row]).collect();
+    let (first_range, further_range) = (interval(&first), interval(&further));
+    let values: Vec<f64> = rows.iter().map(|&row| si(table, "compliance", row)).collect();
+    Surface::from_values(
+        [first_range.0, further_range.0],
+        [first_range.1, further_range.1],
+        [first.len(), further.len()],
+        &values,
+    )
 }
 
 #[cfg(test)]
@@ -195,7 +227,7 @@ mod tests {
             axial: Series::fit(0.07, 0.62, 24, |u| scale * 1e-11 * u * u),
             body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
-            neighbours: vec![Series::fit(0.07, 0.29, 12, |u| scale * 3e-10 * (1.0 - u))],
+            neighbours: vec![Surface::fit([0.07; 2], [0.62; 2], [12, 9], |u, v| scale * 3e-10 * (1.0 - u * v))],
         };
         let pair =
             PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
@@ -208,7 +240,8 @@ mod tests {
                 (back.pinion.contact_depth.value(roll) / pair.pinion.contact_depth.value(roll) - 1.0).abs() < 1e-14
             );
         }
-        assert!((back.pinion.neighbours[0].value(0.15) / pair.pinion.neighbours[0].value(0.15) - 1.0).abs() < 1e-14);
+        let cross = |pair: &PairCompliance| pair.pinion.neighbours[0].value(0.15, 0.41);
+        assert!((cross(&back) / cross(&pair) - 1.0).abs() < 1e-14);
         assert_eq!(back.gear.neighbours.len(), 1);
     }
 }

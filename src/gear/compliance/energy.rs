@@ -16,6 +16,7 @@ use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::quadrature::GaussLegendre;
+use crate::numeric::surface::Surface;
 
 /// Points per piece of the root: twice what 1e-12 takes.
 const ROOT_POINTS: usize = 40;
@@ -174,8 +175,7 @@ fn tabulate_side(
 
     let pitch = std::f64::consts::TAU / f64::from(gear.specification.teeth);
     let steps: Vec<f64> = if assumptions.coupled {
-        let most = gear.specification.teeth;
-        (1..most).map(|k| f64::from(k) * pitch).take_while(|step| upper - step > lower + 1e-3 * pitch).collect()
+        (1..=super::neighbours(pair, side)).map(|k| f64::from(k) * pitch).collect()
     } else {
         Vec::new()
     };
@@ -202,16 +202,16 @@ fn tabulate_side(
     }
 
     let mut neighbours = Vec::new();
-    for (step, influence) in steps.iter().zip(influences.iter().skip(1)) {
-        let cross = Series::converged(lower, upper - step, |roll| {
-            let cross = by_ring(influence, roll + step, roll);
+    // The square roots take a few nodes more than the body under its own load.
+    let count = body.coefficients().len() + 4;
+    for influence in influences.iter().skip(1) {
+        neighbours.push(Surface::fit([lower; 2], [upper; 2], [count; 2], |first, further| {
+            let cross = by_ring(influence, further, first);
             // The ring says how alike the two roots move, the formula how much: the matrix of all teeth stays
             // positive definite.
-            let own = by_ring(&influences[0], roll, roll) * by_ring(&influences[0], roll + step, roll + step);
-            [cross / own.sqrt() * (body_at(roll) * body_at(roll + step)).sqrt()]
-        });
-        let [cross] = cross.ok_or_else(|| unresolved.clone())?;
-        neighbours.push(cross);
+            let own = by_ring(&influences[0], first, first) * by_ring(&influences[0], further, further);
+            cross / own.sqrt() * (body_at(first) * body_at(further)).sqrt()
+        }));
     }
     Ok((ToothCompliance { bending, shear, axial, body, contact_depth, neighbours }, warning))
 }

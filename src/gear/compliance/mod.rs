@@ -16,6 +16,8 @@ use super::geometry::{Pair, Side};
 use crate::base::parameter::{Choice, Member};
 use crate::base::record::Record;
 use crate::numeric::chebyshev::Series;
+use crate::numeric::complementarity::MOST;
+use crate::numeric::surface::Surface;
 
 /// Every way to the compliance of a pair, one line per member.
 pub const METHODS: &[Method] = &[energy::METHOD];
@@ -107,9 +109,10 @@ pub struct ToothCompliance {
     /// Distance from the contact point to the tooth's centreline along the load line \[m\]: the depth t of the
     /// load-dependent contact laws.
     pub contact_depth: Series,
-    /// Body deflection at a tooth per load on the neighbour k + 1 pitches ahead. The argument is the roll angle u of the
-    /// tooth with the *smaller* roll angle; the other one has u + (k + 1)·2π/z. Symmetric, so one table serves both.
-    pub neighbours: Vec<Series>,
+    /// Deflection at a tooth per load on the one k + 1 pitches further, in the sense in which the roll angles of loaded
+    /// teeth grow. Arguments: the roll angles of the loaded points of the first and of the further tooth; on the line of
+    /// action they differ by (k + 1)·2π/z, in corner contact by less. Reciprocal, so one table serves both.
+    pub neighbours: Vec<Surface>,
 }
 
 impl ToothCompliance {
@@ -124,6 +127,17 @@ impl ToothCompliance {
     pub fn total_series(&self) -> Option<Series> {
         Series::sum(&[&self.bending, &self.shear, &self.axial, &self.body])
     }
+}
+
+/// How many teeth to one side of a loaded one can be loaded with it: as many pairs as share the contact, and one more
+/// in corner contact at either end.
+#[must_use]
+pub fn neighbours(pair: &Pair, side: Side) -> u32 {
+    let teeth = pair.side(side).specification.teeth;
+    // The contact ratio of what can be built is far below 2^32.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let pairs = pair.contact_ratio.ceil() as u32 + 1;
+    pairs.min(MOST as u32 - 1).min(teeth - 1)
 }
 
 /// How two flanks flatten against each other.

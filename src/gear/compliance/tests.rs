@@ -63,12 +63,12 @@ fn mesh_stiffness(pair: &Pair, tabulated: &Tabulated, s: f64) -> f64 {
         compliance.pinion.total(pair.roll(Side::Pinion, s)) + compliance.gear.total(pair.roll(Side::Gear, s)) + contact
     };
     let cross = |first: f64, second: f64| {
-        let table = |side: Side, s: f64| {
+        let table = |side: Side, s: f64, further: f64| {
             let tooth = if side == Side::Pinion { &compliance.pinion } else { &compliance.gear };
-            tooth.neighbours.first().map_or(0.0, |series| series.value(pair.roll(side, s)))
+            tooth.neighbours.first().map_or(0.0, |table| table.value(pair.roll(side, s), pair.roll(side, further)))
         };
         // The smaller roll angle is the pinion's at the first position, the gear's at the second.
-        table(Side::Pinion, first) + table(Side::Gear, second)
+        table(Side::Pinion, first, second) + table(Side::Gear, second, first)
     };
     match positions[..] {
         [s] => 1.0 / total(s),
@@ -235,12 +235,16 @@ fn neighbours_are_those_of_the_ring() {
         let influence = ring.influences(&[pitch])[0];
         for part in [0.0, 0.4, 1.0] {
             let low = gear.form_roll + part * (gear.tip_roll() - pitch - gear.form_roll);
-            let cross = ring.compliance(&influence, ring.tractions(gear, low + pitch), ring.tractions(gear, low));
-            assert!((ring_table.neighbours[0].value(low) / cross - 1.0).abs() < 1e-11, "at {low}");
-            let alike = |table: &ToothCompliance| {
-                table.neighbours[0].value(low) / (table.body.value(low) * table.body.value(low + pitch)).sqrt()
-            };
-            assert!((alike(table) / alike(ring_table) - 1.0).abs() < 1e-11, "at {low}");
+            // On the line of action, and in corner contact.
+            for further in [low + pitch, gear.tip_roll()] {
+                let cross = ring.compliance(&influence, ring.tractions(gear, further), ring.tractions(gear, low));
+                let near = |value: f64, exact: f64| (value / exact - 1.0).abs() < 1e-11;
+                assert!(near(ring_table.neighbours[0].value(low, further), cross), "at {low}");
+                let alike = |table: &ToothCompliance| {
+                    table.neighbours[0].value(low, further) / (table.body.value(low) * table.body.value(further)).sqrt()
+                };
+                assert!(near(alike(table), alike(ring_table)), "at {low}");
+            }
         }
     }
     assert!(energy(&pair, SUMMED).unwrap().compliance.pinion.neighbours.is_empty());
@@ -265,8 +269,9 @@ fn three_coupled_teeth_give_a_positive_definite_matrix() {
             assert!(table.neighbours.len() >= 2, "{} neighbours", table.neighbours.len());
             let first = gear.tip_roll() - 2.0 * pitch;
             let own: Vec<f64> = (0..3).map(|k| table.body.value(first + f64::from(k) * pitch)).collect();
-            let (a, b) = (table.neighbours[0].value(first), table.neighbours[0].value(first + pitch));
-            let c = table.neighbours[1].value(first);
+            let [second, third] = [1.0, 2.0].map(|k| first + k * pitch);
+            let (a, b) = (table.neighbours[0].value(first, second), table.neighbours[0].value(second, third));
+            let c = table.neighbours[1].value(first, third);
             assert!(a > 0.0 && c > 0.0 && c < a && c < b, "{body}: {a} {b} {c}");
             let minor = own[0] * own[1] - a * a;
             let determinant = own[0] * (own[1] * own[2] - b * b) - a * (a * own[2] - b * c) + c * (a * b - own[1] * c);

@@ -116,9 +116,11 @@ impl MeshCycle {
                 let ahead = pair.base_pitch * (index + 1) as f64;
                 let body = |s: f64| {
                     // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
-                    let (pinion, gear) = (rolls(s).0, rolls(s + ahead).1);
-                    let own = compliance.pinion.neighbours.get(index).map_or(0.0, |series| series.value(pinion));
-                    own + compliance.gear.neighbours.get(index).map_or(0.0, |series| series.value(gear))
+                    let (behind, ahead) = (rolls(s), rolls(s + ahead));
+                    let value = |tooth: &ToothCompliance, first: f64, further: f64| {
+                        tooth.neighbours.get(index).map_or(0.0, |surface| surface.value(first, further))
+                    };
+                    value(&compliance.pinion, behind.0, ahead.0) + value(&compliance.gear, ahead.1, behind.1)
                 };
                 Panels::fit(path.0, path.1 - ahead, ACCURACY, body)
             })

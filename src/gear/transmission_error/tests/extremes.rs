@@ -2,6 +2,7 @@
 //! short.
 
 use super::*;
+use crate::numeric::surface::Surface;
 
 /// Without gaps everything is proportional to the torque, from 1e-12 to 1e9 N·m.
 #[test]
@@ -58,8 +59,10 @@ fn coupled_states_fulfil_complementarity() {
                 point.loads[j] * (compliance.pinion.total(u1(j)) + compliance.gear.total(u2(j)) + contact);
             for k in (0..point.pairs).filter(|k| *k != j) {
                 let between = j.abs_diff(k) - 1;
-                let pinion = compliance.pinion.neighbours[between].value(u1(j.min(k)));
-                deflection += point.loads[k] * (pinion + compliance.gear.neighbours[between].value(u2(j.max(k))));
+                let (behind, ahead) = (j.min(k), j.max(k));
+                let pinion = compliance.pinion.neighbours[between].value(u1(behind), u1(ahead));
+                let gear = compliance.gear.neighbours[between].value(u2(ahead), u2(behind));
+                deflection += point.loads[k] * (pinion + gear);
             }
             let gap = design.depth(Pinion, u1(j)) + design.depth(Gear, u2(j));
             let open = gap + deflection - point.transmission_error;
@@ -77,7 +80,7 @@ fn coupling_of_nothing_is_no_coupling_and_coupling_softens_double_contact() {
     let pair = pair();
     let mut nothing = coupled();
     for tooth in [&mut nothing.pinion, &mut nothing.gear] {
-        tooth.neighbours = vec![fixtures::tooth(|_| 0.0).body];
+        tooth.neighbours = vec![Surface::from_values([0.0; 2], [2.0; 2], [1, 1], &[0.0])];
     }
     let design = ga_design(&pair, 6.93e-6, 3.41e-3, 5.67e-6);
     let of =
