@@ -1,0 +1,117 @@
+//! A gear's teeth under unit loads: what a load on a flank does to its own tooth and to the teeth that follow.
+//!
+//! The own compliance is the displacement of the point Q where the load line crosses the tooth's centreline, which local
+//! flattening does not reach: the contact laws hold the approach of the flank to it. Source of this split: Weber and
+//! Banaschek, 1953. A neighbour's is that of its flank point, along its own load line.
+//! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
+
+use super::MeshError;
+use super::element::{Plane, edge_shape, elasticity};
+use super::mesh::{Edge, Mesh, Sizing};
+use super::outline::Outline;
+use super::sector::{NodalForces, Sector};
+use super::wheel::{Pressed, Wheel};
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::root::Root;
+
+/// A gear, meshed and factorised.
+pub struct GearModel<'a> {
+    gear: &'a Gear,
+    pub mesh: Mesh,
+    pub sector: Sector,
+}
+
+/// What loads at several places of a flank do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influences {
+    /// At the loaded tooth's Q, per place.
+    pub own: Vec<f64>,
+    /// For teeth 1, 2, … pitches further, where roll angles are larger: by the loaded place, then the affected one.
+    pub further: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'a> GearModel<'a> {
+    /// # Errors
+    /// When the gear cannot be meshed or solved.
+    pub fn new(gear: &'a Gear, root: &Root, plane: Plane, sizing: &Sizing) -> Result<Self, MeshError> {
+        let mesh = Mesh::new(&Outline::new(gear, root)?, sizing)?;
+        let elasticity = elasticity(plane, gear.specification.material.poisson_ratio);
+        let sector = Sector::new(&mesh, &elasticity)?;
+        Ok(Self { gear, mesh, sector })
+    }
+
+    #[must_use]
+    pub fn wheel(&self) -> Wheel<'_> {
+        Wheel { sectors: self.gear.specification.teeth, stiffness: &self.sector.condensed }
+    }
+
+    /// The way a flank is pressed at a roll angle: into the tooth, against (cos α_1, sin α_1).
+    #[must_use]
+    pub fn direction(&self, roll: f64) -> [f64; 2] {
+        let (sine, cosine) = libm::sincos(self.gear.load_angle(roll));
+        [-cosine, -sine]
+    }
+
+    /// A unit load on the right flank at a roll angle.
+    #[must_use]
+    pub fn load(&self, roll: f64) -> NodalForces {
+        let height = self.gear.flank(roll).height / self.gear.specification.module;
+        let (edge, place) = find(&self.mesh, &self.mesh.flank, height);
+        spread(edge, place, self.direction(roll))
+    }
+
+    /// What measures the displacement of Q along the load line of a roll angle.
+    ///
+    /// # Errors
+    /// When Q lies inside the bore.
+    pub fn probe(&self, roll: f64) -> Result<NodalForces, MeshError> {
+        let height =
+            self.gear.base_radius / (libm::cos(self.gear.load_angle(roll)) * self.gear.specification.module);
+        let bore = self.gear.specification.bore_radius / self.gear.specification.module;
+        if height <= bore {
+            return Err(MeshError::Bore);
+        }
+        let (edge, place) = find(&self.mesh, &self.mesh.centreline, height);
+        Ok(spread(edge, place, self.direction(roll)))
+    }
+
+    /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for.
+    ///
+    /// # Errors
+    /// When a load line meets the centreline inside the bore, or the gear is not held to rounding.
+    pub fn influences(&self, rolls: &[f64], neighbours: u32) -> Result<Influences, MeshError> {
+        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.load(roll)).collect();
+        let probes = rolls.iter().map(|&roll| self.probe(roll)).collect::<Result<Vec<_>, _>>()?;
+        let held = self.sector.held(&loads);
+        let pressed: Vec<Pressed> = held.iter().map(|held| self.sector.pressed(held)).collect();
+        let measured: Vec<Pressed> =
+            self.sector.held(&probes).iter().map(|held| self.sector.pressed(held)).collect();
+        let all: Vec<&Pressed> = measured.iter().chain(&pressed).collect();
+        let steps: Vec<u32> = (0..=neighbours).collect();
+        let found = self.wheel().influences(&all, &pressed.iter().collect::<Vec<_>>(), &steps)?;
+        let count = rolls.len();
+        let own = (0..count).map(|k| self.sector.work(&probes[k], &held[k]) + found[0][k][k]).collect();
+        let further = (found[1..].iter())
+            .map(|matrix| {
+                (0..count).map(|by| (0..count).map(|on| matrix[count + on][by]).collect()).collect()
+            })
+            .collect();
+        Ok(Influences { own, further })
+    }
+}
+
+/// The edge that holds a height, and the place s on it; the ends where it lies beyond.
+fn find<'a>(mesh: &Mesh, edges: &'a [Edge], height: f64) -> (&'a Edge, f64) {
+    let above = edges.partition_point(|edge| mesh.nodes[edge.nodes[2]][1] < height).min(edges.len() - 1);
+    let edge = &edges[above];
+    let [start, middle, end] = edge.nodes.map(|node| mesh.nodes[node][1]);
+    // y = y_m + b s + a s², the root nearest to the straight edge's.
+    let (a, b, c) = (0.5 * (start + end) - middle, 0.5 * (end - start), middle - height);
+    let place = -2.0 * c / (b + (b * b - 4.0 * a * c).max(0.0).sqrt());
+    (edge, place.clamp(-1.0, 1.0))
+}
+
+/// A force at a place of an edge as forces at its nodes.
+fn spread(edge: &Edge, place: f64, force: [f64; 2]) -> NodalForces {
+    edge.nodes.into_iter().zip(edge_shape(place)).map(|(node, share)| (node, force.map(|f| f * share))).collect()
+}
