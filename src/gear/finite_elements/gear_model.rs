@@ -40,11 +40,6 @@ impl<'a> GearModel<'a> {
         Ok(Self { gear, mesh, sector })
     }
 
-    #[must_use]
-    pub fn wheel(&self) -> Wheel<'_> {
-        Wheel { sectors: self.gear.specification.teeth, stiffness: &self.sector.condensed }
-    }
-
     /// The way a flank is pressed at a roll angle: into the tooth, against (cos α_1, sin α_1).
     #[must_use]
     pub fn direction(&self, roll: f64) -> [f64; 2] {
@@ -82,15 +77,19 @@ impl<'a> GearModel<'a> {
     pub fn influences(&self, rolls: &[f64], neighbours: u32) -> Result<Influences, MeshError> {
         let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.load(roll)).collect();
         let probes = rolls.iter().map(|&roll| self.probe(roll)).collect::<Result<Vec<_>, _>>()?;
-        let held = self.sector.held(&loads);
-        let pressed: Vec<Pressed> = held.iter().map(|held| self.sector.pressed(held)).collect();
-        let measured: Vec<Pressed> =
-            self.sector.held(&probes).iter().map(|held| self.sector.pressed(held)).collect();
-        let all: Vec<&Pressed> = measured.iter().chain(&pressed).collect();
+        let by_load = self.sector.responses(&loads);
+        let by_probe = self.sector.responses(&probes);
+        let pressed: Vec<&Pressed> = by_load.iter().map(|response| &response.pressed).collect();
+        let all: Vec<&Pressed> =
+            by_probe.iter().map(|response| &response.pressed).chain(pressed.iter().copied()).collect();
         let steps: Vec<u32> = (0..=neighbours).collect();
-        let found = self.wheel().influences(&all, &pressed.iter().collect::<Vec<_>>(), &steps)?;
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: self.gear.specification.teeth, stiffness: &stiffness };
+        let found = wheel.influences(&all, &pressed, &steps)?;
         let count = rolls.len();
-        let own = (0..count).map(|k| self.sector.work(&probes[k], &held[k]) + found[0][k][k]).collect();
+        let own = (0..count)
+            .map(|k| self.sector.held_work(&probes[k], &by_probe[k], &by_load[k]) + found[0][k][k])
+            .collect();
         let further = (found[1..].iter())
             .map(|matrix| {
                 (0..count).map(|by| (0..count).map(|on| matrix[count + on][by]).collect()).collect()

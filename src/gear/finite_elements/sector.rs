@@ -5,9 +5,13 @@
 
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltRegularization;
+use faer::perm::PermRef;
+use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymmetricOrdering, factorize_symbolic_cholesky,
+    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
+    factorize_symbolic_cholesky,
 };
+use faer::sparse::linalg::{SupernodalThreshold, amd};
 use faer::sparse::{SparseColMat, Triplet};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
@@ -17,6 +21,9 @@ use super::mesh::Mesh;
 
 /// Columns solved for at a time.
 const BLOCK: usize = 32;
+/// Springs to ground on the freedoms of the edges, in units of E: a sector by itself, a sliver of a large gear, would
+/// be too floppy to be factorised to rounding. They are taken off again.
+const SUPPORT: f64 = 1.0;
 
 /// Where a freedom belongs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -36,16 +43,22 @@ pub struct Sector {
     inside: usize,
     /// Freedoms of one edge.
     edge: usize,
-    symbolic: SymbolicCholesky<usize>,
-    factor: Vec<f64>,
-    /// For each freedom of the edges the stiffness towards the inside.
-    coupling: Vec<Vec<(usize, f64)>>,
-    /// Stiffness of the edges with the inside eliminated, by columns.
-    pub condensed: Vec<Vec<f64>>,
+    factor: Factor,
+    /// Stiffness of the edges with the inside eliminated and with their supports, by columns.
+    supported: Vec<Vec<f64>>,
 }
 
 /// A load (or what measures a displacement by its work) as forces at nodes.
 pub type NodalForces = Vec<(usize, [f64; 2])>;
+
+/// What a load does to the sector by itself, on its supports.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Response {
+    /// Displacements, of the inside and then of the edges.
+    moved: Vec<f64>,
+    /// What it would press on the edges, left and right, if they were held.
+    pub pressed: [Vec<f64>; 2],
+}
 
 impl Sector {
     /// # Errors
@@ -55,89 +68,54 @@ impl Sector {
         let edge = 2 * mesh.left.len();
         let (sine, cosine) = libm::sincos(mesh.half_pitch);
         let directions = [[-sine, cosine], [sine, cosine]];
-        let mut sector = Self {
-            freedoms,
-            directions,
-            inside,
-            edge,
-            symbolic: factorize(&[], 0)?.0,
-            factor: Vec::new(),
-            coupling: vec![Vec::new(); 2 * edge],
-            condensed: vec![vec![0.0; 2 * edge]; 2 * edge],
-        };
         let mut triplets: Vec<Triplet<usize, usize, f64>> = Vec::new();
         for (index, element) in mesh.elements.iter().enumerate() {
             let folded = MeshError::Folded { element: index + 1, elements: mesh.elements.len() };
             let mut matrix = stiffness(&mesh.corners(index), elasticity).ok_or(folded)?;
-            let mut places = [Freedom::Fixed; FREEDOMS];
+            let mut places = [None; FREEDOMS];
             for (local, &node) in element.iter().enumerate() {
-                places[2 * local..2 * local + 2].copy_from_slice(&sector.freedoms[node]);
-                if let Freedom::Edge(place) = sector.freedoms[node][0] {
-                    turn(&mut matrix, local, sector.directions[usize::from(place >= edge)]);
+                for (place, freedom) in places[2 * local..].iter_mut().zip(freedoms[node]) {
+                    *place = match freedom {
+                        Freedom::Fixed => None,
+                        Freedom::Inside(place) => Some(place),
+                        Freedom::Edge(place) => Some(inside + place),
+                    };
+                }
+                if let Freedom::Edge(place) = freedoms[node][0] {
+                    turn(&mut matrix, local, directions[usize::from(place >= edge)]);
                 }
             }
-            for (row, from) in places.into_iter().enumerate() {
-                for (column, to) in places.into_iter().enumerate() {
-                    let value = matrix[row][column];
-                    match (from, to) {
-                        (Freedom::Inside(i), Freedom::Inside(j)) if i >= j => triplets.push(Triplet::new(i, j, value)),
-                        (Freedom::Inside(i), Freedom::Edge(e)) => sector.coupling[e].push((i, value)),
-                        (Freedom::Edge(d), Freedom::Edge(e)) => sector.condensed[e][d] += value,
-                        _ => {}
+            for (&row, values) in places.iter().zip(matrix) {
+                let Some(row) = row else { continue };
+                for (&column, value) in places.iter().zip(values) {
+                    if let Some(column) = column.filter(|&column| row >= column) {
+                        triplets.push(Triplet::new(row, column, value));
                     }
                 }
             }
         }
-        (sector.symbolic, sector.factor) = factorize(&triplets, inside)?;
-        sector.condense();
-        Ok(sector)
+        triplets.extend((inside..inside + 2 * edge).map(|place| Triplet::new(place, place, SUPPORT)));
+        let factor = Factor::new(&triplets, inside, inside + 2 * edge)?;
+        let supported = factor.trailing(inside);
+        Ok(Self { freedoms, directions, inside, edge, factor, supported })
     }
 
-    /// S = K_EE − K_EI K_II⁻¹ K_IE.
-    fn condense(&mut self) {
-        let all: Vec<usize> = (0..2 * self.edge).collect();
-        for block in all.chunks(BLOCK) {
-            let mut columns = vec![0.0; self.inside * block.len()];
-            for (column, &freedom) in columns.chunks_mut(self.inside).zip(block) {
-                for &(place, value) in &self.coupling[freedom] {
-                    column[place] += value;
-                }
-            }
-            self.solve(&mut columns);
-            for (column, &freedom) in columns.chunks(self.inside).zip(block) {
-                for (other, row) in self.coupling.iter().enumerate() {
-                    let moved: f64 = row.iter().map(|&(place, value)| value * column[place]).sum();
-                    self.condensed[freedom][other] -= moved;
-                }
-            }
-        }
-        // Symmetric to rounding; exactly so that influences are reciprocal to the last bits.
-        for row in 0..2 * self.edge {
-            for column in 0..row {
-                let mean = 0.5 * (self.condensed[row][column] + self.condensed[column][row]);
-                self.condensed[row][column] = mean;
-                self.condensed[column][row] = mean;
-            }
-        }
-    }
-
-    /// Displacements of the inside with both edges held, in place of forces; one column after the other.
-    fn solve(&self, columns: &mut [f64]) {
-        let count = columns.len() / self.inside;
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq));
-        LltRef::new(&self.symbolic, &self.factor).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(columns, self.inside, count),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
-    }
-
-    /// Displacements of the inside under each load with both edges held.
+    /// Stiffness of the edges with the inside eliminated, by columns, left edge before right edge; symmetric.
     #[must_use]
-    pub fn held(&self, loads: &[NodalForces]) -> Vec<Vec<f64>> {
-        let mut columns = vec![0.0; self.inside * loads.len()];
-        for (column, load) in columns.chunks_mut(self.inside).zip(loads) {
+    pub fn stiffness(&self) -> Vec<Vec<f64>> {
+        let mut stiffness = self.supported.clone();
+        for (place, column) in stiffness.iter_mut().enumerate() {
+            column[place] -= SUPPORT;
+        }
+        stiffness
+    }
+
+    /// What loads do to the sector by itself.
+    #[must_use]
+    pub fn responses(&self, loads: &[NodalForces]) -> Vec<Response> {
+        let size = self.inside + 2 * self.edge;
+        let mut columns = vec![0.0; size * loads.len()];
+        for (column, load) in columns.chunks_mut(size).zip(loads) {
             for &(node, force) in load {
                 for (freedom, value) in self.freedoms[node].into_iter().zip(force) {
                     if let Freedom::Inside(place) = freedom {
@@ -146,45 +124,54 @@ impl Sector {
                 }
             }
         }
-        for block in columns.chunks_mut(self.inside * BLOCK) {
-            self.solve(block);
+        for block in columns.chunks_mut(size * BLOCK) {
+            self.factor.solve(block);
         }
-        columns.chunks(self.inside).map(<[f64]>::to_vec).collect()
-    }
-
-    /// What a load on the inside, whose displacements are `held`, presses on the edges: left, right.
-    #[must_use]
-    pub fn pressed(&self, held: &[f64]) -> [Vec<f64>; 2] {
-        let forces: Vec<f64> = (self.coupling.iter())
-            .map(|row| -row.iter().map(|&(place, value)| value * held[place]).sum::<f64>())
-            .collect();
-        [forces[..self.edge].to_vec(), forces[self.edge..].to_vec()]
-    }
-
-    /// The work of a load on displacements of the inside.
-    #[must_use]
-    pub fn work(&self, load: &NodalForces, inside: &[f64]) -> f64 {
-        let part = |freedom: Freedom, force: f64| match freedom {
-            Freedom::Inside(place) => force * inside[place],
-            _ => 0.0,
+        let response = |moved: &[f64]| {
+            let forces = self.held_by(&moved[self.inside..]);
+            let pressed = [forces[..self.edge].to_vec(), forces[self.edge..].to_vec()];
+            Response { moved: moved.to_vec(), pressed }
         };
-        load.iter().map(|&(node, [x, y])| part(self.freedoms[node][0], x) + part(self.freedoms[node][1], y)).sum()
+        columns.chunks(size).map(response).collect()
     }
 
-    /// Displacements (x, y) of all nodes: those of the inside with the edges `held`, and what the edges' own
-    /// displacements (left, then right) add.
-    #[must_use]
-    pub fn displacements(&self, held: &[f64], edges: &[f64]) -> Vec<[f64; 2]> {
-        let mut moved = vec![0.0; self.inside];
-        for (row, edge) in self.coupling.iter().zip(edges) {
-            for &(place, value) in row {
-                moved[place] -= value * edge;
+    /// The forces that the condensed, supported edges need for displacements.
+    fn held_by(&self, edges: &[f64]) -> Vec<f64> {
+        let mut forces = vec![0.0; 2 * self.edge];
+        for (column, displacement) in self.supported.iter().zip(edges) {
+            for (force, stiffness) in forces.iter_mut().zip(column) {
+                *force += stiffness * displacement;
             }
         }
-        self.solve(&mut moved);
+        forces
+    }
+
+    /// The work of `probe` on what a load does to the sector with both edges held, from the responses to both.
+    #[must_use]
+    pub fn held_work(&self, probe: &NodalForces, of_probe: &Response, of_load: &Response) -> f64 {
+        let part = |freedom: Freedom, force: f64| match freedom {
+            Freedom::Inside(place) => force * of_load.moved[place],
+            _ => 0.0,
+        };
+        let free: f64 =
+            probe.iter().map(|&(node, [x, y])| part(self.freedoms[node][0], x) + part(self.freedoms[node][1], y)).sum();
+        let [left, right] = &of_probe.pressed;
+        let edges = &of_load.moved[self.inside..];
+        let held: f64 = left.iter().chain(right).zip(edges).map(|(force, displacement)| force * displacement).sum();
+        free - held
+    }
+
+    /// Displacements (x, y) of all nodes under a load, the edges' own displacements (left, then right) being known.
+    #[must_use]
+    pub fn displacements(&self, of_load: &Response, edges: &[f64]) -> Vec<[f64; 2]> {
+        // The forces on the supported edges that move them from where the load alone brings them.
+        let differences: Vec<f64> = edges.iter().zip(&of_load.moved[self.inside..]).map(|(to, from)| to - from).collect();
+        let mut moved = vec![0.0; self.inside];
+        moved.extend(self.held_by(&differences));
+        self.factor.solve(&mut moved);
         let value = |freedom: Freedom| match freedom {
             Freedom::Fixed => 0.0,
-            Freedom::Inside(place) => held[place] + moved[place],
+            Freedom::Inside(place) => of_load.moved[place] + moved[place],
             Freedom::Edge(place) => edges[place],
         };
         let node = |freedoms: &[Freedom; 2]| {
@@ -198,12 +185,6 @@ impl Sector {
             }
         };
         self.freedoms.iter().map(node).collect()
-    }
-
-    /// Freedoms of one edge.
-    #[must_use]
-    pub fn edge(&self) -> usize {
-        self.edge
     }
 
     /// Unknowns of a sector: each edge counts once, since two share it.
@@ -243,28 +224,90 @@ fn turn(matrix: &mut [[f64; FREEDOMS]; FREEDOMS], node: usize, [x, y]: [f64; 2])
     }
 }
 
-/// K = L Lᵀ of the lower half in triplets.
-fn factorize(
-    triplets: &[Triplet<usize, usize, f64>],
-    size: usize,
-) -> Result<(SymbolicCholesky<usize>, Vec<f64>), MeshError> {
-    let matrix = SparseColMat::try_new_from_triplets(size, size, triplets).map_err(|_| MeshError::Memory)?;
-    let ordering = SymmetricOrdering::Amd;
-    let symbolic =
-        factorize_symbolic_cholesky(matrix.symbolic(), Side::Lower, ordering, CholeskySymbolicParams::default())
+/// L Lᵀ of a sparse matrix.
+struct Factor {
+    symbolic: SymbolicCholesky<usize>,
+    values: Vec<f64>,
+}
+
+impl Factor {
+    /// Of a matrix by the triplets of its lower half; freedoms from `inside` on are eliminated last, in their order.
+    fn new(triplets: &[Triplet<usize, usize, f64>], inside: usize, size: usize) -> Result<Self, MeshError> {
+        let matrix = SparseColMat::try_new_from_triplets(size, size, triplets).map_err(|_| MeshError::Memory)?;
+        let inner: Vec<_> = triplets.iter().filter(|entry| entry.row < inside).copied().collect();
+        let inner = SparseColMat::try_new_from_triplets(inside, inside, &inner).map_err(|_| MeshError::Memory)?;
+        let (mut forward, mut inverse) = (vec![0; inside], vec![0; inside]);
+        let scratch = amd::order_maybe_unsorted_scratch::<usize>(inside, inner.compute_nnz());
+        let mut memory = MemBuffer::new(scratch);
+        let stack = MemStack::new(&mut memory);
+        amd::order_maybe_unsorted(&mut forward, &mut inverse, inner.symbolic(), amd::Control::default(), stack)
             .map_err(|_| MeshError::Memory)?;
-    let mut values = vec![0.0; symbolic.len_val()];
-    let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-    symbolic
-        .factorize_numeric_llt(
-            &mut values,
-            matrix.as_ref(),
-            Side::Lower,
-            LltRegularization::default(),
+        for order in [&mut forward, &mut inverse] {
+            order.extend(inside..size);
+        }
+        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size));
+        let params = CholeskySymbolicParams {
+            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
+            ..CholeskySymbolicParams::default()
+        };
+        let symbolic = factorize_symbolic_cholesky(matrix.symbolic(), Side::Lower, ordering, params)
+            .map_err(|_| MeshError::Memory)?;
+        let mut values = vec![0.0; symbolic.len_val()];
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
+        symbolic
+            .factorize_numeric_llt(
+                &mut values,
+                matrix.as_ref(),
+                Side::Lower,
+                LltRegularization::default(),
+                Par::Seq,
+                MemStack::new(&mut MemBuffer::new(scratch)),
+                Spec::default(),
+            )
+            .map_err(|_| MeshError::Singular)?;
+        Ok(Self { symbolic, values })
+    }
+
+    /// What is left of the matrix for the freedoms from `first` on when the others are eliminated: L_EE L_EEᵀ, by columns.
+    fn trailing(&self, first: usize) -> Vec<Vec<f64>> {
+        let size = self.symbolic.nrows() - first;
+        let mut lower = vec![vec![0.0; size]; size];
+        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
+            let factor = SupernodalLltRef::new(symbolic, &self.values);
+            for index in 0..symbolic.n_supernodes() {
+                let node = factor.supernode(index);
+                let (start, values) = (node.start(), node.val());
+                for column in first.max(start)..start + values.ncols() {
+                    let rows = (start..start + values.ncols()).chain(node.pattern().iter().copied());
+                    for (row, &value) in rows.zip(values.col(column - start).iter()) {
+                        if row >= column {
+                            lower[column - first][row - first] = value;
+                        }
+                    }
+                }
+            }
+        }
+        let mut product = vec![vec![0.0; size]; size];
+        for (pivot, column) in lower.iter().enumerate() {
+            for (row, &left) in column.iter().enumerate().skip(pivot) {
+                for (slot, &right) in product[row][pivot..].iter_mut().zip(&column[pivot..]) {
+                    *slot += left * right;
+                }
+            }
+        }
+        product
+    }
+
+    /// Displacements in place of forces; one column after the other.
+    fn solve(&self, columns: &mut [f64]) {
+        let size = self.symbolic.nrows();
+        let count = columns.len() / size;
+        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq));
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_column_major_slice_mut(columns, size, count),
             Par::Seq,
-            MemStack::new(&mut MemBuffer::new(scratch)),
-            Spec::default(),
-        )
-        .map_err(|_| MeshError::Singular)?;
-    Ok((symbolic, values))
+            MemStack::new(&mut memory),
+        );
+    }
 }

@@ -37,7 +37,7 @@ fn anchors() {
             let rolls = radii.map(|radius| gear.roll_at(radius));
             let found = model.influences(&rolls, 1).unwrap();
             let scaled: Vec<f64> = found.own.iter().map(|c| c / 206e9 * 1e9 ).collect();
-            println!("{across} z{teeth} elements {} unknowns {} edge {} {:?} {:?} off {:.3}% {:.3}% cross {:?}", model.mesh.elements.len(), model.sector.unknowns(), model.sector.edge(), factored, start.elapsed(),
+            println!("{across} z{teeth} elements {} unknowns {} edge {} {:?} {:?} off {:.3}% {:.3}% cross {:?}", model.mesh.elements.len(), model.sector.unknowns(), model.mesh.left.len(), factored, start.elapsed(),
               100.0*(scaled[0]/expected[0]-1.0), 100.0*(scaled[1]/expected[1]-1.0), found.further[0]);
         }
     }
