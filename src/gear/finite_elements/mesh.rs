@@ -189,7 +189,11 @@ impl Mesh {
                     }
                     // Above the body's right end lies the root.
                     if std::ptr::eq(grid, body) && row + 3 == grid.rows() && column >= half + tooth.columns - 1 {
-                        root.push(Edge { element, side: 2, nodes: [2, 1, 0].map(|step| grid.at(column + step, row + 2)) });
+                        root.push(Edge {
+                            element,
+                            side: 2,
+                            nodes: [2, 1, 0].map(|step| grid.at(column + step, row + 2)),
+                        });
                     }
                     elements.push(nodes);
                 }
@@ -231,7 +235,10 @@ impl Mesh {
 }
 
 /// The points of a chain of stretches; where two meet there is one.
-fn chain(stretches: &[super::outline::Stretch], divide: impl Fn(&super::outline::Stretch) -> Vec<f64>) -> Vec<[f64; 2]> {
+fn chain(
+    stretches: &[super::outline::Stretch],
+    divide: impl Fn(&super::outline::Stretch) -> Vec<f64>,
+) -> Vec<[f64; 2]> {
     let mut points: Vec<[f64; 2]> = Vec::new();
     for stretch in stretches {
         points.pop();

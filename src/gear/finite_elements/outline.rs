@@ -20,10 +20,18 @@ const CUT_INCLINATION: f64 = FRAC_PI_4;
 #[derive(Clone, Copy, Debug)]
 pub enum Curve {
     /// The root circle, over the angle from the centreline, downwards.
-    Land { radius: f64 },
-    Root { piece: Piece, module: f64 },
+    Land {
+        radius: f64,
+    },
+    Root {
+        piece: Piece,
+        module: f64,
+    },
     /// Over the roll angle.
-    Involute { base_radius: f64, half_base_angle: f64 },
+    Involute {
+        base_radius: f64,
+        half_base_angle: f64,
+    },
 }
 
 impl Curve {

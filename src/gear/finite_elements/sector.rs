@@ -165,7 +165,8 @@ impl Sector {
     #[must_use]
     pub fn displacements(&self, of_load: &Response, edges: &[f64]) -> Vec<[f64; 2]> {
         // The forces on the supported edges that move them from where the load alone brings them.
-        let differences: Vec<f64> = edges.iter().zip(&of_load.moved[self.inside..]).map(|(to, from)| to - from).collect();
+        let differences: Vec<f64> =
+            edges.iter().zip(&of_load.moved[self.inside..]).map(|(to, from)| to - from).collect();
         let mut moved = vec![0.0; self.inside];
         moved.extend(self.held_by(&differences));
         self.factor.solve(&mut moved);
