@@ -179,6 +179,40 @@ impl Optimizer {
         )
     }
 
+    fn evaluations_schema(&self) -> Schema {
+        let unit_of_objective = self.objective_unit();
+        let mut columns =
+            vec![Column::integer("evaluation", "Counts the designs in the order of the search, from 1.").key()];
+        columns.extend(
+            self.template
+                .variables()
+                .iter()
+                .map(|variable| Column::float(&column(variable), unit(variable), "Value of the variable.")),
+        );
+        columns.extend([
+            Column::float("objective", unit_of_objective, "What is made small; NaN where no design can be built.")
+                .allows_nan()
+                .tolerance(1e-9, 1e-6),
+            Column::float("fitness", &format!("1/{unit_of_objective}"), "1/objective.")
+                .allows_nan()
+                .tolerance(0.0, 1e-6),
+        ]);
+        Schema::new("evaluations", "Every design that was tried.", columns).on_demand()
+    }
+
+    fn evaluation_rows(&self, tried: &[(Vec<f64>, f64)]) -> Vec<Row> {
+        let variables = self.template.variables();
+        let row = |(index, (point, value)): (usize, &(Vec<f64>, f64))| -> Row {
+            let value = if value.is_finite() { in_unit(*value, self.objective_unit()) } else { f64::NAN };
+            let values = variables.iter().zip(point).map(|(variable, value)| in_unit(*value, unit(variable)).into());
+            let mut row: Row = vec![(index + 1).into()];
+            row.extend(values);
+            row.extend([value.into(), (if value > 0.0 { 1.0 / value } else { f64::NAN }).into()]);
+            row
+        };
+        tried.iter().enumerate().map(row).collect()
+    }
+
     /// The objective \[m or m²\]; infinite where the design cannot be built.
     fn value(&self, cycle: &MeshCycle, pair: &Pair, point: &[f64]) -> f64 {
         let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
@@ -269,7 +303,13 @@ impl Stage for Optimizer {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![self.best_schema(), self.history_schema(), designs::designs_schema(), designs::elements_schema()]
+        vec![
+            self.best_schema(),
+            self.history_schema(),
+            designs::designs_schema(),
+            designs::elements_schema(),
+            self.evaluations_schema(),
+        ]
     }
 
     fn uses_seed(&self) -> bool {
@@ -283,14 +323,25 @@ impl Stage for Optimizer {
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
         let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
         let budget = search.budget().max(1) as f64;
+        let wanted = context.demand.table("evaluations");
+        let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
         let mut done = 0_usize;
         let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
             context.check_stop()?;
-            let values = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
+            let values: Vec<f64> = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
+            if wanted {
+                tried.extend(points.iter().cloned().zip(values.iter().copied()));
+            }
             done += points.len();
             (context.progress)(done as f64 / budget);
             Ok(values)
         })?;
-        self.tables(&search, reason, &pair, &cycle)
+        let mut tables = self.tables(&search, reason, &pair, &cycle)?;
+        if wanted {
+            let rows = self.evaluation_rows(&tried);
+            let table = Table::from_rows(self.evaluations_schema(), rows);
+            tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
+        }
+        Ok(tables)
     }
 }

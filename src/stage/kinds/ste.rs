@@ -2,6 +2,8 @@
 //!
 //! One chunk per torque, so an added torque computes only itself. Must not know: who made the designs.
 
+mod samples;
+
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -9,7 +11,7 @@ use rayon::prelude::*;
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
-use crate::base::units::{RATIO, TORQUE, in_unit, showing};
+use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -48,6 +50,15 @@ const FIELDS: &[Field] = &[
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
         .default("17"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
+    Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
+    Field::quantity(
+        "first_sample",
+        ANGLE,
+        -std::f64::consts::TAU,
+        std::f64::consts::TAU,
+        "Where the first of them is: rotation of the pinion from where a pair starts contact in A, in driving direction.",
+    )
+    .default("0 deg"),
 ];
 
 /// Where doubling the positions stops.
@@ -60,6 +71,8 @@ struct Ste {
     accuracy: Option<f64>,
     settings: Settings,
     harmonics: usize,
+    samples: usize,
+    first_sample: f64,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
@@ -85,6 +98,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         accuracy: record.maybe_quantity("accuracy"),
         settings: Settings { positions: whole("positions"), slices: whole("slices") },
         harmonics: whole("harmonics"),
+        samples: whole("samples"),
+        first_sample: record.quantity("first_sample"),
     }))
 }
 
@@ -225,7 +240,8 @@ impl Stage for Ste {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![summary_schema(), curve_schema(), harmonics_schema()]
+        let [samples, sample_summary] = samples::schemas();
+        vec![summary_schema(), curve_schema(), harmonics_schema(), samples, sample_summary]
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -292,11 +308,27 @@ impl Stage for Ste {
         let curves = curve_columns(&keys, &answers, curve_pressure);
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
-        Ok(vec![
+        let mut tables = vec![
             Table::from_rows(narrowed(summary_schema()), summaries).map_err(failed)?,
             Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
             Table::from_rows(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
-        ])
+        ];
+        if samples::schemas().iter().any(|schema| context.demand.table(&schema.name)) {
+            let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
+            for &(design, torque) in &tasks {
+                let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
+                let loading = Loading::new(&cycles[1], &designs[design].0, torque);
+                let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);
+                rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
+                row.push([key, summary].concat());
+            }
+            for (schema, rows) in samples::schemas().into_iter().zip([rows, row]) {
+                if context.demand.table(&schema.name) {
+                    tables.push(Table::from_rows(schema, rows).map_err(failed)?);
+                }
+            }
+        }
+        Ok(tables)
     }
 }
 
