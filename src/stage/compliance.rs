@@ -70,8 +70,8 @@ pub fn model_schema() -> Schema {
         "What the compliances were made with, and how contact is to be added.",
         vec![
             Column::text("method", "Method of the tooth compliance."),
-            Column::text("root", "Root curve of the teeth."),
-            Column::text("contact", "Contact law: linear or load_dependent."),
+            Column::text("root", "Root curve of the teeth; none where the method asks for none."),
+            Column::text("contact", "Contact law: linear, load_dependent, or included in the teeth."),
             Column::text("coupling", "Whether loaded neighbours share the gear body: none or body."),
         ],
     )
@@ -119,6 +119,7 @@ pub fn write(
     let contact = match compliance.contact {
         ContactLaw::Linear => "linear",
         ContactLaw::LoadDependent => "load_dependent",
+        ContactLaw::Included => "included",
     };
     let coupling = if compliance.coupled { "body" } else { "none" };
     let model: Row = vec![method.into(), root.into(), contact.into(), coupling.into()];
@@ -147,6 +148,7 @@ pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<Pai
     let contact = match model.texts("contact").first().map(String::as_str) {
         Some("linear") => ContactLaw::Linear,
         Some("load_dependent") => ContactLaw::LoadDependent,
+        Some("included") => ContactLaw::Included,
         other => return Err(Failure::new(format!("unknown contact law {other:?}"))),
     };
     Ok(PairCompliance {

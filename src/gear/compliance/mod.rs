@@ -9,6 +9,7 @@ pub mod ring;
 pub mod sainsot;
 #[cfg(test)]
 mod tests;
+pub mod weber_banaschek;
 
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
@@ -20,24 +21,29 @@ use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
 
 /// Every way to the compliance of a pair, one line per member.
-pub const METHODS: &[Method] = &[energy::METHOD];
+pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD];
 
 /// A way to the compliance of a pair.
 #[derive(Clone, Copy)]
 pub struct Method {
     pub member: Member,
+    /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
+    pub whole_pair: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
     /// method does not hold for this pair. The record holds what this method alone can be told.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
 }
 
 /// What every method is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumptions {
     pub root: RootShape,
     pub contact: ContactLaw,
     /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
     pub coupled: bool,
+    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
+    /// compliance.
+    pub torque: Option<f64>,
 }
 
 /// What a method gives.
@@ -81,6 +87,8 @@ pub enum ComplianceError {
     ManyTeeth { side: Side, half_angle: f64, least: f64 },
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
     NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+    #[error("the formula of ISO 6336-1 gives no stiffness for these profile shifts, dedenda and pressure angle: c′ is {} N/(mm µm)", Plain(*.single * 1e-9))]
+    NoIsoStiffness { single: f64 },
 }
 
 impl ComplianceError {
@@ -92,6 +100,7 @@ impl ComplianceError {
             Self::Root(error) => error.field(),
             Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
             Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::NoIsoStiffness { .. } => "pinion.profile_shift",
             Self::NegativeBody { side, .. } | Self::ManyTeeth { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
         }
     }
@@ -147,6 +156,8 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
+    /// The compliances of the teeth hold it already: methods that know a pair as a whole. No study chooses it.
+    Included,
 }
 
 /// The contact laws as a study names them.

@@ -99,6 +99,7 @@ impl MeshCycle {
                 let contact = flattening::linear(materials) / face_width;
                 Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
             }
+            ContactLaw::Included => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
             ContactLaw::LoadDependent => Elasticity::Logarithmic {
                 compliance: fit(&|s| teeth(s) * face_width),
                 constant: fit(&|s| law(s).constant),
