@@ -46,6 +46,7 @@ pub const METHOD: Method = Method {
     },
     whole_pair: false,
     tabulate,
+    root_stress: None,
 };
 
 fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
@@ -57,7 +58,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
     };
     let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
     let Assumptions { contact, coupled, .. } = assumptions;
-    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings })
+    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes: Vec::new() })
 }
 
 /// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.

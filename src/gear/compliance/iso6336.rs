@@ -28,6 +28,7 @@ pub const METHOD: Method = Method {
     },
     whole_pair: true,
     tabulate,
+    root_stress: None,
 };
 
 /// E_St, what the standard measured its factors on \[Pa\].
@@ -157,7 +158,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         contact: ContactLaw::Included,
         coupled: false,
     };
-    Ok(Tabulated { compliance, warnings: warnings(&inputs, pair, assumptions.torque) })
+    Ok(Tabulated { compliance, warnings: warnings(&inputs, pair, assumptions.torque), meshes: Vec::new() })
 }
 
 /// A sentence for each range of the standard that the pair is outside of.
@@ -252,7 +253,7 @@ mod tests {
         {
             let pair = pair(teeth, [0.0; 2], addendum);
             let expected = stiffness(&Inputs::of(&pair, &Record::default()));
-            let Tabulated { compliance, warnings } = tables(&pair, None);
+            let Tabulated { compliance, warnings, .. } = tables(&pair, None);
             assert!(warnings.is_empty() && compliance.contact == ContactLaw::Included, "{warnings:?}");
             let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
             for torque in [1e-6, 50.0, 1e6] {

@@ -43,6 +43,7 @@ pub const METHOD: Method = Method {
     },
     whole_pair: false,
     tabulate,
+    root_stress: None,
 };
 
 fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
@@ -50,7 +51,7 @@ fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<
     let mut side = |side| tabulate_side(pair, side, assumptions, &mut warnings);
     let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
     let Assumptions { contact, coupled, .. } = assumptions;
-    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings })
+    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes: Vec::new() })
 }
 
 fn tabulate_side(

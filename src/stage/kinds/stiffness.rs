@@ -9,7 +9,7 @@ use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
 use crate::base::units::{TORQUE, in_unit};
 use crate::gear::compliance::iso6336;
-use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method, Tabulated};
+use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use crate::gear::geometry::Pair;
 use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -163,6 +163,69 @@ fn iso_table(pair: &Pair, options: &Record) -> Result<Table, TableError> {
     Table::from_rows(iso_schema(), vec![row])
 }
 
+fn mesh_schema() -> Schema {
+    Schema::new(
+        "mesh",
+        "The finite-element mesh of each gear; no rows for methods without one.",
+        vec![
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::integer("elements_across", "Elements across a tooth."),
+            Column::integer("elements", "Elements of one tooth and its share of the body."),
+            Column::integer("unknowns", "Unknown displacements of one tooth and its share of the body."),
+            Column::float(
+                "error_estimate",
+                "%",
+                "Estimated error of the compliances, in units of the tooth's own, from a mesh half as fine.",
+            ),
+        ],
+    )
+}
+
+fn mesh_table(meshes: &[MeshFacts]) -> Result<Table, TableError> {
+    let row = |mesh: &MeshFacts| -> Row {
+        vec![
+            mesh.side.name().into(),
+            mesh.elements_across.into(),
+            mesh.elements.into(),
+            mesh.unknowns.into(),
+            in_unit(mesh.error_estimate, "%").into(),
+        ]
+    };
+    Table::from_rows(mesh_schema(), meshes.iter().map(row).collect())
+}
+
+fn root_stress_schema() -> Schema {
+    Schema::new(
+        "root_stress",
+        "The largest stress on the surface of a loaded tooth's root, on the side of the load.",
+        vec![
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::integer("node", "Chebyshev node, from 1 at the root side.").key(),
+            Column::float("roll_angle", "rad", "Roll angle of the loaded point."),
+            Column::float("stress", "MPa mm/N", "Largest first principal stress per load per face width."),
+            Column::float("radius", "mm", "Radius at which it is."),
+        ],
+    )
+    .on_demand()
+}
+
+fn root_stress_table(stresses: &[RootStress]) -> Result<Table, TableError> {
+    let mut rows: Vec<Row> = Vec::new();
+    let (mut node, mut before) = (0, None);
+    for found in stresses {
+        node = if before == Some(found.side) { node + 1 } else { 1 };
+        before = Some(found.side);
+        rows.push(vec![
+            found.side.name().into(),
+            node.into(),
+            found.roll.into(),
+            in_unit(found.stress, "MPa mm/N").into(),
+            in_unit(found.radius, "mm").into(),
+        ]);
+    }
+    Table::from_rows(root_stress_schema(), rows)
+}
+
 impl Stiffness {
     fn root_name(&self) -> &str {
         if self.method.whole_pair { "none" } else { self.root }
@@ -181,15 +244,18 @@ impl Stage for Stiffness {
             codec::model_schema(),
             curve_schema(),
             summary_schema(),
+            mesh_schema(),
             iso_schema(),
+            root_stress_schema(),
         ]
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        let mut omissions = vec![Omission::new(
-            "finite-element mesh and factorisation",
-            format!("method `{}` needs none", self.method.member.name),
-        )];
+        let mut omissions = Vec::new();
+        if self.method.root_stress.is_none() {
+            let reason = format!("method `{}` needs none", self.method.member.name);
+            omissions.push(Omission::new("finite-element mesh and factorisation", reason));
+        }
         if self.method.whole_pair {
             let why = format!("method `{}` gives the stiffness of a pair as a whole", self.method.member.name);
             for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
@@ -204,7 +270,7 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings } = (self.method.tabulate)(&self.options, &pair, self.assumptions)
+        let Tabulated { compliance, warnings, meshes } = (self.method.tabulate)(&self.options, &pair, self.assumptions)
             .map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
         for warning in warnings {
@@ -236,8 +302,20 @@ impl Stage for Stiffness {
         let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
         row.extend([summary.mean.into(), summary.fewest.pairs.into(), seconds.into()]);
         tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
+        tables.push(mesh_table(&meshes).map_err(failed)?);
         if context.demand.table("iso6336") {
             tables.push(iso_table(&pair, &self.options).map_err(failed)?);
+        }
+        if context.demand.table("root_stress") {
+            let Some(root_stress) = self.method.root_stress else {
+                let name = self.method.member.name;
+                return Err(Failure::new(format!(
+                    "method `{name}` knows no stress at the root; `finite_element` does"
+                )));
+            };
+            let found =
+                root_stress(&self.options, &pair, self.assumptions).map_err(|error| Failure::new(error.to_string()))?;
+            tables.push(root_stress_table(&found).map_err(failed)?);
         }
         Ok(tables)
     }
