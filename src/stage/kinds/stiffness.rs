@@ -238,7 +238,7 @@ impl Stage for Stiffness {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![
+        let mut schemas = vec![
             codec::compliance_schema(),
             codec::neighbours_schema(),
             codec::model_schema(),
@@ -246,8 +246,11 @@ impl Stage for Stiffness {
             summary_schema(),
             mesh_schema(),
             iso_schema(),
-            root_stress_schema(),
-        ]
+        ];
+        if self.method.root_stress.is_some() {
+            schemas.push(root_stress_schema());
+        }
+        schemas
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -306,13 +309,7 @@ impl Stage for Stiffness {
         if context.demand.table("iso6336") {
             tables.push(iso_table(&pair, &self.options).map_err(failed)?);
         }
-        if context.demand.table("root_stress") {
-            let Some(root_stress) = self.method.root_stress else {
-                let name = self.method.member.name;
-                return Err(Failure::new(format!(
-                    "method `{name}` knows no stress at the root; `finite_element` does"
-                )));
-            };
+        if let Some(root_stress) = self.method.root_stress.filter(|_| context.demand.table("root_stress")) {
             let found =
                 root_stress(&self.options, &pair, self.assumptions).map_err(|error| Failure::new(error.to_string()))?;
             tables.push(root_stress_table(&found).map_err(failed)?);

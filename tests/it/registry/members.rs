@@ -103,6 +103,10 @@ fn every_compliance_method_runs_with_every_root_contact_and_coupling() {
             for contact in ["linear", "load_dependent"] {
                 for coupling in ["none", "body"] {
                     let name = method.member.name;
+                    if name == "finite_element" && root == "base_circle" {
+                        // Refused: a sharp corner. `compliance/finite_element/tests.rs` reads the message.
+                        continue;
+                    }
                     stages += &format!(
                         "  k{count}: {{ kind: stiffness, pair: pair, method: {name}, root: {root}, contact: {contact}, coupling: {coupling}, torque: 150 N m }}\n"
                     );
@@ -221,5 +225,29 @@ fn every_optimiser_finds_something_better_than_nothing() {
         // What the search promises is what the stage `ste` finds for the design it wrote.
         let (found, plain) = (summary.floats("variance")[row(name)], summary.floats("variance")[row("unmodified")]);
         assert!(found < 0.6 * plain, "{name}: {found} {plain}");
+    }
+}
+
+/// A method that meshes the teeth says with what, knows the stress at the roots, and claims nothing to be left out; the
+/// others have no rows and say why.
+#[test]
+fn a_method_that_meshes_says_with_what() {
+    let text = study(
+        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6, accuracy: 0.5 % } } }\n",
+    );
+    let loaded = load(&text);
+    let ran = walk(&loaded);
+    let table = |stage: &str, name: &str| ran[stage].tables.iter().find(|table| table.name() == name);
+    assert_eq!(table("beam", "mesh").unwrap().rows(), 0);
+    assert!(table("beam", "root_stress").is_none());
+    let mesh = table("mesh", "mesh").unwrap();
+    assert_eq!(mesh.texts("gear"), ["pinion", "gear"]);
+    assert!(mesh.floats("error_estimate").iter().all(|estimate| (0.001..0.5).contains(estimate)));
+    let stress = table("mesh", "root_stress").unwrap();
+    assert!(stress.rows() > 20 && stress.floats("stress").iter().all(|stress| *stress > 0.0));
+    for (stage, says) in [("beam", true), ("mesh", false)] {
+        let node = loaded.nodes.iter().find(|node| node.name == stage).unwrap();
+        let left_out = node.stage.left_out(&super::walk::demand(node.stage.as_ref(), true));
+        assert_eq!(left_out.iter().any(|omission| omission.what.contains("mesh")), says, "{stage}");
     }
 }

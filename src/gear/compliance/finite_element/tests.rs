@@ -133,7 +133,6 @@ fn the_energy_method_is_near() {
         let (low, high) = (gear.form_roll + 0.1 * pitch, gear.tip_roll() - 0.1 * pitch);
         for (first, further) in [(low, low + pitch), (high - pitch, high), (low, high), (high, low)] {
             let ratio = fe.neighbours[0].value(first, further) / beam.neighbours[0].value(first, further);
-            println!("{side:?} {first} {further}: {ratio}");
             assert!((0.75..1.25).contains(&ratio), "{side:?} {first} {further}: {ratio}");
         }
     }
