@@ -2,6 +2,7 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
+mod corner;
 mod extremes;
 
 use super::curve::Wanted;
@@ -177,7 +178,8 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     ];
     for (which, compliance) in [varying(), coupled(), logarithmic].iter().enumerate() {
         let run = |positions: usize, design: &Design, torque: f64| {
-            let cycle = MeshCycle::new(&pair, compliance, Settings { positions, slices: 9 }).unwrap();
+            let cycle =
+                MeshCycle::new(&pair, compliance, Settings { positions, slices: 9, ..Settings::default() }).unwrap();
             Loading::new(&cycle, design, torque).peak_to_peak()
         };
         for (index, design) in designs.iter().enumerate() {

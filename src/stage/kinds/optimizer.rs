@@ -8,6 +8,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, LENGTH, TORQUE, in_unit};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::template::{Template, Variable};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -55,6 +56,8 @@ const FIELDS: &[Field] = &[
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
         .default("17"),
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
 ];
 
 const AT: &[Field] = &[
@@ -112,7 +115,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         elements: items.iter().filter_map(|item| element(&item.value)).collect(),
         template,
         name: name.to_owned(),
-        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+        settings: Settings {
+            positions: whole("positions"),
+            slices: whole("slices"),
+            corner_contact: CornerContact::named(record.choice("corner_contact")),
+        },
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
     optimizer.search(crate::base::seed::Seed::of_stage(0, "")).map(drop)?;

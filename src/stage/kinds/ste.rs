@@ -12,6 +12,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -49,6 +50,8 @@ const FIELDS: &[Field] = &[
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
         .default("17"),
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
     Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
     Field::quantity(
@@ -96,7 +99,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         designs,
         torques: record.axis("torque").to_vec(),
         accuracy: record.maybe_quantity("accuracy"),
-        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+        settings: Settings {
+            positions: whole("positions"),
+            slices: whole("slices"),
+            corner_contact: CornerContact::named(record.choice("corner_contact")),
+        },
         harmonics: whole("harmonics"),
         samples: whole("samples"),
         first_sample: record.quantity("first_sample"),
@@ -187,7 +194,13 @@ struct Answer {
 }
 
 impl Ste {
-    fn answer(&self, cycles: &[MeshCycle], design: &Design, torque: f64, wanted: Wanted) -> Answer {
+    fn answer(
+        &self,
+        cycles: &[MeshCycle],
+        (design, name): (&Design, &str),
+        torque: f64,
+        wanted: Wanted,
+    ) -> Result<Answer, Failure> {
         let began = Instant::now();
         let coarse = |cycle: &MeshCycle| Loading::new(cycle, design, torque).peak_to_peak();
         let change = |before: f64, now: f64| (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
@@ -204,10 +217,18 @@ impl Ste {
                 before = now;
             }
         }
-        let (points, summary) = Loading::new(last, design, torque).curve_and_summary(wanted);
+        let loading = Loading::new(last, design, torque);
+        let (points, summary) = loading.curve_and_summary(wanted);
+        if !loading.holds(summary.largest.value) {
+            let (found, most) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
+            return Err(Failure::new(format!(
+                "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
+                 up to {most:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
+            )));
+        }
         let error = change(before, summary.peak_to_peak);
         let seconds = began.elapsed().as_secs_f64();
-        Answer { points, summary, positions: last.settings.positions, error, seconds }
+        Ok(Answer { points, summary, positions: last.settings.positions, error, seconds })
     }
 
     /// Cycles from half the positions up: two when no accuracy is asked for, as many as it may take otherwise.
@@ -249,6 +270,10 @@ impl Stage for Ste {
             "slices across the face",
             "crowning, slopes and linear or parabolic end relief have a closed form under linear contact",
         )];
+        if self.settings.corner_contact == CornerContact::None {
+            omissions
+                .push(Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only"));
+        }
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }
@@ -285,7 +310,8 @@ impl Stage for Ste {
             .par_iter()
             .map(|&(design, torque)| {
                 context.check_stop()?;
-                Ok(self.answer(&cycles, &designs[design].0, torque, wanted))
+                let (design, name) = &designs[design];
+                self.answer(&cycles, (design, name.as_str()), torque, wanted)
             })
             .collect::<Result<_, Failure>>()?;
 
@@ -378,7 +404,7 @@ fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Ve
         shown("um", |point| point.unloaded_transmission_error),
         shown("", |point| {
             let total: f64 = point.loads.iter().sum();
-            if total > 0.0 { point.loads[0] / total } else { 0.0 }
+            if total > 0.0 { point.newest_load / total } else { 0.0 }
         }),
         shown("N/m", |point| point.secant_stiffness),
         shown("N/m", |point| point.tangent_stiffness),
