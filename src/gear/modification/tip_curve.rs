@@ -197,7 +197,7 @@ pub(super) struct TipCurve {
 }
 
 /// How many places the curve is looked at before it is accepted.
-const LOOKS: u32 = 200;
+const LOOKS: u32 = 64;
 
 /// A curve that passes farther from B than this share of the base radius does not pass through it.
 const THROUGH: f64 = 1e-9;
@@ -309,21 +309,21 @@ impl TipCurve {
     }
 }
 
-/// The least and the largest value from 0 to `most` that fits, when any of a hundred does.
+/// The least and the largest value from 0 to `most` that fits, when any of fifty does.
 fn range(most: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
-    let places: Vec<f64> = (0..=100).map(|place| most * f64::from(place) / 100.0).collect();
+    let places: Vec<f64> = (0..=50).map(|place| most * f64::from(place) / 50.0).collect();
     let (first, last) = (places.iter().position(|&place| fits(place))?, places.iter().rposition(|&place| fits(place))?);
     let edge = |inside: usize, outside: Option<usize>| {
         let (mut good, Some(mut bad)) = (places[inside], outside.map(|outside| places[outside])) else {
             return places[inside];
         };
-        for _ in 0..40 {
+        for _ in 0..30 {
             let middle = 0.5 * (good + bad);
             *(if fits(middle) { &mut good } else { &mut bad }) = middle;
         }
         good
     };
-    Some((edge(first, first.checked_sub(1)), edge(last, (last < 100).then_some(last + 1))))
+    Some((edge(first, first.checked_sub(1)), edge(last, (last < 50).then_some(last + 1))))
 }
 
 /// By which share of the tip thickness A is moved, and the field that gives it.

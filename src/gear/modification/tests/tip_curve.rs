@@ -110,7 +110,7 @@ fn every_design_of_the_article_is_its_curve() {
                 }
                 let curve = implicit(family, a, b, t);
                 let corner = u_a + sigma;
-                assert_eq!(part.depth(t - 1e-9), 0.0);
+                assert!(part.depth(t - 1e-9).to_bits() == 0);
                 assert!(part.depth(t) < 1e-30);
                 // A is on the normal of the corner's roll angle, where the depth is the turn along the base circle.
                 assert!((part.depth(corner) - gear.base_radius * sigma).abs() < 1e-16);
@@ -223,7 +223,7 @@ fn printed_circle(gear: &Gear, tip: f64, length: f64) -> (f64, impl Fn(f64, f64)
     let angle = u_a - u_a.atan() + tip * gear.tip_thickness() / gear.tip_radius;
     let (x_a, y_a) = (gear.tip_radius * 1e3 * angle.cos(), gear.tip_radius * 1e3 * angle.sin());
     let (k, m) = ((2.0 * pressure - pressure.tan()).tan(), (x_b - x_a) / (y_a - y_b));
-    let x_0 = (y_b - k * x_b - (y_a + y_b) / 2.0 + m * (x_a + x_b) / 2.0) / (m - k);
+    let x_0 = (y_b - k * x_b - (y_a + y_b) * 0.5 + m * (x_a + x_b) * 0.5) / (m - k);
     let y_0 = k * x_0 - k * x_b + y_b;
     let radius = (x_b - x_0).hypot(y_b - y_0);
     (pressure, move |x, y| ((x * 1e3 - x_0).hypot(y * 1e3 - y_0) - radius) * 1e-3)
@@ -237,7 +237,6 @@ fn the_formulas_as_printed_give_what_they_give() {
         let [tip, length] = shares(tip, length);
         built(family, gear, &[tip, length, ("formulas", Choice("printed"))])
     };
-    let mut arcs = 0;
     for (tip, length) in TIP_SHARES.iter().flat_map(|tip| LENGTH_SHARES.map(|length| (*tip, length))) {
         for (side, name) in SIDES {
             let message = printed("parabola", name, tip, length).unwrap_err();
