@@ -80,7 +80,7 @@ const NEVER_IN_KERNELS: &[&str] = &[
 /// A crate and the only files or folders that may name it.
 const OWNERS: &[(&str, &[&str])] = &[
     ("petgraph", &["runner/graph.rs"]),
-    ("minijinja", &["report/"]),
+    ("minijinja", &["report/", "diff/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),
     ("serde_saphyr", &["study/"]),

@@ -1,0 +1,1 @@
+//! Comparisons of tables made for it.
