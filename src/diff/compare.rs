@@ -257,12 +257,9 @@ impl Task<'_> {
             let meant = flagged.or_else(|| find(&self.own, stage, name, &column.name))?;
             meant.of(column).ok()
         };
-        let by_identity = if of_verdicts {
-            let diff = table::compare(&after.name, &first, &second, Some(&verdict::IDENTITY), &tolerances);
-            Some(diff).filter(|diff| diff.note.is_empty())
-        } else {
-            None
-        };
-        by_identity.unwrap_or_else(|| table::compare(&after.name, &first, &second, None, &tolerances))
+        let compared = |key| table::compare(&after.name, &first, &second, key, &tolerances);
+        let keys = if of_verdicts { &verdict::KEYS[..] } else { &[] };
+        let by_words = keys.iter().map(|key| compared(Some(key))).find(|diff| diff.note.is_empty());
+        by_words.unwrap_or_else(|| compared(None))
     }
 }

@@ -99,7 +99,7 @@ fn study(study: &StudyDiff) -> StudyView<'_> {
                 stage,
                 sign: stage.state.sign(),
                 word: stage.state.word(),
-                why: stage.why.iter().map(words::reason).collect(),
+                why: words::reasons(&stage.why),
             })
             .collect(),
     }

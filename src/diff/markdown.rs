@@ -46,7 +46,7 @@ fn study(study: &StudyDiff) -> String {
         return text;
     }
     let rows = told.iter().map(|stage| {
-        let why: Vec<String> = stage.why.iter().map(|reason| escaped(&words::reason(reason))).collect();
+        let why: Vec<String> = words::reasons(&stage.why).iter().map(|reason| escaped(reason)).collect();
         let state = format!("{} {}", stage.state.sign(), stage.state.word());
         [format!("`{}`", stage.name), escaped(&stage.kind), state, why.join("<br>")]
     });

@@ -90,6 +90,9 @@ pub struct Flip {
     pub computed_before: Option<f64>,
     pub computed_after: Option<f64>,
     pub unit: String,
+    /// Of a claim: in how many rows it held and holds.
+    pub found_before: String,
+    pub found_after: String,
     pub needs_attention: bool,
 }
 

@@ -7,6 +7,9 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 use super::model::{Comparison, StageDiff, State, TableDiff};
 use super::words;
 
+/// Of the worst rows, so many: every table has some.
+const SHOWN: usize = 3;
+
 /// The whole comparison; no line is longer than `width`, 60 at least, but where one word is.
 #[must_use]
 pub fn text(comparison: &Comparison, width: u16) -> String {
@@ -51,8 +54,8 @@ impl Page {
 
     fn stage(&mut self, stage: &StageDiff) {
         self.wrap("  ", &format!("{} {} ({}): {}", stage.state.sign(), stage.name, stage.kind, stage.state.word()));
-        for reason in &stage.why {
-            self.wrap("      why: ", &words::reason(reason));
+        for reason in words::reasons(&stage.why) {
+            self.wrap("      why: ", &reason);
         }
         // What is new or gone as a whole has been said.
         if stage.state <= State::Changed {
@@ -112,6 +115,7 @@ impl Page {
         let rows: Vec<[String; 5]> = table
             .worst
             .iter()
+            .take(SHOWN)
             .map(|worst| {
                 let (before, after) = words::pair(&worst.before, &worst.after);
                 let difference = worst.difference.map_or_else(|| "–".to_owned(), words::difference);

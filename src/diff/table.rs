@@ -156,7 +156,7 @@ fn schema_changes(before: &[ColumnRecord], after: &[ColumnRecord]) -> Vec<Schema
         if old.key != new.key {
             change(new, "key", key(old), key(new), true);
         }
-        if tolerance(old) != tolerance(new) && old.unit == new.unit {
+        if tolerance(old) != tolerance(new) && (&old.kind, &old.unit) == (&new.kind, &new.unit) {
             change(new, "tolerance", tolerance(old), tolerance(new), false);
         }
     }

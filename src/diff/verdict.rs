@@ -6,8 +6,11 @@
 use super::model::Flip;
 use crate::table::data::{Data, Table};
 
-/// What an entry is: the columns that say it.
-pub const IDENTITY: [&str; 3] = ["label", "where", "cell"];
+/// What an entry is: the columns that say it, in the order of the study.
+const IDENTITY: [&str; 3] = ["label", "where", "cell"];
+
+/// The columns by which rows are matched: the first that tell them apart.
+pub const KEYS: [&[&str]; 2] = [&["label", "where"], &IDENTITY];
 
 /// The table of verdicts of a stage of kind `report`.
 pub const TABLE: &str = "verdicts";
@@ -18,6 +21,18 @@ struct Entry<'a> {
     published: &'a str,
     computed: Option<f64>,
     unit: &'a str,
+    /// For a claim: in how many rows it holds.
+    found: &'a str,
+}
+
+impl Entry<'_> {
+    fn is(&self, other: &Self) -> bool {
+        self.identity == other.identity
+    }
+
+    fn is_called(&self, other: &Self) -> bool {
+        !self.identity[0].is_empty() && self.identity[..2] == other.identity[..2]
+    }
 }
 
 /// Entries whose verdict differs, that came or went, those that need attention first.
@@ -39,15 +54,22 @@ pub fn flips(study: &str, stage: &str, before: &Table, after: &Table) -> Vec<Fli
             computed_before: old.and_then(|entry| entry.computed),
             computed_after: new.and_then(|entry| entry.computed),
             unit: shown.unit.to_owned(),
+            found_before: old.map(|entry| entry.found.to_owned()).unwrap_or_default(),
+            found_after: new.map(|entry| entry.found.to_owned()).unwrap_or_default(),
             needs_attention: new.is_some_and(|entry| needs_attention(entry.verdict)),
         })
     };
     let mut left: Vec<&Entry<'_>> = old.iter().collect();
+    // Of entries that say the same, the first belongs to the first. A formula may have been corrected since: what is
+    // left is matched by its words alone.
+    let mut matched: Vec<Option<&Entry<'_>>> = vec![None; new.len()];
+    for same in [Entry::is, Entry::is_called] {
+        for (entry, matched) in new.iter().zip(&mut matched).filter(|(_, matched)| matched.is_none()) {
+            *matched = left.iter().position(|other| same(other, entry)).map(|at| left.remove(at));
+        }
+    }
     let mut found = Vec::new();
-    for entry in &new {
-        // Of entries that say the same, the first belongs to the first.
-        let at = left.iter().position(|other| other.identity == entry.identity);
-        let earlier = at.map(|at| left.remove(at));
+    for (entry, earlier) in new.iter().zip(matched) {
         if earlier.is_none_or(|earlier| earlier.verdict != entry.verdict) {
             found.extend(flip(earlier, Some(entry)));
         }
@@ -76,6 +98,7 @@ fn entries(table: &Table) -> Vec<Entry<'_>> {
         published: text("published_text", row),
         computed: number("computed", row),
         unit: text("unit", row),
+        found: text("found", row),
     };
     (0..table.rows()).map(one).collect()
 }

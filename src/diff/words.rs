@@ -85,7 +85,7 @@ pub fn changed(column: &ColumnDiff) -> String {
 }
 
 /// `config pinion.face_width: 20 mm → 22 mm`.
-pub fn reason(reason: &Reason) -> String {
+fn reason(reason: &Reason) -> String {
     let mut text = reason.part.word().to_owned();
     if !reason.what.is_empty() {
         text += &format!(" {}", reason.what);
@@ -97,6 +97,15 @@ pub fn reason(reason: &Reason) -> String {
         (None, None) => {}
     }
     text
+}
+
+/// All reasons of a stage: those without values in one phrase.
+pub fn reasons(why: &[Reason]) -> Vec<String> {
+    let (told, bare): (Vec<&Reason>, Vec<&Reason>) =
+        why.iter().partition(|why| why.before.is_some() || why.after.is_some());
+    let bare: Vec<String> = bare.into_iter().map(reason).collect();
+    let bare = (!bare.is_empty()).then(|| bare.join(", "));
+    told.into_iter().map(reason).chain(bare).collect()
 }
 
 /// Long texts of a study, cut.
@@ -123,6 +132,11 @@ pub fn entry(flip: &Flip) -> String {
 
 /// `published 2.316 µm, computed 2.31 → 2.41 µm`.
 pub fn numbers(flip: &Flip) -> String {
+    if !(flip.found_before.is_empty() && flip.found_after.is_empty()) {
+        return [&flip.found_before, &flip.found_after]
+            .map(|found| if found.is_empty() { "none" } else { found })
+            .join(" → ");
+    }
     let published = (!flip.published.is_empty()).then(|| format!("published {}", flip.published));
     let with = |text: &str| with_unit(text, &flip.unit);
     let computed = match (flip.computed_before, flip.computed_after) {
