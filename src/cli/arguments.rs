@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, \
-    70 a bug of this program, 130 stopped by Ctrl-C.")]
+    4 results differ, 70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -98,6 +98,8 @@ pub enum Command {
         #[arg(long, value_enum, default_value_t = Format::Pretty)]
         format: Format,
     },
+    /// Say what changed between two sets of results, and why, without running anything.
+    Diff(Differences),
     /// Delete from the cache what no run has used lately.
     Gc {
         /// Keep what was used in the last N days.
@@ -132,4 +134,30 @@ pub enum Format {
     Pretty,
     Csv,
     Json,
+}
+
+/// What to compare, and how far apart is the same.
+#[derive(Args, Debug, Clone)]
+pub struct Differences {
+    /// Up to two revisions or folders of results, then studies: by default HEAD and the results folder, every study.
+    #[arg(value_name = "[A [B]] [STUDY]")]
+    pub words: Vec<String>,
+    /// Studies whose names are also revisions.
+    #[arg(last = true, value_name = "STUDY")]
+    pub studies: Vec<String>,
+    /// How far a column may differ: relative as a number, absolute with a unit; `stage.table.column`, `table.column` or
+    /// `column`; may be given several times.
+    #[arg(long = "tolerance", value_name = "COLUMN=VALUE")]
+    pub tolerances: Vec<String>,
+    #[arg(long, value_enum, default_value_t = Shown::Pretty)]
+    pub format: Shown,
+}
+
+/// How a comparison is shown.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    Pretty,
+    Json,
+    Markdown,
+    Html,
 }

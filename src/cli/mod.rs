@@ -3,6 +3,7 @@
 //! Must not know: how anything is computed.
 
 pub mod arguments;
+mod diff;
 pub mod draw;
 pub mod pages;
 pub mod print;
@@ -29,6 +30,9 @@ pub enum Ending {
     /// A stage failed; what it said was printed where it happened.
     #[error("{0}")]
     Failed(String),
+    /// Results differ beyond tolerance; what was printed says where.
+    #[error("the results differ")]
+    Differs,
     #[error("stopped; what was finished is kept, and the next run goes on from there")]
     Stopped,
 }
@@ -41,6 +45,7 @@ impl Ending {
             Self::Usage(_) => 1,
             Self::Invalid(_) => 2,
             Self::Failed(_) => 3,
+            Self::Differs => 4,
             // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
             Self::Stopped => 130,
         }
@@ -65,6 +70,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
         Err(ending) => {
             match &ending {
                 Ending::Invalid(error) => draw::invalid_study(error),
+                Ending::Differs => {}
                 other => eprintln!("gearstudy: {other}"),
             }
             ending.code()
@@ -97,6 +103,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             columns,
             *format,
         ),
+        Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {

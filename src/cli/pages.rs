@@ -119,6 +119,6 @@ pub(super) fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, S
 }
 
 /// Columns of the terminal; of a page of text where there is none.
-fn terminal_width() -> u16 {
+pub(super) fn terminal_width() -> u16 {
     comfy_table::Table::new().width().unwrap_or(120)
 }
