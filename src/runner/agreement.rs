@@ -95,10 +95,10 @@ fn difference(column: &Column, a: &Data, b: &Data, row: usize) -> (f64, f64, f64
         return if a.cell(row) == b.cell(row) { NOTHING } else { EVERYTHING };
     };
     let (a, b) = (a[row], b[row]);
-    if a == b || (a.is_nan() && b.is_nan()) {
+    let (absolute, size) = ((a - b).abs(), a.abs().max(b.abs()));
+    if absolute == 0.0 || (a.is_nan() && b.is_nan()) {
         return NOTHING;
     }
-    let (absolute, size) = ((a - b).abs(), a.abs().max(b.abs()));
     if !absolute.is_finite() {
         return EVERYTHING;
     }

@@ -93,7 +93,7 @@ pub fn unpack<R: Read + Seek>(archive: &mut Archive<R>, work: &Path) -> Result<U
     let path = work.join("study.yaml");
     std::fs::write(&path, &bytes).map_err(|error| archive.damaged(&name, &error.to_string()))?;
     let study = study::load(&path).map_err(|mut error| {
-        error.path = Path::new(&name).to_owned();
+        error.path = name.clone().into();
         VerifyError::Study(Box::new(error))
     })?;
     let inside = archive::results(&study.name) + MANIFEST;
@@ -200,8 +200,10 @@ fn notes(manifest: &Manifest) -> Vec<String> {
             notes.push(format!("made with another version of {what}: {archived}; this is {own}"));
         }
     }
-    if program.dependencies != about::DEPENDENCIES {
-        notes.push("made with other versions of the libraries (another Cargo.lock)".to_owned());
+    if program.dependencies.is_empty() {
+        notes.push("it does not say which versions of libraries it was made with".to_owned());
+    } else if program.dependencies != about::DEPENDENCIES {
+        notes.push("made with other versions of libraries (another Cargo.lock)".to_owned());
     }
     notes
 }

@@ -371,7 +371,7 @@ fn files(description: &Description<'_>) -> Vec<Value> {
         if let Some(table) = table {
             put("identifier", json!(format!("gearstudy-content:{}", table.content)));
         }
-        if inside == MANIFEST || inside.ends_with(".html") {
+        if inside == MANIFEST || format_of(name) == Some("text/html") {
             put("about", reference(RUN));
         }
         Value::Object(entity)
