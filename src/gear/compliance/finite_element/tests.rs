@@ -9,7 +9,8 @@ use crate::gear::geometry::{Pair, Rack, Side, Specification};
 use crate::gear::material::Material;
 
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-const COUPLED: Assumptions = Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true };
+const COUPLED: Assumptions =
+    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None };
 
 fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
     Specification {
