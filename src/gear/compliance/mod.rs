@@ -187,8 +187,8 @@ pub fn neighbours(pair: &Pair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
     // The contact ratio of what can be built is far below 2^32.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let pairs = pair.contact_ratio.ceil() as u32 + 1;
-    pairs.min(MOST as u32 - 1).min(teeth - 1)
+    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST as u32 - 1];
+    pairs.min(most).min(teeth - 1)
 }
 
 /// How two flanks flatten against each other.

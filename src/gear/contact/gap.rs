@@ -159,7 +159,7 @@ impl<'a> Gaps<'a> {
 
     /// Where the spot is no longer the one at the lower end, and which it is then.
     fn change(&self, (mut lower, spot): (f64, Spot), mut upper: f64) -> (f64, Spot) {
-        let closest = 1e-9 * (self.ways[0].facing.end - self.ways[0].facing.start);
+        let closest = 1e-11 * (self.ways[0].facing.end - self.ways[0].facing.start);
         let mut next = self.touching(upper).1;
         while upper - lower > closest {
             let middle = 0.5 * (lower + upper);

@@ -30,10 +30,19 @@ pub struct Loading<'a> {
     pub force: f64,
     face: Face<'a>,
     profiles: [Vec<&'a dyn Modification>; 2],
-    /// With corner contact: the gaps wherever flanks touch, and the approach that has no contact beyond the window.
-    corners: Option<(Gaps<'a>, f64)>,
+    corners: Option<Corners<'a>>,
     /// Cycle positions at which a profile is not smooth, ascending.
     breaks: Vec<f64>,
+}
+
+/// What corner contact adds.
+#[derive(Clone)]
+struct Corners<'a> {
+    gaps: Gaps<'a>,
+    /// Path positions farther out than these are too far apart under this load.
+    window: (f64, f64),
+    /// The gap where the model ends \[m\].
+    limit: f64,
 }
 
 /// The pairs of one position that can carry load.
@@ -117,7 +126,7 @@ impl<'a> Loading<'a> {
         let inwards = CLOSEST * pair.base_pitch;
         let ends = [gaps.at(first + inwards), gaps.at(last - inwards)];
         let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + self.face.offset;
-        // Farther out than a pair can be loaded nothing needs to be cut.
+        // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
         let most = inside.fold(0.0, |most: f64, s| most.max(self.alone(s) + gaps.at(s).unwrap_or(0.0)));
@@ -136,7 +145,7 @@ impl<'a> Loading<'a> {
         };
         self.breaks = gaps.breaks(window).into_iter().map(fold).collect();
         self.breaks.sort_by(f64::total_cmp);
-        self.corners = Some((gaps, limit));
+        self.corners = Some(Corners { gaps, window, limit });
     }
 
     /// Whether an approach is within what is modelled: with corner contact, below the gap at which a pair would touch that
@@ -149,7 +158,7 @@ impl<'a> Loading<'a> {
     /// The largest approach that is modelled \[m\].
     #[must_use]
     pub fn largest_approach(&self) -> f64 {
-        self.corners.as_ref().map_or(f64::INFINITY, |(_, limit)| *limit)
+        self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
     /// The same design when nothing is transmitted.
@@ -158,10 +167,11 @@ impl<'a> Loading<'a> {
         Self { force: 0.0, ..self.clone() }
     }
 
-    /// The gap on the line of action; with corner contact, where the flanks come nearest, and none out of reach.
+    /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
+    /// too far apart.
     fn gap(&self, s: f64) -> Option<f64> {
-        if let Some((gaps, _)) = &self.corners {
-            return gaps.at(s);
+        if let Some(Corners { gaps, window, .. }) = &self.corners {
+            return if s >= window.0 && s <= window.1 { gaps.at(s) } else { None };
         }
         let pair = &self.cycle.pair;
         let depth = |profile: &[&dyn Modification], roll: f64| profile.iter().map(|part| part.depth(roll)).sum::<f64>();

@@ -17,7 +17,7 @@ use crate::optimize::bounds::Bounds;
 use crate::optimize::search::{Optimizer as Search, Reason};
 use crate::optimize::{self};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, compliance, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -317,6 +317,12 @@ impl Stage for Optimizer {
             designs::elements_schema(),
             self.evaluations_schema(),
         ]
+    }
+
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
+        let none = self.settings.corner_contact == CornerContact::None;
+        let omission = Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only");
+        none.then_some(omission).into_iter().collect()
     }
 
     fn uses_seed(&self) -> bool {

@@ -135,7 +135,8 @@ fn without_modification_the_gap_is_the_corner_s_separation() {
     assert!(gaps.at(pair.start_of_contact - 8.5e-3).is_none(), "beyond the other tip");
 }
 
-/// Between the breaks that it states the gap is smooth: a polynomial of degree 31 follows it.
+/// Between the breaks that it states the gap is smooth: a polynomial of degree 31 follows it to 0.1 nm. What is missed are
+/// stretches of micrometres, where the slope of a relief is the least.
 #[test]
 fn the_gap_is_continuous_and_smooth_between_its_breaks() {
     let pair = pair();
@@ -157,7 +158,7 @@ fn the_gap_is_continuous_and_smooth_between_its_breaks() {
             for probe in 1..40 {
                 let s = lower + (upper - lower) * f64::from(probe) / 40.0;
                 let off = series.value(s) - gaps.at(s).unwrap();
-                assert!(off.abs() < 1e-10, "{index}: {off:e} at {s} in {ends:?} of {:?}", gaps.breaks(window));
+                assert!(off.abs() < 1e-10, "{index}: {off:e} at {s} in {ends:?}");
             }
         }
     }
