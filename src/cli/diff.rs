@@ -52,7 +52,7 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     if !comparison.problems.is_empty() {
         return Err(Ending::Usage(comparison.problems.join("; ")));
     }
-    if comparison.state.differs() { Err(Ending::Differs) } else { Ok(()) }
+    if comparison.state.differs() { Err(Ending::Differs(String::new())) } else { Ok(()) }
 }
 
 fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {

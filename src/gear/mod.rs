@@ -4,6 +4,7 @@
 
 pub mod compliance;
 pub mod contact;
+pub mod finite_elements;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod geometry;

@@ -55,6 +55,9 @@ pub struct Program {
     pub uncommitted_changes: Option<bool>,
     pub rustc: String,
     pub profile: String,
+    /// BLAKE3 of `Cargo.lock`; empty when it is not known.
+    #[serde(default)]
+    pub dependencies: String,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]

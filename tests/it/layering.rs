@@ -80,6 +80,7 @@ const NEVER_IN_KERNELS: &[&str] = &[
 /// A crate and the only files or folders that may name it.
 const OWNERS: &[(&str, &[&str])] = &[
     ("petgraph", &["runner/graph.rs"]),
+    ("faer", &["gear/finite_elements/"]),
     ("minijinja", &["report/", "diff/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),

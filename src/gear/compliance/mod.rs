@@ -4,12 +4,15 @@
 //! Must not know: modification, load.
 
 pub mod energy;
+pub mod finite_element;
 pub mod iso6336;
 pub mod ring;
 pub mod sainsot;
 #[cfg(test)]
 mod tests;
+pub mod weber_banaschek;
 
+use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
 use super::geometry::{Pair, Side};
@@ -20,24 +23,31 @@ use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
 
 /// Every way to the compliance of a pair, one line per member.
-pub const METHODS: &[Method] = &[energy::METHOD];
+pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD, finite_element::METHOD];
 
 /// A way to the compliance of a pair.
 #[derive(Clone, Copy)]
 pub struct Method {
     pub member: Member,
+    /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
+    pub whole_pair: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
     /// method does not hold for this pair. The record holds what this method alone can be told.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
+    /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
+    pub root_stress: Option<fn(&Record, &Pair, Assumptions) -> Result<Vec<RootStress>, ComplianceError>>,
 }
 
 /// What every method is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumptions {
     pub root: RootShape,
     pub contact: ContactLaw,
     /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
     pub coupled: bool,
+    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
+    /// compliance.
+    pub torque: Option<f64>,
 }
 
 /// What a method gives.
@@ -45,6 +55,34 @@ pub struct Assumptions {
 pub struct Tabulated {
     pub compliance: PairCompliance,
     pub warnings: Vec<String>,
+    /// One per gear, for methods that mesh the teeth.
+    pub meshes: Vec<MeshFacts>,
+}
+
+/// The mesh a gear's compliance was found with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshFacts {
+    pub side: Side,
+    /// Elements across a tooth.
+    pub elements_across: usize,
+    /// Elements of one tooth with its share of the body; the gear has as many times its number of teeth.
+    pub elements: usize,
+    /// Unknown displacements of the same.
+    pub unknowns: usize,
+    /// How far off the compliances may be, relative to the tooth's own.
+    pub error_estimate: f64,
+}
+
+/// The largest first principal stress on the surface of a loaded tooth's root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootStress {
+    pub side: Side,
+    /// Roll angle of the loaded point \[rad\].
+    pub roll: f64,
+    /// Per load per face width \[Pa/(N/m) = 1/m\].
+    pub stress: f64,
+    /// Radius of the place \[m\].
+    pub radius: f64,
 }
 
 /// The method called `name`.
@@ -81,6 +119,12 @@ pub enum ComplianceError {
     ManyTeeth { side: Side, half_angle: f64, least: f64 },
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
     NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+    #[error("the formula of ISO 6336-1 gives no stiffness for these profile shifts, dedenda and pressure angle: c′ is {} N/(mm µm)", Plain(*.single * 1e-9))]
+    NoIsoStiffness { single: f64 },
+    #[error("{}, {across} elements across: {error}", .side.name())]
+    Mesh { side: Side, across: usize, error: MeshError },
+    #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.most))]
+    Incompressible { side: Side, poisson_ratio: f64, most: f64 },
 }
 
 impl ComplianceError {
@@ -92,6 +136,13 @@ impl ComplianceError {
             Self::Root(error) => error.field(),
             Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
             Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::NoIsoStiffness { .. } => "pinion.profile_shift",
+            Self::Mesh { error: MeshError::SharpRoot, .. } => "root",
+            Self::Mesh { side, error: MeshError::Bore { .. } | MeshError::Rounding { .. }, .. } => {
+                own(*side, "pinion.bore_radius", "gear.bore_radius")
+            }
+            Self::Mesh { .. } => "method",
+            Self::Incompressible { .. } => "material.poisson_ratio",
             Self::NegativeBody { side, .. } | Self::ManyTeeth { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
         }
     }
@@ -136,8 +187,8 @@ pub fn neighbours(pair: &Pair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
     // The contact ratio of what can be built is far below 2^32.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let pairs = pair.contact_ratio.ceil() as u32 + 1;
-    pairs.min(MOST as u32 - 1).min(teeth - 1)
+    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST as u32 - 1];
+    pairs.min(most).min(teeth - 1)
 }
 
 /// How two flanks flatten against each other.
@@ -147,6 +198,8 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
+    /// The compliances of the teeth hold it already: methods that know a pair as a whole. No study chooses it.
+    Included,
 }
 
 /// The contact laws as a study names them.

@@ -101,6 +101,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
             uncommitted_changes: Some(false),
             rustc: "rustc 1.95.0".to_owned(),
             profile: "release".to_owned(),
+            dependencies: String::new(),
         },
         machine: Machine {
             system: "Debian GNU/Linux 12, x86_64".to_owned(),

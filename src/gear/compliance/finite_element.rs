@@ -1,0 +1,219 @@
+//! The finite-element method: tooth and gear body as one elastic body, the whole gear, clamped at its bore.
+//!
+//! `finite_elements` gives the influences of unit loads on a flank; here they become the pair's tables. What a load does
+//! to its own tooth is one number, so all of it stands in `body`, and bending, shear and compression are zero. It is the
+//! displacement of the centreline along the load line; the contact law adds the approach of the flank, to the depth
+//! `contact_depth`, so nothing is counted twice. Must not know: how it is solved.
+
+#[cfg(test)]
+mod tests;
+
+use super::{
+    Assumptions, ComplianceError, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance, neighbours,
+};
+use crate::base::parameter::{Field, Member, Shape};
+use crate::base::record::Record;
+use crate::base::units::RATIO;
+use crate::gear::finite_elements::element::{PLANES, Plane};
+use crate::gear::finite_elements::gear_model::{GearModel, Influences};
+use crate::gear::finite_elements::mesh::Sizing;
+use crate::gear::finite_elements::root_stress;
+use crate::gear::geometry::root::Root;
+use crate::gear::geometry::{Gear, Pair, Side};
+use crate::numeric::chebyshev::{Series, nodes};
+use crate::numeric::surface::Surface;
+
+/// Nodes along the flank: interpolation between them is exact to 1e-4, which a test holds.
+const ROLLS: usize = 16;
+/// Elements across with which a mesh still is one.
+const LEAST: usize = 4;
+const MOST: usize = 64;
+/// ν up to which plane strain does not lock.
+const MOST_POISSON: f64 = 0.49;
+/// The order that the error estimate counts on; 2 to 4 are observed.
+const ORDER: f64 = 1.5;
+
+const FIELDS: &[Field] = &[
+    Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
+    Field::integer(
+        "elements_across",
+        6,
+        64,
+        "elements across a tooth, taken as an even number; all other sizes follow from it",
+    )
+    .default("16"),
+    Field::new(
+        "accuracy",
+        Shape::Quantity { dimension: RATIO, least: 2e-4, most: 0.1 },
+        "refine from `elements_across` on until the estimated error of the compliances is this small",
+    )
+    .optional(),
+];
+
+pub const METHOD: Method = Method {
+    member: Member {
+        name: "finite_element",
+        summary: "Plane finite elements of the whole gear: teeth and body as one.",
+        fields: FIELDS,
+    },
+    whole_pair: false,
+    tabulate,
+    root_stress: Some(root_stress),
+};
+
+fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+    let mut warnings = Vec::new();
+    let mut meshes = Vec::new();
+    let mut side = |side| {
+        let task = Task::new(options, pair, side, assumptions)?;
+        let (solution, facts) = task.solve()?;
+        if let Some(accuracy) = task.accuracy.filter(|accuracy| facts.error_estimate > *accuracy) {
+            warnings.push(format!(
+                "{}: an accuracy of {:.2e} was asked for, {:.2e} is reached with the finest mesh, {MOST} elements across",
+                side.name(),
+                accuracy,
+                facts.error_estimate,
+            ));
+        }
+        meshes.push(facts);
+        task.tables(&solution)
+    };
+    let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+    let Assumptions { contact, coupled, .. } = assumptions;
+    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes })
+}
+
+fn root_stress(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Vec<RootStress>, ComplianceError> {
+    let mut rows = Vec::new();
+    for side in [Side::Pinion, Side::Gear] {
+        let task = Task::new(options, pair, side, assumptions)?;
+        let across = if task.accuracy.is_some() { task.solve()?.1.elements_across } else { task.across };
+        let module = task.gear.specification.module;
+        let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
+        for (&roll, points) in task.rolls.iter().zip(found) {
+            if let Some((stress, radius)) = root_stress::largest(&points) {
+                rows.push(RootStress { side, roll, stress: stress / module, radius: radius * module });
+            }
+        }
+    }
+    Ok(rows)
+}
+
+/// One gear, and how it is to be solved.
+struct Task<'a> {
+    side: Side,
+    gear: &'a Gear,
+    root: Root,
+    plane: Plane,
+    across: usize,
+    accuracy: Option<f64>,
+    rolls: Vec<f64>,
+    neighbours: u32,
+}
+
+impl<'a> Task<'a> {
+    fn new(options: &Record, pair: &'a Pair, side: Side, assumptions: Assumptions) -> Result<Self, ComplianceError> {
+        let gear = pair.side(side);
+        let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
+        let plane = if options.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain };
+        let poisson_ratio = gear.specification.material.poisson_ratio;
+        if plane == Plane::Strain && poisson_ratio > MOST_POISSON {
+            return Err(ComplianceError::Incompressible { side, poisson_ratio, most: MOST_POISSON });
+        }
+        let across = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
+        let rolls = nodes(root.form_roll, gear.tip_roll(), ROLLS);
+        Ok(Self {
+            side,
+            gear,
+            root,
+            plane,
+            across: even(across),
+            accuracy: options.maybe_quantity("accuracy"),
+            rolls,
+            neighbours: if assumptions.coupled { neighbours(pair, side) } else { 0 },
+        })
+    }
+
+    fn failed(&self, across: usize, error: crate::gear::finite_elements::MeshError) -> ComplianceError {
+        ComplianceError::Mesh { side: self.side, across, error }
+    }
+
+    fn model(&self, across: usize) -> Result<GearModel<'_>, ComplianceError> {
+        GearModel::new(self.gear, &self.root, self.plane, &Sizing::even(across))
+            .map_err(|error| self.failed(across, error))
+    }
+
+    fn at(&self, across: usize) -> Result<(Influences, MeshFacts), ComplianceError> {
+        let model = self.model(across)?;
+        let found = model.influences(&self.rolls, self.neighbours).map_err(|error| self.failed(across, error))?;
+        let facts = MeshFacts {
+            side: self.side,
+            elements_across: across,
+            elements: model.mesh.elements.len(),
+            unknowns: model.sector.unknowns(),
+            error_estimate: model.rounding(),
+        };
+        Ok((found, facts))
+    }
+
+    /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
+    fn solve(&self) -> Result<(Influences, MeshFacts), ComplianceError> {
+        let mut across = self.across;
+        loop {
+            let coarse = even(across / 2).max(LEAST);
+            let (found, mut facts) = self.at(across)?;
+            let change = difference(&found, &self.at(coarse)?.0);
+            facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
+            let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
+            if facts.error_estimate <= accuracy || across >= MOST {
+                return Ok((found, facts));
+            }
+            let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST
+            let next = libm::ceil(across as f64 * factor) as usize;
+            across = even(next.max(across + 2)).min(MOST);
+        }
+    }
+
+    /// SI, over the whole face width.
+    fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
+        let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
+        let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
+        let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
+        let nothing = || Series::from_values(lower, upper, &[0.0]);
+        let [contact_depth] = Series::converged(lower, upper, |roll| {
+            [self.gear.flank(roll).half_thickness / libm::cos(self.gear.load_angle(roll))]
+        })
+        .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
+        let neighbours = (solution.further.iter())
+            .map(|rows| Surface::from_values([lower; 2], [upper; 2], [ROLLS; 2], &scaled(&rows.concat())))
+            .collect();
+        Ok(ToothCompliance {
+            bending: nothing(),
+            shear: nothing(),
+            axial: nothing(),
+            body: Series::from_values(lower, upper, &scaled(&solution.own)),
+            contact_depth,
+            neighbours,
+        })
+    }
+}
+
+/// The next even number.
+fn even(count: usize) -> usize {
+    count.next_multiple_of(2)
+}
+
+/// The largest difference of influences, in units of the teeth's own.
+fn difference(fine: &Influences, coarse: &Influences) -> f64 {
+    let own = fine.own.iter().zip(&coarse.own).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+    let mut largest = own;
+    for (fine_rows, coarse_rows) in fine.further.iter().zip(&coarse.further) {
+        for (by, (a, b)) in fine_rows.iter().zip(coarse_rows).enumerate() {
+            for (on, (a, b)) in a.iter().zip(b).enumerate() {
+                largest = largest.max((a - b).abs() / (fine.own[by] * fine.own[on]).sqrt());
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,179 @@
+//! A gear's teeth under unit loads: what a load on a flank does to its own tooth and to the teeth that follow.
+//!
+//! The own compliance is the displacement of the point Q where the load line crosses the tooth's centreline, which local
+//! flattening does not reach: the contact laws hold the approach of the flank to it. Source of this split: Weber and
+//! Banaschek, 1953. A neighbour's is that of its flank point, along its own load line.
+//! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
+
+use super::MeshError;
+use super::element::{Plane, edge_shape, elasticity};
+use super::mesh::{Edge, Mesh, Sizing};
+use super::outline::Outline;
+use super::root_stress::{self, SurfaceStress};
+use super::sector::{NodalForces, Sector};
+use super::wheel::{Pressed, Wheel};
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::{Millimetres, Plain};
+use crate::gear::geometry::root::Root;
+
+/// Relative error of compliances by rounding, over the square of teeth times root radius over bore radius: a large gear on
+/// a small bore is turned by far less force than its elements need to be strained by as much. Measured up to 1000 teeth.
+const ROUNDING: f64 = 5e-15;
+const MOST_ROUNDING: f64 = 1e-2;
+
+/// A gear, meshed and factorised.
+pub struct GearModel<'a> {
+    gear: &'a Gear,
+    plane: Plane,
+    /// Height at which the involute begins \[modules\].
+    form: f64,
+    pub mesh: Mesh,
+    pub sector: Sector,
+}
+
+/// What loads at several places of a flank do.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Influences {
+    /// At the loaded tooth's Q, per place.
+    pub own: Vec<f64>,
+    /// For teeth 1, 2, … pitches further, where roll angles are larger: by the loaded place, then the affected one.
+    pub further: Vec<Vec<Vec<f64>>>,
+}
+
+impl<'a> GearModel<'a> {
+    /// # Errors
+    /// When the gear cannot be meshed or solved.
+    pub fn new(gear: &'a Gear, root: &Root, plane: Plane, sizing: &Sizing) -> Result<Self, MeshError> {
+        let outline = Outline::new(gear, root)?;
+        let (teeth, ratio) = (f64::from(gear.specification.teeth), gear.root_radius / gear.specification.bore_radius);
+        let most = (MOST_ROUNDING / ROUNDING).sqrt() / teeth;
+        if ratio > most {
+            return Err(MeshError::Rounding { ratio: Plain(ratio), most: Plain(most) });
+        }
+        let mesh = Mesh::new(&outline, sizing)?;
+        let elasticity = elasticity(plane, gear.specification.material.poisson_ratio);
+        let sector = Sector::new(&mesh, &elasticity)?;
+        let form = gear.flank(root.form_roll).height / gear.specification.module * (1.0 + 1e-9);
+        Ok(Self { gear, plane, form, mesh, sector })
+    }
+
+    /// Bound on the relative error of the compliances by rounding.
+    #[must_use]
+    pub fn rounding(&self) -> f64 {
+        let body = self.gear.root_radius / self.gear.specification.bore_radius;
+        let product = f64::from(self.gear.specification.teeth) * body;
+        ROUNDING * product * product
+    }
+
+    /// The way a flank is pressed at a roll angle: into the tooth, against (cos α_1, sin α_1).
+    #[must_use]
+    pub fn direction(&self, roll: f64) -> [f64; 2] {
+        let (sine, cosine) = libm::sincos(self.gear.load_angle(roll));
+        [-cosine, -sine]
+    }
+
+    /// A unit load on the right flank at a roll angle.
+    #[must_use]
+    pub fn load(&self, roll: f64) -> NodalForces {
+        let height = self.gear.flank(roll).height / self.gear.specification.module;
+        let (edge, place) = find(&self.mesh, &self.mesh.flank, height);
+        spread(edge, place, self.direction(roll))
+    }
+
+    /// What measures the displacement of Q along the load line of a roll angle.
+    ///
+    /// # Errors
+    /// When Q lies inside the bore.
+    pub fn probe(&self, roll: f64) -> Result<NodalForces, MeshError> {
+        let height = self.gear.base_radius / libm::cos(self.gear.load_angle(roll));
+        let bore = self.gear.specification.bore_radius;
+        if height <= bore {
+            return Err(MeshError::Bore { height: Millimetres(height), bore: Millimetres(bore) });
+        }
+        let height = height / self.gear.specification.module;
+        let (edge, place) = find(&self.mesh, &self.mesh.centreline, height);
+        Ok(spread(edge, place, self.direction(roll)))
+    }
+
+    /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for.
+    ///
+    /// # Errors
+    /// When a load line meets the centreline inside the bore, or the gear is not held to rounding.
+    pub fn influences(&self, rolls: &[f64], neighbours: u32) -> Result<Influences, MeshError> {
+        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.load(roll)).collect();
+        let probes = rolls.iter().map(|&roll| self.probe(roll)).collect::<Result<Vec<_>, _>>()?;
+        let by_load = self.sector.responses(&loads);
+        let by_probe = self.sector.responses(&probes);
+        let pressed: Vec<&Pressed> = by_load.iter().map(|response| &response.pressed).collect();
+        let all: Vec<&Pressed> =
+            by_probe.iter().map(|response| &response.pressed).chain(pressed.iter().copied()).collect();
+        let steps: Vec<u32> = (0..=neighbours).collect();
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: self.gear.specification.teeth, stiffness: &stiffness };
+        let found = wheel.influences(&all, &pressed, &steps)?;
+        let count = rolls.len();
+        let own =
+            (0..count).map(|k| self.sector.held_work(&probes[k], &by_probe[k], &by_load[k]) + found[0][k][k]).collect();
+        let further = (found[1..].iter())
+            .map(|matrix| (0..count).map(|by| (0..count).map(|on| matrix[count + on][by]).collect()).collect())
+            .collect();
+        Ok(Influences { own, further })
+    }
+}
+
+impl GearModel<'_> {
+    /// The work of `probe` on what any load on the same tooth does.
+    ///
+    /// # Errors
+    /// When the gear is not held to rounding.
+    pub fn work_of(&self, probe: &NodalForces, load: &NodalForces) -> Result<f64, MeshError> {
+        let responses = self.sector.responses(&[probe.clone(), load.clone()]);
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: self.gear.specification.teeth, stiffness: &stiffness };
+        let found = wheel.influences(&[&responses[0].pressed], &[&responses[1].pressed], &[0])?;
+        Ok(self.sector.held_work(probe, &responses[0], &responses[1]) + found[0][0][0])
+    }
+
+    /// The stress on the surface of the root on the side of the loads, which is the one in tension, from the middle of
+    /// the root land up to the start of the involute or to two elements short of the load; for unit loads at `rolls`.
+    ///
+    /// # Errors
+    /// When the gear is not held to rounding.
+    pub fn root_stresses(&self, rolls: &[f64]) -> Result<Vec<Vec<SurfaceStress>>, MeshError> {
+        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.load(roll)).collect();
+        let responses = self.sector.responses(&loads);
+        let pressed: Vec<&Pressed> = responses.iter().map(|response| &response.pressed).collect();
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: self.gear.specification.teeth, stiffness: &stiffness };
+        let edges = wheel.displacements(&pressed)?;
+        let surface: Vec<Edge> = self.mesh.root.iter().chain(&self.mesh.flank).copied().collect();
+        let module = self.gear.specification.module;
+        let found = responses.iter().zip(&edges).zip(rolls).map(|((response, edges), &roll)| {
+            let displacements = self.sector.displacements(response, edges);
+            let loaded = self.gear.flank(roll).height / module;
+            let height = |edge: &Edge| self.mesh.nodes[edge.nodes[2]][1];
+            let clear =
+                surface.windows(3).take_while(|edges| height(&edges[2]) < loaded && height(&edges[0]) <= self.form);
+            let count = clear.count();
+            let nu = self.gear.specification.material.poisson_ratio;
+            root_stress::along_surface(&self.mesh, &surface[..count], &displacements, self.plane, nu)
+        });
+        Ok(found.collect())
+    }
+}
+
+/// The edge that holds a height, and the place s on it; the ends where it lies beyond.
+fn find<'a>(mesh: &Mesh, edges: &'a [Edge], height: f64) -> (&'a Edge, f64) {
+    let above = edges.partition_point(|edge| mesh.nodes[edge.nodes[2]][1] < height).min(edges.len() - 1);
+    let edge = &edges[above];
+    let [start, middle, end] = edge.nodes.map(|node| mesh.nodes[node][1]);
+    // y = y_m + b s + a s², the root nearest to the straight edge's.
+    let (a, b, c) = (0.5 * (start + end) - middle, 0.5 * (end - start), middle - height);
+    let place = -2.0 * c / (b + (b * b - 4.0 * a * c).max(0.0).sqrt());
+    (edge, place.clamp(-1.0, 1.0))
+}
+
+/// A force at a place of an edge as forces at its nodes.
+fn spread(edge: &Edge, place: f64, force: [f64; 2]) -> NodalForces {
+    edge.nodes.into_iter().zip(edge_shape(place)).map(|(node, share)| (node, force.map(|f| f * share))).collect()
+}

@@ -1,0 +1,199 @@
+//! The outline of half a tooth in units of the module: root land, root curve, involute, and how nodes are spread on it.
+//!
+//! Tooth frame: y along the tooth's centreline from the gear's centre, x across, the right half. Nodes lie on the exact
+//! curves; only where on them is approximate. Must not know: elements, elasticity.
+
+use std::f64::consts::{FRAC_PI_4, PI};
+
+use super::MeshError;
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::root::{Piece, Root};
+
+/// Samples of a curve from which its length and direction are taken.
+const SAMPLES: usize = 400;
+/// Land \[modules\] that is none.
+const NO_LAND: f64 = 1e-6;
+/// Inclination against the circumference at which the tooth is cut off the body.
+const CUT_INCLINATION: f64 = FRAC_PI_4;
+
+/// A smooth curve of the outline, over its parameter.
+#[derive(Clone, Copy, Debug)]
+pub enum Curve {
+    /// The root circle, over the angle from the centreline, downwards.
+    Land {
+        radius: f64,
+    },
+    Root {
+        piece: Piece,
+        module: f64,
+    },
+    /// Over the roll angle.
+    Involute {
+        base_radius: f64,
+        half_base_angle: f64,
+    },
+}
+
+impl Curve {
+    /// The point \[modules\] at a parameter.
+    #[must_use]
+    pub fn point(&self, parameter: f64) -> [f64; 2] {
+        match *self {
+            Self::Land { radius } => {
+                let (sine, cosine) = libm::sincos(-parameter);
+                [radius * sine, radius * cosine]
+            }
+            Self::Root { piece, module } => {
+                let section = piece.section(parameter);
+                [section.half_thickness / module, section.height / module]
+            }
+            Self::Involute { base_radius, half_base_angle } => {
+                let (sine, cosine) = libm::sincos(parameter - half_base_angle);
+                [base_radius * (parameter * cosine - sine), base_radius * (cosine + parameter * sine)]
+            }
+        }
+    }
+}
+
+/// A stretch of a curve.
+#[derive(Clone, Copy, Debug)]
+pub struct Stretch {
+    pub curve: Curve,
+    pub lower: f64,
+    pub upper: f64,
+}
+
+/// Half a tooth's outline, cut where the tooth leaves the body.
+#[derive(Clone, Debug)]
+pub struct Outline {
+    /// From the middle of the root land upwards to the cut.
+    pub body: Vec<Stretch>,
+    /// From the cut to the tip corner.
+    pub tooth: Vec<Stretch>,
+    /// Half a pitch \[rad\].
+    pub half_pitch: f64,
+    /// The bore \[modules\].
+    pub bore_radius: f64,
+    /// ψ_a.
+    pub tip_half_angle: f64,
+}
+
+/// A curve by its samples: parameter, length and turning up to there.
+struct Samples {
+    points: Vec<[f64; 2]>,
+    parameters: Vec<f64>,
+    lengths: Vec<f64>,
+}
+
+impl Samples {
+    fn new(stretch: &Stretch) -> Self {
+        let Stretch { curve, lower, upper } = *stretch;
+        let parameters: Vec<f64> =
+            (0..=SAMPLES).map(|k| lower + (upper - lower) * (k as f64 / SAMPLES as f64)).collect();
+        let points: Vec<[f64; 2]> = parameters.iter().map(|&parameter| curve.point(parameter)).collect();
+        let mut lengths = vec![0.0];
+        for pair in points.windows(2) {
+            let step = libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
+            lengths.push(lengths[lengths.len() - 1] + step);
+        }
+        Self { points, parameters, lengths }
+    }
+
+    /// Direction of the chord after sample `k`, as the angle above the inward circumference.
+    fn inclination(&self, k: usize) -> f64 {
+        let ([x, y], [next_x, next_y]) = (self.points[k], self.points[k + 1]);
+        let (along, up) = (x - next_x, next_y - y);
+        libm::atan2(up, along) + libm::atan2(x, y)
+    }
+}
+
+impl Outline {
+    /// The outline of a gear's teeth with a root.
+    ///
+    /// # Errors
+    /// When the root has a re-entrant corner.
+    pub fn new(gear: &Gear, root: &Root) -> Result<Self, MeshError> {
+        let module = gear.specification.module;
+        let half_pitch = PI / f64::from(gear.specification.teeth);
+        let root_radius = gear.root_radius / module;
+        let smooth = matches!(root.pieces.first(), Some(Piece::Trochoid(_) | Piece::Arc { .. }));
+        if !smooth {
+            return Err(MeshError::SharpRoot);
+        }
+        let mut stretches: Vec<Stretch> = Vec::new();
+        if root_radius * (half_pitch - root.half_angle) > NO_LAND {
+            let curve = Curve::Land { radius: root_radius };
+            stretches.push(Stretch { curve, lower: -half_pitch, upper: -root.half_angle });
+        }
+        stretches.extend(root.pieces.iter().map(|&piece| {
+            let (lower, upper) = piece.range();
+            Stretch { curve: Curve::Root { piece, module }, lower, upper }
+        }));
+        let base_radius = gear.base_radius / module;
+        let curve = Curve::Involute { base_radius, half_base_angle: gear.half_base_angle };
+        stretches.push(Stretch { curve, lower: root.form_roll, upper: gear.tip_roll() });
+
+        let (place, parameter) = cut(&stretches);
+        let Stretch { curve, lower, upper } = stretches[place];
+        let mut body = stretches[..place].to_vec();
+        body.push(Stretch { curve, lower, upper: parameter });
+        let mut tooth = vec![Stretch { curve, lower: parameter, upper }];
+        tooth.extend_from_slice(&stretches[place + 1..]);
+        let bore_radius = gear.specification.bore_radius / module;
+        Ok(Self { body, tooth, half_pitch, bore_radius, tip_half_angle: gear.half_angle_at_roll(gear.tip_roll()) })
+    }
+}
+
+/// Where the tooth is cut off: at the inclination of 45°, or half of what the first curve reaches, if that is less.
+fn cut(stretches: &[Stretch]) -> (usize, f64) {
+    let place = usize::from(matches!(stretches[0].curve, Curve::Land { .. }));
+    let samples = Samples::new(&stretches[place]);
+    let steepest = (0..SAMPLES).map(|k| samples.inclination(k)).fold(0.0, f64::max);
+    let wanted = CUT_INCLINATION.min(0.5 * steepest);
+    let found = (1..SAMPLES).find(|&k| samples.inclination(k) >= wanted).unwrap_or(SAMPLES / 2);
+    (place, samples.parameters[found])
+}
+
+/// Parameters of corner and middle nodes, alternating, on a stretch with elements of the length `size` at a point, and
+/// none that turns by more than `turn`.
+#[must_use]
+pub fn divide(stretch: &Stretch, turn: f64, size: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+    let samples = Samples::new(stretch);
+    let mut weights = vec![0.0];
+    for k in 0..SAMPLES {
+        let length = samples.lengths[k + 1] - samples.lengths[k];
+        let [from, to] = [k.max(1) - 1, k.min(SAMPLES - 2) + 1];
+        let direction = |k: usize| {
+            let ([x, y], [p, q]) = (samples.points[k], samples.points[k + 1]);
+            libm::atan2(q - y, p - x)
+        };
+        let turned = (direction(to) - direction(from)) / (to - from) as f64;
+        // A curve's direction never jumps by half a turn.
+        let turned = libm::remainder(turned, 2.0 * PI).abs();
+        let weight = (length / size(samples.points[k])).max(turned / turn);
+        weights.push(weights[k] + weight);
+    }
+    let total = weights[SAMPLES];
+    // A few dozen elements at most.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let count = libm::round(total).max(1.0) as usize;
+    let corners: Vec<f64> =
+        (0..=count).map(|k| invert(&weights, &samples.lengths, total * (k as f64 / count as f64))).collect();
+    let mut parameters = Vec::new();
+    for pair in corners.windows(2) {
+        for length in [pair[0], 0.5 * (pair[0] + pair[1])] {
+            parameters.push(invert(&samples.lengths, &samples.parameters, length));
+        }
+    }
+    parameters[0] = stretch.lower;
+    parameters.push(stretch.upper);
+    parameters
+}
+
+/// The value of `others` where `ascending` is `wanted`, by straight lines between samples.
+fn invert(ascending: &[f64], others: &[f64], wanted: f64) -> f64 {
+    let after = ascending.partition_point(|value| *value < wanted).clamp(1, ascending.len() - 1);
+    let (low, high) = (ascending[after - 1], ascending[after]);
+    let part = if high > low { (wanted - low) / (high - low) } else { 0.0 };
+    others[after - 1] + part * (others[after] - others[after - 1])
+}
