@@ -186,8 +186,8 @@ fn tolerances_of_the_command_line_come_before_those_of_the_study() {
     edit(&desk, "seed: 1", "seed: 1\ntolerances: { mean: 1e6 N/m }");
     desk.run(&["check", "quick.yaml"], 2);
     edit(&desk, "{ mean: 1e6 N/m }", "{ stiffness.summary.mean: 1e6 N/m }");
-    let (plan, _) = desk.run(&["run", "--explain", "quick.yaml"], 0);
-    assert!(!plan.contains("run:"), "a tolerance computes nothing anew: {plan}");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    assert!(desk.ran("quick").is_empty(), "a tolerance computes nothing anew");
     let studys = json(&desk, &[], 4);
     assert_eq!((&column(&studys)["beyond"], &column(&studys)["absolute_tolerance"]), (&0.into(), &1e6.into()));
     let strict = json(&desk, &["--tolerance", "stiffness.summary.mean=0"], 4);
