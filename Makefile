@@ -9,10 +9,12 @@ export PATH := $(PATH):$(HOME)/.cargo/bin
 # Tests that read results back with Python find it here, whatever their folder.
 export GEARSTUDY_PYTHON := $(CURDIR)/.venv/bin/python
 
+# What `make diff` compares the results folder with.
+BASE ?= HEAD
 RELEASE := target/release/gearstudy
 STUDIES := $(sort $(wildcard studies/*.yaml))
 
-.PHONY: help setup release studies study test bench results clean
+.PHONY: help setup release studies study test bench results diff clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -43,6 +45,9 @@ bench: setup  ## measure the kernels and the program
 
 results: studies  ## refresh the results that are committed, and show what changed
 	@git status --short results
+
+diff: release  ## what changed in the results since a commit, and why: make diff BASE=main
+	$(RELEASE) diff $(BASE)
 
 clean:  ## remove what was built and the cache; studies and results stay
 	rm -rf target .venv .gearstudy

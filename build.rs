@@ -1,7 +1,8 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another. The compiler's version goes into the program for the manifest.
+//! stage does not recompute another. The compiler's version and the digest of `Cargo.lock` go into the program for
+//! the manifest.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -17,6 +18,10 @@ fn main() -> io::Result<()> {
     let rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())).arg("--version").output()?;
     println!("cargo:rustc-env=GEARSTUDY_RUSTC={}", String::from_utf8_lossy(&rustc.stdout).trim());
     println!("cargo:rustc-env=GEARSTUDY_PROFILE={}", env::var("PROFILE").unwrap_or_default());
+    // An installed program has no Cargo.lock beside it; which versions it was built from it must know itself.
+    let dependencies = fs::read("Cargo.lock").map_or_else(|_| String::new(), |lock| blake3::hash(&lock).to_string());
+    println!("cargo:rustc-env=GEARSTUDY_DEPENDENCIES={dependencies}");
+    println!("cargo:rerun-if-changed=Cargo.lock");
     println!("cargo:rerun-if-changed=src");
     println!("cargo:rerun-if-changed=build.rs");
     let mut shared = Vec::new();

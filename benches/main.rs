@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod article;
+mod diff;
 mod kernels;
 mod optimize;
 mod program;
@@ -23,6 +24,7 @@ fn main() {
     kernels::benches();
     optimize::benches();
     storage::benches();
+    diff::benches();
     program::benches();
     brief().final_summary();
     if std::env::args().skip(1).all(|word| word == "--bench") {

@@ -13,6 +13,8 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("study energy_ga, nothing to do", 15e-3, "whole process, everything cached and published"),
     ("gearstudy --version", 5e-3, "whole process"),
     ("stage/optimum", 0.3, "genetic, 100 × 100, 64 positions, all threads"),
+    ("diff/report 1e5 rows x 9", 0.1, "two folders of Parquet to the text, rows by key"),
+    ("diff/report 1e6 rows x 9", 1.0, "as before"),
     ("ste/curve uncoupled", 20e-6, "64 positions, crowned, both tips relieved, one thread"),
 ];
 

@@ -4,6 +4,7 @@
 
 pub mod base;
 pub mod cli;
+pub mod diff;
 pub mod gear;
 pub mod numeric;
 pub mod optimize;

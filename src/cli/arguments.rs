@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, \
-    70 a bug of this program, 130 stopped by Ctrl-C.")]
+    4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -73,7 +73,7 @@ pub enum Command {
     },
     /// Say what is up to date, stale or missing, and why.
     Status {
-        #[arg(required = true)]
+        /// Without any, those in the folder `studies`.
         studies: Vec<PathBuf>,
         /// As JSON.
         #[arg(long)]
@@ -97,6 +97,31 @@ pub enum Command {
         columns: Vec<String>,
         #[arg(long, value_enum, default_value_t = Format::Pretty)]
         format: Format,
+    },
+    /// Say what changed between two sets of results, and why, without running anything.
+    Diff(Differences),
+    /// Put a study and all its results into one file that describes itself: a Workflow Run RO-Crate.
+    Archive {
+        study: PathBuf,
+        /// The file to write.
+        #[arg(long, short, value_name = "FILE.zip")]
+        output: PathBuf,
+        /// Licence of the study and its results, as SPDX identifies it, for example CC-BY-4.0.
+        #[arg(long, value_name = "SPDX")]
+        license: Option<String>,
+        /// Who made the study, with an ORCID iD behind the name if there is one; may be given several times.
+        #[arg(long = "author", value_name = "NAME")]
+        authors: Vec<String>,
+    },
+    /// Run the study of an archive again, from nothing, and compare every table.
+    Verify {
+        file: PathBuf,
+        /// As JSON.
+        #[arg(long)]
+        json: bool,
+        /// How many threads to use [default: one per processor].
+        #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
+        jobs: Option<u16>,
     },
     /// Delete from the cache what no run has used lately.
     Gc {
@@ -132,4 +157,30 @@ pub enum Format {
     Pretty,
     Csv,
     Json,
+}
+
+/// What to compare, and how far apart is the same.
+#[derive(Args, Debug, Clone)]
+pub struct Differences {
+    /// Up to two revisions or folders of results, then studies: by default HEAD and the results folder, every study.
+    #[arg(value_name = "[A [B]] [STUDY]")]
+    pub words: Vec<String>,
+    /// Studies whose names are also revisions.
+    #[arg(last = true, value_name = "STUDY")]
+    pub studies: Vec<String>,
+    /// How far a column may differ: relative as a number, absolute with a unit; `stage.table.column`, `table.column` or
+    /// `column`; may be given several times.
+    #[arg(long = "tolerance", value_name = "COLUMN=VALUE")]
+    pub tolerances: Vec<String>,
+    #[arg(long, value_enum, default_value_t = Shown::Pretty)]
+    pub format: Shown,
+}
+
+/// How a comparison is shown.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shown {
+    Pretty,
+    Json,
+    Markdown,
+    Html,
 }

@@ -2,13 +2,16 @@
 //!
 //! Must not know: how anything is computed.
 
+pub mod archive;
 pub mod arguments;
+mod diff;
 pub mod draw;
 pub mod pages;
 pub mod print;
 pub mod progress;
 pub mod run;
 pub mod show;
+pub mod verify;
 
 use std::ffi::OsString;
 
@@ -29,6 +32,9 @@ pub enum Ending {
     /// A stage failed; what it said was printed where it happened.
     #[error("{0}")]
     Failed(String),
+    /// Something came out other than it was; empty where what was printed says it all.
+    #[error("{0}")]
+    Differs(String),
     #[error("stopped; what was finished is kept, and the next run goes on from there")]
     Stopped,
 }
@@ -41,6 +47,7 @@ impl Ending {
             Self::Usage(_) => 1,
             Self::Invalid(_) => 2,
             Self::Failed(_) => 3,
+            Self::Differs(_) => 4,
             // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
             Self::Stopped => 130,
         }
@@ -65,6 +72,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
         Err(ending) => {
             match &ending {
                 Ending::Invalid(error) => draw::invalid_study(error),
+                Ending::Differs(message) if message.is_empty() => {}
                 other => eprintln!("gearstudy: {other}"),
             }
             ending.code()
@@ -87,7 +95,12 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let how = run::How { explain: *explain, keep_going: *keep_going, jobs: jobs.map(usize::from), quiet };
             run::run(&load_all(studies)?, places, selection, &how)
         }
-        Command::Status { studies, json } => run::status(&load_all(studies)?, places, *json),
+        Command::Status { studies, json } => show::status(&load_all(&show::named_or_all(studies)?)?, places, *json),
+        Command::Archive { study, output, license, authors } => {
+            let about = archive::About { license: license.as_deref(), authors };
+            archive::archive(&load_all(std::slice::from_ref(study))?[0], places, output, &about, quiet)
+        }
+        Command::Verify { file, jobs, json } => verify::verify(file, jobs.map(usize::from), *json, quiet),
         Command::Report { studies } => run::report(&load_all(studies)?, places, quiet),
         Command::Table { study, table, conditions, columns, format } => show::table(
             &load_all(std::slice::from_ref(study))?[0],
@@ -97,6 +110,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             columns,
             *format,
         ),
+        Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {

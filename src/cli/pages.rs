@@ -26,10 +26,17 @@ pub(super) fn path(folder: &Folder) -> PathBuf {
 /// between the two.
 #[must_use]
 pub(super) fn are_current(folder: &Folder) -> bool {
-    let Ok(page) = fs::read_to_string(path(folder)) else { return false };
-    let Some(figures) = page.lines().last().and_then(|line| line.strip_prefix(&mark(folder))) else { return false };
-    let names = figures.trim_end_matches(MARK_END).split_whitespace();
-    names.map(|name| folder.path().join(FIGURES).join(name)).all(|figure| figure.is_file())
+    current(folder).is_some()
+}
+
+/// The page and its figures, relative to the folder, when they are those of the manifest as it stands.
+#[must_use]
+pub(super) fn current(folder: &Folder) -> Option<Vec<PathBuf>> {
+    let page = fs::read_to_string(path(folder)).ok()?;
+    let figures = page.lines().last()?.strip_prefix(&mark(folder))?.trim_end_matches(MARK_END);
+    let figures = figures.split_whitespace().map(|name| Path::new(FIGURES).join(name));
+    let files: Vec<PathBuf> = std::iter::once(PathBuf::from(PAGE)).chain(figures).collect();
+    files.iter().all(|file| folder.path().join(file).is_file()).then_some(files)
 }
 
 /// How the last line of a page begins: of which manifest it is.
@@ -119,6 +126,6 @@ pub(super) fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, S
 }
 
 /// Columns of the terminal; of a page of text where there is none.
-fn terminal_width() -> u16 {
+pub(super) fn terminal_width() -> u16 {
     comfy_table::Table::new().width().unwrap_or(120)
 }

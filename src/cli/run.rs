@@ -79,7 +79,7 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
 }
 
 /// Set by Ctrl-C; pressed twice, the program ends at once.
-fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
+pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
     let stop = Arc::new(AtomicBool::new(false));
     let flag = Arc::clone(&stop);
     // Without a handler Ctrl-C ends the program at once; what is finished is kept in that case too.
@@ -209,44 +209,6 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
         })
         .collect();
     json!({ "study": study.name, "file": study.path, "up_to_date": plan.is_up_to_date(), "stages": stages })
-}
-
-pub(super) fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), Ending> {
-    let mut all = Vec::new();
-    for study in studies {
-        let plan = plan_of(study, places, &Options::default())?;
-        let has_results = Folder::new(&places.results, &study.name).manifest().is_some();
-        let words: Vec<(&str, &str, String)> = plan
-            .stages
-            .iter()
-            .map(|stage| match &stage.action {
-                Action::Hit if has_results => (stage.name.as_str(), "up to date", String::new()),
-                Action::Hit => (stage.name.as_str(), "computed", "no results folder".to_owned()),
-                other => (stage.name.as_str(), "stale", other.phrase()),
-            })
-            .collect();
-        if as_json {
-            let stages: Vec<_> =
-                words.iter().map(|(name, state, why)| json!({ "name": name, "state": state, "why": why })).collect();
-            all.push(json!({ "study": study.name, "results": has_results, "stages": stages }));
-            continue;
-        }
-        let stale = words.iter().filter(|(_, state, _)| *state != "up to date").count();
-        let sum = if stale == 0 {
-            "up to date".to_owned()
-        } else {
-            format!("{stale} of {} stages are not up to date", words.len())
-        };
-        out(&format!("{}: {sum}\n", study.name));
-        let width = words.iter().map(|(name, ..)| name.chars().count()).max().unwrap_or(0);
-        for (name, state, why) in words.iter().filter(|(_, state, _)| *state != "up to date") {
-            out(&format!("  {name:width$}  {state}  {why}\n"));
-        }
-    }
-    if as_json {
-        out(&format!("{:#}\n", serde_json::Value::Array(all)));
-    }
-    Ok(())
 }
 
 pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {

@@ -108,8 +108,12 @@ pub fn coupled() -> PairCompliance {
 /// A record of the family `name` with defaults filled in.
 pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
     let family = family(name).unwrap();
-    let defaults =
-        [("counted_from", if name == "root_relief" { "root" } else { "tip" }), ("curve", "linear"), ("end", "both")];
+    let defaults = [
+        ("counted_from", if name == "root_relief" { "root" } else { "tip" }),
+        ("curve", "linear"),
+        ("end", "both"),
+        ("formulas", "derived"),
+    ];
     let mut fields = Vec::new();
     for field in family.member.fields {
         let given = values.iter().find(|(given, _)| *given == field.name).map(|(_, value)| value.clone());

@@ -6,6 +6,7 @@ pub mod chebyshev;
 pub mod complementarity;
 pub mod crossing;
 pub mod extremum;
+pub mod graded;
 pub mod harmonics;
 pub mod lobatto;
 pub mod panels;

@@ -49,6 +49,10 @@ fn figure(
     let (x, ys) = (text("x")?, words(text("y")?));
     let names = words(text("tables")?);
     let conditions = parse_conditions(text("conditions")?).map_err(ReportError::Unfit)?;
+    let reference = match text("reference")? {
+        "" => None,
+        name => Some(tables(name).ok_or_else(|| ReportError::Missing(name.to_owned()))?),
+    };
     let mut drawing = Drawing::default();
     let (mut x_unit, mut y_unit) = (String::new(), String::new());
     for name in &names {
@@ -62,9 +66,14 @@ fn figure(
                 (false, true) => plain(y),
                 (false, false) => String::new(),
             };
+            let first = drawing.series.len();
             drawing.add(&table, &rows, kind, [x, y, text("series")?, text("segments")?], &prefix)?;
             x_unit.clone_from(&unit(&table, x));
             y_unit.clone_from(&unit(&table, y));
+            if let Some(reference) = &reference {
+                drawing.relate(first, value_of(reference, &conditions, y)?);
+                y_unit.clear();
+            }
         }
     }
     let (owners, labels) = (integers(published, "figure")?, texts(published, "label")?);
@@ -89,6 +98,15 @@ fn figure(
         categories: drawing.categories,
     };
     Ok(Figure { name: text("name")?.to_owned(), note: text("note")?.to_owned(), plot, tables: names.join(", ") })
+}
+
+/// The value of a column in the only row that meets the conditions.
+fn value_of(table: &Table, conditions: &[(String, String)], column: &str) -> Result<f64, ReportError> {
+    let data = table.column(column).ok_or_else(|| missing(table, column))?;
+    match rows_where(table, conditions).map_err(ReportError::Unfit)?[..] {
+        [row] => number(table, column, data, row),
+        _ => Err(ReportError::Unfit(format!("table `{}` has not one row to compare with", table.name()))),
+    }
 }
 
 fn unit(table: &Table, column: &str) -> String {
@@ -160,6 +178,13 @@ impl Drawing {
         Ok(())
     }
 
+    /// The y of the series from `first` on as their relative distance from `reference`.
+    fn relate(&mut self, first: usize, reference: f64) {
+        for (_, y) in self.series[first..].iter_mut().flat_map(|series| &mut series.runs).flatten() {
+            *y = (*y / reference - 1.0).abs();
+        }
+    }
+
     fn category(&mut self, name: String) -> f64 {
         let at = self.categories.iter().position(|category| *category == name).unwrap_or_else(|| {
             self.categories.push(name);
@@ -212,4 +237,71 @@ fn interrupted(series: Series) -> Series {
         runs.push(current);
     }
     Series { runs, ..series }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::data::Row;
+    use crate::table::schema::{Column, Schema};
+
+    fn declared(columns: &[(&str, &str)]) -> Table {
+        let schema = vec![Column::integer("figure", "Number.").key()];
+        let texts = columns.iter().map(|(name, _)| Column::text(name, "A word."));
+        let row: Row = std::iter::once(1.into()).chain(columns.iter().map(|(_, word)| (*word).into())).collect();
+        Table::from_rows(Schema::new("figures", "Figures.", schema.into_iter().chain(texts).collect()), vec![row])
+            .unwrap()
+    }
+
+    #[test]
+    fn values_are_drawn_as_their_distance_from_a_reference() {
+        let marks = vec![
+            Column::integer("figure", "Number.").key(),
+            Column::integer("number", "Number.").key(),
+            Column::text("label", "A word."),
+            Column::float("x", "", "A place.").allows_nan(),
+            Column::float("y", "", "A place.").allows_nan(),
+        ];
+        let marks = Table::from_rows(Schema::new("figure_published", "Marks.", marks), Vec::new()).unwrap();
+        let table = |name: &str| {
+            let columns =
+                vec![Column::float("seconds", "s", "Time.").volatile(), Column::float("k", "N/m", "Stiffness.")];
+            let row: Row = match name {
+                "one.summary" => vec![0.5.into(), 3.0e8.into()],
+                "two.summary" => vec![2.0.into(), 1.9e8.into()],
+                "best.summary" => vec![9.0.into(), 2.0e8.into()],
+                _ => return None,
+            };
+            Some(Table::from_rows(Schema::new("summary", "Summary.", columns), vec![row]).unwrap())
+        };
+        let words = |reference| {
+            [
+                ("name", "f"),
+                ("title", "t"),
+                ("kind", "points"),
+                ("tables", "one.summary, two.summary"),
+                ("x", "seconds"),
+                ("y", "k"),
+                ("series", ""),
+                ("segments", ""),
+                ("reference", reference),
+                ("conditions", ""),
+                ("x_label", ""),
+                ("y_label", ""),
+                ("log", "both"),
+                ("note", ""),
+            ]
+        };
+        let drawn =
+            |reference| figures(&declared(&words(reference)), &marks, &table).map(|mut found| found.remove(0).plot);
+        let plot = drawn("best.summary").unwrap();
+        let points: Vec<(f64, f64)> = plot.series.iter().flat_map(|series| series.runs.concat()).collect();
+        assert_eq!(plot.y.unit, "");
+        assert_eq!(points.len(), 2);
+        for (point, (x, y)) in points.into_iter().zip([(0.5, 0.5), (2.0, 0.05)]) {
+            assert!((point.0 - x).abs() < 1e-15 && (point.1 - y).abs() < 1e-15, "{point:?}");
+        }
+        assert_eq!(drawn("").unwrap().y.unit, "N/m");
+        assert!(drawn("none.summary").err().unwrap().to_string().contains("none.summary"));
+    }
 }

@@ -11,19 +11,16 @@
 
 use std::sync::Arc;
 
-use super::chunk::chunks;
 use super::events::{Event, Observer};
 use super::graph::Graph;
-use super::key::{self, Parts, Why, explain, phrase};
+use super::key::{self, Part, Why, explain, phrase};
 use super::options::Options;
 use super::outcome::Fault;
 use crate::base::digest::Digest;
 use crate::base::error::Diagnostic;
-use crate::base::seed::Seed;
 use crate::store::cache::{Cache, Lookup};
 use crate::store::entry::{Entry, StoredTable};
 use crate::store::journal::{Journal, JournalStage};
-use crate::store::manifest::KeyRecord;
 use crate::study::Study;
 use crate::table::data::Table;
 
@@ -90,14 +87,6 @@ impl Step {
             Self::Skip(_) => State::Skipped,
         }
     }
-}
-
-/// A chunk of a stage, or all of it.
-pub struct Part {
-    pub key: Digest,
-    pub record: KeyRecord,
-    /// The axis that is cut and the values of this chunk.
-    pub axis: Option<(&'static str, Vec<f64>)>,
 }
 
 /// What is known about a part that was looked up or computed.
@@ -241,40 +230,15 @@ impl<'a> Board<'a> {
                 let verb = if self.nodes[lost].state == State::Failed { "failed" } else { "was not run" };
                 self.step(node, Step::Skip(format!("`{}` {verb}", self.study.nodes[lost].name)));
             } else if inputs.clone().all(|input| self.nodes[input].state.has_tables()) {
-                self.step(node, Step::Ready(Arc::new(self.parts(node))));
+                let tables = |input: usize| self.nodes[input].tables.as_slice();
+                let parts = key::parts(self.study, &self.graph, node, self.options.code, tables);
+                self.step(node, Step::Ready(Arc::new(parts)));
                 if self.look_up(node) {
                     queued.push(node);
                 }
             }
         }
         queued
-    }
-
-    /// The keys of a stage whose inputs are known.
-    fn parts(&self, node: usize) -> Vec<Part> {
-        let of_study = &self.study.nodes[node];
-        let chunks = chunks(of_study.kind, &of_study.record);
-        let inputs = self.graph.inputs[node]
-            .iter()
-            .map(|input| (input.port.clone(), key::input(input, &self.nodes[input.node].tables)));
-        let code = (self.options.code)(of_study.kind.name);
-        let parts = Parts {
-            kind: of_study.kind,
-            code: &code,
-            record: &of_study.record,
-            axis: chunks.as_ref().map(|chunks| chunks.field),
-            inputs: inputs.collect(),
-            seed: of_study.stage.uses_seed().then(|| Seed::of_stage(self.study.seed, &of_study.name)),
-            demand: &self.graph.demands[node],
-        };
-        let part = |axis: Option<(&'static str, Vec<f64>)>| {
-            let record = parts.record(axis.as_ref().map_or(&[], |(_, values)| values));
-            Part { key: key::key(&record), record, axis }
-        };
-        match chunks {
-            None => vec![part(None)],
-            Some(chunks) => chunks.values.into_iter().map(|values| part(Some((chunks.field, values)))).collect(),
-        }
     }
 
     /// Takes a ready stage to Hit, or to Queued (then true).

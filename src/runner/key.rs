@@ -6,13 +6,55 @@
 
 use std::fmt;
 
-use super::graph::Input;
+use super::chunk::chunks;
+use super::graph::{Graph, Input};
 use crate::base::digest::{Digest, Writer};
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 use crate::stage::{Demand, Kind};
 use crate::store::entry::StoredTable;
 use crate::store::manifest::KeyRecord;
+use crate::study::Study;
+
+/// A chunk of a stage, or all of it.
+pub struct Part {
+    pub key: Digest,
+    pub record: KeyRecord,
+    /// The axis that is cut and the values of this chunk.
+    pub axis: Option<(&'static str, Vec<f64>)>,
+}
+
+/// The keys of a stage whose inputs are known; `tables` gives what a node came out as.
+#[must_use]
+pub fn parts<'t>(
+    study: &Study,
+    graph: &Graph,
+    node: usize,
+    code: fn(&str) -> String,
+    tables: impl Fn(usize) -> &'t [StoredTable],
+) -> Vec<Part> {
+    let of_study = &study.nodes[node];
+    let chunks = chunks(of_study.kind, &of_study.record);
+    let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
+    let code = code(of_study.kind.name);
+    let common = Parts {
+        kind: of_study.kind,
+        code: &code,
+        record: &of_study.record,
+        axis: chunks.as_ref().map(|chunks| chunks.field),
+        inputs: inputs.collect(),
+        seed: of_study.stage.uses_seed().then(|| Seed::of_stage(study.seed, &of_study.name)),
+        demand: &graph.demands[node],
+    };
+    let part = |axis: Option<(&'static str, Vec<f64>)>| {
+        let record = common.record(axis.as_ref().map_or(&[], |(_, values)| values));
+        Part { key: key(&record), record, axis }
+    };
+    match chunks {
+        None => vec![part(None)],
+        Some(chunks) => chunks.values.into_iter().map(|values| part(Some((chunks.field, values)))).collect(),
+    }
+}
 
 /// What the chunks of one stage have in common.
 pub struct Parts<'a> {

@@ -2,6 +2,7 @@
 //!
 //! Must not know: gears, what a stage computes, how progress is drawn.
 
+pub mod agreement;
 pub mod board;
 pub mod chunk;
 pub mod events;
@@ -11,6 +12,8 @@ pub mod key;
 pub mod options;
 pub mod outcome;
 pub mod plan;
+pub mod standing;
 #[cfg(test)]
 mod tests;
+pub mod verify;
 pub mod work;

@@ -14,7 +14,7 @@ use crate::store::manifest::{
     ColumnRecord, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
 };
 use crate::store::parquet;
-use crate::study::Study;
+use crate::study::{Study, settings};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
@@ -72,6 +72,8 @@ pub struct StageOutcome {
     pub warnings: Vec<String>,
     pub left_out: Vec<Omission>,
     pub keys: Vec<KeyRecord>,
+    /// As the manifest keeps it.
+    pub config: serde_json::Value,
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
     pub tables: Vec<(Schema, StoredTable)>,
     parts: Vec<Digest>,
@@ -111,6 +113,7 @@ impl Outcome {
                 warnings,
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
+                config: settings::shown(of_study.kind.fields, &of_study.record),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
             }
@@ -178,6 +181,7 @@ impl Outcome {
             study_digest: blake3::hash(study.text.as_bytes()).to_string(),
             seconds: self.seconds,
             stages: self.stages.iter().map(StageOutcome::record).collect(),
+            tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),
             ..Manifest::default()
         }
     }
@@ -197,6 +201,7 @@ impl StageOutcome {
             kind: self.kind.to_owned(),
             version: self.version,
             keys: self.keys.clone(),
+            config: self.config.clone(),
             status: status.to_owned(),
             why: self.why.clone(),
             seconds: self.seconds,

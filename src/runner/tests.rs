@@ -228,6 +228,7 @@ impl Bench {
             Node { name: spec.name.to_owned(), place: Place::default(), kind: spec.kind, record, stage }
         };
         Study {
+            tolerances: Vec::new(),
             name: "study".to_owned(),
             title: String::new(),
             source: None,

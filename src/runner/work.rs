@@ -8,10 +8,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-use super::board::{Known, Part};
+use super::board::Known;
 use super::events::Event;
 use super::execute::Run;
-use super::key::Why;
+use super::key::{Part, Why};
 use super::outcome::{Fault, together};
 use crate::base::error::Failure;
 use crate::base::record::Record;

@@ -70,8 +70,8 @@ pub fn model_schema() -> Schema {
         "What the compliances were made with, and how contact is to be added.",
         vec![
             Column::text("method", "Method of the tooth compliance."),
-            Column::text("root", "Root curve of the teeth."),
-            Column::text("contact", "Contact law: linear or load_dependent."),
+            Column::text("root", "Root curve of the teeth; none where the method asks for none."),
+            Column::text("contact", "Contact law: linear, load_dependent, or included in the teeth."),
             Column::text("coupling", "Whether loaded neighbours share the gear body: none or body."),
         ],
     )
@@ -119,6 +119,7 @@ pub fn write(
     let contact = match compliance.contact {
         ContactLaw::Linear => "linear",
         ContactLaw::LoadDependent => "load_dependent",
+        ContactLaw::Included => "included",
     };
     let coupling = if compliance.coupled { "body" } else { "none" };
     let model: Row = vec![method.into(), root.into(), contact.into(), coupling.into()];
@@ -147,6 +148,7 @@ pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<Pai
     let contact = match model.texts("contact").first().map(String::as_str) {
         Some("linear") => ContactLaw::Linear,
         Some("load_dependent") => ContactLaw::LoadDependent,
+        Some("included") => ContactLaw::Included,
         other => return Err(Failure::new(format!("unknown contact law {other:?}"))),
     };
     Ok(PairCompliance {
@@ -190,9 +192,13 @@ fn series_from(table: &Table, column: &str, rows: &[usize]) -> Result<Series, Fa
     Ok(Series::from_values(lower, upper, &values))
 }
 
-/// The interval whose Chebyshev nodes are `nodes`: the outermost ones are its ends drawn in by cos(π/2n).
+/// The interval whose Chebyshev nodes are `nodes`: the outermost ones are its ends drawn in by cos(π/2n). A single node
+/// is that of a constant, which is the same on any interval.
 fn interval(nodes: &[f64]) -> (f64, f64) {
     let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+    if nodes.len() == 1 {
+        return (first - 1.0, first + 1.0);
+    }
     let shrink = libm::cos(std::f64::consts::PI / (2 * nodes.len()) as f64);
     let (middle, half) = (0.5 * (first + last), 0.5 * (last - first) / shrink);
     (middle - half, middle + half)
@@ -227,12 +233,21 @@ mod tests {
             axial: Series::fit(0.07, 0.62, 24, |u| scale * 1e-11 * u * u),
             body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
-            neighbours: vec![Surface::fit([0.07; 2], [0.62; 2], [12, 9], |u, v| scale * 3e-10 * (1.0 - u * v))],
+            neighbours: vec![
+                Surface::fit([0.07; 2], [0.62; 2], [12, 9], |u, v| scale * 3e-10 * (1.0 - u * v)),
+                Surface::from_values([0.07; 2], [0.62; 2], [1, 1], &[scale * 2e-10]),
+            ],
         };
         let pair =
             PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
-        let [compliance, neighbours, model] = write(&pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
-        let back = read(&compliance, &neighbours, &model).unwrap();
+        let round = |pair: &PairCompliance| {
+            let [compliance, neighbours, model] = write(pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
+            read(&compliance, &neighbours, &model).unwrap()
+        };
+        for contact in [ContactLaw::Linear, ContactLaw::Included] {
+            assert_eq!(round(&PairCompliance { contact, ..pair.clone() }).contact, contact);
+        }
+        let back = round(&pair);
         assert!(back.coupled && back.contact == ContactLaw::LoadDependent);
         for roll in [0.07, 0.2, 0.41, 0.62] {
             assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);
@@ -242,6 +257,7 @@ mod tests {
         }
         let cross = |pair: &PairCompliance| pair.pinion.neighbours[0].value(0.15, 0.41);
         assert!((cross(&back) / cross(&pair) - 1.0).abs() < 1e-14);
-        assert_eq!(back.gear.neighbours.len(), 1);
+        assert_eq!(back.gear.neighbours.len(), 2);
+        assert!((back.gear.neighbours[1].value(0.3, 0.6) / 1.4e-10 - 1.0).abs() < 1e-14, "a constant");
     }
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
+use super::archive::about;
 use super::manifest::{Machine, Program};
 
 /// What a manifest says besides the results.
@@ -26,11 +27,12 @@ impl Facts {
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         Self {
             program: Program {
-                version: env!("CARGO_PKG_VERSION").to_owned(),
+                version: about::VERSION.to_owned(),
                 commit,
                 uncommitted_changes,
                 rustc: env!("GEARSTUDY_RUSTC").to_owned(),
                 profile: env!("GEARSTUDY_PROFILE").to_owned(),
+                dependencies: about::DEPENDENCIES.to_owned(),
             },
             machine: Machine {
                 system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),

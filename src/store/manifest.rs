@@ -23,6 +23,9 @@ pub struct Manifest {
     pub written: String,
     pub seconds: f64,
     pub stages: Vec<StageRecord>,
+    /// Tolerances of the study, by column: they decide what a comparison calls a difference, never a result.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub tolerances: Vec<(String, String)>,
     /// Every file beside the manifest that belongs to it, so that a later run can tell what is missing or stale.
     #[serde(default)]
     pub files: Vec<FileRecord>,
@@ -52,6 +55,9 @@ pub struct Program {
     pub uncommitted_changes: Option<bool>,
     pub rustc: String,
     pub profile: String,
+    /// BLAKE3 of `Cargo.lock`; empty when it is not known.
+    #[serde(default)]
+    pub dependencies: String,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
@@ -69,6 +75,10 @@ pub struct StageRecord {
     pub version: u32,
     /// One per chunk.
     pub keys: Vec<KeyRecord>,
+    /// The fields after defaults as a reader would write them, so that two runs can say *from what to what*. No part of
+    /// any key; null in manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
+    pub config: serde_json::Value,
     /// `hit`, `ran`, `failed`, `skipped`.
     pub status: String,
     /// Why it ran.

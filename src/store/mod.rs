@@ -1,7 +1,9 @@
-//! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with its manifest, the facts of a run.
+//! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with its manifest, the facts of a run,
+//! archives.
 //!
 //! Must not know: stages, the graph.
 
+pub mod archive;
 pub mod cache;
 pub mod csv;
 pub mod entry;

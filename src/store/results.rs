@@ -213,7 +213,9 @@ impl Folder {
         Changes { manifest, tables, hdf5, remove }
     }
 
-    fn intact(&self, manifest: &Manifest, file: &str) -> bool {
+    /// Whether a file is there in the size that the manifest lists.
+    #[must_use]
+    pub fn intact(&self, manifest: &Manifest, file: &str) -> bool {
         let size = fs::metadata(self.path.join(file)).map(|metadata| metadata.len()).ok();
         manifest.files.iter().any(|record| record.file == file && Some(record.bytes) == size)
     }

@@ -7,11 +7,12 @@ use std::path::Path;
 use super::decode::{Decoder, Reference};
 use super::document::{Content, Node as Tree, Pair, parse};
 use super::words::{alternatives, quote};
-use super::{Node, Source, Study, links};
+use super::{Node, Source, Study, links, settings};
 use crate::base::error::{Diagnostic, Place, suggest};
 use crate::base::parameter::{Field, Shape};
-use crate::base::record::{Record, Value};
+use crate::base::record::{Entry, Record, Value};
 use crate::stage::Kind;
+use crate::table::tolerance::Allowance;
 
 /// Characters of a name.
 pub const LONGEST_NAME: usize = 64;
@@ -32,6 +33,12 @@ pub static KEYS: &[Field] = &[
     Field::new("title", Shape::Text, "One line that says what is studied.").optional(),
     Field::group("source", SOURCE, "What the study reproduces.").optional(),
     Field::integer("seed", 0, i64::MAX, "Where all random numbers start.").default("0"),
+    Field::new(
+        "tolerances",
+        Shape::Map(&Shape::AnyQuantity),
+        "By how much `gearstudy diff` lets columns differ: relative as a number, absolute with a unit.",
+    )
+    .optional(),
 ];
 
 /// A stage whose fields are read but which is not built yet.
@@ -73,7 +80,10 @@ pub fn study(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<Study, 
         nodes.push(Node { name, place, kind, record, stage });
     }
     links::check_ports(&nodes)?;
+    let tolerances = tolerances(&keys)?;
+    links::check_tolerances(&tolerances, &nodes)?;
     Ok(Study {
+        tolerances: tolerances.into_iter().map(|(allowance, _)| allowance).collect(),
         title: keys.maybe_text("title").unwrap_or(&name).to_owned(),
         source: keys.maybe_group("source").map(source),
         seed: keys.integer("seed").unsigned_abs(),
@@ -90,6 +100,14 @@ fn source(record: &Record) -> Source {
         entries.filter_map(|entry| if let Value::Integer(number) = entry.value { Some(number) } else { None }).collect()
     };
     Source { paper: record.text("paper").to_owned(), tables: numbers("tables"), figures: numbers("figures") }
+}
+
+fn tolerances(keys: &Record) -> Result<Vec<(Allowance, Place)>, Diagnostic> {
+    let read = |(name, entry): &(String, Entry)| {
+        let allowance = Allowance::new(name, &settings::any_quantity(&entry.value));
+        Ok((allowance.map_err(|problem| Diagnostic::new(problem).at(entry.place))?, entry.place))
+    };
+    keys.maybe_map("tolerances").unwrap_or_default().iter().map(read).collect()
 }
 
 fn drafts(stages: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Draft>, Diagnostic> {

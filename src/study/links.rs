@@ -12,6 +12,7 @@ use crate::base::error::{Diagnostic, Place, nearest, suggest};
 use crate::base::record::{Record, Value};
 use crate::stage::{Port, Want};
 use crate::table::schema::Schema;
+use crate::table::tolerance::Allowance;
 
 /// An edge of the graph: the stage that is read, and where that is said.
 type Edge = (usize, Place);
@@ -39,6 +40,36 @@ pub fn check_references(drafts: &[Draft]) -> Result<(), Diagnostic> {
     }
     let names: Vec<_> = drafts.iter().map(|draft| draft.name.as_str()).collect();
     check_circles(&names, &edges)
+}
+
+/// Checks that every tolerance is meant for a column that is there, and fits it.
+///
+/// # Errors
+/// When there is no such column, or one holds no numbers or numbers in another unit.
+pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node]) -> Result<(), Diagnostic> {
+    for (allowance, place) in tolerances {
+        let mut known = Vec::new();
+        let mut found = false;
+        for node in nodes {
+            for schema in node.stage.outputs() {
+                for column in &schema.columns {
+                    known.push(format!("{}.{}.{}", node.name, schema.name, column.name));
+                    if allowance.means(&node.name, &schema.name, &column.name) {
+                        found = true;
+                        allowance.of(column).map_err(|problem| Diagnostic::new(problem).at(*place))?;
+                    }
+                }
+            }
+        }
+        if !found {
+            let parts = allowance.name.split('.').count();
+            let same = known.iter().map(|full| full.splitn(4 - parts, '.').last().unwrap_or(full));
+            let help = suggest(&allowance.name, same.collect::<Vec<_>>());
+            let message = format!("there is no column {}", quote(&allowance.name));
+            return Err(Diagnostic::new(message).at(*place).help(help));
+        }
+    }
+    Ok(())
 }
 
 /// A reference to no stage, or to one of the kind `found`; `fitting` are the stages that would do.

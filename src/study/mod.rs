@@ -11,6 +11,7 @@ mod links;
 mod quantity;
 mod read;
 pub mod schema;
+pub mod settings;
 #[cfg(test)]
 mod tests;
 mod words;
@@ -22,6 +23,7 @@ use crate::base::error::{Diagnostic, Place};
 use crate::base::record::Record;
 use crate::stage::kinds::KINDS;
 use crate::stage::{Kind, Stage};
+use crate::table::tolerance::Allowance;
 
 /// What a study reproduces.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -42,6 +44,8 @@ pub struct Study {
     pub path: PathBuf,
     /// The file's text, for messages that show a line of it.
     pub text: String,
+    /// By how much columns may differ between two runs and still count as the same; no part of any result.
+    pub tolerances: Vec<Allowance>,
     /// In the order of the file.
     pub nodes: Vec<Node>,
 }

@@ -86,7 +86,12 @@ impl Data {
         }
     }
 
-    fn compare(&self, a: usize, b: usize) -> Ordering {
+    /// The order of two rows, numbers by `total_cmp`.
+    ///
+    /// # Panics
+    /// When a row is out of range.
+    #[must_use]
+    pub fn compare(&self, a: usize, b: usize) -> Ordering {
         match self {
             Self::Float(values) => values[a].total_cmp(&values[b]),
             Self::Integer(values) => values[a].cmp(&values[b]),

@@ -5,3 +5,4 @@
 pub mod data;
 pub mod schema;
 pub mod select;
+pub mod tolerance;

@@ -1,4 +1,8 @@
-//! One study, one set of contents: whatever the number of threads; and keys that change only when they are meant to.
+//! One study, one set of contents: whatever the number of threads and whatever the processor can do; and keys that change
+//! only when they are meant to.
+
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+mod processor;
 
 use std::collections::BTreeMap;
 use std::path::Path;

@@ -81,7 +81,7 @@ const NEVER_IN_KERNELS: &[&str] = &[
 const OWNERS: &[(&str, &[&str])] = &[
     ("petgraph", &["runner/graph.rs"]),
     ("faer", &["gear/finite_elements/"]),
-    ("minijinja", &["report/"]),
+    ("minijinja", &["report/", "diff/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),
     ("serde_saphyr", &["study/"]),

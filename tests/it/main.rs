@@ -3,6 +3,7 @@
 #![allow(clippy::float_cmp, reason = "tests say where a value must be met exactly")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
 
+mod archive;
 mod calculix;
 mod desk;
 mod determinism;
@@ -13,5 +14,6 @@ mod python;
 mod reference;
 mod registry;
 mod report;
+mod results;
 mod schema;
 mod support;

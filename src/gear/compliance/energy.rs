@@ -44,6 +44,7 @@ pub const METHOD: Method = Method {
         summary: "Cantilever of varying section (bending, shear, compression) on an elastic gear body.",
         fields: FIELDS,
     },
+    whole_pair: false,
     tabulate,
     root_stress: None,
 };
@@ -65,9 +66,9 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
 pub struct Beam<'a> {
     gear: &'a Gear,
     shear_factor: f64,
-    /// Integrals over the root.
+    /// Integrals from the clamped end to where `flank` starts.
     root: [f64; 4],
-    /// Integrals over the flank from its start, against v = −ln(u_p − u).
+    /// Integrals over the flank, against v = −ln(u_p − u).
     flank: [Series; 4],
     apex_roll: f64,
 }
@@ -93,6 +94,13 @@ impl<'a> Beam<'a> {
     /// `None` when the flank cannot be integrated to rounding: the tip is all but pointed.
     #[must_use]
     pub fn new(gear: &'a Gear, root: &Root, shear_factor: f64) -> Option<Self> {
+        Self::continued(gear, root, shear_factor, root.form_roll)
+    }
+
+    /// With the involute continued below its joint with the root, down to the roll angle `lowest`, so that
+    /// [`Beam::parts_below`] can end at any section from there up.
+    #[must_use]
+    pub fn continued(gear: &'a Gear, root: &Root, shear_factor: f64, lowest: f64) -> Option<Self> {
         let rule = GaussLegendre::new(ROOT_POINTS);
         let mut root_integrals = [0.0; 4];
         for piece in &root.pieces {
@@ -104,18 +112,30 @@ impl<'a> Beam<'a> {
         }
         let apex_roll = gear.apex_roll();
         let logarithm = |roll: f64| -libm::log(apex_roll - roll);
-        let flank = Series::converged(logarithm(root.form_roll), logarithm(gear.tip_roll()), |v| {
+        let flank = Series::converged(logarithm(lowest.min(root.form_roll)), logarithm(gear.tip_roll()), |v| {
             let distance = libm::exp(-v);
             integrands(gear, gear.flank(apex_roll - distance)).map(|value| value * distance)
         })?;
         let flank = flank.map(|series| series.integral());
+        if lowest < root.form_roll {
+            let joint = logarithm(root.form_roll);
+            for (total, series) in root_integrals.iter_mut().zip(&flank) {
+                *total -= series.value(joint);
+            }
+        }
         Some(Self { gear, shear_factor, root: root_integrals, flank, apex_roll })
     }
 
     /// The compliances under a load at a roll angle on the involute.
     #[must_use]
     pub fn parts(&self, roll: f64) -> Parts {
-        let v = -libm::log(self.apex_roll - roll);
+        self.parts_below(roll, roll)
+    }
+
+    /// What the sections below that of the roll angle `section` give under a load at the roll angle `roll`.
+    #[must_use]
+    pub fn parts_below(&self, section: f64, roll: f64) -> Parts {
+        let v = -libm::log(self.apex_roll - section);
         let mut integrals = self.root;
         for (total, series) in integrals.iter_mut().zip(&self.flank) {
             *total += series.value(v);

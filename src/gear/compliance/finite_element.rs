@@ -56,6 +56,7 @@ pub const METHOD: Method = Method {
         summary: "Plane finite elements of the whole gear: teeth and body as one.",
         fields: FIELDS,
     },
+    whole_pair: false,
     tabulate,
     root_stress: Some(root_stress),
 };

@@ -10,6 +10,7 @@ pub mod ring;
 pub mod sainsot;
 #[cfg(test)]
 mod tests;
+pub mod weber_banaschek;
 
 use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
@@ -22,12 +23,14 @@ use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
 
 /// Every way to the compliance of a pair, one line per member.
-pub const METHODS: &[Method] = &[energy::METHOD, finite_element::METHOD];
+pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD, finite_element::METHOD];
 
 /// A way to the compliance of a pair.
 #[derive(Clone, Copy)]
 pub struct Method {
     pub member: Member,
+    /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
+    pub whole_pair: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
     /// method does not hold for this pair. The record holds what this method alone can be told.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
@@ -36,12 +39,15 @@ pub struct Method {
 }
 
 /// What every method is asked for.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumptions {
     pub root: RootShape,
     pub contact: ContactLaw,
     /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
     pub coupled: bool,
+    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
+    /// compliance.
+    pub torque: Option<f64>,
 }
 
 /// What a method gives.
@@ -113,6 +119,8 @@ pub enum ComplianceError {
     ManyTeeth { side: Side, half_angle: f64, least: f64 },
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
     NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+    #[error("the formula of ISO 6336-1 gives no stiffness for these profile shifts, dedenda and pressure angle: c′ is {} N/(mm µm)", Plain(*.single * 1e-9))]
+    NoIsoStiffness { single: f64 },
     #[error("{}, {across} elements across: {error}", .side.name())]
     Mesh { side: Side, across: usize, error: MeshError },
     #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.most))]
@@ -128,6 +136,7 @@ impl ComplianceError {
             Self::Root(error) => error.field(),
             Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
             Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::NoIsoStiffness { .. } => "pinion.profile_shift",
             Self::Mesh { error: MeshError::SharpRoot, .. } => "root",
             Self::Mesh { side, error: MeshError::Bore { .. } | MeshError::Rounding { .. }, .. } => {
                 own(*side, "pinion.bore_radius", "gear.bore_radius")
@@ -178,8 +187,8 @@ pub fn neighbours(pair: &Pair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
     // The contact ratio of what can be built is far below 2^32.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let pairs = pair.contact_ratio.ceil() as u32 + 1;
-    pairs.min(MOST as u32 - 1).min(teeth - 1)
+    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST as u32 - 1];
+    pairs.min(most).min(teeth - 1)
 }
 
 /// How two flanks flatten against each other.
@@ -189,6 +198,8 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
+    /// The compliances of the teeth hold it already: methods that know a pair as a whole. No study chooses it.
+    Included,
 }
 
 /// The contact laws as a study names them.

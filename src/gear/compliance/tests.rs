@@ -46,7 +46,8 @@ fn options(body: &'static str) -> Record {
     }
 }
 
-const SUMMED: Assumptions = Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: false };
+const SUMMED: Assumptions =
+    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: false, torque: None };
 
 fn energy(pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     (method("energy").unwrap().tabulate)(&options("sainsot"), pair, assumptions)

@@ -1,7 +1,38 @@
 //! Loaded contact at one position: how the tooth pairs in contact share the load.
 //!
-//! Must not know: which modifications made the gaps, the mesh cycle.
+//! Must not know: the mesh cycle.
 
 pub mod face;
 pub mod flattening;
+pub mod gap;
+pub mod separation;
 pub mod springs;
+
+use crate::base::parameter::Choice;
+
+/// Where flanks can touch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CornerContact {
+    /// On the line of action, from A to E.
+    #[default]
+    None,
+    /// Wherever they come nearest to each other, tip corners before A and after E included.
+    Exact,
+}
+
+/// The kinds of corner contact as a study names them.
+pub const CORNER_CONTACTS: &[Choice] = &[
+    Choice { name: "none", summary: "flanks touch on the line of action only, from A to E" },
+    Choice {
+        name: "exact",
+        summary: "they touch where they come nearest to each other, tip corners before A and after E included",
+    },
+];
+
+impl CornerContact {
+    /// The kind called `name` in [`CORNER_CONTACTS`].
+    #[must_use]
+    pub fn named(name: &str) -> Self {
+        if name == "exact" { Self::Exact } else { Self::None }
+    }
+}

@@ -4,11 +4,13 @@
 //! function of the gear's roll angle \[rad\], the lead a function of z \[m\], which counts from the middle of the face
 //! and points the same way for both gears. Names and signs: ISO 21771-1, ISO 1328-1. Must not know: compliance, load.
 
+pub mod arc;
 pub mod curve;
 pub mod end_relief;
 pub mod flank;
 pub mod helix_slope;
 pub mod lead_crowning;
+pub mod parabola;
 pub mod profile_crowning;
 pub mod profile_slope;
 pub mod relief;
@@ -16,6 +18,7 @@ pub mod root_relief;
 pub mod template;
 #[cfg(test)]
 mod tests;
+pub mod tip_curve;
 pub mod tip_relief;
 
 use std::fmt::Debug;
@@ -30,6 +33,8 @@ use crate::base::record::Record;
 pub const FAMILIES: &[Family] = &[
     tip_relief::FAMILY,
     root_relief::FAMILY,
+    arc::FAMILY,
+    parabola::FAMILY,
     profile_crowning::FAMILY,
     profile_slope::FAMILY,
     lead_crowning::FAMILY,

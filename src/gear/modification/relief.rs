@@ -137,7 +137,7 @@ pub(super) fn check(record: &Record) -> Result<(), Diagnostic> {
     Curve::check(record)
 }
 
-fn exactly_one<'a>(record: &Record, names: &[&'a str]) -> Result<&'a str, Diagnostic> {
+pub(super) fn exactly_one<'a>(record: &Record, names: &[&'a str]) -> Result<&'a str, Diagnostic> {
     let mut given = names.iter().filter(|name| record.entry(name).is_some());
     let (first, second) = (given.next(), given.next());
     let list = || names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");

@@ -74,8 +74,8 @@ impl Template {
     /// The design with `values` (SI) in the place of the variables.
     ///
     /// # Errors
-    /// When a modification does not fit the pair: a relief longer than the flank, say. Every such bound is on one value
-    /// alone, so a box whose lower and upper corners can be built can be built everywhere.
+    /// When a modification does not fit the pair: a relief longer than the flank, say. Most bounds are on one value
+    /// alone; the start of an `arc` or `parabola` bounds its amount.
     ///
     /// # Panics
     /// When there are fewer values than variables.

@@ -1,5 +1,7 @@
 //! Every family by its definition, and what must be refused.
 
+mod tip_curve;
+
 use super::template::Template;
 use super::{Design, FAMILIES, members};
 use crate::base::error::Place;

@@ -27,8 +27,11 @@ pub struct Point {
     pub transmission_error: f64,
     /// δ without load at the same position \[m\].
     pub unloaded_transmission_error: f64,
-    /// Load of each pair \[N\], the newest first, then those one, two … base pitches ahead.
+    /// Load of each pair \[N\], the newest first, then those one, two … base pitches ahead; with corner contact the pair
+    /// before A comes before them all.
     pub loads: PerSpring,
+    /// Load of the newest pair inside the path of contact \[N\].
+    pub newest_load: f64,
     /// F / (δ − δ without load) \[N/m\]; NaN without load.
     pub secant_stiffness: f64,
     /// dF/dδ \[N/m\]; NaN without load.
@@ -143,7 +146,7 @@ impl Loading<'_> {
 
     fn point(&self, position: f64, pairs: usize, state: &State, pressure: bool) -> Point {
         let cycle = self.cycle;
-        let path_position = cycle.path_position(position, 0);
+        let path_position = cycle.path_position(position, cycle.newest());
         let loads = state.balance.loads;
         let stiffness = |value: f64| if self.force > 0.0 { value } else { f64::NAN };
         Point {
@@ -155,20 +158,22 @@ impl Loading<'_> {
             transmission_error: state.transmission_error(),
             unloaded_transmission_error: state.unloaded,
             loads,
+            newest_load: loads[cycle.newest()],
             secant_stiffness: stiffness(self.force / state.balance.approach),
             tangent_stiffness: stiffness(state.balance.slope),
             pressure: pressure.then(|| self.pressure(position, pairs, state)),
         }
     }
 
-    /// The largest Hertzian pressure of any pair, with the flanks' curvature ρ1 = s, ρ2 = L − s at its contact.
+    /// The largest Hertzian pressure of any pair, with the flanks' curvature where it touches: ρ1 = s, ρ2 = L − s on the
+    /// line of action. At a tip corner it is that of the flank there: the corner's own radius is not known.
     fn pressure(&self, position: f64, pairs: usize, state: &State) -> f64 {
         let cycle = self.cycle;
-        (0..pairs)
-            .map(|pair| {
-                let s = cycle.path_position(position, pair);
-                let radius = flattening::combined_radius([s, cycle.pair.tangent_length - s]);
-                flattening::pressure(cycle.materials(), radius, self.line_load(position, state, pair))
+        (0..cycle.springs(pairs))
+            .filter(|spring| state.balance.loads[*spring] > 0.0)
+            .map(|spring| {
+                let radius = flattening::combined_radius(cycle.path.radii(cycle.path_position(position, spring)));
+                flattening::pressure(cycle.materials(), radius, self.line_load(position, state, spring))
             })
             .fold(0.0, f64::max)
     }

@@ -2,37 +2,42 @@
 //!
 //! Cycle positions τ \[m\] run from 0, where a pair starts contact at A, to p_b, where the next one does; pair j of a
 //! position is at s = s_A + τ + j p_b. The number of pairs in contact is a property of the zone a position was taken
-//! from: no position is ever compared with a zone's end, so both one-sided limits at B and D exist. Must not know:
-//! modification, load.
+//! from: no position is ever compared with a zone's end, so both one-sided limits at B and D exist. With corner contact
+//! the springs are the pairs of a window of whole base pitches, as many at every position, from one base pitch before A to
+//! at least one after E; zones then only count the pairs inside the path of contact. Must not know: modification, load.
 
+use super::path::Path;
 use super::trace::Rows;
 use crate::base::error::Failure;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::geometry::Pair;
 use crate::gear::material::Material;
 use crate::numeric::chebyshev::Series;
-use crate::numeric::complementarity::{Coupling, MOST, PerSpring};
+use crate::numeric::complementarity::MOST;
+use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
-use crate::numeric::panels::Panels;
 
-/// Relative accuracy of the quick copies.
-const ACCURACY: f64 = 1e-14;
 /// Zones shorter than this share of the base pitch are not there: a contact ratio of 2 up to rounding is 2.
 const SHORTEST_ZONE: f64 = 1e-9;
 
-/// How finely a mesh cycle is sampled.
+/// Pairs in corner contact: one before A and one after E.
+const CORNERS: usize = 2;
+
+/// How a mesh cycle is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     pub positions: usize,
     /// Slices on each smooth stretch of the face that is in contact, where there is no closed form.
     pub slices: usize,
+    pub corner_contact: CornerContact,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { positions: 64, slices: 17 }
+        Self { positions: 64, slices: 17, corner_contact: CornerContact::None }
     }
 }
 
@@ -49,12 +54,15 @@ pub struct Zone {
 pub struct MeshCycle {
     pub pair: Pair,
     pub settings: Settings,
+    /// How many pairs are looked at in every position, where that is not the number in the zone.
+    springs: Option<usize>,
     /// The common face width \[m\].
     pub face_width: f64,
     pub zones: Vec<Zone>,
+    pub(super) path: Path,
     pub(super) elasticity: Elasticity,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
-    coupling: Vec<Panels>,
+    coupling: Vec<Graded>,
     pub(super) rows: Rows,
     pub(super) slices: Rule,
 }
@@ -63,76 +71,87 @@ pub struct MeshCycle {
 #[derive(Clone, Debug)]
 pub(super) enum Elasticity {
     /// Stiffness of a pair \[N/m\].
-    Linear(Panels),
+    Linear(Graded),
     /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\].
-    Logarithmic { compliance: Panels, constant: Panels, rate: f64 },
+    Logarithmic { compliance: Graded, constant: Graded, rate: f64 },
 }
 
 impl MeshCycle {
     /// # Errors
     /// When the contact ratio is below 1 (contact is lost) or above what the solver holds.
     pub fn new(pair: &Pair, compliance: &PairCompliance, settings: Settings) -> Result<Self, Failure> {
-        let path = (pair.start_of_contact, pair.end_of_contact);
-        let ratio = (path.1 - path.0) / pair.base_pitch;
+        let ratio = (pair.end_of_contact - pair.start_of_contact) / pair.base_pitch;
         if !(ratio >= 1.0 - SHORTEST_ZONE && ratio <= MOST as f64) {
             return Err(Failure::new(format!("the transverse contact ratio is {ratio:.6}; it must be 1 to {MOST}")));
         }
+        let exact = settings.corner_contact == CornerContact::Exact;
+        let springs = most_pairs(ratio) + if exact { CORNERS } else { 0 };
+        if springs > MOST {
+            let largest = MOST - CORNERS;
+            return Err(Failure::new(format!(
+                "the transverse contact ratio is {ratio:.6}; with corner contact it must be 1 to {largest}"
+            )));
+        }
+        let path = Path::new(pair, settings.corner_contact);
         let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
         let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
-        let rolls = |s: f64| (s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius);
         let (pinion_series, gear_series) = (compliance.pinion.total_series(), compliance.gear.total_series());
         let total = |series: &Option<Series>, tooth: &ToothCompliance, roll: f64| {
             series.as_ref().map_or_else(|| tooth.total(roll), |series| series.value(roll))
         };
         let teeth = |s: f64| {
-            let (pinion, gear) = rolls(s);
+            let (pinion, gear) = path.rolls(s);
             total(&pinion_series, &compliance.pinion, pinion) + total(&gear_series, &compliance.gear, gear)
         };
-        let fit = |function: &dyn Fn(f64) -> f64| Panels::fit(path.0, path.1, ACCURACY, function);
+        let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
         let law = |s: f64| {
-            let (pinion, gear) = rolls(s);
+            let (pinion, gear) = path.rolls(s);
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
-            Logarithmic::new(materials, flattening::combined_radius([s, pair.tangent_length - s]), depths)
+            Logarithmic::new(materials, flattening::combined_radius(path.radii(s)), depths)
         };
         let elasticity = match compliance.contact {
             ContactLaw::Linear => {
                 let contact = flattening::linear(materials) / face_width;
                 Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
             }
+            ContactLaw::Included => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
             ContactLaw::LoadDependent => Elasticity::Logarithmic {
                 compliance: fit(&|s| teeth(s) * face_width),
                 constant: fit(&|s| law(s).constant),
-                rate: law(path.0).rate,
+                rate: law(pair.start_of_contact).rate,
             },
         };
         let neighbours = if compliance.coupled {
             let known = compliance.pinion.neighbours.len().max(compliance.gear.neighbours.len());
-            known.min(most_pairs(ratio) - 1)
+            known.min(springs - 1)
         } else {
             0
         };
         let coupling = (0..neighbours)
-            .map(|index| {
+            .map_while(|index| {
                 let ahead = pair.base_pitch * (index + 1) as f64;
                 let body = |s: f64| {
                     // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
-                    let (behind, ahead) = (rolls(s), rolls(s + ahead));
+                    let (behind, ahead) = (path.rolls(s), path.rolls(s + ahead));
                     let value = |tooth: &ToothCompliance, first: f64, further: f64| {
                         tooth.neighbours.get(index).map_or(0.0, |surface| surface.value(first, further))
                     };
                     value(&compliance.pinion, behind.0, ahead.0) + value(&compliance.gear, ahead.1, behind.1)
                 };
-                Panels::fit(path.0, path.1 - ahead, ACCURACY, body)
+                path.fit(ahead, &body)
             })
             .collect();
         let zones = zones(ratio, pair.base_pitch);
         let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
-        Ok(Self { pair: pair.clone(), settings, face_width, zones, elasticity, coupling, rows, slices })
+        let springs = exact.then_some(springs);
+        Ok(Self { pair: pair.clone(), settings, springs, face_width, zones, path, elasticity, coupling, rows, slices })
     }
 
-    /// The same cycle, sampled otherwise.
+    /// The same cycle with the same corner contact, sampled otherwise.
     #[must_use]
     pub fn sampled(&self, settings: Settings) -> Self {
+        // Corner contact is in the quick copies.
+        let settings = Settings { corner_contact: self.settings.corner_contact, ..settings };
         Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
     }
 
@@ -142,10 +161,23 @@ impl MeshCycle {
         self.pair.base_pitch
     }
 
-    /// The path position s of pair `pair` at the cycle position τ.
+    /// How many pairs may carry load in a zone with `pairs` inside the path of contact.
     #[must_use]
-    pub fn path_position(&self, position: f64, pair: usize) -> f64 {
-        self.pair.start_of_contact + position + self.pair.base_pitch * pair as f64
+    pub fn springs(&self, pairs: usize) -> usize {
+        self.springs.unwrap_or(pairs)
+    }
+
+    /// Which of them is the newest one inside the path of contact; with corner contact one is before A.
+    #[must_use]
+    pub fn newest(&self) -> usize {
+        usize::from(self.springs.is_some())
+    }
+
+    /// The path position s of spring `spring` at the cycle position τ.
+    #[must_use]
+    pub fn path_position(&self, position: f64, spring: usize) -> f64 {
+        let pitches = spring as f64 - self.newest() as f64;
+        self.pair.start_of_contact + position + self.pair.base_pitch * pitches
     }
 
     pub(super) fn materials(&self) -> [&Material; 2] {
@@ -157,16 +189,9 @@ impl MeshCycle {
         !self.coupling.is_empty()
     }
 
-    pub(super) fn coupling(&self, position: f64, pairs: usize) -> Coupling {
-        let mut matrix: Coupling = [PerSpring::default(); MOST];
-        for (index, panels) in self.coupling.iter().enumerate() {
-            for behind in 0..pairs.saturating_sub(index + 1) {
-                let value = panels.value(self.path_position(position, behind));
-                matrix[behind][behind + index + 1] = value;
-                matrix[behind + index + 1][behind] = value;
-            }
-        }
-        matrix
+    /// Interference at the pair at `behind` per load on the one that is `pitches` ≥ 1 ahead of it, and the reverse.
+    pub(super) fn coupling(&self, behind: f64, pitches: usize) -> f64 {
+        self.coupling.get(pitches - 1).map_or(0.0, |graded| graded.value(behind))
     }
 }
 

@@ -1,16 +1,19 @@
 //! One design under one torque: equilibrium at any position of the mesh cycle, and the walk over all of it.
 //!
-//! The cycle is cut at the ends of its zones, where a modification starts or ends, and where a pair takes up or loses its
-//! load, which is found to rounding; in between everything is smooth. Must not know: what is done with the values.
+//! The cycle is cut at the ends of its zones, where a modification starts or ends, where flanks begin to touch at another
+//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
+//! everything is smooth. Must not know: what is done with the values.
 
 use super::cycle::{Elasticity, MeshCycle};
 use super::trace::{NODES, Span, Trace};
+use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
+use crate::gear::contact::gap::Gaps;
 use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
-use crate::numeric::complementarity::{self, Balance, MOST, Springs};
+use crate::numeric::complementarity::{self, Balance, Coupling, MOST, PerSpring, Springs};
 use crate::numeric::crossing::crossing;
 use crate::numeric::harmonics;
 
@@ -27,9 +30,34 @@ pub struct Loading<'a> {
     pub force: f64,
     face: Face<'a>,
     profiles: [Vec<&'a dyn Modification>; 2],
+    corners: Option<Corners<'a>>,
     /// Cycle positions at which a profile is not smooth, ascending.
     breaks: Vec<f64>,
 }
+
+/// What corner contact adds.
+#[derive(Clone)]
+struct Corners<'a> {
+    gaps: Gaps<'a>,
+    /// Path positions farther out than these are too far apart under this load.
+    window: (f64, f64),
+    /// The gap where the model ends \[m\].
+    limit: f64,
+}
+
+/// The pairs of one position that can carry load.
+struct Carried {
+    count: usize,
+    /// Their places among the springs of the position, ascending.
+    springs: [usize; MOST],
+    positions: PerSpring,
+    /// From the smallest one up.
+    gaps: PerSpring,
+    smallest: f64,
+}
+
+/// The interference of a pair that is out of reach \[m\]: far from any contact.
+const OUT_OF_REACH: f64 = -1.0;
 
 /// Equilibrium at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -57,9 +85,21 @@ impl<'a> Loading<'a> {
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
         };
         let profiles = [of(Side::Pinion), of(Side::Gear)];
+        let mut loading = Self {
+            cycle,
+            force: torque / cycle.pair.pinion.base_radius,
+            face,
+            profiles,
+            corners: None,
+            breaks: Vec::new(),
+        };
         let pair = &cycle.pair;
+        if cycle.settings.corner_contact == CornerContact::Exact {
+            loading.add_corners();
+            return loading;
+        }
         let mut breaks = Vec::new();
-        for (side, profile) in profiles.iter().enumerate() {
+        for (side, profile) in loading.profiles.iter().enumerate() {
             for roll in profile.iter().flat_map(|part| part.profile_breaks()).flatten() {
                 let s = if side == 0 {
                     roll * pair.pinion.base_radius
@@ -73,7 +113,52 @@ impl<'a> Loading<'a> {
             }
         }
         breaks.sort_by(f64::total_cmp);
-        Self { cycle, force: torque / pair.pinion.base_radius, face, profiles, breaks }
+        loading.breaks = breaks;
+        loading
+    }
+
+    fn add_corners(&mut self) {
+        let cycle = self.cycle;
+        let pair = &cycle.pair;
+        let gaps = Gaps::new(pair, &self.profiles);
+        let (first, last) = cycle.path.window();
+        // A little inside, for rounding.
+        let inwards = CLOSEST * pair.base_pitch;
+        let ends = [gaps.at(first + inwards), gaps.at(last - inwards)];
+        let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + self.face.offset;
+        // Farther out than a pair can be loaded nothing is looked at.
+        let (from, to) = (pair.start_of_contact, pair.end_of_contact);
+        let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
+        let most = inside.fold(0.0, |most: f64, s| most.max(self.alone(s) + gaps.at(s).unwrap_or(0.0)));
+        let outermost = |from: f64, to: f64| {
+            let (mut near, mut far) = (from, to);
+            for _ in 0..8 {
+                let middle = 0.5 * (near + far);
+                if gaps.at(middle).is_some_and(|gap| gap <= most) { near = middle } else { far = middle }
+            }
+            far
+        };
+        let window = (outermost(from, first), outermost(to, last));
+        let fold = |s: f64| {
+            let pitches = (s - from) / pair.base_pitch;
+            (pitches - pitches.floor()) * pair.base_pitch
+        };
+        self.breaks = gaps.breaks(window).into_iter().map(fold).collect();
+        self.breaks.sort_by(f64::total_cmp);
+        self.corners = Some(Corners { gaps, window, limit });
+    }
+
+    /// Whether an approach is within what is modelled: with corner contact, below the gap at which a pair would touch that
+    /// is no longer looked at, or whose tip would pass the other one.
+    #[must_use]
+    pub fn holds(&self, transmission_error: f64) -> bool {
+        transmission_error <= self.largest_approach()
+    }
+
+    /// The largest approach that is modelled \[m\].
+    #[must_use]
+    pub fn largest_approach(&self) -> f64 {
+        self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
     /// The same design when nothing is transmitted.
@@ -82,81 +167,157 @@ impl<'a> Loading<'a> {
         Self { force: 0.0, ..self.clone() }
     }
 
-    fn gap(&self, s: f64) -> f64 {
+    /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
+    /// too far apart.
+    fn gap(&self, s: f64) -> Option<f64> {
+        if let Some(Corners { gaps, window, .. }) = &self.corners {
+            return if s >= window.0 && s <= window.1 { gaps.at(s) } else { None };
+        }
         let pair = &self.cycle.pair;
         let depth = |profile: &[&dyn Modification], roll: f64| profile.iter().map(|part| part.depth(roll)).sum::<f64>();
         let [pinion, gear] = &self.profiles;
-        depth(pinion, s / pair.pinion.base_radius) + depth(gear, (pair.tangent_length - s) / pair.gear.base_radius)
+        Some(
+            depth(pinion, s / pair.pinion.base_radius) + depth(gear, (pair.tangent_length - s) / pair.gear.base_radius),
+        )
     }
 
-    /// Equilibrium at the cycle position τ with `pairs` in contact, the newest first.
+    /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> State {
-        let mut gaps = [0.0; MOST];
-        let gaps = &mut gaps[..pairs];
-        let mut smallest = f64::INFINITY;
-        for (pair, gap) in gaps.iter_mut().enumerate() {
-            *gap = self.gap(self.cycle.path_position(position, pair));
-            smallest = smallest.min(*gap);
+        let carried = self.carried(position, pairs);
+        let Carried { count, springs, positions, gaps, smallest } = &carried;
+        let (springs, positions, gaps) = (&springs[..*count], &positions[..*count], &gaps[..*count]);
+        let balance =
+            if self.force > 0.0 { self.loaded(springs, positions, gaps) } else { complementarity::unloaded(gaps) };
+        let unloaded = smallest + self.face.offset;
+        if self.corners.is_none() {
+            return State { unloaded, balance };
         }
-        for gap in gaps.iter_mut() {
-            *gap -= smallest;
+        let mut spread = Balance { loads: [0.0; MOST], interference: [OUT_OF_REACH; MOST], ..balance };
+        for (index, &spring) in springs.iter().enumerate() {
+            spread.loads[spring] = balance.loads[index];
+            spread.interference[spring] = balance.interference[index];
         }
-        let balance = if self.force > 0.0 { self.loaded(position, gaps) } else { complementarity::unloaded(gaps) };
-        State { unloaded: smallest + self.face.offset, balance }
+        State { unloaded, balance: spread }
     }
 
-    fn loaded(&self, position: f64, gaps: &[f64]) -> Balance {
+    /// The pairs that can touch at all; with corner contact only those that come near enough.
+    fn carried(&self, position: f64, pairs: usize) -> Carried {
+        let mut carried = Carried {
+            count: 0,
+            springs: [0; MOST],
+            positions: [0.0; MOST],
+            gaps: [0.0; MOST],
+            smallest: f64::INFINITY,
+        };
+        let mut nearest = 0.0;
+        for spring in 0..self.cycle.springs(pairs) {
+            let s = self.cycle.path_position(position, spring);
+            if let Some(gap) = self.gap(s) {
+                let index = carried.count;
+                (carried.springs[index], carried.positions[index], carried.gaps[index]) = (spring, s, gap);
+                carried.count += 1;
+                if gap < carried.smallest {
+                    (carried.smallest, nearest) = (gap, s);
+                }
+            }
+        }
+        for gap in &mut carried.gaps[..carried.count] {
+            *gap -= carried.smallest;
+        }
+        if self.corners.is_some() && self.force > 0.0 {
+            let near_enough = self.alone(nearest);
+            let mut kept = 0;
+            for index in 0..carried.count {
+                if carried.gaps[index] <= near_enough {
+                    carried.springs[kept] = carried.springs[index];
+                    carried.positions[kept] = carried.positions[index];
+                    carried.gaps[kept] = carried.gaps[index];
+                    kept += 1;
+                }
+            }
+            carried.count = kept;
+        }
+        carried
+    }
+
+    /// An approach that no equilibrium exceeds, from the smallest gap on, where the nearest pair is at `s`: twice that of
+    /// this pair alone. For loads λ_j of least complementary energy U, x F = Σ w_j λ_j + Σ gap_j λ_j ≤ 2 U since
+    /// approaches bend down with the load, and U ≤ F w(F) of any one pair alone.
+    fn alone(&self, s: f64) -> f64 {
+        let width = self.cycle.face_width;
+        let alone = match &self.cycle.elasticity {
+            Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
+            Elasticity::Logarithmic { .. } => self.slice(s).interference(self.force / width),
+        };
+        2.0 * (alone + self.face.mean)
+    }
+
+    fn loaded(&self, springs: &[usize], positions: &[f64], gaps: &[f64]) -> Balance {
         match &self.cycle.elasticity {
-            Elasticity::Linear(panels) => {
+            Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST];
-                for (pair, slot) in stiffness[..gaps.len()].iter_mut().enumerate() {
-                    *slot = panels.value(self.cycle.path_position(position, pair));
+                for (slot, s) in stiffness.iter_mut().zip(positions) {
+                    *slot = graded.value(*s);
                 }
                 let above = complementarity::linear_approach(&stiffness, gaps, self.force) + self.face.mean;
-                self.balanced(position, gaps, &LinearPairs { stiffness, face: &self.face }, above)
+                self.balanced(springs, positions, gaps, &LinearPairs { stiffness, face: &self.face }, above)
             }
             Elasticity::Logarithmic { .. } => {
-                let springs = self.logarithmic(position, gaps.len());
+                let mut slices = [InSeries::NONE; MOST];
+                for (slot, s) in slices.iter_mut().zip(positions) {
+                    *slot = self.slice(*s);
+                }
+                let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face };
                 let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
-                let above = springs.above(nearest, self.force);
-                self.balanced(position, gaps, &springs, above)
+                let above = pairs.above(nearest, self.force);
+                self.balanced(springs, positions, gaps, &pairs, above)
             }
         }
     }
 
-    fn balanced(&self, position: f64, gaps: &[f64], springs: &impl Springs, above: f64) -> Balance {
-        if self.cycle.coupled() && gaps.len() > 1 {
-            let coupling = self.cycle.coupling(position, gaps.len());
-            complementarity::balance_coupled(springs, gaps, &coupling, self.force, above)
-        } else {
-            complementarity::balance(springs, gaps, self.force, above)
+    fn balanced(
+        &self,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        responses: &impl Springs,
+        above: f64,
+    ) -> Balance {
+        if !self.cycle.coupled() || gaps.len() < 2 {
+            return complementarity::balance(responses, gaps, self.force, above);
         }
-    }
-
-    fn logarithmic(&self, position: f64, pairs: usize) -> LogarithmicPairs<'_> {
-        let mut slices = [InSeries::NONE; MOST];
-        if let Elasticity::Logarithmic { compliance, constant, rate } = &self.cycle.elasticity {
-            for (pair, slot) in slices[..pairs].iter_mut().enumerate() {
-                let s = self.cycle.path_position(position, pair);
-                *slot = Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s));
+        let mut coupling: Coupling = [PerSpring::default(); MOST];
+        for (ahead, &spring) in springs.iter().enumerate() {
+            for behind in 0..ahead {
+                let value = self.cycle.coupling(positions[behind], spring - springs[behind]);
+                (coupling[behind][ahead], coupling[ahead][behind]) = (value, value);
             }
         }
-        LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face }
+        complementarity::balance_coupled(responses, gaps, &coupling, self.force, above)
+    }
+
+    /// A slice of the pair at `s` under the load-dependent law.
+    fn slice(&self, s: f64) -> InSeries {
+        match &self.cycle.elasticity {
+            Elasticity::Linear(_) => InSeries::NONE,
+            Elasticity::Logarithmic { compliance, constant, rate } => {
+                Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s))
+            }
+        }
     }
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
     #[must_use]
-    pub fn line_load(&self, position: f64, state: &State, pair: usize) -> f64 {
-        let interference = state.balance.interference[pair];
+    pub fn line_load(&self, position: f64, state: &State, spring: usize) -> f64 {
+        let interference = state.balance.interference[spring];
         if self.face.is_flat() || interference <= 0.0 {
-            return state.balance.loads[pair] / self.cycle.face_width;
+            return state.balance.loads[spring] / self.cycle.face_width;
         }
+        let s = self.cycle.path_position(position, spring);
         match &self.cycle.elasticity {
-            Elasticity::Linear(panels) => {
-                panels.value(self.cycle.path_position(position, pair)) * interference / self.cycle.face_width
-            }
-            Elasticity::Logarithmic { .. } => self.logarithmic(position, pair + 1).slices[pair].load(interference).0,
+            Elasticity::Linear(stiffness) => stiffness.value(s) * interference / self.cycle.face_width,
+            Elasticity::Logarithmic { .. } => self.slice(s).load(interference).0,
         }
     }
 
@@ -220,7 +381,7 @@ impl<'a> Loading<'a> {
     fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, usize)> {
         let closest = CLOSEST * self.cycle.period();
         for node in 0..NODES - 1 {
-            for pair in 0..span.pairs {
+            for pair in 0..self.cycle.springs(span.pairs) {
                 let (before, after) =
                     (states[node].balance.interference[pair], states[node + 1].balance.interference[pair]);
                 let ends = [node == 0, node + 2 == NODES];
@@ -255,18 +416,24 @@ impl<'a> Loading<'a> {
         self.cycle.period() / spans.max(1.0)
     }
 
-    /// The peak-to-peak transmission error \[m\]: the lean path for optimisers.
+    /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
         let trace = self.trace();
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         let rows = &self.cycle.rows;
-        trace.largest(rows, value).value - trace.smallest(rows, value).value
+        let largest = trace.largest(rows, value).value;
+        if self.holds(largest) { largest - trace.smallest(rows, value).value } else { f64::INFINITY }
     }
 
-    /// The variance of the transmission error over the cycle \[m²\], an integral mean: the lean path for optimisers.
+    /// The variance of the transmission error over the cycle \[m²\], an integral mean, infinite beyond what is modelled:
+    /// the lean path for optimisers.
     #[must_use]
     pub fn variance(&self) -> f64 {
-        harmonics::mean_and_variance(self.cycle.period(), &self.trace().nodes(&self.cycle.rows)).1
+        let trace = self.trace();
+        if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.holds(*value)) {
+            return f64::INFINITY;
+        }
+        harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
     }
 }

@@ -7,6 +7,7 @@
 pub mod curve;
 pub mod cycle;
 pub mod loading;
+mod path;
 pub mod stiffness;
 #[cfg(test)]
 mod tests;

@@ -2,6 +2,7 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
+mod corner;
 mod extremes;
 
 use super::curve::Wanted;
@@ -10,7 +11,7 @@ use super::loading::Loading;
 use super::stiffness::stiffness;
 use crate::base::record::Value::{Choice, Number, Quantity};
 use crate::gear::compliance::{ContactLaw, PairCompliance};
-use crate::gear::fixtures::{self, BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, varying};
+use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, varying};
 use crate::gear::geometry::Pair;
 use crate::gear::geometry::Side::{Gear, Pinion};
 use crate::gear::modification::Design;
@@ -177,7 +178,8 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     ];
     for (which, compliance) in [varying(), coupled(), logarithmic].iter().enumerate() {
         let run = |positions: usize, design: &Design, torque: f64| {
-            let cycle = MeshCycle::new(&pair, compliance, Settings { positions, slices: 9 }).unwrap();
+            let cycle =
+                MeshCycle::new(&pair, compliance, Settings { positions, slices: 9, ..Settings::default() }).unwrap();
             Loading::new(&cycle, design, torque).peak_to_peak()
         };
         for (index, design) in designs.iter().enumerate() {

@@ -18,7 +18,8 @@ use crate::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "modification",
     version: 1,
-    summary: "Named designs of flank modifications (ISO 21771): tip and root relief, crowning, slopes, end relief.",
+    summary: "Named designs of flank modifications (ISO 21771): tip and root relief, arcs, parabolas, crowning, slopes, end \
+              relief.",
     fields: FIELDS,
     example: "
 kind: modification
@@ -85,6 +86,35 @@ fn resolved_schema() -> Schema {
     )
 }
 
+fn parameters_schema() -> Schema {
+    Schema::new(
+        "parameters",
+        "Everything a modification was given and comes to on the pair, one row per parameter.",
+        vec![
+            Column::text("design", "Name of the design.").key(),
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::integer("element", "Counts the modifications of a gear, from 1.").key(),
+            Column::text("family", "Family of the modification."),
+            Column::text("parameter", "Name of the parameter.").key(),
+            Column::float("value", "", "Value in SI."),
+        ],
+    )
+    .on_demand()
+}
+
+fn parameter_rows(name: &str, design: &Design) -> Vec<Row> {
+    let mut rows = Vec::new();
+    for side in [Side::Pinion, Side::Gear] {
+        for (index, part) in design.side(side).iter().enumerate() {
+            rows.extend(part.modification.resolved().into_iter().map(|(parameter, value)| -> Row {
+                let element: Row = vec![name.into(), side.name().into(), (index + 1).into(), part.family.into()];
+                [element, vec![parameter.into(), value.into()]].concat()
+            }));
+        }
+    }
+    rows
+}
+
 fn resolved_rows(name: &str, design: &Design) -> Vec<Row> {
     let mut rows = Vec::new();
     for side in [Side::Pinion, Side::Gear] {
@@ -107,19 +137,23 @@ impl Stage for Modification {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![designs::designs_schema(), designs::elements_schema(), resolved_schema()]
+        vec![designs::designs_schema(), designs::elements_schema(), resolved_schema(), parameters_schema()]
     }
 
-    fn run(&self, _context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let mut rows: Vec<Row> = Vec::new();
+        let (mut rows, mut parameters): (Vec<Row>, Vec<Row>) = Default::default();
         for named in &self.designs {
             let design = named.built(&pair)?;
             rows.extend(resolved_rows(&named.name, &design));
+            parameters.extend(parameter_rows(&named.name, &design));
         }
         let failed = |error: crate::table::data::TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
         tables.push(Table::from_rows(resolved_schema(), rows).map_err(failed)?);
+        if context.demand.table("parameters") {
+            tables.push(Table::from_rows(parameters_schema(), parameters).map_err(failed)?);
+        }
         Ok(tables)
     }
 }

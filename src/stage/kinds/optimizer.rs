@@ -8,6 +8,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, LENGTH, TORQUE, in_unit};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::template::{Template, Variable};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -16,7 +17,7 @@ use crate::optimize::bounds::Bounds;
 use crate::optimize::search::{Optimizer as Search, Reason};
 use crate::optimize::{self};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, compliance, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -55,6 +56,8 @@ const FIELDS: &[Field] = &[
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
         .default("17"),
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
 ];
 
 const AT: &[Field] = &[
@@ -112,7 +115,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         elements: items.iter().filter_map(|item| element(&item.value)).collect(),
         template,
         name: name.to_owned(),
-        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+        settings: Settings {
+            positions: whole("positions"),
+            slices: whole("slices"),
+            corner_contact: CornerContact::named(record.choice("corner_contact")),
+        },
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
     optimizer.search(crate::base::seed::Seed::of_stage(0, "")).map(drop)?;
@@ -177,6 +184,40 @@ impl Optimizer {
                 Column::float("best_fitness_so_far", &reciprocal, "1/best so far.").allows_nan(),
             ],
         )
+    }
+
+    fn evaluations_schema(&self) -> Schema {
+        let unit_of_objective = self.objective_unit();
+        let mut columns =
+            vec![Column::integer("evaluation", "Counts the designs in the order of the search, from 1.").key()];
+        columns.extend(
+            self.template
+                .variables()
+                .iter()
+                .map(|variable| Column::float(&column(variable), unit(variable), "Value of the variable.")),
+        );
+        columns.extend([
+            Column::float("objective", unit_of_objective, "What is made small; NaN where no design can be built.")
+                .allows_nan()
+                .tolerance(1e-9, 1e-6),
+            Column::float("fitness", &format!("1/{unit_of_objective}"), "1/objective.")
+                .allows_nan()
+                .tolerance(0.0, 1e-6),
+        ]);
+        Schema::new("evaluations", "Every design that was tried.", columns).on_demand()
+    }
+
+    fn evaluation_rows(&self, tried: &[(Vec<f64>, f64)]) -> Vec<Row> {
+        let variables = self.template.variables();
+        let row = |(index, (point, value)): (usize, &(Vec<f64>, f64))| -> Row {
+            let value = if value.is_finite() { in_unit(*value, self.objective_unit()) } else { f64::NAN };
+            let values = variables.iter().zip(point).map(|(variable, value)| in_unit(*value, unit(variable)).into());
+            let mut row: Row = vec![(index + 1).into()];
+            row.extend(values);
+            row.extend([value.into(), (if value > 0.0 { 1.0 / value } else { f64::NAN }).into()]);
+            row
+        };
+        tried.iter().enumerate().map(row).collect()
     }
 
     /// The objective \[m or m²\]; infinite where the design cannot be built.
@@ -269,7 +310,19 @@ impl Stage for Optimizer {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![self.best_schema(), self.history_schema(), designs::designs_schema(), designs::elements_schema()]
+        vec![
+            self.best_schema(),
+            self.history_schema(),
+            designs::designs_schema(),
+            designs::elements_schema(),
+            self.evaluations_schema(),
+        ]
+    }
+
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
+        let none = self.settings.corner_contact == CornerContact::None;
+        let omission = Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only");
+        none.then_some(omission).into_iter().collect()
     }
 
     fn uses_seed(&self) -> bool {
@@ -283,14 +336,25 @@ impl Stage for Optimizer {
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
         let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
         let budget = search.budget().max(1) as f64;
+        let wanted = context.demand.table("evaluations");
+        let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
         let mut done = 0_usize;
         let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
             context.check_stop()?;
-            let values = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
+            let values: Vec<f64> = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
+            if wanted {
+                tried.extend(points.iter().cloned().zip(values.iter().copied()));
+            }
             done += points.len();
             (context.progress)(done as f64 / budget);
             Ok(values)
         })?;
-        self.tables(&search, reason, &pair, &cycle)
+        let mut tables = self.tables(&search, reason, &pair, &cycle)?;
+        if wanted {
+            let rows = self.evaluation_rows(&tried);
+            let table = Table::from_rows(self.evaluations_schema(), rows);
+            tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
+        }
+        Ok(tables)
     }
 }

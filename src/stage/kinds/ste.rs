@@ -2,6 +2,8 @@
 //!
 //! One chunk per torque, so an added torque computes only itself. Must not know: who made the designs.
 
+mod samples;
+
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -9,7 +11,8 @@ use rayon::prelude::*;
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
-use crate::base::units::{RATIO, TORQUE, in_unit, showing};
+use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -47,7 +50,18 @@ const FIELDS: &[Field] = &[
     .default("64"),
     Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
         .default("17"),
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
+    Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
+    Field::quantity(
+        "first_sample",
+        ANGLE,
+        -std::f64::consts::TAU,
+        std::f64::consts::TAU,
+        "Where the first of them is: rotation of the pinion from where a pair starts contact in A, in driving direction.",
+    )
+    .default("0 deg"),
 ];
 
 /// Where doubling the positions stops.
@@ -60,6 +74,8 @@ struct Ste {
     accuracy: Option<f64>,
     settings: Settings,
     harmonics: usize,
+    samples: usize,
+    first_sample: f64,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
@@ -83,8 +99,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         designs,
         torques: record.axis("torque").to_vec(),
         accuracy: record.maybe_quantity("accuracy"),
-        settings: Settings { positions: whole("positions"), slices: whole("slices") },
+        settings: Settings {
+            positions: whole("positions"),
+            slices: whole("slices"),
+            corner_contact: CornerContact::named(record.choice("corner_contact")),
+        },
         harmonics: whole("harmonics"),
+        samples: whole("samples"),
+        first_sample: record.quantity("first_sample"),
     }))
 }
 
@@ -172,7 +194,13 @@ struct Answer {
 }
 
 impl Ste {
-    fn answer(&self, cycles: &[MeshCycle], design: &Design, torque: f64, wanted: Wanted) -> Answer {
+    fn answer(
+        &self,
+        cycles: &[MeshCycle],
+        (design, name): (&Design, &str),
+        torque: f64,
+        wanted: Wanted,
+    ) -> Result<Answer, Failure> {
         let began = Instant::now();
         let coarse = |cycle: &MeshCycle| Loading::new(cycle, design, torque).peak_to_peak();
         let change = |before: f64, now: f64| (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
@@ -189,10 +217,18 @@ impl Ste {
                 before = now;
             }
         }
-        let (points, summary) = Loading::new(last, design, torque).curve_and_summary(wanted);
+        let loading = Loading::new(last, design, torque);
+        let (points, summary) = loading.curve_and_summary(wanted);
+        if !loading.holds(summary.largest.value) {
+            let (found, most) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
+            return Err(Failure::new(format!(
+                "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
+                 up to {most:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
+            )));
+        }
         let error = change(before, summary.peak_to_peak);
         let seconds = began.elapsed().as_secs_f64();
-        Answer { points, summary, positions: last.settings.positions, error, seconds }
+        Ok(Answer { points, summary, positions: last.settings.positions, error, seconds })
     }
 
     /// Cycles from half the positions up: two when no accuracy is asked for, as many as it may take otherwise.
@@ -225,7 +261,8 @@ impl Stage for Ste {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![summary_schema(), curve_schema(), harmonics_schema()]
+        let [samples, sample_summary] = samples::schemas();
+        vec![summary_schema(), curve_schema(), harmonics_schema(), samples, sample_summary]
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -233,6 +270,10 @@ impl Stage for Ste {
             "slices across the face",
             "crowning, slopes and linear or parabolic end relief have a closed form under linear contact",
         )];
+        if self.settings.corner_contact == CornerContact::None {
+            omissions
+                .push(Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only"));
+        }
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }
@@ -269,7 +310,8 @@ impl Stage for Ste {
             .par_iter()
             .map(|&(design, torque)| {
                 context.check_stop()?;
-                Ok(self.answer(&cycles, &designs[design].0, torque, wanted))
+                let (design, name) = &designs[design];
+                self.answer(&cycles, (design, name.as_str()), torque, wanted)
             })
             .collect::<Result<_, Failure>>()?;
 
@@ -292,11 +334,27 @@ impl Stage for Ste {
         let curves = curve_columns(&keys, &answers, curve_pressure);
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
-        Ok(vec![
+        let mut tables = vec![
             Table::from_rows(narrowed(summary_schema()), summaries).map_err(failed)?,
             Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
             Table::from_rows(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
-        ])
+        ];
+        if samples::schemas().iter().any(|schema| context.demand.table(&schema.name)) {
+            let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
+            for &(design, torque) in &tasks {
+                let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
+                let loading = Loading::new(&cycles[1], &designs[design].0, torque);
+                let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);
+                rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
+                row.push([key, summary].concat());
+            }
+            for (schema, rows) in samples::schemas().into_iter().zip([rows, row]) {
+                if context.demand.table(&schema.name) {
+                    tables.push(Table::from_rows(schema, rows).map_err(failed)?);
+                }
+            }
+        }
+        Ok(tables)
     }
 }
 
@@ -346,7 +404,7 @@ fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Ve
         shown("um", |point| point.unloaded_transmission_error),
         shown("", |point| {
             let total: f64 = point.loads.iter().sum();
-            if total > 0.0 { point.loads[0] / total } else { 0.0 }
+            if total > 0.0 { point.newest_load / total } else { 0.0 }
         }),
         shown("N/m", |point| point.secant_stiffness),
         shown("N/m", |point| point.tangent_stiffness),

@@ -2,6 +2,8 @@
 //!
 //! Must not know: how any method works. Stiffness is F/δ along the line of action.
 
+use std::time::Instant;
+
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
@@ -75,12 +77,20 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let method = compliance::method(name).ok_or_else(|| Diagnostic::new(format!("unknown method `{name}`")))?;
     let (root, contact) = (record.choice("root"), record.choice("contact"));
     let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
+    let torque = record.maybe_quantity("torque");
     let assumptions = Assumptions {
         root: RootShape::named(root).ok_or_else(|| unknown(root))?,
         contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
         coupled: record.choice("coupling") == "body",
+        torque,
     };
-    let torque = record.maybe_quantity("torque");
+    if method.whole_pair && assumptions.contact != ContactLaw::Linear {
+        return Err(Diagnostic::new(format!(
+            "`contact: {contact}` is not for the method `{name}`: its stiffness is that of a pair with its contact"
+        ))
+        .at(record.place_of("contact"))
+        .help("leave `contact` out, or take a method of single teeth"));
+    }
     if assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
             .at(record.place_of("contact"))
@@ -128,6 +138,7 @@ fn summary_schema() -> Schema {
             extreme("double_max", "Largest stiffness with two pairs in contact."),
             Column::float("mean", "N/m", "Integral mean over the mesh cycle."),
             Column::integer("fewest_pairs", "Pairs in contact where they are fewest."),
+            Column::float("seconds", "s", "Time for tabulating the compliances.").volatile(),
         ],
     )
 }
@@ -136,7 +147,7 @@ fn iso_schema() -> Schema {
     let column = |name: &str, description: &str| Column::float(name, "N/(mm um)", description);
     Schema::new(
         "iso6336",
-        "Mesh stiffness per face width by ISO 6336-1, for solid discs.",
+        "Mesh stiffness per face width by ISO 6336-1; for solid discs unless the method says otherwise.",
         vec![
             column("theoretical", "c′_th: theoretical stiffness of a pair."),
             column("single", "c′: maximum stiffness of a pair."),
@@ -146,16 +157,8 @@ fn iso_schema() -> Schema {
     .on_demand()
 }
 
-fn iso_table(pair: &Pair) -> Result<Table, TableError> {
-    let (pinion, gear) = (&pair.pinion.specification, &pair.gear.specification);
-    let found = iso6336::stiffness(&iso6336::Inputs {
-        teeth: [f64::from(pinion.teeth), f64::from(gear.teeth)],
-        profile_shift: [pinion.profile_shift, gear.profile_shift],
-        helix_angle: 0.0,
-        dedendum: [pinion.rack.dedendum, gear.rack.dedendum],
-        pressure_angle: pinion.pressure_angle,
-        contact_ratio: pair.contact_ratio,
-    });
+fn iso_table(pair: &Pair, options: &Record) -> Result<Table, TableError> {
+    let found = iso6336::stiffness(&iso6336::Inputs::of(pair, options));
     let row: Row = [found.theoretical, found.single, found.mesh].map(|value| in_unit(value, "N/(mm um)").into()).into();
     Table::from_rows(iso_schema(), vec![row])
 }
@@ -223,13 +226,19 @@ fn root_stress_table(stresses: &[RootStress]) -> Result<Table, TableError> {
     Table::from_rows(root_stress_schema(), rows)
 }
 
+impl Stiffness {
+    fn root_name(&self) -> &str {
+        if self.method.whole_pair { "none" } else { self.root }
+    }
+}
+
 impl Stage for Stiffness {
     fn inputs(&self) -> Vec<Port> {
         vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![
+        let mut schemas = vec![
             codec::compliance_schema(),
             codec::neighbours_schema(),
             codec::model_schema(),
@@ -237,8 +246,11 @@ impl Stage for Stiffness {
             summary_schema(),
             mesh_schema(),
             iso_schema(),
-            root_stress_schema(),
-        ]
+        ];
+        if self.method.root_stress.is_some() {
+            schemas.push(root_stress_schema());
+        }
+        schemas
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -247,7 +259,12 @@ impl Stage for Stiffness {
             let reason = format!("method `{}` needs none", self.method.member.name);
             omissions.push(Omission::new("finite-element mesh and factorisation", reason));
         }
-        if !self.assumptions.coupled {
+        if self.method.whole_pair {
+            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.method.member.name);
+            for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
+                omissions.push(Omission::new(what, &why));
+            }
+        } else if !self.assumptions.coupled {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
         }
         omissions
@@ -255,15 +272,17 @@ impl Stage for Stiffness {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let began = Instant::now();
         let Tabulated { compliance, warnings, meshes } = (self.method.tabulate)(&self.options, &pair, self.assumptions)
             .map_err(|error| Failure::new(error.to_string()))?;
+        let seconds = began.elapsed().as_secs_f64();
         for warning in warnings {
             (context.warn)(warning);
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
         let mut tables =
-            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root).map_err(failed)?);
+            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root_name()).map_err(failed)?);
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
@@ -284,19 +303,13 @@ impl Stage for Stiffness {
             found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
         };
         let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
-        row.extend([summary.mean.into(), summary.fewest.pairs.into()]);
+        row.extend([summary.mean.into(), summary.fewest.pairs.into(), seconds.into()]);
         tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
         tables.push(mesh_table(&meshes).map_err(failed)?);
         if context.demand.table("iso6336") {
-            tables.push(iso_table(&pair).map_err(failed)?);
+            tables.push(iso_table(&pair, &self.options).map_err(failed)?);
         }
-        if context.demand.table("root_stress") {
-            let Some(root_stress) = self.method.root_stress else {
-                let name = self.method.member.name;
-                return Err(Failure::new(format!(
-                    "method `{name}` knows no stress at the root; `finite_element` does"
-                )));
-            };
+        if let Some(root_stress) = self.method.root_stress.filter(|_| context.demand.table("root_stress")) {
             let found =
                 root_stress(&self.options, &pair, self.assumptions).map_err(|error| Failure::new(error.to_string()))?;
             tables.push(root_stress_table(&found).map_err(failed)?);

@@ -1,6 +1,7 @@
 //! The program as a user runs it: real commands on real studies in an empty folder.
 
 mod bad;
+mod diff;
 mod ended;
 mod places;
 mod python;

@@ -6,9 +6,10 @@ use std::collections::BTreeSet;
 use gearstudy::gear::compliance::METHODS;
 use gearstudy::gear::modification::{FAMILIES, members};
 use gearstudy::optimize;
+use gearstudy::table::data::Table;
 
 use super::is_name;
-use super::walk::{load, walk};
+use super::walk::{demand, load, walk};
 
 const PAIR: &str = "
   pair:
@@ -38,6 +39,11 @@ const FAMILY_USES: &[(&str, &str)] = &[
     ("root_relief", "{ gear: both, amount: 6 um, length: 4 mm }"),
     ("root_relief", "{ gear: pinion, amount: 6 um, fraction: 1, curve: parabolic }"),
     ("root_relief", "{ gear: gear, amount: 6 um, length: 1 mm, counted_from: single_zone }"),
+    ("arc", "{ gear: both, tip_share: 0.02, length_share: 0.2 }"),
+    ("arc", "{ gear: pinion, tip_amount: 60 um, start_diameter: 76 mm }"),
+    ("arc", "{ gear: gear, tip_share: 0.02, length_share: 0.2, formulas: printed }"),
+    ("parabola", "{ gear: both, tip_share: 0.02, length_share: 0.2 }"),
+    ("parabola", "{ gear: gear, tip_amount: 60 um, start_diameter: 112 mm }"),
     ("profile_crowning", "{ gear: both, amount: 5 um }"),
     ("profile_slope", "{ gear: pinion, amount: 5 um }"),
     ("profile_slope", "{ gear: gear, amount: -5 um }"),
@@ -90,10 +96,17 @@ fn every_compliance_method_runs_with_every_root_contact_and_coupling() {
     let mut count = 0;
     for method in METHODS {
         assert!(is_name(method.member.name) && !method.member.summary.is_empty());
+        if method.whole_pair {
+            continue;
+        }
         for root in ["trochoid", "circular_fillet", "base_circle"] {
             for contact in ["linear", "load_dependent"] {
                 for coupling in ["none", "body"] {
                     let name = method.member.name;
+                    if name == "finite_element" && root == "base_circle" {
+                        // Refused: a sharp corner. `compliance/finite_element/tests.rs` reads the message.
+                        continue;
+                    }
                     stages += &format!(
                         "  k{count}: {{ kind: stiffness, pair: pair, method: {name}, root: {root}, contact: {contact}, coupling: {coupling}, torque: 150 N m }}\n"
                     );
@@ -102,12 +115,24 @@ fn every_compliance_method_runs_with_every_root_contact_and_coupling() {
             }
         }
     }
-    let ran = walk(&load(&study(&stages)));
-    let summary = |index: usize, column: &str| {
-        let tables = &ran[&format!("k{index}")].tables;
-        tables.iter().find(|table| table.name() == "summary").unwrap().floats(column)[0]
-    };
+    // Read back by a stage that loads them, every table says the same of the mesh.
+    stages += "  none: { kind: modification, pair: pair, designs: { unmodified: [] } }\n";
     for index in 0..count {
+        stages += &format!(
+            "  ste{index}: {{ kind: ste, stiffness: k{index}, designs: none, torque: 150 N m, positions: 8 }}\n"
+        );
+    }
+    let ran = walk(&load(&study(&stages)));
+    let table = |stage: String| ran[&stage].tables.iter().find(|table| table.name() == "summary").unwrap();
+    let summary = |index: usize, column: &str| table(format!("k{index}")).floats(column)[0];
+    let base_radius = 36.0 * libm::cos(20f64.to_radians());
+    for index in 0..count {
+        let largest = table(format!("ste{index}")).floats("maximum")[0] * 1e-6;
+        let stiffness = summary(index, "single_min");
+        assert!(
+            (stiffness * largest * base_radius * 1e-3 / 150.0 - 1.0).abs() < 1e-6,
+            "{index}: {largest} {stiffness}"
+        );
         let [single, double] = ["single_max", "double_max"].map(|column| summary(index, column));
         assert!(
             (2e8..6e8).contains(&single) && double > 1.2 * single && double < 2.0 * single,
@@ -118,6 +143,48 @@ fn every_compliance_method_runs_with_every_root_contact_and_coupling() {
             assert!((summary(index - 1, "single_max") / single - 1.0).abs() < 1e-12);
             assert!(summary(index - 1, "double_max") > 1.01 * double);
         }
+    }
+}
+
+/// What a method of whole pairs is told of single teeth changes nothing, and what it left out is said.
+#[test]
+fn methods_of_whole_pairs_ask_for_no_root_contact_or_coupling() {
+    let whole: Vec<_> = METHODS.iter().filter(|method| method.whole_pair).collect();
+    assert!(!whole.is_empty());
+    for method in whole {
+        let name = method.member.name;
+        let stage =
+            |label: &str, rest: &str| format!("  {label}: {{ kind: stiffness, pair: pair, method: {name}{rest} }}\n");
+        let texts = [
+            stage("k0", ", torque: 150 N m"),
+            stage("k1", ", root: circular_fillet, coupling: none, torque: 150 N m"),
+            "  none: { kind: modification, pair: pair, designs: { unmodified: [] } }\n  ste: { kind: ste, stiffness: k0, designs: none, torque: 150 N m, positions: 16 }\n".to_owned(),
+        ];
+        let loaded = load(&study(&texts.concat()));
+        let node = loaded.nodes.iter().find(|node| node.name == "k0").unwrap();
+        let omissions = node.stage.left_out(&demand(node.stage.as_ref(), true));
+        for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
+            let found = omissions.iter().find(|omission| omission.what == what);
+            assert!(found.is_some_and(|omission| omission.why.contains(name)), "{what}");
+        }
+        let ran = walk(&loaded);
+        let table = |stage: &str, table: &str| -> &Table {
+            ran[stage].tables.iter().find(|found| found.name() == table).unwrap()
+        };
+        for column in ["single_max", "double_min", "mean"] {
+            let [one, two] = ["k0", "k1"].map(|stage| table(stage, "summary").floats(column)[0]);
+            assert_eq!(one.to_bits(), two.to_bits(), "{column}");
+        }
+        assert_eq!(table("k1", "model").texts("root"), ["none"]);
+        assert_eq!(table("k1", "model").texts("contact"), ["included"]);
+        assert_eq!(table("k1", "neighbours").rows(), 0);
+        // Hertz needs materials and curvature, no law.
+        let pressure = table("ste", "summary").floats("largest_pressure")[0];
+        assert!((500.0..2000.0).contains(&pressure), "{pressure}");
+
+        let text = study(&stage("k", ", contact: load_dependent, torque: 150 N m"));
+        let error = gearstudy::study::load_text(&text, std::path::Path::new("t.yaml")).err().unwrap().to_string();
+        assert!(error.contains(&format!("is not for the method `{name}`")), "{error}");
     }
 }
 
@@ -158,5 +225,29 @@ fn every_optimiser_finds_something_better_than_nothing() {
         // What the search promises is what the stage `ste` finds for the design it wrote.
         let (found, plain) = (summary.floats("variance")[row(name)], summary.floats("variance")[row("unmodified")]);
         assert!(found < 0.6 * plain, "{name}: {found} {plain}");
+    }
+}
+
+/// A method that meshes the teeth says with what, knows the stress at the roots, and claims nothing to be left out; the
+/// others have no rows and say why.
+#[test]
+fn a_method_that_meshes_says_with_what() {
+    let text = study(
+        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6, accuracy: 0.5 % } } }\n",
+    );
+    let loaded = load(&text);
+    let ran = walk(&loaded);
+    let table = |stage: &str, name: &str| ran[stage].tables.iter().find(|table| table.name() == name);
+    assert_eq!(table("beam", "mesh").unwrap().rows(), 0);
+    assert!(table("beam", "root_stress").is_none());
+    let mesh = table("mesh", "mesh").unwrap();
+    assert_eq!(mesh.texts("gear"), ["gear", "pinion"]);
+    assert!(mesh.floats("error_estimate").iter().all(|estimate| (0.001..0.5).contains(estimate)));
+    let stress = table("mesh", "root_stress").unwrap();
+    assert!(stress.rows() > 20 && stress.floats("stress").iter().all(|stress| *stress > 0.0));
+    for (stage, says) in [("beam", true), ("mesh", false)] {
+        let node = loaded.nodes.iter().find(|node| node.name == stage).unwrap();
+        let left_out = node.stage.left_out(&super::walk::demand(node.stage.as_ref(), true));
+        assert_eq!(left_out.iter().any(|omission| omission.what.contains("mesh")), says, "{stage}");
     }
 }

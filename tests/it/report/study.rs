@@ -58,6 +58,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
         kind: kind.to_owned(),
         version: 1,
         keys: vec![KeyRecord { key: "8f3a90c1d2e4b7".repeat(4), ..KeyRecord::default() }],
+        config: serde_json::Value::Null,
         status: status.to_owned(),
         why: why.to_owned(),
         seconds,
@@ -100,6 +101,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
             uncommitted_changes: Some(false),
             rustc: "rustc 1.95.0".to_owned(),
             profile: "release".to_owned(),
+            dependencies: String::new(),
         },
         machine: Machine {
             system: "Debian GNU/Linux 12, x86_64".to_owned(),

@@ -10,8 +10,8 @@ use crate::numeric::chebyshev::nodes;
 #[test]
 fn every_gear_is_meshed_and_two_meshes_agree() {
     let mut cases = Vec::new();
-    for bore_ratio in [1.01, 1.4, 1000.0] {
-        for (teeth, shift) in [(8, 0.5), (10, 0.0), (17, 0.0), (12, 0.8), (30, -0.5), (30, 1.0)] {
+    for bore_ratio in [1.01, 1000.0] {
+        for (teeth, shift) in [(8, 0.5), (10, 0.0), (12, 0.8), (30, -0.5), (30, 1.0)] {
             cases.push(shifted(teeth, shift, bore_ratio));
         }
         for teeth in [5, 6] {

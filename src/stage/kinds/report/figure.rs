@@ -8,7 +8,7 @@ use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
 use crate::stage::Inputs;
-use crate::table::data::{Row, Table};
+use crate::table::data::{Data, Row, Table};
 use crate::table::schema::{Column, Schema, Type};
 use crate::table::select::{rows_where, unknown_column};
 
@@ -46,6 +46,12 @@ pub const FIELDS: &[Field] = &[
     Field::new("segments", Shape::Text, "column at whose changes a line is interrupted (a jump stays a jump)")
         .optional(),
     Field::new("where", Shape::Map(&Shape::Text), "only the rows with these values, column: value").optional(),
+    Field::new(
+        "reference",
+        Shape::Text,
+        "`stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|",
+    )
+    .optional(),
     Field::new("x_label", Shape::Text, "name of the x axis; otherwise that of the column").optional(),
     Field::new("y_label", Shape::Text, "name of the y axis; otherwise that of the column").optional(),
     Field::choice("log", LOG, "axes with a logarithmic scale").default("none"),
@@ -78,6 +84,8 @@ pub struct Figure {
     y: Vec<String>,
     series: String,
     segments: String,
+    /// Stage and table.
+    reference: Option<(String, String)>,
     conditions: Vec<(String, String)>,
     x_label: String,
     y_label: String,
@@ -99,13 +107,10 @@ impl Figure {
         }
         let mut tables = Vec::new();
         for (table, place) in texts(record, "table") {
-            let Some((stage, table)) =
-                table.split_once('.').filter(|(stage, table)| !stage.is_empty() && !table.is_empty())
-            else {
-                return Err(Diagnostic::new(format!("`{table}` is no table; write `stage.table`")).at(place));
-            };
-            tables.push((stage.to_owned(), table.to_owned()));
+            tables.push(read_table(&table, place)?);
         }
+        let reference = record.maybe_text("reference");
+        let reference = reference.map(|table| read_table(table.trim(), record.place_of("reference"))).transpose()?;
         let y: Vec<String> = texts(record, "y").into_iter().map(|(column, _)| column).collect();
         for (field, is_empty) in [("table", tables.is_empty()), ("y", y.is_empty())] {
             if is_empty {
@@ -134,6 +139,7 @@ impl Figure {
             y,
             series: text("series"),
             segments: text("segments"),
+            reference,
             conditions,
             x_label: text("x_label"),
             y_label: text("y_label"),
@@ -150,7 +156,11 @@ impl Figure {
             let several = self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
             single.into_iter().filter(|column| !column.is_empty()).chain(several).collect()
         };
-        self.tables.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), columns()))
+        let tables = self.tables.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), columns()));
+        let several = move || self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
+        tables.chain(
+            self.reference.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect())),
+        )
     }
 
     /// The rows of the tables `figures` and `figure_published`.
@@ -175,7 +185,11 @@ impl Figure {
                 }
             }
         }
-        let (x_unit, y_unit) = units.unwrap_or_default();
+        let (x_unit, mut y_unit) = units.unwrap_or_default();
+        if let Some((stage, name)) = &self.reference {
+            self.check_reference(table(stage, name, inputs)?, &y_unit)?;
+            y_unit.clear();
+        }
         let mut marks = Vec::new();
         for (index, mark) in self.published.iter().enumerate() {
             let along =
@@ -202,6 +216,7 @@ impl Figure {
             &self.y.join(", "),
             &self.series,
             &self.segments,
+            &self.reference.as_ref().map(|(stage, table)| format!("{stage}.{table}")).unwrap_or_default(),
             &conditions.join(", "),
             &self.x_label,
             &self.y_label,
@@ -210,6 +225,31 @@ impl Figure {
         ];
         row.extend(texts.map(Into::into));
         Ok((row, marks))
+    }
+
+    /// Whether the reference has one value for each column of the y axis, in its unit, by which can be divided.
+    fn check_reference(&self, table: &Table, unit: &str) -> Result<(), String> {
+        let schema = table.schema();
+        let rows = rows_where(table, &self.conditions)?;
+        let [row] = rows[..] else {
+            return Err(format!("the reference must be one row; table `{}` has {}", table.name(), rows.len()));
+        };
+        for name in &self.y {
+            let column = schema.column(name).ok_or_else(|| unknown_column(schema, name))?;
+            numbers(column)?;
+            if column.unit != unit {
+                return Err(format!("the reference is in {}, but the axis in {unit}", column.unit));
+            }
+            let value = match table.column(name) {
+                Some(Data::Float(values)) => values[row],
+                Some(Data::Integer(values)) => values[row] as f64,
+                _ => f64::NAN,
+            };
+            if !value.is_finite() || value == 0.0 {
+                return Err(format!("the reference `{name}` is {value}"));
+            }
+        }
+        Ok(())
     }
 
     /// Checks the columns; gives the units of the two axes.
@@ -240,6 +280,13 @@ impl Figure {
         }
         Ok((x.unit.clone(), unit.unwrap_or_default().to_owned()))
     }
+}
+
+fn read_table(text: &str, place: TextPlace) -> Result<(String, String), Diagnostic> {
+    text.split_once('.')
+        .filter(|(stage, table)| !stage.is_empty() && !table.is_empty())
+        .map(|(stage, table)| (stage.to_owned(), table.to_owned()))
+        .ok_or_else(|| Diagnostic::new(format!("`{text}` is no table; write `stage.table`")).at(place))
 }
 
 fn numbers(column: &Column) -> Result<(), String> {
@@ -320,6 +367,7 @@ pub fn schemas() -> [Schema; 2] {
             Column::text("y", "Columns of the y axis, separated by commas."),
             Column::text("series", "Column whose values are drawn apart."),
             Column::text("segments", "Column at whose changes a line is interrupted."),
+            Column::text("reference", "The table from whose values the relative distance is drawn."),
             Column::text("conditions", "The rows that are drawn, `column=value`, separated by commas."),
             Column::text("x_label", "Name of the x axis, if not that of the column."),
             Column::text("y_label", "Name of the y axis, if not that of the column."),

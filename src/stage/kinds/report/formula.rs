@@ -2,7 +2,7 @@
 //!
 //! The library parses; the tree is walked here, because a formula must not divide whole numbers (`1 / 2` is a half), must
 //! not add newtons to metres, and must give the same bits on every machine. Allowed: `+ - * / ^`, comparisons, `&&`,
-//! `||`, `!`, sqrt, abs, min, max. Values are SI; an angle counts as a plain number. Must not know: tables, entries.
+//! `||`, `!`, sqrt, abs, min, max, sin, cos, tan, atan. Values are SI; an angle counts as a plain number. Must not know: tables, entries.
 
 use evalexpr::{DefaultNumericTypes, Node, Operator, Value, build_operator_tree};
 
@@ -13,7 +13,7 @@ use super::quantity::{Number, described, power, product, shown, wider};
 
 /// Longer formulas are refused: nobody reads them, and the parser's recursion stays shallow.
 const LONGEST: usize = 600;
-const FUNCTIONS: [&str; 4] = ["abs", "max", "min", "sqrt"];
+const FUNCTIONS: [&str; 8] = ["abs", "atan", "cos", "max", "min", "sin", "sqrt", "tan"];
 
 /// What an expression gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -174,6 +174,15 @@ fn number(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Number, Stri
     }
 }
 
+/// An angle or a ratio, as the functions of angles need one.
+fn plain(value: Number, function: &str) -> Result<f64, String> {
+    if value.fits(Number::plain(1.0)) {
+        Ok(value.si)
+    } else {
+        Err(format!("`{function}` needs an angle or a plain number, not {}", described(value.dimension)))
+    }
+}
+
 fn truth(node: &Node<DefaultNumericTypes>, names: Names) -> Result<bool, String> {
     match evaluate(node, names)? {
         Outcome::Truth(truth) => Ok(truth),
@@ -259,6 +268,10 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
             match identifier.as_str() {
                 "abs" => finite(first.si.abs(), first.dimension),
                 "sqrt" => finite(first.si.sqrt(), power(first.dimension, Number::plain(0.5))?),
+                "sin" => finite(libm::sin(plain(*first, identifier)?), RATIO),
+                "cos" => finite(libm::cos(plain(*first, identifier)?), RATIO),
+                "tan" => finite(libm::tan(plain(*first, identifier)?), RATIO),
+                "atan" => finite(libm::atan(plain(*first, identifier)?), RATIO),
                 "min" => Ok(Outcome::Number(
                     rest.iter().fold(*first, |a, &b| Number { si: a.si.min(b.si), dimension: wider(a, b) }),
                 )),
@@ -358,6 +371,10 @@ mod tests {
             ("10 - 4 - 3", 3.0),
             ("F / (k1 * published)", 1866.979 / (2.738e8 * 2.316e-6)),
             ("angle", std::f64::consts::FRAC_PI_2),
+            ("sin(angle / 3)", 0.5),
+            ("cos(angle * 2 / 3)", 0.5),
+            ("tan(angle / 2)", 1.0),
+            ("atan(1) * 4 - 2 * angle + 1", 1.0),
         ] {
             assert!((plain(text) - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{text} = {}", plain(text));
         }
@@ -385,6 +402,7 @@ mod tests {
             ("max(F, b)", "do not go together in `max`"),
             ("2 ^ F", "an exponent is a plain number, not a force"),
             ("sqrt(F)", "to the power 0.5 has no unit"),
+            ("sin(F)", "`sin` needs an angle or a plain number, not a force"),
             ("F / (k1 - k1)", "no finite number"),
             ("sqrt(-1)", "no finite number"),
             ("b > 0 || F > b", "a force and a length"),
@@ -411,7 +429,7 @@ mod tests {
             ("F; b", "no place"),
             ("\"F\"", "no place"),
             ("F % 2", "no place"),
-            ("sin(F)", "no function `sin`"),
+            ("sinh(F)", "did you mean `sin`?"),
             ("sqrtt(F)", "did you mean `sqrt`?"),
             ("math::sin(F)", "no function"),
             ("sqrt(F, b)", "given 2 values"),

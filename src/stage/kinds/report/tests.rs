@@ -323,6 +323,8 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         (("published", list(vec![group(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
         (("name", text("../x")), "no name for a file"),
         (("table", list(vec![text("ste")])), "is no table"),
+        (("reference", text("ste")), "is no table"),
+        (("reference", text("ste.summary")), "the reference must be one row; table `summary` has"),
     ] {
         let error = run(vec![], vec![figure(&[changes])]).unwrap_err();
         assert!(error.contains(message), "{message}: {error}");

@@ -1,0 +1,167 @@
+//! `archive`: a study and its results as one file.
+//!
+//! Must not know: how the file is written.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::arguments::Places;
+use super::progress::out;
+use super::{Ending, pages};
+use crate::runner::graph::Graph;
+use crate::runner::standing::{self, standing};
+use crate::stage::{self, kinds::KINDS};
+use crate::store::archive::metadata::{Author, Description, Step, metadata};
+use crate::store::archive::pack::{Entries, pack};
+use crate::store::archive::{self, METADATA, about};
+use crate::store::file::{self, Durability};
+use crate::store::manifest::Manifest;
+use crate::store::results::{Folder, MANIFEST};
+use crate::study::{Study, schema};
+
+/// What only the user knows.
+pub(super) struct About<'a> {
+    /// SPDX identifier.
+    pub(super) license: Option<&'a str>,
+    pub(super) authors: &'a [String],
+}
+
+/// Writes the archive, or says which command must come first.
+pub(super) fn archive(
+    study: &Study,
+    places: &Places,
+    output: &Path,
+    about: &About<'_>,
+    quiet: bool,
+) -> Result<(), Ending> {
+    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.name));
+    let license = about.license.map(spdx).transpose().map_err(Ending::Usage)?;
+    let authors: Vec<Author> =
+        about.authors.iter().map(|text| author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
+    let folder = Folder::new(&places.results, &study.name);
+    // So that nobody publishes while the files are read.
+    let _lock = if folder.path().is_dir() { folder.lock().map_err(|error| usage(error.to_string()))? } else { None };
+    let standing = standing(study, &folder, stage::code_digest, false).map_err(|error| usage(error.message))?;
+    let first = |command: &str| format!("first: gearstudy {command} {}", study.path.display());
+    if let Some(problem) = standing.problem() {
+        return Err(usage(format!("{problem}; {}", first("run"))));
+    }
+    let manifest = folder.manifest().ok_or_else(|| usage(format!("there are no results; {}", first("run"))))?;
+    let Some(pages) = pages::current(&folder) else {
+        return Err(usage(format!("the report is not that of the last run; {}", first("report"))));
+    };
+    let mut entries = results(&folder, &manifest, &pages).map_err(usage)?;
+    entries.insert(archive::study(&study.name), study.text.clone().into_bytes());
+    entries.insert(archive::SCHEMA.to_owned(), schema::schema_text(KINDS).into_bytes());
+    entries.insert(archive::CITATION.to_owned(), about::CITATION.as_bytes().to_vec());
+    let steps = steps(study, &manifest).map_err(usage)?;
+    let description = Description {
+        manifest: &manifest,
+        entries: &entries,
+        steps: &steps,
+        license: license.as_deref(),
+        authors: &authors,
+    };
+    let described = metadata(&description).map_err(usage)?;
+    entries.insert(METADATA.to_owned(), described);
+    let bytes = pack(&entries).map_err(usage)?;
+    file::write(output, &bytes, Durability::Synced).map_err(|error| Ending::Usage(error.to_string()))?;
+    if !quiet {
+        let size = bytes.len().div_ceil(1000);
+        out(&format!("{}: {} files, {size} kB; {}\n", study.name, entries.len(), output.display()));
+    }
+    Ok(())
+}
+
+/// The files of the last run, by their names in the archive.
+fn results(folder: &Folder, manifest: &Manifest, pages: &[PathBuf]) -> Result<Entries, String> {
+    let inside = archive::results(&manifest.study);
+    let mut entries = Entries::new();
+    let mut put = |name: &str| -> Result<(), String> {
+        let path = folder.path().join(name);
+        let bytes = fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        entries.insert(format!("{inside}{name}"), bytes);
+        Ok(())
+    };
+    put(MANIFEST)?;
+    for record in &manifest.files {
+        // A manifest from elsewhere may name anything; only files right here are ours.
+        if Path::new(&record.file).file_name().is_none_or(|name| *name != *record.file) {
+            return Err(format!("the manifest names a file elsewhere: {}", record.file));
+        }
+        put(&record.file)?;
+    }
+    for page in pages {
+        put(&page.to_string_lossy())?;
+    }
+    for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
+        folder.table(record).map_err(|error| error.to_string())?;
+    }
+    Ok(entries)
+}
+
+/// Who read what.
+fn steps(study: &Study, manifest: &Manifest) -> Result<Vec<Step>, String> {
+    let graph = Graph::new(study, &standing::demand(study, manifest)).map_err(|error| error.message)?;
+    let step = |&node: &usize| {
+        let of_study = &study.nodes[node];
+        let mut reads: Vec<String> = Vec::new();
+        for input in &graph.inputs[node] {
+            reads.extend(input.wants.iter().map(|want| format!("{}.{}", study.nodes[input.node].name, want.table)));
+        }
+        reads.sort();
+        reads.dedup();
+        Step { stage: of_study.name.clone(), summary: of_study.kind.summary.to_owned(), reads }
+    };
+    Ok(graph.order.iter().map(step).collect())
+}
+
+/// An SPDX identifier, as far as its letters tell.
+fn spdx(text: &str) -> Result<String, String> {
+    let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+');
+    if !text.is_empty() && text.chars().all(allowed) {
+        Ok(text.to_owned())
+    } else {
+        Err(format!("`{text}` is no SPDX identifier of a licence; for example `CC-BY-4.0`"))
+    }
+}
+
+/// A name, and an ORCID iD behind it where there is one.
+fn author(text: &str) -> Result<Author, String> {
+    let is_orcid = |word: &str| {
+        let digits: Vec<&str> = word.split('-').collect();
+        let group = |digits: &&str| digits.len() == 4 && digits.chars().all(|c| c.is_ascii_digit() || c == 'X');
+        digits.len() == 4 && digits.iter().all(group)
+    };
+    let (name, orcid) = match text.trim().rsplit_once(' ') {
+        Some((name, last)) if is_orcid(last.trim_start_matches("https://orcid.org/")) => {
+            (name.trim(), Some(last.trim_start_matches("https://orcid.org/").to_owned()))
+        }
+        _ => (text.trim(), None),
+    };
+    if name.is_empty() || is_orcid(name) {
+        return Err(format!("`{text}` is no author; write a name, or a name and an ORCID iD"));
+    }
+    Ok(Author { name: name.to_owned(), orcid })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn authors_are_names_with_or_without_an_orcid() {
+        let parsed = |text| author(text).map(|author| (author.name, author.orcid));
+        let orcid = Some("0000-0002-1825-009X".to_owned());
+        assert_eq!(parsed("Ada Lovelace"), Ok(("Ada Lovelace".to_owned(), None)));
+        assert_eq!(parsed("Ada Lovelace 0000-0002-1825-009X"), Ok(("Ada Lovelace".to_owned(), orcid.clone())));
+        assert_eq!(parsed(" Ada https://orcid.org/0000-0002-1825-009X"), Ok(("Ada".to_owned(), orcid)));
+        assert!(parsed("").is_err() && parsed("0000-0002-1825-0097").is_err());
+    }
+
+    #[test]
+    fn licences_are_spdx_identifiers() {
+        assert!(spdx("CC-BY-4.0").is_ok() && spdx("LGPL-2.1+").is_ok());
+        assert!(spdx("").is_err() && spdx("my own").is_err() && spdx("../x").is_err());
+    }
+}

@@ -1,0 +1,156 @@
+//! The command `diff`: finds out which words are revisions, folders and studies, compares, and prints.
+//!
+//! Must not know: what is compared.
+
+use std::path::{Path, PathBuf};
+
+use super::Ending;
+use super::arguments::{Differences, Places, Shown};
+use super::pages::terminal_width;
+use super::progress::out;
+use crate::base::error::nearest;
+use crate::diff::compare::{Options, compare};
+use crate::diff::git::Repository;
+use crate::diff::model::Comparison;
+use crate::diff::side::Side;
+use crate::diff::{html, markdown, pretty};
+use crate::store::cache::Cache;
+use crate::store::results::MANIFEST;
+use crate::study;
+use crate::table::tolerance::Allowance;
+
+/// What is compared with what: a revision or a folder each.
+struct Asked {
+    sides: Vec<Side>,
+    studies: Vec<String>,
+}
+
+pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<(), Ending> {
+    let tolerances: Vec<Allowance> =
+        asked.tolerances.iter().map(|text| Allowance::parse(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
+    // A results folder that is a link, or lies in another repository than the current folder, is found from itself.
+    let repository = Repository::around(&places.results);
+    let Asked { mut sides, studies } = read_words(asked, places, &repository).map_err(Ending::Usage)?;
+    let after = if sides.len() > 1 { sides.remove(1) } else { working_tree(places)? };
+    let before = match sides.pop() {
+        Some(before) => before,
+        None => of_revision("HEAD", places, &repository).map_err(Ending::Usage)?,
+    };
+    let cache = places.cache.exists().then(|| Cache::open(&places.cache)).transpose();
+    let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
+    let ignored = |study: &str| {
+        let (Ok(repository), Some(folder)) = (&repository, after.path()) else { return false };
+        let manifest = repository.inside(&folder.join(study).join(MANIFEST));
+        before.path().is_none() && manifest.is_ok_and(|manifest| repository.ignores(&manifest))
+    };
+    let options =
+        Options { studies: &studies, tolerances: &tolerances, cache: cache.as_ref(), leaves_out: Some(&ignored) };
+    let comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
+    if !quiet {
+        out(&shown(&comparison, asked.format)?);
+    }
+    if !comparison.problems.is_empty() {
+        return Err(Ending::Usage(comparison.problems.join("; ")));
+    }
+    if comparison.state.differs() { Err(Ending::Differs(String::new())) } else { Ok(()) }
+}
+
+fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {
+    match format {
+        Shown::Pretty => Ok(pretty::text(comparison, terminal_width())),
+        Shown::Markdown => Ok(markdown::text(comparison)),
+        Shown::Html => html::page(comparison).map_err(Ending::Usage),
+        Shown::Json => serde_json::to_string_pretty(comparison)
+            .map(|text| text + "\n")
+            .map_err(|error| Ending::Usage(format!("the comparison cannot be written: {error}"))),
+    }
+}
+
+fn working_tree(places: &Places) -> Result<Side, Ending> {
+    if places.results.is_dir() {
+        return Ok(Side::folder(&places.results, places.results.display().to_string()));
+    }
+    let (path, help) = (places.results.display(), "`gearstudy run STUDY` makes one");
+    Err(Ending::Usage(format!("there is no results folder `{path}`; {help}, `--results` names another")))
+}
+
+/// The first two words may say what to compare; the others are studies.
+fn read_words(asked: &Differences, places: &Places, repository: &Result<Repository, String>) -> Result<Asked, String> {
+    let (mut sides, mut studies) = (Vec::new(), Vec::new());
+    for word in &asked.words {
+        let side = if studies.is_empty() && sides.len() < 2 { side(word, places, repository)? } else { None };
+        match side {
+            Some(side) => sides.push(side),
+            None => studies.push(named(word, &sides, places, repository)?),
+        }
+    }
+    for word in &asked.studies {
+        studies.push(study_name(word));
+    }
+    Ok(Asked { sides, studies })
+}
+
+fn side(word: &str, places: &Places, repository: &Result<Repository, String>) -> Result<Option<Side>, String> {
+    let path = Path::new(word);
+    if path.is_dir()
+        && (word.contains(['/', '\\', '.']) || Side::folder(path, "").studies().is_ok_and(|all| !all.is_empty()))
+    {
+        return Ok(Some(Side::folder(path, word)));
+    }
+    match repository {
+        Ok(found) if found.commit(word).is_ok() => of_revision(word, places, repository).map(Some),
+        _ => Ok(None),
+    }
+}
+
+fn of_revision(word: &str, places: &Places, repository: &Result<Repository, String>) -> Result<Side, String> {
+    let without = |problem: &String| {
+        format!("{problem}; two folders of results can be compared anywhere: gearstudy diff OLD NEW")
+    };
+    let repository = repository.as_ref().map_err(without)?;
+    let commit = repository.commit(word)?;
+    Side::commit(repository, &commit, &repository.inside(&places.results)?)
+}
+
+/// The study that a word means which is no revision and no folder.
+fn named(
+    word: &str,
+    sides: &[Side],
+    places: &Places,
+    repository: &Result<Repository, String>,
+) -> Result<String, String> {
+    let name = study_name(word);
+    let mut known = Side::folder(&places.results, "").studies().unwrap_or_default();
+    for side in sides {
+        known.extend(side.studies()?);
+    }
+    if let (true, Ok(head)) = (sides.len() < 2, of_revision("HEAD", places, repository)) {
+        known.extend(head.studies()?);
+    }
+    if known.contains(&name) || sides.iter().any(Side::is_single) {
+        return Ok(name);
+    }
+    let mut names = known;
+    if sides.len() < 2 {
+        names.extend(repository.as_ref().map(Repository::names).unwrap_or_default());
+    }
+    let what = if sides.len() < 2 {
+        "neither a revision nor a folder nor a study with results"
+    } else {
+        "no study with results"
+    };
+    let help = nearest(&name, names.iter().map(String::as_str)).map(|near| format!("; did you mean `{near}`?"));
+    let outside = repository.as_ref().err().filter(|_| sides.len() < 2).map(|problem| format!("; {problem}"));
+    Err(format!("`{word}` is {what}{}", help.or(outside).unwrap_or_default()))
+}
+
+/// The name in a study's file; other words are names.
+fn study_name(word: &str) -> String {
+    let path = PathBuf::from(word);
+    if !path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
+        return word.to_owned();
+    }
+    let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
+    // A study that is no longer valid still has results.
+    study::load(&path).map_or(stem, |study| study.name)
+}

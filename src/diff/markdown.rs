@@ -1,0 +1,132 @@
+//! A comparison as Markdown, for a comment on a merge request.
+//!
+//! Must not know: who shows it. Every text of a study is escaped.
+
+use super::model::{Comparison, StageDiff, State, StudyDiff, TableDiff};
+use super::words;
+
+/// The whole comparison.
+#[must_use]
+pub fn text(comparison: &Comparison) -> String {
+    let mut text = format!("## {}\n\n", escaped(&words::verdict(comparison)));
+    text += &format!("{} → {}\n", escaped(&comparison.before), escaped(&comparison.after));
+    if !comparison.verdicts.is_empty() {
+        text += "\n### Verdicts that flipped\n\n";
+        let rows = comparison.verdicts.iter().map(|flip| {
+            let sign = if flip.needs_attention { "**!**" } else { "≠" };
+            let place = format!("{}.{}", flip.study, flip.stage);
+            [
+                sign.to_owned(),
+                escaped(&words::flip(flip)),
+                escaped(&words::entry(flip)),
+                escaped(&words::numbers(flip)),
+                escaped(&place),
+            ]
+        });
+        text += &table(["", "Verdict", "What", "Numbers", "Where"], rows);
+    }
+    for study in &comparison.studies {
+        text += &self::study(study);
+    }
+    for remark in &comparison.remarks {
+        text += &format!("\n{}\n", escaped(remark));
+    }
+    text
+}
+
+fn study(study: &StudyDiff) -> String {
+    let mut text =
+        format!("\n### {} {}\n\n{}\n", study.state.sign(), escaped(&study.name), escaped(&words::sum(study)));
+    if matches!(study.state, State::Added | State::Removed) {
+        return text;
+    }
+    let told: Vec<&StageDiff> =
+        study.stages.iter().filter(|stage| stage.state != State::Same || !stage.why.is_empty()).collect();
+    if told.is_empty() {
+        return text;
+    }
+    let rows = told.iter().map(|stage| {
+        let why: Vec<String> = words::reasons(&stage.why).iter().map(|reason| escaped(reason)).collect();
+        let state = format!("{} {}", stage.state.sign(), stage.state.word());
+        [format!("`{}`", stage.name), escaped(&stage.kind), state, why.join("<br>")]
+    });
+    text += "\n";
+    text += &table(["Stage", "Kind", "State", "Why"], rows);
+    for stage in told.iter().filter(|stage| stage.state <= State::Changed) {
+        for table in stage.tables.iter().filter(|table| table.state != State::Same) {
+            text += &of_table(table);
+        }
+    }
+    text
+}
+
+fn of_table(diff: &TableDiff) -> String {
+    let head = format!("{} `{}`: {}; {}", diff.state.sign(), diff.name, diff.state.word(), words::rows(diff));
+    let mut text = format!("\n#### {head}\n");
+    if !diff.note.is_empty() {
+        let lead = if diff.by_values { "" } else { "Compared by content hash alone: it " };
+        text += &format!("\n{lead}{}\n", escaped(&diff.note));
+    }
+    if !diff.schema.is_empty() {
+        let rows = diff.schema.iter().map(|change| {
+            [format!("`{}`", change.column), change.what.to_owned(), escaped(&change.before), escaped(&change.after)]
+        });
+        text += &format!("\n{}", table(["Column", "Change", "Before", "After"], rows));
+    }
+    for (word, keys, all) in [("Added", &diff.added, diff.rows_added), ("Removed", &diff.removed, diff.rows_removed)] {
+        if all > 0 {
+            text += &format!("\n{word}: {}\n", escaped(&words::keys(keys, all)));
+        }
+    }
+    if !diff.columns.is_empty() {
+        let rows = diff.columns.iter().map(|column| {
+            let largest = column.largest_absolute.as_ref();
+            let relative = column.largest_relative.as_ref();
+            [
+                escaped(&words::column(&column.name, &column.unit)),
+                words::changed(column),
+                largest.map_or_else(|| "–".to_owned(), |largest| words::difference(largest.difference)),
+                relative.map_or_else(|| "–".to_owned(), |largest| words::relative(largest.difference)),
+                largest.map_or_else(String::new, |largest| escaped(&words::key(&largest.key))),
+            ]
+        });
+        text += &format!("\n{}", table(["Column", "Changed", "Largest", "Relative", "Largest where"], rows));
+    }
+    if !diff.worst.is_empty() {
+        let rows = diff.worst.iter().map(|worst| {
+            let (before, after) = words::pair(&worst.before, &worst.after);
+            let difference = worst.difference.map_or_else(|| "–".to_owned(), words::difference);
+            let column = words::column(&worst.column, &worst.unit);
+            [escaped(&column), escaped(&before), escaped(&after), difference, escaped(&words::key(&worst.key))]
+        });
+        text += &format!("\n{}", table(["Worst rows", "Before", "After", "Difference", "Where"], rows));
+    }
+    text
+}
+
+fn table<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; N]>) -> String {
+    let mut text = format!("| {} |\n|{}\n", header.join(" | "), " --- |".repeat(N));
+    for row in rows {
+        text += &format!("| {} |\n", row.join(" | "));
+    }
+    text
+}
+
+/// A text that Markdown shows as it is, on one line.
+fn escaped(text: &str) -> String {
+    let mut shown = String::with_capacity(text.len());
+    for character in text.chars() {
+        match character {
+            '\n' | '\r' => shown.push(' '),
+            '<' => shown += "&lt;",
+            '>' => shown += "&gt;",
+            '&' => shown += "&amp;",
+            '\\' | '`' | '*' | '_' | '[' | ']' | '|' | '#' | '~' | '!' | '@' => {
+                shown.push('\\');
+                shown.push(character);
+            }
+            other => shown.push(other),
+        }
+    }
+    shown
+}

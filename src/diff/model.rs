@@ -1,0 +1,253 @@
+//! What a comparison found. Written as it stands for `--format json`: additions only.
+//!
+//! Must not know: how it is found or shown.
+
+use serde::Serialize;
+
+use crate::table::data::Cell;
+
+/// How far two of a kind are apart. The order is that of weight.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum State {
+    #[default]
+    Same,
+    WithinTolerance,
+    Changed,
+    Removed,
+    Added,
+}
+
+impl State {
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Same => "same",
+            Self::WithinTolerance => "within tolerance",
+            Self::Changed => "changed",
+            Self::Removed => "removed",
+            Self::Added => "added",
+        }
+    }
+
+    /// So that colour is never alone.
+    #[must_use]
+    pub const fn sign(self) -> &'static str {
+        match self {
+            Self::Same => "=",
+            Self::WithinTolerance => "≈",
+            Self::Changed => "≠",
+            Self::Removed => "−",
+            Self::Added => "+",
+        }
+    }
+
+    /// Whether it is a difference beyond tolerance.
+    #[must_use]
+    pub fn differs(self) -> bool {
+        self >= Self::Changed
+    }
+
+    /// Of what is made of several: changed as soon as one part differs.
+    #[must_use]
+    pub fn of_parts(parts: impl Iterator<Item = Self>) -> Self {
+        parts.max().unwrap_or(Self::Same).min(Self::Changed)
+    }
+}
+
+/// The whole comparison.
+#[derive(Clone, Debug, Serialize)]
+pub struct Comparison {
+    /// What is compared with what, in words: `HEAD (59b124e)`, `the working tree`.
+    pub before: String,
+    pub after: String,
+    pub state: State,
+    /// Verdicts on published numbers that are other words now, those that need attention first.
+    pub verdicts: Vec<Flip>,
+    pub studies: Vec<StudyDiff>,
+    /// What could not be compared at all, and why.
+    pub problems: Vec<String>,
+    /// What was left out on purpose, and why.
+    pub remarks: Vec<String>,
+}
+
+/// A verdict that is another word than it was.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Flip {
+    pub study: String,
+    /// The report stage.
+    pub stage: String,
+    pub label: String,
+    /// Where the paper says it.
+    pub location: String,
+    /// The computed cell, formula or claim.
+    pub cell: String,
+    /// None for an entry that was not there.
+    pub before: Option<String>,
+    /// None for an entry that is gone.
+    pub after: Option<String>,
+    pub published: String,
+    pub computed_before: Option<f64>,
+    pub computed_after: Option<f64>,
+    pub unit: String,
+    /// Of a claim: in how many rows it held and holds.
+    pub found_before: String,
+    pub found_after: String,
+    pub needs_attention: bool,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct StudyDiff {
+    pub name: String,
+    pub state: State,
+    pub stages: Vec<StageDiff>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct StageDiff {
+    pub name: String,
+    pub kind: String,
+    pub state: State,
+    /// What it was computed from that differs; may say something although every value is the same.
+    pub why: Vec<Reason>,
+    pub tables: Vec<TableDiff>,
+}
+
+/// One part of what a stage is computed from.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Reason {
+    pub part: Part,
+    /// The field, the port.
+    pub what: String,
+    pub before: Option<String>,
+    pub after: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Part {
+    Kind,
+    Config,
+    Input,
+    Code,
+    Seed,
+    /// What the rest of the study asks of the stage.
+    Demand,
+    /// It failed or was skipped: its tables are those of an earlier run.
+    Status,
+    /// Nothing that is recorded.
+    Unknown,
+}
+
+impl Part {
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Kind => "kind",
+            Self::Config => "config",
+            Self::Input => "input",
+            Self::Code => "code",
+            Self::Seed => "seed",
+            Self::Demand => "demand",
+            Self::Status => "status",
+            Self::Unknown => "unknown",
+        }
+    }
+}
+
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct TableDiff {
+    /// `stage.table`.
+    pub name: String,
+    pub state: State,
+    /// Whether values were compared, or content hashes alone.
+    pub by_values: bool,
+    /// Why values were not compared, or rows not matched.
+    pub note: String,
+    pub rows_before: usize,
+    pub rows_after: usize,
+    pub rows_added: usize,
+    pub rows_removed: usize,
+    /// Keys of the first few.
+    pub added: Vec<Key>,
+    pub removed: Vec<Key>,
+    pub schema: Vec<SchemaChange>,
+    /// Columns in which anything differs.
+    pub columns: Vec<ColumnDiff>,
+    /// Rows that are beyond tolerance by most, measured by each column's largest value.
+    pub worst: Vec<Worst>,
+}
+
+/// Column and value of a row's key.
+pub type Key = Vec<(String, Value)>;
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct SchemaChange {
+    pub column: String,
+    /// `added`, `removed`, `type`, `unit`, `key`, `tolerance`.
+    pub what: &'static str,
+    pub before: String,
+    pub after: String,
+    /// Whether it is a difference; a changed tolerance alone is none.
+    pub differs: bool,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct ColumnDiff {
+    pub name: String,
+    /// Of both values; where the unit changed, that of the later table.
+    pub unit: String,
+    /// Rows that are in both tables.
+    pub compared: usize,
+    /// Values that are not the same.
+    pub changed: usize,
+    /// Values that differ by more than the tolerance.
+    pub beyond: usize,
+    pub absolute_tolerance: f64,
+    pub relative_tolerance: f64,
+    pub largest_absolute: Option<Extreme>,
+    /// Relative to the larger of the two values.
+    pub largest_relative: Option<Extreme>,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Extreme {
+    /// `after − before`, or its size over the larger of the two.
+    pub difference: f64,
+    pub before: Value,
+    pub after: Value,
+    pub key: Key,
+}
+
+#[derive(Clone, Debug, Serialize)]
+pub struct Worst {
+    pub key: Key,
+    /// The column that is beyond tolerance by most in this row.
+    pub column: String,
+    pub unit: String,
+    pub before: Value,
+    pub after: Value,
+    /// Of numbers: `after − before`.
+    pub difference: Option<f64>,
+}
+
+/// A cell; NaN becomes `null`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
+pub enum Value {
+    Float(f64),
+    Integer(i64),
+    Text(String),
+    Flag(bool),
+}
+
+impl From<Cell> for Value {
+    fn from(cell: Cell) -> Self {
+        match cell {
+            Cell::Float(value) => Self::Float(value),
+            Cell::Integer(value) => Self::Integer(value),
+            Cell::Text(value) => Self::Text(value),
+            Cell::Flag(value) => Self::Flag(value),
+        }
+    }
+}

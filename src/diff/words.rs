@@ -1,0 +1,221 @@
+//! What a comparison found, in phrases that every format shares.
+//!
+//! Must not know: terminals, HTML, Markdown.
+
+use super::model::{ColumnDiff, Comparison, Extreme, Flip, Key, Reason, State, StudyDiff, TableDiff, Value};
+use crate::base::number::{significant, unit_symbol, with_unit};
+
+/// Significant digits of differences.
+const FEW: usize = 3;
+/// Significant digits of values; more where two would look alike.
+const DIGITS: usize = 6;
+
+/// `1 row`, `2 rows`.
+pub fn count(number: usize, what: &str) -> String {
+    let plural = match what.strip_suffix('y') {
+        Some(stem) => format!("{stem}ies"),
+        None => format!("{what}s"),
+    };
+    format!("{number} {}", if number == 1 { what } else { &plural })
+}
+
+/// Two values with as many digits as it takes to tell them apart.
+pub fn pair(before: &Value, after: &Value) -> (String, String) {
+    if let (Value::Float(a), Value::Float(b)) = (before, after) {
+        for digits in DIGITS..=17 {
+            let shown = (significant(*a, digits), significant(*b, digits));
+            if shown.0 != shown.1 {
+                return shown;
+            }
+        }
+    }
+    (value(before), value(after))
+}
+
+pub fn value(value: &Value) -> String {
+    match value {
+        Value::Float(number) => significant(*number, DIGITS),
+        Value::Integer(number) => number.to_string(),
+        Value::Text(text) if text.is_empty() => "\"\"".to_owned(),
+        Value::Text(text) => text.clone(),
+        Value::Flag(flag) => flag.to_string(),
+    }
+}
+
+/// `design=iso, torque=50 N m`.
+pub fn key(key: &Key) -> String {
+    let one = |(name, cell): &(String, Value)| match name.split_once(" [") {
+        Some((name, unit)) => format!("{name}={}", with_unit(&value(cell), unit.trim_end_matches(']'))),
+        None => format!("{name}={}", value(cell)),
+    };
+    key.iter().map(one).collect::<Vec<_>>().join(", ")
+}
+
+/// `peak_to_peak [µm]`.
+pub fn column(name: &str, unit: &str) -> String {
+    if unit.is_empty() { name.to_owned() } else { format!("{name} [{}]", unit_symbol(unit)) }
+}
+
+/// A difference with its sign.
+pub fn difference(value: f64) -> String {
+    let shown = significant(value, FEW);
+    if value > 0.0 { format!("+{shown}") } else { shown }
+}
+
+/// A relative difference.
+pub fn relative(value: f64) -> String {
+    if value >= 1e-4 { with_unit(&significant(100.0 * value, FEW), "%") } else { significant(value, FEW) }
+}
+
+/// `2.1 → 2.3`.
+pub fn change(extreme: &Extreme) -> String {
+    let (before, after) = pair(&extreme.before, &extreme.after);
+    format!("{before} → {after}")
+}
+
+/// `12 of 25, 3 beyond`.
+pub fn changed(column: &ColumnDiff) -> String {
+    let beyond = match column.beyond {
+        0 => "none beyond".to_owned(),
+        all if all == column.changed => String::new(),
+        some => format!("{some} beyond"),
+    };
+    let all = format!("{} of {}", column.changed, column.compared);
+    if beyond.is_empty() { all } else { format!("{all}, {beyond}") }
+}
+
+/// `config pinion.face_width: 20 mm → 22 mm`.
+fn reason(reason: &Reason) -> String {
+    let mut text = reason.part.word().to_owned();
+    if !reason.what.is_empty() {
+        text += &format!(" {}", reason.what);
+    }
+    match (&reason.before, &reason.after) {
+        (Some(before), Some(after)) => text += &format!(": {} → {}", short(before), short(after)),
+        (Some(before), None) => text += &format!(": {} → gone", short(before)),
+        (None, Some(after)) => text += &format!(": new: {}", short(after)),
+        (None, None) => {}
+    }
+    text
+}
+
+/// All reasons of a stage: those without values in one phrase.
+pub fn reasons(why: &[Reason]) -> Vec<String> {
+    let (told, bare): (Vec<&Reason>, Vec<&Reason>) =
+        why.iter().partition(|why| why.before.is_some() || why.after.is_some());
+    let bare: Vec<String> = bare.into_iter().map(reason).collect();
+    let bare = (!bare.is_empty()).then(|| bare.join(", "));
+    told.into_iter().map(reason).chain(bare).collect()
+}
+
+/// Long texts of a study, cut.
+fn short(text: &str) -> String {
+    const MOST: usize = 120;
+    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST - 1).chain(['…']).collect() }
+}
+
+/// `reproduced → unexplained`.
+pub fn flip(flip: &Flip) -> String {
+    match (&flip.before, &flip.after) {
+        (Some(before), Some(after)) => format!("{before} → {after}"),
+        (None, Some(after)) => format!("new: {after}"),
+        (Some(before), None) => format!("{before} → gone"),
+        (None, None) => String::new(),
+    }
+}
+
+/// What the entry is, and where the paper says it.
+pub fn entry(flip: &Flip) -> String {
+    let what = if flip.label.is_empty() { &flip.cell } else { &flip.label };
+    if flip.location.is_empty() { what.clone() } else { format!("{what} ({})", flip.location) }
+}
+
+/// `published 2.316 µm, computed 2.31 → 2.41 µm`.
+pub fn numbers(flip: &Flip) -> String {
+    if !(flip.found_before.is_empty() && flip.found_after.is_empty()) {
+        return [&flip.found_before, &flip.found_after]
+            .map(|found| if found.is_empty() { "none" } else { found })
+            .join(" → ");
+    }
+    let published = (!flip.published.is_empty()).then(|| format!("published {}", flip.published));
+    let with = |text: &str| with_unit(text, &flip.unit);
+    let computed = match (flip.computed_before, flip.computed_after) {
+        (Some(a), Some(b)) if a.to_bits() == b.to_bits() => {
+            Some(format!("computed {} as before", with(&significant(a, DIGITS))))
+        }
+        (Some(a), Some(b)) => {
+            let (a, b) = pair(&Value::Float(a), &Value::Float(b));
+            Some(format!("computed {a} → {}", with(&b)))
+        }
+        (None, Some(one)) | (Some(one), None) => Some(format!("computed {}", with(&significant(one, DIGITS)))),
+        (None, None) => None,
+    };
+    published.into_iter().chain(computed).collect::<Vec<_>>().join(", ")
+}
+
+/// What a table's rows did: `25 rows`, `25 → 26 rows: 1 added`.
+pub fn rows(table: &TableDiff) -> String {
+    let TableDiff { rows_before, rows_after, rows_added, rows_removed, .. } = table;
+    match table.state {
+        State::Added => return count(*rows_after, "row"),
+        State::Removed => return count(*rows_before, "row"),
+        _ => {}
+    }
+    let mut text = if rows_before == rows_after {
+        count(*rows_after, "row")
+    } else {
+        format!("{rows_before} → {}", count(*rows_after, "row"))
+    };
+    let moved = [(rows_added, "added"), (rows_removed, "removed")];
+    let moved: Vec<String> =
+        moved.iter().filter(|(number, _)| **number > 0).map(|(number, word)| format!("{number} {word}")).collect();
+    if !moved.is_empty() {
+        text += &format!(": {}", moved.join(", "));
+    }
+    text
+}
+
+/// The first few keys of many rows.
+pub fn keys(keys: &[Key], all: usize) -> String {
+    let mut shown: Vec<String> = keys.iter().map(key).collect();
+    if all > shown.len() {
+        shown.push(format!("and {} more", all - shown.len()));
+    }
+    shown.join("; ")
+}
+
+/// `3 stages changed, 1 within tolerance, 8 the same`.
+pub fn sum(study: &StudyDiff) -> String {
+    let number = |state: State| study.stages.iter().filter(|stage| stage.state == state).count();
+    let states = [State::Changed, State::Added, State::Removed, State::WithinTolerance, State::Same];
+    let parts: Vec<String> = states
+        .iter()
+        .filter(|state| number(**state) > 0)
+        .enumerate()
+        .map(|(index, state)| {
+            let many = if index == 0 { count(number(*state), "stage") } else { number(*state).to_string() };
+            format!("{many} {}", if *state == State::Same { "the same" } else { state.word() })
+        })
+        .collect();
+    parts.join(", ")
+}
+
+/// One sentence about everything.
+pub fn verdict(comparison: &Comparison) -> String {
+    let number = |state: State| comparison.studies.iter().filter(|study| study.state == state).count();
+    let differing: usize = comparison.studies.iter().filter(|study| study.state.differs()).count();
+    let flips = match comparison.verdicts.len() {
+        0 => String::new(),
+        many => format!("; {} flipped", count(many, "verdict")),
+    };
+    let studies = count(comparison.studies.len(), "study");
+    if differing > 0 {
+        let verb = if differing == 1 { "differs" } else { "differ" };
+        let of = if comparison.studies.len() == 1 { String::new() } else { format!("{differing} of ") };
+        return format!("{of}{studies} {verb} beyond tolerance{flips}");
+    }
+    match number(State::WithinTolerance) {
+        0 => format!("{studies}, no difference{flips}"),
+        _ => format!("{studies}, every difference within tolerance{flips}"),
+    }
+}

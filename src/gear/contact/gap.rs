@@ -1,0 +1,403 @@
+//! The gap of a tooth pair at a path position, wherever its flanks come nearest to each other.
+//!
+//! A flank point off the line of action stands clear by the separation S and by what both flanks have lost there, C1 + C2;
+//! the gap of the pair is the least of S + C1 + C2 over the flanks, which end at their tips. Without modification that is 0
+//! from A to E, and the separation of the tip corner before A and after E. A steep relief touches off the line of action,
+//! away from its deepest end. First order in the depths. Must not know: load, compliance.
+
+use super::separation::{Facing, Touch};
+use crate::gear::geometry::{Pair, Side};
+use crate::gear::modification::Modification;
+use crate::numeric::extremum::maximum;
+
+/// Samples of each smooth piece of a profile, which say how deep it can get and whether it bends back.
+const SAMPLES: usize = 8;
+/// Distance of the points from which slopes of a profile are taken, in pieces.
+const STEP: f64 = 1e-3;
+/// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
+const PLACE: f64 = 1e-6;
+/// Places between two known breaks, as shares of the way, at which it is asked where the flanks touch: denser towards
+/// both ends, since the least relief holds on for a moment only.
+const PROBES: [f64; 11] = {
+    let [a, b, c, d, e] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0, 0.3];
+    [a, b, c, d, e, 0.5, 1.0 - e, 1.0 - d, 1.0 - c, 1.0 - b, 1.0 - a]
+};
+
+/// Where on the flanks a pair touches: the same number all over a stretch on which the gap is smooth.
+type Spot = u32;
+/// On the line of action.
+const NOMINAL: Spot = 0;
+/// At a tip corner; beside it the piece of the flank that it meets.
+const CORNER: Spot = 1;
+/// A flank that has ended.
+const NOWHERE: Spot = u32::MAX;
+
+/// Both ways in which flanks touch off the line of action under one design.
+#[derive(Clone, Debug)]
+pub struct Gaps<'a> {
+    /// The contact lies ahead of the line of action: the gear's flank points before the pinion's flank, and the reverse.
+    ways: [Way<'a>; 2],
+    modified: bool,
+}
+
+#[derive(Clone, Debug)]
+struct Way<'a> {
+    side: Side,
+    facing: Facing,
+    point: Outline<'a>,
+    flank: Outline<'a>,
+}
+
+/// The depths of one profile against positions that count as those of [`Facing`].
+#[derive(Clone, Debug)]
+struct Outline<'a> {
+    parts: Vec<&'a dyn Modification>,
+    facing: Facing,
+    is_point: bool,
+    /// Where it is not smooth, with both ends, ascending.
+    cuts: Vec<f64>,
+    /// By piece.
+    shapes: Vec<Shape>,
+    /// Positions, ascending, and the least depth that was sampled from there on.
+    least: Vec<(f64, f64)>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Shape {
+    Zero,
+    Convex,
+    Other,
+}
+
+/// The state of a search: the point in hand, its smooth piece, and the least gap so far.
+struct Search<'a, 'b> {
+    way: &'b Way<'a>,
+    nominal: f64,
+    pieces: [usize; 2],
+    least: (f64, Spot),
+}
+
+impl<'a> Gaps<'a> {
+    /// `profiles` of pinion and gear, as far as they vary along the profile.
+    #[must_use]
+    pub fn new(pair: &Pair, profiles: &[Vec<&'a dyn Modification>; 2]) -> Self {
+        let [pinion, gear] = profiles;
+        let way = |side: Side, point: &[&'a dyn Modification], flank: &[&'a dyn Modification]| {
+            let facing = Facing::new(pair, side);
+            Way { side, facing, point: Outline::new(point, facing, true), flank: Outline::new(flank, facing, false) }
+        };
+        let ways = [way(Side::Gear, gear, pinion), way(Side::Pinion, pinion, gear)];
+        Self { ways, modified: !pinion.is_empty() || !gear.is_empty() }
+    }
+
+    /// The gap at a path position; none where a tip corner would have to reach beyond the other tip.
+    #[must_use]
+    pub fn at(&self, s: f64) -> Option<f64> {
+        let (gap, spot) = self.touching(s);
+        (spot != NOWHERE).then_some(gap)
+    }
+
+    fn touching(&self, s: f64) -> (f64, Spot) {
+        let positions = [0, 1].map(|way| self.ways[way].facing.turned(self.ways[way].side, s));
+        for (way, nominal) in self.ways.iter().zip(positions) {
+            let before = way.facing.start - nominal;
+            if before > 0.0 {
+                let touch = way.facing.corner(before);
+                if touch.curvature > way.facing.end {
+                    return (f64::INFINITY, NOWHERE);
+                }
+                let gap = touch.separation + way.depth(way.facing.start, touch.curvature);
+                if !self.modified {
+                    return (gap, CORNER);
+                }
+                let spot = CORNER | (index(way.flank.piece(touch.curvature)) << 4);
+                return way.search(nominal, before, touch, (gap, spot));
+            }
+        }
+        if !self.modified {
+            return (0.0, NOMINAL);
+        }
+        let mut least = (self.ways[0].depth(s, s), NOMINAL);
+        for (way, nominal) in self.ways.iter().zip(positions) {
+            // The first check of the search, before anything is computed.
+            if way.least_from(nominal, nominal) < least.0 {
+                least = way.search(nominal, 0.0, way.facing.touch(nominal, 0.0), least);
+            }
+        }
+        least
+    }
+
+    /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
+    /// begin to touch at another place.
+    #[must_use]
+    pub fn breaks(&self, window: (f64, f64)) -> Vec<f64> {
+        let Way { facing, point, flank, .. } = &self.ways[0];
+        let mut known = vec![window.0, window.1];
+        let inner = [facing.start, facing.end].into_iter().chain(point.cuts.iter().chain(&flank.cuts).copied());
+        known.extend(inner.filter(|s| *s > window.0 && *s < window.1));
+        known.sort_by(f64::total_cmp);
+        known.dedup();
+        if !self.modified {
+            return known;
+        }
+        let mut found = Vec::new();
+        for ends in known.windows(2) {
+            let places = PROBES.map(|share| ends[0] + share * (ends[1] - ends[0]));
+            let spots = places.map(|place| self.touching(place).1);
+            for probe in 1..places.len() {
+                let mut before = (places[probe - 1], spots[probe - 1]);
+                while before.1 != spots[probe] && before.0 < places[probe] {
+                    before = self.change(before, places[probe]);
+                    found.push(before.0);
+                }
+            }
+        }
+        known.extend(found);
+        known.sort_by(f64::total_cmp);
+        known
+    }
+
+    /// Where the spot is no longer the one at the lower end, and which it is then.
+    fn change(&self, (mut lower, spot): (f64, Spot), mut upper: f64) -> (f64, Spot) {
+        let closest = 1e-11 * (self.ways[0].facing.end - self.ways[0].facing.start);
+        let mut next = self.touching(upper).1;
+        while upper - lower > closest {
+            let middle = 0.5 * (lower + upper);
+            let here = self.touching(middle).1;
+            if here == spot {
+                lower = middle;
+            } else {
+                (upper, next) = (middle, here);
+            }
+        }
+        (upper, next)
+    }
+}
+
+/// Pieces are few.
+fn index(piece: usize) -> Spot {
+    u32::try_from(piece).unwrap_or(0)
+}
+
+impl Way<'_> {
+    fn depth(&self, point: f64, flank: f64) -> f64 {
+        self.point.depth(point) + self.flank.depth(flank)
+    }
+
+    fn least_from(&self, point: f64, flank: f64) -> f64 {
+        self.point.least_from(point) + self.flank.least_from(flank)
+    }
+
+    /// The least of `least` and of what lies farther than `before` from the nominal point.
+    fn search(&self, nominal: f64, before: f64, touch: Touch, least: (f64, Spot)) -> (f64, Spot) {
+        let pieces = [self.point.piece(nominal + before), self.flank.piece(touch.curvature)];
+        Search { way: self, nominal, pieces, least }.run(before, touch)
+    }
+}
+
+impl Search<'_, '_> {
+    fn run(mut self, mut before: f64, mut touch: Touch) -> (f64, Spot) {
+        let way = self.way;
+        // The separation only grows: no farther than it alone would be too large.
+        while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.least.0 {
+            let [point, flank] = self.pieces;
+            let (next, at_next, ended) = self.piece_end(before, &touch);
+            let shapes = [way.point.shapes[point], way.flank.shapes[flank]];
+            if shapes != [Shape::Zero; 2] {
+                let parts = if shapes.contains(&Shape::Other) { 4 } else { 1 };
+                self.descend((before, touch), (next, at_next), parts);
+            }
+            (before, touch) = (next, at_next);
+            self.offer(before, &touch, 2 + u32::from(ended[1]));
+            self.pieces = [point + usize::from(ended[0]), flank + usize::from(ended[1])];
+            if self.pieces[0] >= way.point.shapes.len() || self.pieces[1] >= way.flank.shapes.len() {
+                break;
+            }
+        }
+        self.least
+    }
+
+    fn touch(&self, before: f64) -> Touch {
+        self.way.facing.touch(self.nominal + before, before)
+    }
+
+    fn offer(&mut self, before: f64, touch: &Touch, kind: Spot) {
+        let gap = touch.separation + self.way.depth(self.nominal + before, touch.curvature);
+        if gap < self.least.0 {
+            let [point, flank] = self.pieces.map(index);
+            let way = u32::from(self.way.side == Side::Pinion);
+            self.least = (gap, 8 + ((way << 24) | (point << 14) | (flank << 4) | kind));
+        }
+    }
+
+    /// The end of the smooth piece: where the profile of the point or that of the flank has its next cut.
+    fn piece_end(&self, before: f64, touch: &Touch) -> (f64, Touch, [bool; 2]) {
+        let [point, flank] = self.pieces;
+        let (cut, wall) = (self.way.point.cuts[point + 1], self.way.flank.cuts[flank + 1]);
+        let last = (cut - self.nominal).max(before);
+        let at_last = self.way.facing.touch(cut, last);
+        if at_last.curvature <= wall {
+            return (last, at_last, [true, false]);
+        }
+        // Half the square of the curvature is almost straight in the distance.
+        let (mut at, mut there) = (before, *touch);
+        for _ in 0..30 {
+            let step = (wall * wall - there.curvature * there.curvature) / (2.0 * there.curvature * there.rate);
+            at = (at + step).clamp(before, last);
+            there = self.touch(at);
+            if step.abs() <= 1e-13 * self.way.facing.end {
+                break;
+            }
+        }
+        there.curvature = wall;
+        (at, there, [false, true])
+    }
+
+    /// Offers the minima between two places of one smooth piece, looked for in equal parts.
+    fn descend(&mut self, from: (f64, Touch), to: (f64, Touch), parts: u32) {
+        let width = (to.0 - from.0) / f64::from(parts);
+        let mut lower = (from.0, self.pull(from.0, &from.1));
+        for part in 1..=parts {
+            let end = if part == parts { to.0 } else { from.0 + width * f64::from(part) };
+            let upper = (end, || self.pull(end, &if part == parts { to.1 } else { self.touch(end) }));
+            let next = if parts > 1 { Some(upper.1()) } else { None };
+            if lower.1.0 < 0.0 && next.is_none_or(|next| next.0 > 0.0) {
+                self.newton(lower, end);
+            }
+            if let Some(next) = next {
+                lower = (end, next);
+            }
+        }
+    }
+
+    /// From a place where the gap falls to where it rises again, at the latest at `end`.
+    fn newton(&mut self, (start, (slope, bend)): (f64, (f64, f64)), end: f64) {
+        let (mut lower, mut upper, mut tried_end) = (start, end, false);
+        let mut at = if bend > 0.0 { start - slope / bend } else { end };
+        for _ in 0..60 {
+            if at >= upper {
+                at = if tried_end { 0.5 * (lower + upper) } else { end };
+            } else if at <= lower {
+                at = 0.5 * (lower + upper);
+            }
+            let touch = self.touch(at);
+            let (slope, bend) = self.pull(at, &touch);
+            if at >= end {
+                tried_end = true;
+                if slope <= 0.0 {
+                    // Lowest at the end of the piece, which is looked at in any case.
+                    return;
+                }
+            }
+            if slope < 0.0 {
+                lower = at;
+            } else {
+                upper = at;
+            }
+            let next = if bend > 0.0 { at - slope / bend } else { 0.5 * (lower + upper) };
+            if (next - at).abs() <= PLACE * (end - start) || upper - lower <= PLACE * (end - start) {
+                let at = next.clamp(lower, upper);
+                let touch = self.touch(at);
+                self.offer(at, &touch, 1);
+                return;
+            }
+            at = next;
+        }
+    }
+
+    /// Slope and bend of the gap against the distance from the nominal point, on the present piece.
+    fn pull(&self, before: f64, touch: &Touch) -> (f64, f64) {
+        let point = self.way.point.rates(self.nominal + before, self.pieces[0]);
+        let flank = self.way.flank.rates(touch.curvature, self.pieces[1]);
+        (touch.slope + point.0 + flank.0 * touch.rate, touch.bend + point.1 + flank.1 * touch.rate * touch.rate)
+    }
+}
+
+impl<'a> Outline<'a> {
+    fn new(parts: &[&'a dyn Modification], facing: Facing, is_point: bool) -> Self {
+        let mut outline = Self {
+            parts: parts.to_vec(),
+            facing,
+            is_point,
+            cuts: vec![facing.start, facing.end],
+            shapes: Vec::new(),
+            least: Vec::new(),
+        };
+        for roll in parts.iter().flat_map(|part| part.profile_breaks()).flatten() {
+            let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
+            if position > facing.start && position < facing.end {
+                outline.cuts.push(position);
+            }
+        }
+        outline.cuts.sort_by(f64::total_cmp);
+        // Nearer than this two cuts are one.
+        let closest = 1e-9 * (facing.end - facing.start);
+        outline.cuts.dedup_by(|next, kept| *next - *kept <= closest);
+        if let Some(last) = outline.cuts.last_mut() {
+            *last = facing.end;
+        }
+        let mut samples = Vec::new();
+        for ends in outline.cuts.windows(2) {
+            let place = |index: usize| ends[0] + (ends[1] - ends[0]) * index as f64 / SAMPLES as f64;
+            let depths: Vec<f64> = (0..=SAMPLES).map(|index| outline.depth(place(index))).collect();
+            let largest = depths.iter().fold(0.0_f64, |most, depth| most.max(depth.abs()));
+            let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -1e-12 * largest);
+            outline.shapes.push(match (largest > 0.0, bends_back) {
+                (false, _) => Shape::Zero,
+                (true, false) => Shape::Convex,
+                (true, true) => Shape::Other,
+            });
+            samples.extend((0..=SAMPLES).map(place).zip(depths.iter().copied()));
+            // A valley between samples, without which a search towards it would end before it began.
+            for index in 1..SAMPLES {
+                if depths[index] < depths[index - 1] && depths[index] <= depths[index + 1] {
+                    let (from, guess, to) = (place(index - 1), place(index), place(index + 1));
+                    let (at, height) = maximum(|x| -outline.depth(x), from, guess, to, 1e-7 * (to - from));
+                    samples.push((at, -height));
+                }
+            }
+        }
+        samples.sort_by(|one, two| one.0.total_cmp(&two.0));
+        let mut least = f64::INFINITY;
+        for sample in samples.iter_mut().rev() {
+            least = least.min(sample.1);
+            sample.1 = least;
+        }
+        outline.least = samples;
+        outline
+    }
+
+    fn depth(&self, position: f64) -> f64 {
+        let roll = if self.is_point { self.facing.point_roll(position) } else { self.facing.flank_roll(position) };
+        self.parts.iter().map(|part| part.depth(roll)).sum()
+    }
+
+    fn least_from(&self, position: f64) -> f64 {
+        if self.parts.is_empty() {
+            return 0.0;
+        }
+        let next = self.least.partition_point(|sample| sample.0 < position);
+        self.depth(position).min(self.least.get(next).map_or(f64::INFINITY, |sample| sample.1))
+    }
+
+    fn piece(&self, position: f64) -> usize {
+        let cuts = &self.cuts[1..self.cuts.len() - 1];
+        cuts.partition_point(|cut| *cut <= position)
+    }
+
+    /// First and second derivative of the depth, of the parabola through three points of the piece.
+    fn rates(&self, position: f64, piece: usize) -> (f64, f64) {
+        if self.shapes[piece] == Shape::Zero {
+            return (0.0, 0.0);
+        }
+        let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);
+        let step = STEP * (upper - lower);
+        let middle = position.clamp(lower + step, upper - step);
+        let [before, at, after] = [middle - step, middle, middle + step].map(|place| self.depth(place));
+        let bend = (before - 2.0 * at + after) / (step * step);
+        (0.5 * (after - before) / step + bend * (position - middle), bend)
+    }
+}
+
+#[cfg(test)]
+mod tests;

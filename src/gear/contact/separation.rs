@@ -1,0 +1,245 @@
+//! How far two involutes stand apart off the line of action.
+//!
+//! At the path position s unmodified flanks touch at one point of the line of action. Any other flank point of one gear
+//! stands clear of the other gear's flank by a separation that grows with the square of its distance. It decides where
+//! relieved flanks touch, and when a tip corner touches before A or after E. The flank point is taken to where its gear
+//! carries it; the involute through it has the rotation coordinate r_b(θ − atan u + u), u = √(ρ²/r_b² − 1), θ and ρ its
+//! polar coordinates about the other gear's centre, and the separation is that coordinate less s: the turn of the other
+//! flank along the base circle, which is the normal distance. Lengths in m. Source: the involute's property that its
+//! normals touch the base circle (ISO 21771-1:2024, section 5); no iteration. Must not know: modification, load.
+//!
+//! First order: forces act along the line of action with the base radii as arms wherever the flanks touch. At a corner the
+//! point's gear has in truth the arm r_b(1 − dS/de), e the distance before A or after E.
+
+use crate::gear::geometry::{Pair, Side};
+
+/// One gear's flank points before the other gear's flank. Positions count from the flank's own tangent point, so that
+/// they are its radii of curvature on the line of action; for points of the gear they are path positions s.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facing {
+    /// r_b of the gear whose points are looked at.
+    point_radius: f64,
+    /// r_b of the gear whose flank they meet.
+    flank_radius: f64,
+    tangent_length: f64,
+    /// Where the point is the tip corner.
+    pub start: f64,
+    /// Where the other flank ends.
+    pub end: f64,
+}
+
+/// A flank point and the place of the other flank that is nearest to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Touch {
+    /// S \[m\].
+    pub separation: f64,
+    /// dS/de along the points of the flank.
+    pub slope: f64,
+    /// d²S/de² \[1/m\].
+    pub bend: f64,
+    /// f: radius of curvature of the other flank at the place, its roll angle over its base radius \[m\].
+    pub curvature: f64,
+    /// df/de.
+    pub rate: f64,
+}
+
+impl Facing {
+    /// Points of `side` before the flank of the other gear.
+    #[must_use]
+    pub fn new(pair: &Pair, side: Side) -> Self {
+        let (pinion, gear) = (pair.pinion.base_radius, pair.gear.base_radius);
+        let tangent_length = pair.tangent_length;
+        let (start, end) = (pair.start_of_contact, pair.end_of_contact);
+        match side {
+            Side::Gear => Self { point_radius: gear, flank_radius: pinion, tangent_length, start, end },
+            Side::Pinion => Self {
+                point_radius: pinion,
+                flank_radius: gear,
+                tangent_length,
+                start: tangent_length - end,
+                end: tangent_length - start,
+            },
+        }
+    }
+
+    /// A path position in these positions, and back; `side` as in [`Facing::new`].
+    #[must_use]
+    pub fn turned(&self, side: Side, position: f64) -> f64 {
+        if side == Side::Gear { position } else { self.tangent_length - position }
+    }
+
+    /// The roll angle of the point whose own position is `position`.
+    #[must_use]
+    pub fn point_roll(&self, position: f64) -> f64 {
+        (self.tangent_length - position) / self.point_radius
+    }
+
+    /// The own position of the point with this roll angle.
+    #[must_use]
+    pub fn point_position(&self, roll: f64) -> f64 {
+        self.tangent_length - roll * self.point_radius
+    }
+
+    /// The radius of curvature of the flank at this roll angle.
+    #[must_use]
+    pub fn flank_position(&self, roll: f64) -> f64 {
+        roll * self.flank_radius
+    }
+
+    /// The roll angle of the flank where its radius of curvature is `curvature`.
+    #[must_use]
+    pub fn flank_roll(&self, curvature: f64) -> f64 {
+        curvature / self.flank_radius
+    }
+
+    /// The point whose own position is `point`, `before` ≥ 0 before it comes there: relative to e²/2ρ exact to 1e-13,
+    /// however small `before` is.
+    #[must_use]
+    pub fn touch(&self, point: f64, before: f64) -> Touch {
+        let Self { point_radius, flank_radius, tangent_length, .. } = *self;
+        // Line of action along x from the flank's tangent point; the flank's centre is r_b below, the point's above.
+        let roll = (tangent_length - point) / point_radius;
+        let angle = -before / point_radius;
+        let (sine, cosine) = libm::sincos(angle);
+        let half = libm::sin(0.5 * angle);
+        let lift = 2.0 * half * half;
+        // Of second order: how far the point is from the nominal contact along the line of action.
+        let along = point_radius * (roll * lift - defect(angle));
+        let (x, y) = (point - before + along, point_radius * (lift - roll * sine));
+        let beyond = y * (y + 2.0 * flank_radius);
+        let curvature = (x * x + beyond).max(0.0).sqrt();
+        let excess = if x > 0.0 { beyond / (curvature + x) } else { curvature - x };
+        let flank_roll = curvature / flank_radius;
+        // The turn of the tangent to the base circle through the point, against the line of action.
+        let (up, across) = (-(excess + flank_roll * y), y + flank_radius + x * flank_roll);
+        let length = flank_radius * (1.0 + flank_roll * flank_roll);
+        let (sine_turn, cosine_turn) = (up / length, across / length);
+        let turn = libm::atan2(up, across);
+        let bulge = x * sine_turn * sine_turn / (1.0 + cosine_turn);
+        let sine_sum = sine * cosine_turn + cosine * sine_turn;
+        let cosine_sum = cosine * cosine_turn - sine * sine_turn;
+        // A flank that is met at its base circle has no curvature there; then the rates are only very large.
+        let curved = curvature.max(1e-12 * flank_radius);
+        let over = roll * cosine_sum / curved;
+        Touch {
+            separation: along + flank_radius * defect(turn) - bulge - y * sine_turn,
+            slope: -roll * sine_sum,
+            bend: sine_sum / point_radius + roll * cosine_sum * (1.0 / point_radius + over),
+            curvature,
+            rate: roll * ((y + flank_radius) * cosine - x * sine) / curved,
+        }
+    }
+
+    /// The tip corner, `before` ≥ 0 before its own position: contact before A or after E.
+    #[must_use]
+    pub fn corner(&self, before: f64) -> Touch {
+        self.touch(self.start, before)
+    }
+
+    /// How far before its own position the tip corner can meet the other flank, which ends at its own tip; at most
+    /// `most`.
+    #[must_use]
+    pub fn reach(&self, most: f64) -> f64 {
+        let room = |before: f64| self.end - self.corner(before).curvature;
+        if room(most) >= 0.0 {
+            return most;
+        }
+        crate::numeric::crossing::bracketed(0.0, most, room).unwrap_or(0.0)
+    }
+}
+
+/// t − sin t.
+fn defect(angle: f64) -> f64 {
+    if angle.abs() > 0.5 {
+        return angle - libm::sin(angle);
+    }
+    let q = angle * angle;
+    let series = 1.0 - q / 72.0 * (1.0 - q / 110.0 * (1.0 - q / 156.0 * (1.0 - q / 210.0)));
+    angle * q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * series))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::fixtures::pair;
+
+    /// Tier: values computed by another program, 19/48, module 3 mm, to every printed digit.
+    #[test]
+    fn corners_stand_apart_as_computed_elsewhere() {
+        let before = [(0.1, 0.580), (0.25, 3.465), (0.5, 13.188), (1.0, 49.813), (2.0, 189.108)];
+        let after = [(0.1, 0.224), (0.25, 1.412), (0.5, 5.710), (1.0, 23.337), (2.0, 97.218)];
+        for (side, table) in [(Side::Gear, before), (Side::Pinion, after)] {
+            let facing = Facing::new(&pair(), side);
+            for (distance, micrometres) in table {
+                let found = facing.corner(distance * 1e-3).separation * 1e6;
+                assert!((found - micrometres).abs() <= 0.000_5, "{side:?} {distance}: {found}");
+            }
+        }
+    }
+
+    /// The same by plain trigonometry, which loses digits near A but not far from it.
+    #[test]
+    fn separations_agree_with_polar_coordinates() {
+        let pair = pair();
+        let (one, two) = (pair.pinion.base_radius, pair.gear.base_radius);
+        let facing = Facing::new(&pair, Side::Gear);
+        for point in [facing.start, 5e-3, 12e-3] {
+            for before in [0.5e-3, 2e-3, 5e-3, 7.5e-3] {
+                let (roll, angle) = ((pair.tangent_length - point) / two, -before / two);
+                let x = pair.tangent_length - two * (roll * angle.cos() - angle.sin());
+                let y = one + two - two * (roll * angle.sin() + angle.cos());
+                let touched = (f64::hypot(x, y) / one).powi(2) - 1.0;
+                let coordinate = one * (f64::atan2(x, y) - touched.sqrt().atan() + touched.sqrt());
+                let found = facing.touch(point, before);
+                let exact = coordinate - (point - before);
+                assert!((found.separation / exact - 1.0).abs() < 1e-10, "{point} {before}");
+                assert!((found.curvature / (one * touched.sqrt()) - 1.0).abs() < 1e-12);
+            }
+        }
+    }
+
+    /// S = x²/2ρ with x = u e the tangential offset, and the first correction vanishes with e.
+    #[test]
+    fn near_the_nominal_point_separation_is_a_parabola() {
+        let pair = pair();
+        for side in [Side::Gear, Side::Pinion] {
+            let facing = Facing::new(&pair, side);
+            for point in [facing.start, 8e-3, 14e-3] {
+                let parabola = |before: f64| {
+                    let offset = facing.point_roll(point) * before;
+                    let curvature = 1.0 / point + 1.0 / (pair.tangent_length - point);
+                    0.5 * offset * offset * curvature
+                };
+                let off = |before: f64| facing.touch(point, before).separation / parabola(before) - 1.0;
+                let rate = 2.0 * off(1e-7) / 1e-7 - off(2e-7) / 2e-7;
+                for before in [1e-8, 1e-9, 1e-12, 1e-15] {
+                    assert!((off(before) - rate * before).abs() < 1e-12 + 3e6 * before * before, "{point} {before}");
+                }
+                assert!((off(1e-6) / off(2e-6) - 0.5).abs() < 1e-2, "of first order");
+            }
+        }
+    }
+
+    /// At a fixed nominal position, against differences.
+    #[test]
+    fn rates_are_derivatives() {
+        let facing = Facing::new(&pair(), Side::Gear);
+        for (nominal, before) in [(3e-3, 1.3e-3), (10e-3, 3e-3), (-2e-3, 6e-3)] {
+            let step = 1e-8;
+            let at = |shift: f64| facing.touch(nominal + before + shift, before + shift);
+            let (low, middle, high) = (at(-step), at(0.0), at(step));
+            let rate = |value: fn(&Touch) -> f64| (value(&high) - value(&low)) / (2.0 * step);
+            assert!((rate(|touch| touch.separation) / middle.slope - 1.0).abs() < 1e-7);
+            assert!((rate(|touch| touch.slope) / middle.bend - 1.0).abs() < 1e-6);
+            assert!((rate(|touch| touch.curvature) / middle.rate - 1.0).abs() < 1e-6);
+        }
+    }
+
+    #[test]
+    fn a_corner_reaches_to_the_other_tip_and_no_farther() {
+        let facing = Facing::new(&pair(), Side::Gear);
+        let reach = facing.reach(8.85e-3);
+        assert!((facing.corner(reach).curvature / facing.end - 1.0).abs() < 1e-12 && reach < 8.85e-3);
+        assert!((facing.reach(1e-3) - 1e-3).abs() < 1e-18);
+    }
+}

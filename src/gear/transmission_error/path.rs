@@ -1,0 +1,100 @@
+//! Where along the path a pair can touch, at which points of its flanks, and quick copies of functions of the path.
+//!
+//! From A to E unmodified flanks touch on the line of action. Corner contact adds a stretch before A, where the gear's tip
+//! corner stands against the pinion's flank, and one after E with the roles exchanged; there the roll angles are those of
+//! the corner and of the flank point before it. Reliefs shift the contact a little along the flanks; compliances do not
+//! follow that, so that they belong to the pair and not to the design. Must not know: modification, load.
+
+use crate::gear::contact::CornerContact;
+use crate::gear::contact::separation::Facing;
+use crate::gear::geometry::{Pair, Side};
+use crate::numeric::graded::Graded;
+
+/// Relative accuracy of the quick copies.
+const ACCURACY: f64 = 1e-14;
+/// Relative accuracy where a corner is in contact: roots of rolls near the base circle would take ever more panels.
+const CORNER_ACCURACY: f64 = 1e-12;
+
+/// The path of contact with what corner contact adds to it.
+#[derive(Clone, Debug)]
+pub(super) struct Path {
+    start: f64,
+    end: f64,
+    tangent_length: f64,
+    base_radii: [f64; 2],
+    /// How far before A and after E; none without corner contact.
+    corners: Option<[(Facing, f64); 2]>,
+}
+
+impl Path {
+    pub(super) fn new(pair: &Pair, corner_contact: CornerContact) -> Self {
+        let corner = |side: Side| {
+            let facing = Facing::new(pair, side);
+            (facing, facing.reach(pair.base_pitch))
+        };
+        let exact = corner_contact == CornerContact::Exact;
+        Self {
+            start: pair.start_of_contact,
+            end: pair.end_of_contact,
+            tangent_length: pair.tangent_length,
+            base_radii: [pair.pinion.base_radius, pair.gear.base_radius],
+            corners: exact.then(|| [corner(Side::Gear), corner(Side::Pinion)]),
+        }
+    }
+
+    /// The first and the last path position at which flanks can touch.
+    pub(super) fn window(&self) -> (f64, f64) {
+        let [before, after] = self.corners.map_or([0.0; 2], |corners| corners.map(|(_, reach)| reach));
+        (self.start - before, self.end + after)
+    }
+
+    /// The flanks' radii of curvature where they touch, pinion and gear.
+    pub(super) fn radii(&self, s: f64) -> [f64; 2] {
+        match &self.corners {
+            Some([(facing, _), _]) if s < self.start => {
+                [facing.corner(self.start - s).curvature, self.tangent_length - self.start]
+            }
+            Some([_, (facing, _)]) if s > self.end => [self.end, facing.corner(s - self.end).curvature],
+            _ => [s, self.tangent_length - s],
+        }
+    }
+
+    /// The roll angles of the points that touch, pinion and gear.
+    pub(super) fn rolls(&self, s: f64) -> (f64, f64) {
+        let [pinion, gear] = self.radii(s);
+        (pinion / self.base_radii[0], gear / self.base_radii[1])
+    }
+
+    /// A quick copy of a function of the path position of a pair, and of one that is `ahead` of it; nothing when two such
+    /// pairs never touch at once.
+    pub(super) fn fit(&self, ahead: f64, function: &dyn Fn(f64) -> f64) -> Option<Graded> {
+        let window = self.window();
+        let (lower, upper) = (window.0, window.1 - ahead);
+        if upper <= lower {
+            return None;
+        }
+        let mut graded = Graded::default();
+        if self.corners.is_none() {
+            graded.push((lower, upper), [false; 2], ACCURACY, function);
+            return Some(graded);
+        }
+        // Rolls of the flank before a corner start like a root where that flank starts near its base circle.
+        let mut joints = vec![(self.start, [true, false]), (self.end - ahead, [false, true])];
+        if ahead > 0.0 {
+            joints.push((self.end, [false, true]));
+        }
+        joints.retain(|joint| joint.0 > lower && joint.0 < upper);
+        joints.sort_by(|one, two| one.0.total_cmp(&two.0));
+        joints.push((upper, [false; 2]));
+        let mut from = (lower, false);
+        for (at, [below, above]) in joints {
+            if at > from.0 {
+                let roots = [from.1, below];
+                let accuracy = if roots == [false; 2] { ACCURACY } else { CORNER_ACCURACY };
+                graded.push((from.0, at), roots, accuracy, function);
+            }
+            from = (at, above);
+        }
+        Some(graded)
+    }
+}

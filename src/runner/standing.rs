@@ -1,0 +1,229 @@
+//! Where published results stand: up to date, stale and why, missing. No stage runs, and no cache is needed.
+//!
+//! The keys of a stage follow from its configuration, its code and the content of what it reads. The manifest holds the
+//! contents of all tables, so the keys that a run would find can be compared with those the results were made under.
+//! Demand is what the manifest shows was asked for. Must not know: how it is shown.
+
+use super::graph::Graph;
+use super::key::{self, explain, phrase};
+use super::options::Wanted;
+use crate::base::digest::Digest;
+use crate::base::error::Diagnostic;
+use crate::stage::Want;
+use crate::store::entry::StoredTable;
+use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
+use crate::store::results::Folder;
+use crate::study::Study;
+use crate::table::schema::Schema;
+
+/// All stages of a study, every one after all it reads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Standing {
+    pub stages: Vec<StageStanding>,
+    /// Whether there is a manifest at all.
+    pub has_results: bool,
+    /// Whether the study's file is another than the results were made from, be it by a comment.
+    pub text_changed: bool,
+    /// Stages that only the results have.
+    pub gone: Vec<String>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct StageStanding {
+    pub name: String,
+    pub state: State,
+}
+
+/// Where one stage stands.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum State {
+    UpToDate,
+    /// With the reason.
+    Stale(String),
+    /// With what is not there.
+    Missing(String),
+    /// Only a run of these stages can tell.
+    Waits(Vec<String>),
+}
+
+impl State {
+    #[must_use]
+    pub const fn word(&self) -> &'static str {
+        match self {
+            Self::UpToDate => "up to date",
+            Self::Stale(_) => "stale",
+            Self::Missing(_) => "missing",
+            Self::Waits(_) => "waits",
+        }
+    }
+
+    /// Empty for what is up to date.
+    #[must_use]
+    pub fn why(&self) -> String {
+        match self {
+            Self::UpToDate => String::new(),
+            Self::Stale(why) | Self::Missing(why) => why.clone(),
+            Self::Waits(names) => format!("for {}", names.join(", ")),
+        }
+    }
+}
+
+impl Standing {
+    #[must_use]
+    pub fn is_up_to_date(&self) -> bool {
+        self.has_results
+            && !self.text_changed
+            && self.gone.is_empty()
+            && self.stages.iter().all(|stage| stage.state == State::UpToDate)
+    }
+
+    /// The first thing that is not as it should be.
+    #[must_use]
+    pub fn problem(&self) -> Option<String> {
+        if !self.has_results {
+            return Some("there are no results".to_owned());
+        }
+        let of_stage = self.stages.iter().find(|stage| stage.state != State::UpToDate).map(|stage| {
+            let (name, word, why) = (&stage.name, stage.state.word(), stage.state.why());
+            format!("stage `{name}` is not up to date: {word}: {why}")
+        });
+        let gone = || self.gone.first().map(|name| format!("the results have a stage `{name}`, the study has none"));
+        let changed = || self.text_changed.then(|| "the study's file has changed since".to_owned());
+        of_stage.or_else(gone).or_else(changed)
+    }
+}
+
+/// Compares a study with its results. `ignore_files` takes what the manifest says for granted, as in a clone where only
+/// small tables are kept; otherwise every file must be there in its size.
+///
+/// # Errors
+/// What is wrong with the study's graph.
+pub fn standing(
+    study: &Study,
+    folder: &Folder,
+    code: fn(&str) -> String,
+    ignore_files: bool,
+) -> Result<Standing, Diagnostic> {
+    let manifest = folder.manifest();
+    let graph = Graph::new(study, &manifest.as_ref().map(|manifest| demand(study, manifest)).unwrap_or_default())?;
+    let mut tables: Vec<Option<Vec<StoredTable>>> = vec![None; study.nodes.len()];
+    let mut stages = Vec::new();
+    for &node in &graph.order {
+        let name = &study.nodes[node].name;
+        let mut unknown: Vec<usize> = graph.inputs[node].iter().map(|input| input.node).collect();
+        unknown.sort_unstable();
+        unknown.dedup();
+        unknown.retain(|&input| tables[input].is_none());
+        let record = manifest.as_ref().and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
+        let state = match (&manifest, record) {
+            (None, _) => State::Missing("there are no results".to_owned()),
+            (Some(_), None) => State::Missing("never ran".to_owned()),
+            (Some(_), Some(record)) if record.keys.is_empty() || record.tables.is_empty() => {
+                State::Missing(format!("{}: {}", record.status, record.why))
+            }
+            _ if !unknown.is_empty() => {
+                State::Waits(unknown.iter().map(|&input| study.nodes[input].name.clone()).collect())
+            }
+            (Some(manifest), Some(record)) => {
+                let seen = |input: usize| tables[input].as_deref().unwrap_or_default();
+                let parts = key::parts(study, &graph, node, code, seen);
+                let axis = parts.first().and_then(|part| part.axis.as_ref()).map(|(field, _)| *field);
+                let now: Vec<&KeyRecord> = parts.iter().map(|part| &part.record).collect();
+                match stale(record, study.nodes[node].kind.name, &now, axis) {
+                    Some(why) => State::Stale(why),
+                    None => {
+                        let schemas = graph.outputs[node].iter();
+                        let schemas: Vec<Schema> =
+                            schemas.map(|schema| graph.demands[node].narrowed(schema.clone())).collect();
+                        tables[node] = stored(folder, record, &schemas);
+                        absent(folder, manifest, record)
+                            .filter(|_| !ignore_files)
+                            .map_or(State::UpToDate, State::Missing)
+                    }
+                }
+            }
+        };
+        stages.push(StageStanding { name: name.clone(), state });
+    }
+    let known = |stage: &&StageRecord| study.nodes.iter().any(|node| node.name == stage.name);
+    let of_manifest = manifest.iter().flat_map(|manifest| &manifest.stages);
+    let digest = blake3::hash(study.text.as_bytes()).to_string();
+    Ok(Standing {
+        stages,
+        has_results: manifest.is_some(),
+        text_changed: manifest.as_ref().is_some_and(|manifest| manifest.study_digest != digest),
+        gone: of_manifest.filter(|stage| !known(stage)).map(|stage| stage.name.clone()).collect(),
+    })
+}
+
+/// What must be asked for on demand so that a run gives the tables and columns that a manifest lists.
+#[must_use]
+pub fn demand(study: &Study, manifest: &Manifest) -> Vec<Wanted> {
+    let mut wanted = Vec::new();
+    for (node, record) in manifest.stages.iter().filter_map(|record| {
+        study.nodes.iter().find(|node| node.name == record.name && node.kind.name == record.kind).zip(Some(record))
+    }) {
+        for schema in node.stage.outputs() {
+            let name = format!("{}.{}", node.name, schema.name);
+            let Some(table) = record.tables.iter().find(|table| table.name == name) else { continue };
+            let listed = |column: &str| table.columns.iter().any(|listed| listed.name == column);
+            let columns = schema.columns.iter().filter(|column| column.on_demand && listed(&column.name));
+            let columns: Vec<String> = columns.map(|column| column.name.clone()).collect();
+            if schema.on_demand || !columns.is_empty() {
+                wanted.push(Wanted { stage: node.name.clone(), want: Want { table: schema.name, columns } });
+            }
+        }
+    }
+    wanted
+}
+
+/// Why the keys are other ones than those of the results.
+fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'static str>) -> Option<String> {
+    if record.kind != kind {
+        return Some(format!("kind changed: it was {}", record.kind));
+    }
+    let is_new = |part: &&&KeyRecord| !record.keys.iter().any(|key| key.key == part.key);
+    let mut reasons = Vec::new();
+    for part in now.iter().filter(is_new) {
+        for why in explain(&record.keys, part, axis) {
+            if !reasons.contains(&why) {
+                reasons.push(why);
+            }
+        }
+    }
+    if !reasons.is_empty() {
+        return Some(phrase(&reasons));
+    }
+    (record.keys.len() != now.len()).then(|| format!("config changed: fewer values of {}", axis.unwrap_or("an axis")))
+}
+
+/// The tables of a stage as its readers see them; none when that cannot be told.
+fn stored(folder: &Folder, record: &StageRecord, schemas: &[Schema]) -> Option<Vec<StoredTable>> {
+    let stored = record.tables.iter().map(|table| {
+        let (_, name) = table.name.split_once('.')?;
+        let schema = schemas.iter().find(|schema| schema.name == name)?;
+        if schema.columns.iter().any(|column| column.on_demand) {
+            // Readers may see a part of it, of which the manifest does not tell the content.
+            return StoredTable::describe(&folder.table(table).ok()?).ok();
+        }
+        let content = Digest::from_hex(&table.content)?;
+        let (name, columns) = (name.to_owned(), Vec::new());
+        Some(StoredTable { name, rows: table.rows, content, base: content, columns, body: None })
+    });
+    stored.collect()
+}
+
+/// The files of a stage that are not there as the manifest lists them.
+fn absent(folder: &Folder, manifest: &Manifest, record: &StageRecord) -> Option<String> {
+    let files: Vec<&str> = record
+        .tables
+        .iter()
+        .map(|TableRecord { file, .. }| file.as_str())
+        .filter(|file| !folder.intact(manifest, file))
+        .collect();
+    match files[..] {
+        [] => None,
+        [one] => Some(format!("`{one}` is not there")),
+        [first, ..] => Some(format!("`{first}` and {} more are not there", files.len() - 1)),
+    }
+}

@@ -1,0 +1,209 @@
+//! Verifying an archive: its study is run again from nothing, and every table is compared with the archived one.
+//!
+//! What is run is what this program makes of the study in the archive; tables and columns on demand are asked for as the
+//! archived manifest shows them. Must not know: how it is shown.
+
+use std::io::{Read, Seek};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+
+use super::agreement::{Agreement, compare};
+use super::events::Observer;
+use super::execute::{self, RunError};
+use super::options::Options;
+use super::outcome::Outcome;
+use super::standing;
+use crate::store::archive::open::Archive;
+use crate::store::archive::{self, ArchiveError, about};
+use crate::store::cache::Cache;
+use crate::store::manifest::{FORMAT, Manifest, TableRecord};
+use crate::store::parquet;
+use crate::store::results::MANIFEST;
+use crate::study::{self, LoadError};
+use crate::table::data::Table;
+
+/// Why an archive could not be verified; a difference is no error.
+#[derive(Debug, thiserror::Error)]
+pub enum VerifyError {
+    #[error(transparent)]
+    Archive(#[from] ArchiveError),
+    /// The study in it is none for this program.
+    #[error("{0}")]
+    Study(Box<LoadError>),
+    #[error(transparent)]
+    Run(#[from] RunError),
+    #[error("stopped")]
+    Stopped,
+    /// With the names of stages.
+    #[error("{} failed", .0.join(", "))]
+    Failed(Vec<String>),
+}
+
+/// What came of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verification {
+    pub study: String,
+    pub title: String,
+    /// Of the archived manifest.
+    pub version: String,
+    /// What is not the same about the program, a sentence each.
+    pub notes: Vec<String>,
+    pub tables: Vec<Verified>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Verified {
+    /// `stage.table`.
+    pub name: String,
+    pub rows: usize,
+    pub agreement: Agreement,
+}
+
+impl Verification {
+    /// Identical, within tolerance, different: how many tables.
+    #[must_use]
+    pub fn counts(&self) -> [usize; 3] {
+        let mut counts = [0; 3];
+        for table in &self.tables {
+            counts[match table.agreement {
+                Agreement::Identical => 0,
+                Agreement::Within(_) => 1,
+                Agreement::Different(_) | Agreement::Incomparable(_) => 2,
+            }] += 1;
+        }
+        counts
+    }
+}
+
+/// A study and its manifest, out of an archive.
+pub struct Unpacked {
+    pub study: study::Study,
+    pub manifest: Manifest,
+}
+
+/// Takes study and manifest out of an archive; the study's file goes into `work`.
+///
+/// # Errors
+/// When they are not there, are none, or do not belong together.
+pub fn unpack<R: Read + Seek>(archive: &mut Archive<R>, work: &Path) -> Result<Unpacked, VerifyError> {
+    let name = archive.described()?;
+    let bytes = archive.bytes(&name)?;
+    // Under our own name, not the archive's.
+    let path = work.join("study.yaml");
+    std::fs::write(&path, &bytes).map_err(|error| archive.damaged(&name, &error.to_string()))?;
+    let study = study::load(&path).map_err(|mut error| {
+        error.path = name.clone().into();
+        VerifyError::Study(Box::new(error))
+    })?;
+    let inside = archive::results(&study.name) + MANIFEST;
+    let bytes = archive.bytes(&inside)?;
+    let manifest: Manifest =
+        serde_json::from_slice(&bytes).map_err(|error| archive.damaged(&inside, &error.to_string()))?;
+    let digest = blake3::hash(study.text.as_bytes()).to_string();
+    let problem = if manifest.format != FORMAT {
+        Some(format!("it has format {}; this program reads format {FORMAT}", manifest.format))
+    } else if manifest.study != study.name || manifest.study_digest != digest {
+        Some(format!("it is not about the study `{name}` beside it"))
+    } else if manifest.stages.iter().all(|stage| stage.tables.is_empty()) {
+        Some("it lists no tables".to_owned())
+    } else {
+        None
+    };
+    match problem {
+        Some(problem) => Err(archive.damaged(&inside, &problem).into()),
+        None => Ok(Unpacked { study, manifest }),
+    }
+}
+
+/// Runs the study of an archive in the empty folder `work` and compares.
+///
+/// # Errors
+/// [`VerifyError`].
+pub fn verify<R: Read + Seek>(
+    archive: &mut Archive<R>,
+    work: &Path,
+    options: &Options,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Verification, VerifyError> {
+    let Unpacked { study, manifest } = unpack(archive, work)?;
+    let folder = archive::results(&study.name);
+    let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+    for record in &records {
+        // Before anything runs: what is not there cannot be compared.
+        archive.bytes(&format!("{folder}{}", record.file))?;
+    }
+    let cache = Cache::open(&work.join("cache")).map_err(RunError::from)?;
+    let options = Options { wanted: standing::demand(&study, &manifest), ..options.clone() };
+    let outcome = execute::execute(&study, &cache, &options, observer, stop)?;
+    if outcome.stopped {
+        return Err(VerifyError::Stopped);
+    }
+    let failed: Vec<String> = outcome.faults().map(|(stage, fault)| format!("{stage}: {fault}")).collect();
+    if !failed.is_empty() {
+        return Err(VerifyError::Failed(failed));
+    }
+    let mut tables = Vec::new();
+    for record in records {
+        let entry = format!("{folder}{}", record.file);
+        let bytes = archive.bytes(&entry)?;
+        let agreement = match computed(&outcome, &cache, record)? {
+            // The very bytes: nothing of the archive need be understood.
+            Some((_, computed)) if computed == bytes => Agreement::Identical,
+            Some((table, _)) => compare(&archived(archive, &entry, record, bytes)?, &table),
+            None => Agreement::Incomparable("this program gives no such table".to_owned()),
+        };
+        tables.push(Verified { name: record.name.clone(), rows: record.rows, agreement });
+    }
+    let notes = notes(&manifest);
+    Ok(Verification { study: study.name, title: study.title, version: manifest.program.version, notes, tables })
+}
+
+/// A table as this program computes it, and its Parquet file.
+fn computed(outcome: &Outcome, cache: &Cache, record: &TableRecord) -> Result<Option<(Table, Vec<u8>)>, RunError> {
+    let (stage, name) = record.name.split_once('.').unwrap_or((&record.name, ""));
+    let is_there = outcome.stage(stage).is_some_and(|stage| stage.tables.iter().any(|(schema, _)| schema.name == name));
+    if !is_there {
+        return Ok(None);
+    }
+    Ok(Some((outcome.table(cache, stage, name)?, outcome.bytes(cache, stage, name)?)))
+}
+
+/// A table of the archive, which must hold what its manifest says.
+fn archived<R: Read + Seek>(
+    archive: &Archive<R>,
+    entry: &str,
+    record: &TableRecord,
+    bytes: Vec<u8>,
+) -> Result<Table, ArchiveError> {
+    // The library that reads Parquet trusts its files more than an archive from elsewhere deserves.
+    let read = catch_unwind(AssertUnwindSafe(|| parquet::read(bytes)));
+    let table = read.unwrap_or_else(|_| Err("it is no Parquet file".to_owned()));
+    let table = table.map_err(|problem| archive.damaged(entry, &problem))?;
+    if table.content_hash().to_string() == record.content {
+        Ok(table)
+    } else {
+        Err(archive.damaged(entry, "its values are not those that the manifest names"))
+    }
+}
+
+/// What is not the same about the program that made an archive and this one.
+fn notes(manifest: &Manifest) -> Vec<String> {
+    let mut notes = Vec::new();
+    let program = &manifest.program;
+    for (what, archived, own) in [
+        ("gearstudy", program.version.as_str(), about::VERSION),
+        ("the compiler", &program.rustc, env!("GEARSTUDY_RUSTC")),
+    ] {
+        if archived != own {
+            notes.push(format!("made with another version of {what}: {archived}; this is {own}"));
+        }
+    }
+    if program.dependencies.is_empty() {
+        notes.push("it does not say which versions of libraries it was made with".to_owned());
+    } else if program.dependencies != about::DEPENDENCIES {
+        notes.push("made with other versions of libraries (another Cargo.lock)".to_owned());
+    }
+    notes
+}

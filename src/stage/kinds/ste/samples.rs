@@ -1,0 +1,68 @@
+//! Tables `samples` and `sample_summary`: the transmission error at equidistant positions, as articles print it.
+//!
+//! A mean, a variance or an extreme of a few samples is not that of the curve; these are here to be put beside printed
+//! ones. Must not know: how a position is solved.
+
+use super::keys;
+use crate::base::units::in_unit;
+use crate::gear::transmission_error::loading::Loading;
+use crate::table::data::Row;
+use crate::table::schema::{Column, Schema};
+
+/// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
+/// rounding made of it.
+const BORDER: f64 = 1e-12;
+
+/// Both tables, in the order of [`rows`].
+pub fn schemas() -> [Schema; 2] {
+    let mut samples = keys();
+    samples.extend([
+        Column::integer("sample", "Counts the positions, from 1.").key(),
+        Column::float("rotation_angle", "deg", "Rotation of the pinion from the first sample."),
+        Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
+            .tolerance(1e-9, 1e-9),
+        Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
+    ]);
+    let mut summary = keys();
+    summary.extend([
+        Column::float("mean", "um", "Mean of the samples."),
+        Column::float("peak_to_peak", "um", "Largest less smallest sample.").tolerance(1e-12, 1e-9),
+        Column::float("variance", "um^2", "Mean squared deviation from the mean.").tolerance(1e-15, 1e-9),
+        Column::float("fitness", "1/um^2", "f = n/Σ(TE − mean)² (mei2016, equation 16); NaN where nothing varies.")
+            .allows_nan()
+            .tolerance(0.0, 1e-8),
+    ]);
+    [
+        Schema::new("samples", "Transmission error at equidistant positions of the mesh cycle.", samples).on_demand(),
+        Schema::new("sample_summary", "What the samples of each curve amount to.", summary).on_demand(),
+    ]
+}
+
+/// The rows of `samples` and the row of `sample_summary`, without their keys; `first` is the pinion's rotation from where
+/// a pair starts contact \[rad\].
+pub fn rows(loading: &Loading, first: f64, count: usize) -> (Vec<Row>, Row) {
+    let cycle = loading.cycle;
+    let teeth = f64::from(cycle.pair.pinion.specification.teeth);
+    let sample = |index: usize| {
+        let share = (first * teeth / std::f64::consts::TAU + index as f64 / count as f64).rem_euclid(1.0);
+        let position = if share < 1.0 - BORDER { share * cycle.period() } else { 0.0 };
+        let border = BORDER * cycle.period();
+        let zone = cycle.zones.iter().find(|zone| position < zone.end - border).or(cycle.zones.last());
+        let error = loading.state(position, zone.map_or(1, |zone| zone.pairs)).transmission_error();
+        (position, error)
+    };
+    let samples: Vec<_> = (0..count).map(sample).collect();
+    let errors = || samples.iter().map(|sample| sample.1);
+    let mean = errors().sum::<f64>() / count as f64;
+    let variance = errors().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count as f64;
+    let [most, least] = [errors().fold(f64::NEG_INFINITY, f64::max), errors().fold(f64::INFINITY, f64::min)];
+    let fitness = if variance > 0.0 { in_unit(1.0 / variance, "1/um^2") } else { f64::NAN };
+    let row = |(index, (position, error)): (usize, &(f64, f64))| -> Row {
+        // In degrees from the start, so that a twelfth of a thirtieth of a turn is 1.
+        let angle = 360.0 * index as f64 / (count as f64 * teeth);
+        vec![(index + 1).into(), angle.into(), in_unit(*position, "mm").into(), in_unit(*error, "um").into()]
+    };
+    let summary =
+        [in_unit(mean, "um"), in_unit(most - least, "um"), in_unit(variance, "um^2"), fitness].map(Into::into);
+    (samples.iter().enumerate().map(row).collect(), summary.into())
+}

@@ -1,0 +1,222 @@
+//! Reading an archive that anybody may have made: everything is checked before anything is used.
+//!
+//! Nothing is ever written under a name from the archive; names only find entries. Must not know: what the entries mean.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::{BufReader, Read, Seek, Write};
+use std::path::Path;
+
+use serde_json::Value;
+use zip::read::Config;
+use zip::result::ZipError;
+use zip::unstable::read::ZipIterable;
+use zip::{CompressionMethod, ZipArchive};
+
+use super::{ArchiveError, METADATA};
+
+/// An archive has a few dozen entries.
+pub const MOST_ENTRIES: usize = 10_000;
+/// Bytes of all entries together, unpacked.
+pub const MOST_BYTES: u64 = 1 << 30;
+/// Bytes of the description.
+const LARGEST_METADATA: u64 = 1 << 24;
+const LONGEST_NAME: usize = 255;
+
+/// What `st_mode` says of the type of a file.
+const TYPE_OF_FILE: u32 = 0o170_000;
+const REGULAR: u32 = 0o100_000;
+const FOLDER: u32 = 0o040_000;
+
+/// An archive that was read through once: names, sizes and checksums are as they should be.
+pub struct Archive<R> {
+    /// For messages.
+    path: String,
+    zip: ZipArchive<R>,
+    /// Files by name; folders are left out.
+    entries: BTreeMap<String, usize>,
+}
+
+/// Opens and checks a file.
+///
+/// # Errors
+/// [`ArchiveError`]: what is wrong with it.
+pub fn open(path: &Path) -> Result<Archive<BufReader<File>>, ArchiveError> {
+    let name = path.display().to_string();
+    let file = File::open(path);
+    let file = file.and_then(|file| file.metadata().map(|metadata| (file, metadata)));
+    match file {
+        Err(error) => Err(ArchiveError::Unreadable { path: name, problem: error.to_string() }),
+        Ok((_, metadata)) if !metadata.is_file() => {
+            Err(ArchiveError::NoArchive { path: name, problem: "it is no file".to_owned() })
+        }
+        Ok((file, _)) => Archive::check(BufReader::new(file), &name),
+    }
+}
+
+impl<R: Read + Seek> Archive<R> {
+    /// Reads everything once; `name` is for messages.
+    ///
+    /// # Errors
+    /// As [`open`].
+    pub fn check(mut reader: R, name: &str) -> Result<Self, ArchiveError> {
+        let path = name.to_owned();
+        let refused = |problem: String| ArchiveError::Refused { path: path.clone(), problem };
+        let mut names = BTreeMap::new();
+        let mut bytes: u64 = 0;
+        {
+            // By hand first: the usual reader keeps one of several entries of the same name.
+            let mut listed =
+                ZipIterable::try_new(&mut reader, Config::default()).map_err(|error| no_archive(&path, &error))?;
+            if listed.len() > MOST_ENTRIES {
+                return Err(refused(format!("it has {} entries, more than {MOST_ENTRIES}", listed.len())));
+            }
+            for entry in listed.files().map_err(|error| damaged(&path, &error))? {
+                let entry = entry.map_err(|error| damaged(&path, &error))?;
+                let name = std::str::from_utf8(entry.name_raw())
+                    .map_err(|_| refused(format!("the name `{}` is not UTF-8", entry.name_raw().escape_ascii())))?;
+                safe(name).map_err(|problem| refused(format!("the entry `{}` {problem}", name.escape_debug())))?;
+                let kind = entry.unix_mode().unwrap_or(0) & TYPE_OF_FILE;
+                let problem = if entry.is_symlink() {
+                    Some("is a symbolic link")
+                } else if ![0, REGULAR, FOLDER].contains(&kind) {
+                    Some("is neither a file nor a folder")
+                } else if entry.encrypted() {
+                    Some("is encrypted")
+                } else if ![CompressionMethod::Stored, CompressionMethod::Deflated].contains(&entry.compression()) {
+                    Some("is compressed in another way than archives are")
+                } else {
+                    None
+                };
+                if let Some(problem) = problem {
+                    return Err(refused(format!("the entry `{name}` {problem}")));
+                }
+                bytes = bytes.saturating_add(entry.size());
+                if bytes > MOST_BYTES {
+                    return Err(refused(format!("unpacked it is larger than {} MiB", MOST_BYTES >> 20)));
+                }
+                if names.insert(name.to_owned(), entry.size()).is_some() {
+                    return Err(refused(format!("it has two entries `{name}`")));
+                }
+            }
+        }
+        let mut zip = ZipArchive::new(reader).map_err(|error| no_archive(&path, &error))?;
+        // Two readers must see the same: names in both directories, no entry inside another, none that is not listed.
+        zip.validate_header_consistency().map_err(|error| damaged(&path, &error))?;
+        let mut archive = Self { path: path.clone(), zip, entries: BTreeMap::new() };
+        for index in 0..archive.zip.len() {
+            let mut entry = archive.zip.by_index(index).map_err(|error| damaged(&path, &error))?;
+            let name = String::from_utf8_lossy(entry.name_raw()).into_owned();
+            let size = entry.size();
+            copy(&mut entry, size, &mut std::io::sink()).map_err(|problem| ArchiveError::Damaged {
+                path: path.clone(),
+                problem: format!("`{name}`: {problem}"),
+            })?;
+            if !name.ends_with('/') {
+                archive.entries.insert(name, index);
+            }
+        }
+        if archive.entries.len() != names.keys().filter(|name| !name.ends_with('/')).count() {
+            return Err(refused("its two directories differ".to_owned()));
+        }
+        archive.described()?;
+        Ok(archive)
+    }
+
+    /// The names of its files, sorted.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.entries.keys().map(String::as_str)
+    }
+
+    /// The bytes of an entry.
+    ///
+    /// # Errors
+    /// When there is none of this name, or the file has changed since it was checked.
+    pub fn bytes(&mut self, name: &str) -> Result<Vec<u8>, ArchiveError> {
+        let path = self.path.clone();
+        let Some(&index) = self.entries.get(name) else {
+            let problem = format!("it has no `{name}`");
+            return Err(ArchiveError::NoArchive { path, problem });
+        };
+        let mut entry = self.zip.by_index(index).map_err(|error| damaged(&path, &error))?;
+        let size = entry.size();
+        let mut bytes = Vec::new();
+        copy(&mut entry, size, &mut bytes)
+            .map_err(|problem| ArchiveError::Damaged { path, problem: format!("`{name}`: {problem}") })?;
+        Ok(bytes)
+    }
+
+    /// For `map_err`: what is wrong with an entry.
+    pub fn damaged(&self, name: &str, problem: &str) -> ArchiveError {
+        ArchiveError::Damaged { path: self.path.clone(), problem: format!("`{name}`: {problem}") }
+    }
+
+    /// The study's file, by the description.
+    ///
+    /// # Errors
+    /// When there is no description, it is none, or it names what is not there.
+    pub fn described(&mut self) -> Result<String, ArchiveError> {
+        let path = self.path.clone();
+        let no = |problem: &str| ArchiveError::NoArchive { path: path.clone(), problem: problem.to_owned() };
+        let Some(&index) = self.entries.get(METADATA) else {
+            return Err(no(&format!("it has no `{METADATA}`, which says what is in it")));
+        };
+        let size = self.zip.by_index(index).map_or(0, |entry| entry.size());
+        if size > LARGEST_METADATA {
+            return Err(no(&format!("`{METADATA}` is larger than {} MiB", LARGEST_METADATA >> 20)));
+        }
+        let bytes = self.bytes(METADATA)?;
+        let value: Value =
+            serde_json::from_slice(&bytes).map_err(|error| self.damaged(METADATA, &error.to_string()))?;
+        let graph = value["@graph"].as_array().map_or(&[][..], Vec::as_slice);
+        let entity = |id: &str| graph.iter().find(|entity| entity["@id"] == id);
+        let root = entity(METADATA).and_then(|metadata| entity(metadata["about"]["@id"].as_str()?));
+        let root = root.ok_or_else(|| no(&format!("`{METADATA}` describes no data set")))?;
+        let parts = root["hasPart"].as_array().map_or(&[][..], Vec::as_slice);
+        for id in parts.iter().filter_map(|part| part["@id"].as_str()) {
+            let elsewhere = ["http://", "https://", "#"].iter().any(|start| id.starts_with(start));
+            if !elsewhere && !self.entries.contains_key(id) {
+                let problem = format!("`{METADATA}` names `{}`, which is not in it", id.escape_debug());
+                return Err(ArchiveError::Refused { path, problem });
+            }
+        }
+        let study = root["mainEntity"]["@id"].as_str().filter(|id| self.entries.contains_key(*id));
+        study.map(str::to_owned).ok_or_else(|| no(&format!("`{METADATA}` names no study that is in it")))
+    }
+}
+
+/// What is wrong with a name.
+fn safe(name: &str) -> Result<(), &'static str> {
+    let parts = || name.strip_suffix('/').unwrap_or(name).split('/');
+    if name.len() > LONGEST_NAME {
+        Err("has too long a name")
+    } else if name.chars().any(|c| c.is_control() || c == '\\') {
+        Err("has a name with control characters or backslashes")
+    } else if name.starts_with('/') || name.get(1..2) == Some(":") {
+        Err("has an absolute path")
+    } else if parts().any(|part| part == "..") {
+        Err("points outside the archive")
+    } else if parts().any(|part| part.is_empty() || part == ".") {
+        Err("has a path with empty parts")
+    } else {
+        Ok(())
+    }
+}
+
+/// Copies an entry that says it has `size` bytes; at its end the reader compares the checksum.
+fn copy(entry: &mut impl Read, size: u64, into: &mut impl Write) -> Result<(), String> {
+    let copied = std::io::copy(&mut entry.take(size + 1), into).map_err(|error| error.to_string())?;
+    match copied {
+        copied if copied > size => Err(format!("it says it has {size} bytes, but has more")),
+        copied if copied < size => Err(format!("it says it has {size} bytes, but has {copied}")),
+        _ => Ok(()),
+    }
+}
+
+fn no_archive(path: &str, error: &ZipError) -> ArchiveError {
+    ArchiveError::NoArchive { path: path.to_owned(), problem: format!("it is no zip file, or cut off ({error})") }
+}
+
+fn damaged(path: &str, error: &ZipError) -> ArchiveError {
+    ArchiveError::Damaged { path: path.to_owned(), problem: error.to_string() }
+}

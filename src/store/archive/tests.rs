@@ -1,0 +1,221 @@
+//! Archives made here come back; every way known to make a bad one is refused; mutated ones never panic.
+
+use std::io::{Cursor, Write};
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+use serde_json::json;
+use zip::ZipWriter;
+use zip::write::SimpleFileOptions;
+
+use super::METADATA;
+use super::open::{Archive, MOST_BYTES, MOST_ENTRIES, open};
+use super::pack::{Entries, pack};
+
+const STUDY: &str = "a.yaml";
+const TABLE: &str = "results/a/t.parquet";
+
+/// A description that names `parts`.
+fn metadata(parts: &[&str]) -> Vec<u8> {
+    let parts: Vec<_> = parts.iter().map(|id| json!({ "@id": id })).collect();
+    let graph = json!([
+        { "@id": METADATA, "about": { "@id": "./" } },
+        { "@id": "./", "hasPart": parts, "mainEntity": { "@id": STUDY } },
+    ]);
+    serde_json::to_vec(&json!({ "@graph": graph })).unwrap()
+}
+
+fn entries() -> Entries {
+    let named = |name: &str, bytes: &[u8]| (name.to_owned(), bytes.to_vec());
+    Entries::from([
+        named(METADATA, &metadata(&[STUDY, TABLE, "https://example.org/paper"])),
+        named(STUDY, "study: a, and enough of it to be worth compressing, compressing, compressing".as_bytes()),
+        named(TABLE, &[7; 300]),
+    ])
+}
+
+fn check(bytes: &[u8]) -> Result<Archive<Cursor<Vec<u8>>>, String> {
+    Archive::check(Cursor::new(bytes.to_vec()), "x.zip").map_err(|error| error.to_string())
+}
+
+#[track_caller]
+fn refused(bytes: &[u8], wanted: &str) {
+    match check(bytes) {
+        Ok(_) => panic!("accepted; expected: {wanted}"),
+        Err(problem) => {
+            assert!(problem.contains(wanted) && problem.contains("`x.zip`") && !problem.contains('\n'), "{problem}");
+        }
+    }
+}
+
+/// The entries and one more that the writer makes as it is told.
+fn with(name: &str, options: SimpleFileOptions, bytes: &[u8]) -> Vec<u8> {
+    let mut writer = ZipWriter::new_append(Cursor::new(pack(&entries()).unwrap())).unwrap();
+    writer.start_file(name, options).unwrap();
+    writer.write_all(bytes).unwrap();
+    writer.finish().unwrap().into_inner()
+}
+
+/// Replaces every occurrence; as many bytes.
+fn patched(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
+    assert_eq!(from.len(), to.len());
+    let mut patched = bytes.to_vec();
+    let mut found = 0;
+    for at in 0..=bytes.len() - from.len() {
+        if &bytes[at..at + from.len()] == from {
+            patched[at..at + to.len()].copy_from_slice(to);
+            found += 1;
+        }
+    }
+    assert!(found > 0);
+    patched
+}
+
+#[test]
+fn what_is_packed_comes_back_and_is_the_same_bytes_again() {
+    let bytes = pack(&entries()).unwrap();
+    assert_eq!(bytes, pack(&entries()).unwrap());
+    let mut archive = check(&bytes).unwrap();
+    assert_eq!(archive.described().unwrap(), STUDY);
+    assert_eq!(archive.names().collect::<Vec<_>>(), entries().keys().map(String::as_str).collect::<Vec<_>>());
+    for (name, content) in entries() {
+        assert_eq!(archive.bytes(&name).unwrap(), content, "{name}");
+    }
+    assert!(archive.bytes("absent").is_err());
+    // No time: the first that the format can name, in both directories.
+    assert_eq!(bytes.windows(4).filter(|window| **window == [0, 0, 0x21, 0]).count(), 2 * entries().len());
+}
+
+#[test]
+fn names_that_lead_elsewhere_are_refused() {
+    let plain = SimpleFileOptions::default();
+    for (name, wanted) in [
+        ("../x", "points outside"),
+        ("a/../../x", "points outside"),
+        ("a/..", "points outside"),
+        ("/etc/passwd", "absolute path"),
+        ("C:/x", "absolute path"),
+        ("a//b", "empty parts"),
+        ("./a", "empty parts"),
+        ("a\nb", "control characters"),
+    ] {
+        refused(&with(name, plain, b"x"), wanted);
+    }
+    refused(&with(&"x".repeat(256), plain, b"x"), "too long a name");
+    // Writers turn backslashes round; whoever means harm does not.
+    refused(&patched(&with("..Xx", plain, b"x"), b"..Xx", b"..\\x"), "backslashes");
+    refused(&patched(&with("bad!", plain, b"x"), b"bad!", b"bad\xff"), "not UTF-8");
+}
+
+#[test]
+fn links_and_repeated_names_are_refused() {
+    let mut writer = ZipWriter::new_append(Cursor::new(pack(&entries()).unwrap())).unwrap();
+    writer.add_symlink("link", "/etc/passwd", SimpleFileOptions::default()).unwrap();
+    refused(&writer.finish().unwrap().into_inner(), "symbolic link");
+    let twice = with("b.yaml", SimpleFileOptions::default(), b"study: b");
+    refused(&patched(&twice, b"b.yaml", b"a.yaml"), "two entries `a.yaml`");
+}
+
+/// The size of the table, as both directories write it.
+fn declared(bytes: &[u8], size: u32) -> Vec<u8> {
+    patched(
+        bytes,
+        &[&300_u32.to_le_bytes()[..], &300_u32.to_le_bytes()[..]].concat(),
+        &[&300_u32.to_le_bytes()[..], &size.to_le_bytes()[..]].concat(),
+    )
+}
+
+#[test]
+fn bombs_are_refused() {
+    let bytes = pack(&entries()).unwrap();
+    refused(&declared(&bytes, u32::try_from(MOST_BYTES).unwrap() + 1), "larger than 1024 MiB");
+    // What is said and what is there: the compressed zeros say that they are 77 bytes and are a million.
+    let zeros = with("zeros", SimpleFileOptions::default(), &vec![0; 1_000_000]);
+    refused(&patched(&zeros, &1_000_000_u32.to_le_bytes(), &77_u32.to_le_bytes()), "it says it has 77 bytes");
+    refused(&patched(&zeros, &1_000_000_u32.to_le_bytes(), &2_000_000_u32.to_le_bytes()), "it says it has 2000000");
+    let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
+    for index in 0..=MOST_ENTRIES {
+        writer.start_file(index.to_string(), SimpleFileOptions::default()).unwrap();
+    }
+    refused(&writer.finish().unwrap().into_inner(), "10001 entries, more than 10000");
+}
+
+#[test]
+fn damage_is_found_wherever_it_is() {
+    let bytes = pack(&entries()).unwrap();
+    refused(b"", "no archive");
+    refused(b"PK no, this is a letter", "no archive");
+    for length in 0..bytes.len() {
+        assert!(check(&bytes[..length]).is_err(), "cut off after {length} bytes");
+    }
+    refused(&patched(&bytes, &[7; 300], &[8; 300]), "`results/a/t.parquet`: ");
+    assert!(open(std::path::Path::new("/no/such/file")).is_err_and(|error| error.to_string().contains("cannot read")));
+    assert!(open(std::path::Path::new("/")).is_err_and(|error| error.to_string().contains("it is no file")));
+}
+
+#[test]
+fn a_description_that_does_not_describe_is_refused() {
+    let described = |bytes: Vec<u8>| {
+        pack(
+            &Entries::from([(METADATA.to_owned(), bytes)])
+                .into_iter()
+                .chain([(STUDY.to_owned(), b"study: a".to_vec())])
+                .collect(),
+        )
+        .unwrap()
+    };
+    let mut without = entries();
+    without.remove(METADATA);
+    refused(&pack(&without).unwrap(), "has no `ro-crate-metadata.json`");
+    refused(&described(b"{".to_vec()), "is damaged");
+    refused(&described(b"[]".to_vec()), "describes no data set");
+    refused(&described(("[".repeat(100_000)).into_bytes()), "is damaged");
+    for outside in ["../x", "/etc/passwd", "file:///etc/passwd", "%2e%2e/x", "absent"] {
+        refused(&described(metadata(&[STUDY, outside])), &format!("names `{outside}`"));
+    }
+    let other = String::from_utf8(metadata(&[])).unwrap().replace(STUDY, "../a.yaml");
+    refused(&described(other.into_bytes()), "names no study");
+}
+
+/// Bytes changed, cut out, put in, moved: an answer, never a panic; what is accepted can be read.
+#[test]
+fn mutated_archives_never_panic() {
+    let original = pack(&entries()).unwrap();
+    let mut random = ChaCha8Rng::seed_from_u64(6);
+    let mut below = |limit: usize| usize::try_from(random.next_u64() % (limit.max(1) as u64)).unwrap();
+    let [mut accepted, mut kinds] = [0, 0];
+    let mut problems = std::collections::BTreeSet::new();
+    for _ in 0..4000 {
+        let mut bytes = original.clone();
+        for _ in 0..=below(3) {
+            let (at, length) = (below(bytes.len()), below(12));
+            let end = (at + length).min(bytes.len());
+            match below(5) {
+                0 => bytes[at] = u8::try_from(below(256)).unwrap(),
+                1 => bytes[at] ^= 1 << below(8),
+                2 => drop(bytes.drain(at..end)),
+                3 => {
+                    let copied = bytes[at..end].to_vec();
+                    let to = below(bytes.len());
+                    bytes.splice(to..to, copied);
+                }
+                _ => bytes[at..end].fill([0, 0xff][below(2)]),
+            }
+            if bytes.is_empty() {
+                break;
+            }
+        }
+        match check(&bytes) {
+            Ok(mut archive) => {
+                accepted += 1;
+                let names: Vec<String> = archive.names().map(str::to_owned).collect();
+                for name in names {
+                    archive.bytes(&name).unwrap();
+                }
+            }
+            Err(problem) => kinds += usize::from(problems.insert(problem)),
+        }
+    }
+    // Some bytes do not matter (a version, a mode); most do, and for many different reasons.
+    assert!((1..2000).contains(&accepted) && kinds > 20, "{accepted} {kinds}");
+}

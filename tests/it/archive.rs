@@ -1,0 +1,186 @@
+//! Archives as a user makes and verifies them: what they say, what they refuse, and that verifying finds a difference.
+
+mod hostile;
+mod python;
+
+use std::fs;
+use std::path::Path;
+
+use gearstudy::store::archive::open::open;
+use gearstudy::store::archive::pack::{Entries, pack};
+use gearstudy::store::manifest::Manifest;
+use gearstudy::store::parquet;
+use gearstudy::table::data::{Data, Table};
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+/// Everything in an archive.
+pub fn entries(path: &Path) -> Entries {
+    let mut archive = open(path).unwrap();
+    let names: Vec<String> = archive.names().map(str::to_owned).collect();
+    names.into_iter().map(|name| (name.clone(), archive.bytes(&name).unwrap())).collect()
+}
+
+pub fn archived(study: &str, words: &[&str]) -> Desk {
+    let desk = Desk::with(study);
+    let run: Vec<&str> = ["run", study, "--quiet"].iter().chain(words).copied().collect();
+    desk.run(&run, 0);
+    desk.run(&["archive", study, "-o", "a.zip"], 0);
+    desk
+}
+
+fn manifest(entries: &Entries) -> Manifest {
+    serde_json::from_slice(&entries["results/quick/manifest.json"]).unwrap()
+}
+
+fn put_manifest(entries: &mut Entries, manifest: &Manifest) {
+    entries.insert("results/quick/manifest.json".to_owned(), serde_json::to_vec(manifest).unwrap());
+}
+
+/// The same table with one number of a column moved by a share of itself.
+fn moved(table: &Table, column: &str, row: usize, by: f64) -> Table {
+    let position = table.schema().position(column).unwrap();
+    let mut columns = table.columns().to_vec();
+    let Data::Float(values) = &mut columns[position] else { panic!("{column} holds no numbers") };
+    values[row] *= 1.0 + by;
+    Table::from_columns(table.schema().clone(), columns).unwrap()
+}
+
+#[test]
+fn an_archive_is_the_same_bytes_again_and_verifies_as_identical() {
+    let desk = archived("quick.yaml", &["--want", "stiffness.iso6336,ste.summary.largest_pressure"]);
+    let first = fs::read(desk.path("a.zip")).unwrap();
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+    assert!(first == fs::read(desk.path("a.zip")).unwrap(), "the same results, other bytes");
+
+    // Somewhere else, with nothing but the file; afterwards nothing else is there.
+    let (empty, temporary) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
+    let file = desk.path("a.zip");
+    let mut command = desk.command(&["verify", &file.display().to_string(), "--json", "--jobs", "3"]);
+    let output = command.current_dir(empty.path()).env("TMPDIR", temporary.path()).output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
+    for folder in [&empty, &temporary] {
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+    }
+    let said: Value = serde_json::from_slice(&output.stdout).unwrap();
+    let names = |list: &Value| -> Vec<String> {
+        list.as_array().unwrap().iter().map(|table| table["name"].as_str().unwrap().to_owned()).collect()
+    };
+    let listed: Vec<String> = desk.contents("quick").into_iter().map(|(name, _)| name).collect();
+    assert_eq!(names(&said["tables"]), listed);
+    assert!(listed.contains(&"stiffness.iso6336".to_owned()), "what was asked for on demand is archived too");
+    assert_eq!((said["identical"].as_u64(), said["different"].as_u64()), (Some(listed.len() as u64), Some(0)));
+    assert_eq!(said["notes"], serde_json::json!([]));
+
+    // Unpacked, it is a folder in which the program finds its way.
+    for (name, bytes) in entries(&file) {
+        let path = empty.path().join(name);
+        fs::create_dir_all(path.parent().unwrap()).unwrap();
+        fs::write(path, bytes).unwrap();
+    }
+    let output = desk.command(&["status", "quick.yaml"]).current_dir(empty.path()).output().unwrap();
+    assert_eq!(String::from_utf8_lossy(&output.stdout), "quick: up to date\n");
+}
+
+#[test]
+fn verify_says_what_came_out_other_than_archived() {
+    let desk = archived("quick.yaml", &[]);
+    let mut entries = entries(&desk.path("a.zip"));
+    let mut manifest = manifest(&entries);
+    manifest.program.version = "0.0.9".to_owned();
+    // Two archived tables are made to differ, consistently: by less and by more than the tolerance of 1e-9.
+    let mut rows = Vec::new();
+    for (name, column, by) in [("ste.summary", "mean", 1e-12), ("stiffness.summary", "single_max", 1e-3)] {
+        let record = manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables).find(|table| table.name == name);
+        let record = record.unwrap();
+        let file = format!("results/quick/{}", record.file);
+        let table = parquet::read(entries[&file].clone()).unwrap();
+        let row = table.rows() - 1;
+        let table = moved(&table, column, row, by);
+        record.content = table.content_hash().to_string();
+        rows.push(row);
+        entries.insert(file, parquet::write(&table).unwrap());
+    }
+    put_manifest(&mut entries, &manifest);
+    fs::write(desk.path("b.zip"), pack(&entries).unwrap()).unwrap();
+    let (out, error) = desk.run(&["verify", "b.zip"], 4);
+    assert!(error.contains("quick: 1 of "), "{error}");
+    assert!(out.contains("made with another version of gearstudy: 0.0.9"), "{out}");
+    let line = |name: &str| out.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
+    let within = line("ste.summary");
+    assert!(within.contains("within tolerance") && within.contains("worst in mean at design="), "{within}");
+    let different = line("stiffness.summary");
+    assert!(different.contains("different") && different.contains("worst in single_max at row 0"), "{different}");
+    assert!(different.contains("by 9.99e-4 of it"), "{different}");
+    let (json, _) = desk.run(&["verify", "b.zip", "--json"], 4);
+    let said: Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((said["within_tolerance"].as_u64(), said["different"].as_u64()), (Some(1), Some(1)));
+    let summary = said["tables"].as_array().unwrap().iter().find(|table| table["name"] == "ste.summary").unwrap();
+    assert_eq!(summary["worst"]["row"].as_u64(), Some(rows[0] as u64));
+    assert!(summary["worst"]["over_tolerance"].as_f64().is_some_and(|over| over > 0.0 && over <= 1.0), "{summary}");
+}
+
+#[test]
+fn what_is_missing_stale_or_incomplete_is_not_archived() {
+    let desk = Desk::with("quick.yaml");
+    let refused = |wanted: &str, command: &str| {
+        let (_, error) = desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 1);
+        assert!(error.contains(wanted) && error.contains(&format!("first: gearstudy {command} quick.yaml")), "{error}");
+        assert!(!desk.path("a.zip").exists());
+    };
+    refused("there are no results", "run");
+    desk.run(&["run", "quick.yaml", "--only", "stiffness", "--quiet"], 0);
+    refused("stage `designs` is not up to date: missing: skipped: not asked for", "run");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    fs::write(desk.path("quick.yaml"), text.replace("to: 250 N m", "to: 260 N m")).unwrap();
+    refused("stage `ste` is not up to date: stale: config changed: new values of torque", "run");
+    fs::write(desk.path("quick.yaml"), format!("{text}# a remark\n")).unwrap();
+    refused("the study's file has changed since", "run");
+    fs::write(desk.path("quick.yaml"), &text).unwrap();
+    fs::remove_file(desk.path("results/quick/ste.curve.parquet")).unwrap();
+    refused("stage `ste` is not up to date: missing: `ste.curve.parquet` is not there", "run");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    fs::remove_file(desk.path("results/quick/report.html")).unwrap();
+    refused("the report is not that of the last run", "report");
+    desk.run(&["report", "quick.yaml"], 0);
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip", "--license", "CC BY"], 1);
+    desk.run(&["archive", "quick.yaml", "-o", "no/such/folder/a.zip"], 1);
+    desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
+}
+
+/// Neither the cache nor a run is needed to say where results stand.
+#[test]
+fn status_says_what_is_up_to_date_stale_and_missing() {
+    let desk = Desk::with("quick.yaml");
+    let states = |words: &[&str]| -> Vec<(String, String, String)> {
+        let (json, _) = desk.run(&[&["status", "--json"], words].concat(), 0);
+        let said: Value = serde_json::from_str(&json).unwrap();
+        let text = |value: &Value| value.as_str().unwrap().to_owned();
+        let stages = said[0]["stages"].as_array().unwrap().clone();
+        stages.iter().map(|stage| (text(&stage["name"]), text(&stage["state"]), text(&stage["why"]))).collect()
+    };
+    let (out, _) = desk.run(&["status", "quick.yaml"], 0);
+    assert_eq!(out, "quick: no results; next: gearstudy run quick.yaml\n");
+    assert!(states(&["quick.yaml"]).iter().all(|(_, state, _)| state == "missing"));
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    fs::remove_dir_all(desk.path(".gearstudy")).unwrap();
+    assert_eq!(desk.run(&["status", "quick.yaml"], 0).0, "quick: up to date\n");
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    fs::write(desk.path("quick.yaml"), text.replace("module: 3 mm", "module: 3.1 mm")).unwrap();
+    let said = states(&["quick.yaml"]);
+    assert_eq!(said[0], ("pair".into(), "stale".into(), "config changed: module".into()));
+    assert!(said[1..].iter().all(|(_, state, _)| state == "waits"), "{said:?}");
+    assert!(said.iter().any(|(name, _, why)| name == "stiffness" && why == "for pair"), "{said:?}");
+    assert!(!desk.path(".gearstudy").exists(), "status makes no cache");
+    // Without names: those in the folder `studies`.
+    fs::write(desk.path("quick.yaml"), &text).unwrap();
+    assert!(desk.run(&["status"], 1).1.contains("no studies in `studies`"));
+    fs::create_dir(desk.path("studies")).unwrap();
+    fs::rename(desk.path("quick.yaml"), desk.path("studies/quick.yaml")).unwrap();
+    assert_eq!(desk.run(&["status"], 0).0, "quick: up to date\n");
+    fs::remove_file(desk.path("results/quick/figures/torque.svg")).unwrap();
+    let (out, _) = desk.run(&["status"], 0);
+    assert_eq!(out, "quick: the report is not that of the last run; next: gearstudy report studies/quick.yaml\n");
+}
