@@ -4,6 +4,7 @@
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
 
 mod archive;
+mod calculix;
 mod desk;
 mod determinism;
 mod e2e;

@@ -35,8 +35,11 @@ pub struct Method {
     /// method does not hold for this pair. The record holds what this method alone can be told.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
     /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
-    pub root_stress: Option<fn(&Record, &Pair, Assumptions) -> Result<Vec<RootStress>, ComplianceError>>,
+    pub root_stress: Option<RootStresses>,
 }
+
+/// The largest stress at the root of both gears' teeth, for loads along the flank.
+pub type RootStresses = fn(&Record, &Pair, Assumptions) -> Result<Vec<RootStress>, ComplianceError>;
 
 /// What every method is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -132,9 +132,10 @@ pub fn stiffness(nodes: &[[f64; 2]; NODES], elasticity: &Elasticity) -> Option<[
             }
         }
     }
-    for row in 0..FREEDOMS {
-        for column in 0..row {
-            matrix[row][column] = matrix[column][row];
+    for row in 1..FREEDOMS {
+        let (above, below) = matrix.split_at_mut(row);
+        for (value, mirrored) in below[0].iter_mut().zip(above.iter()) {
+            *value = mirrored[row];
         }
     }
     Some(matrix)

@@ -219,9 +219,9 @@ fn turn(matrix: &mut [[f64; FREEDOMS]; FREEDOMS], node: usize, [x, y]: [f64; 2])
     for row in matrix.iter_mut() {
         (row[first], row[second]) = (x * row[first] + y * row[second], y * row[first] - x * row[second]);
     }
-    for column in 0..FREEDOMS {
-        let (a, b) = (matrix[first][column], matrix[second][column]);
-        (matrix[first][column], matrix[second][column]) = (x * a + y * b, y * a - x * b);
+    let (above, below) = matrix.split_at_mut(second);
+    for (a, b) in above[first].iter_mut().zip(&mut below[0]) {
+        (*a, *b) = (x * *a + y * *b, y * *a - x * *b);
     }
 }
 

@@ -16,16 +16,17 @@ fn influences_are_reciprocal() {
     let model = model(&gear, &root, 6).unwrap();
     let rolls = nodes(root.form_roll, gear.tip_roll(), 5);
     let found = model.influences(&rolls, 16).unwrap().further;
-    for k in 0..16 {
-        for by in 0..5 {
-            for on in 0..5 {
+    for (k, rows) in found.iter().enumerate() {
+        for (by, row) in rows.iter().enumerate() {
+            for (on, &there) in row.iter().enumerate() {
                 // 17 − (k + 1) teeth further is k + 1 teeth back.
-                let (there, back) = (found[k][by][on], found[15 - k][on][by]);
+                let back = found[15 - k][on][by];
                 assert!((there - back).abs() < 1e-13 * found[0][by][by].abs(), "{k} {by} {on}: {there} {back}");
             }
         }
     }
-    assert!(found[0][0][4] != found[0][4][0]);
+    // Not because they are all alike.
+    assert!((found[0][0][4] / found[0][4][0] - 1.0).abs() > 1e-3);
 }
 
 /// Tier: closed form; on the line of action the further tooth's roll angle is larger by a pitch, and it stands clockwise:

@@ -3,6 +3,7 @@
 use super::*;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::separation::Facing;
+use crate::gear::fixtures;
 use crate::gear::geometry::Side;
 
 fn exact(pair: &Pair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
