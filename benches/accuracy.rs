@@ -28,7 +28,7 @@ pub fn print() {
 }
 
 /// Seconds that `once` takes: the best of several rounds of 2 ms, because whatever else the machine does only adds.
-fn seconds<T>(mut once: impl FnMut() -> T) -> f64 {
+pub fn seconds<T>(mut once: impl FnMut() -> T) -> f64 {
     let mut best = f64::INFINITY;
     for _ in 0..9 {
         let (began, mut count) = (Instant::now(), 0_u32);
@@ -41,7 +41,7 @@ fn seconds<T>(mut once: impl FnMut() -> T) -> f64 {
     best
 }
 
-fn relative(value: f64, reference: f64) -> f64 {
+pub fn relative(value: f64, reference: f64) -> f64 {
     (value / reference - 1.0).abs()
 }
 

@@ -21,7 +21,11 @@ pub const TORQUE: f64 = 50.0;
 
 /// Where the study lies.
 pub fn path() -> PathBuf {
-    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("studies/energy_ga.yaml")
+    study_path("energy_ga")
+}
+
+pub fn study_path(name: &str) -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("studies").join(name).with_extension("yaml")
 }
 
 /// The study, and the tables of the stages that were run.
@@ -32,7 +36,12 @@ pub struct Stages {
 
 impl Stages {
     pub fn new() -> Self {
-        let study = study::load(&path()).unwrap_or_else(|error| panic!("{error}"));
+        Self::of("energy_ga")
+    }
+
+    /// The stages of another study.
+    pub fn of(name: &str) -> Self {
+        let study = study::load(&study_path(name)).unwrap_or_else(|error| panic!("{error}"));
         Self { study, tables: BTreeMap::new() }
     }
 

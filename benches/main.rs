@@ -7,6 +7,7 @@
 mod accuracy;
 mod article;
 mod diff;
+mod finite_elements;
 mod kernels;
 mod optimize;
 mod program;
@@ -23,6 +24,7 @@ use criterion::Criterion;
 fn main() {
     kernels::benches();
     optimize::benches();
+    finite_elements::benches();
     storage::benches();
     diff::benches();
     program::benches();
@@ -30,6 +32,7 @@ fn main() {
     if std::env::args().skip(1).all(|word| word == "--bench") {
         let processes = program::processes();
         accuracy::print();
+        finite_elements::print();
         summary::print(&processes);
     }
 }

@@ -15,6 +15,12 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("stage/optimum", 0.3, "genetic, 100 × 100, 64 positions, all threads"),
     ("diff/report 1e5 rows x 9", 0.1, "two folders of Parquet to the text, rows by key"),
     ("diff/report 1e6 rows x 9", 1.0, "as before"),
+    ("finite elements/48 teeth, 0.2 %", 1.0, "influence functions of a gear at 0.2 % accuracy, one thread"),
+    (
+        "finite elements/both sweeps of mei2016",
+        2.0,
+        "1,250 coupled curves with corner contact, 24 positions, all threads",
+    ),
     ("ste/curve uncoupled", 20e-6, "64 positions, crowned, both tips relieved, one thread"),
 ];
 

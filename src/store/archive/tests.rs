@@ -131,7 +131,10 @@ fn bombs_are_refused() {
     refused(&declared(&bytes, u32::try_from(MOST_BYTES).unwrap() + 1), "larger than 1024 MiB");
     // What is said and what is there: the compressed zeros say that they are 77 bytes and are a million.
     let zeros = with("zeros", SimpleFileOptions::default(), &vec![0; 1_000_000]);
-    refused(&patched(&zeros, &1_000_000_u32.to_le_bytes(), &77_u32.to_le_bytes()), "larger than its declared uncompressed size");
+    refused(
+        &patched(&zeros, &1_000_000_u32.to_le_bytes(), &77_u32.to_le_bytes()),
+        "larger than its declared uncompressed size",
+    );
     refused(&patched(&zeros, &1_000_000_u32.to_le_bytes(), &2_000_000_u32.to_le_bytes()), "it says it has 2000000");
     let mut writer = ZipWriter::new(Cursor::new(Vec::new()));
     for index in 0..=MOST_ENTRIES {

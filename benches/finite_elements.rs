@@ -1,0 +1,97 @@
+//! The finite-element method: error against run time, the sweeps of `mei2016`, and the memory of a whole run.
+
+use std::process::{Command, Stdio};
+use std::time::Duration;
+
+use criterion::{Criterion, criterion_group};
+use gearstudy::base::record::Value;
+use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
+use gearstudy::gear::geometry::Pair;
+use gearstudy::gear::geometry::root::RootShape;
+
+use crate::accuracy::{relative, seconds};
+use crate::article::{Stages, study_path};
+use crate::brief;
+use crate::support::record;
+
+criterion_group!(name = benches; config = brief().sample_size(10); targets = finite_elements);
+
+const COUPLED: Assumptions =
+    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::LoadDependent, coupled: true, torque: None };
+
+/// Both gears of a pair, with the mesh or to the accuracy that `option` says.
+fn tabulate(pair: &Pair, option: (&'static str, Value)) -> Tabulated {
+    let method = compliance::method("finite_element").expect("it is registered");
+    (method.tabulate)(&record(method.member.fields, &[option]), pair, COUPLED).expect("the pair can be meshed")
+}
+
+/// Two gears of 48 teeth: half of the time is one gear's.
+fn gears_of_48() -> Pair {
+    let pair = Stages::new().pair();
+    let gear = pair.gear.specification;
+    Pair::new(gear, gear, None).expect("they fit")
+}
+
+fn finite_elements(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("finite elements");
+    let pair = gears_of_48();
+    group.bench_function("48 teeth, 0.2 %", |bencher| {
+        bencher.iter_custom(|times| {
+            let began = std::time::Instant::now();
+            for _ in 0..times {
+                std::hint::black_box(tabulate(&pair, ("accuracy", Value::Quantity(0.002))));
+            }
+            began.elapsed() / 2
+        });
+    });
+    let mut stages = Stages::of("mei2016");
+    stages.prepare("arc");
+    group.measurement_time(Duration::from_secs(8));
+    group.bench_function("both sweeps of mei2016", |bencher| {
+        bencher.iter(|| (stages.run("arc"), stages.run("parabola")));
+    });
+}
+
+pub fn print() {
+    let pair = gears_of_48();
+    let own = |tabulated: &Tabulated| {
+        let body = &tabulated.compliance.gear.body;
+        (0..=20).map(|k| body.value(body.lower() + f64::from(k) / 20.0 * (body.upper() - body.lower()))).collect()
+    };
+    let finest: Vec<f64> = own(&tabulate(&pair, ("elements_across", Value::Integer(48))));
+    println!("\nFinite elements, 48 teeth: largest relative error along the flank (48 across: no error), one gear\n");
+    println!("{:>7} {:>9} {:>9} {:>10} {:>10} {:>9}", "across", "elements", "unknowns", "error", "estimate", "ms");
+    for across in [6, 8, 12, 16, 24, 32] {
+        let found = tabulate(&pair, ("elements_across", Value::Integer(across)));
+        let values: Vec<f64> = own(&found);
+        let error = values.iter().zip(&finest).map(|(value, exact)| relative(*value, *exact)).fold(0.0, f64::max);
+        let mesh = found.meshes[1];
+        let taken = 0.5 * seconds(|| tabulate(&pair, ("elements_across", Value::Integer(across))));
+        println!(
+            "{across:>7} {:>9} {:>9} {error:>10.1e} {:>10.1e} {:>9.1}",
+            mesh.elements,
+            mesh.unknowns,
+            mesh.error_estimate,
+            taken * 1e3
+        );
+    }
+    println!("\nmei2016, whole process without a cache: {} MiB at most in memory", most_memory("mei2016") / 1024);
+}
+
+/// The largest resident size of a run \[KiB\], as the kernel counts it while the process lives.
+fn most_memory(study: &str) -> u64 {
+    let folder = tempfile::tempdir().expect("there is a place for temporary files");
+    let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
+    command.arg("run").arg(study_path(study)).arg("--results").arg(folder.path().join("results"));
+    command.arg("--cache").arg(folder.path().join("cache"));
+    let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program was built");
+    let mut most = 0;
+    while child.try_wait().expect("it is our child").is_none() {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
+        let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+        let size = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok());
+        most = most.max(size.unwrap_or(0));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    most
+}
