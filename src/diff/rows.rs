@@ -64,8 +64,8 @@ pub fn by_key(before: &Table, after: &Table, keys: &[KeyColumn<'_>]) -> Result<R
     let mut rows = Rows { matched: Vec::with_capacity(left.len().min(right.len())), ..Rows::default() };
     let (mut a, mut b) = (0, 0);
     while a < left.len() && b < right.len() {
-        let compared = keys.iter().map(|key| key.across(left.at(a), right.at(b)));
-        match compared.into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal) {
+        let order = keys.iter().map(|key| key.across(left.at(a), right.at(b))).find(|order| order.is_ne());
+        match order.unwrap_or(Ordering::Equal) {
             Ordering::Equal => {
                 rows.matched.push((left.at(a), right.at(b)));
                 (a, b) = (a + 1, b + 1);

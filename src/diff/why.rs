@@ -107,8 +107,8 @@ fn axis(stage: &StageRecord, key: &KeyRecord) -> Option<String> {
     if key.axis.is_empty() {
         return None;
     }
-    let fields = stage.config.as_object()?.keys();
-    fields.into_iter().find(|name| !key.fields.iter().any(|(field, _)| field == *name)).cloned()
+    let mut fields = stage.config.as_object()?.keys();
+    fields.find(|name| !key.fields.iter().any(|(field, _)| field == *name)).cloned()
 }
 
 /// From what to what a field changed, place by place.
