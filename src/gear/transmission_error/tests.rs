@@ -11,7 +11,7 @@ use super::loading::Loading;
 use super::stiffness::stiffness;
 use crate::base::record::Value::{Choice, Number, Quantity};
 use crate::gear::compliance::{ContactLaw, PairCompliance};
-use crate::gear::fixtures::{self, BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, varying};
+use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, varying};
 use crate::gear::geometry::Pair;
 use crate::gear::geometry::Side::{Gear, Pinion};
 use crate::gear::modification::Design;
