@@ -8,7 +8,8 @@ use criterion::{Criterion, criterion_group};
 use gearstudy::diff::compare::{Options, compare};
 use gearstudy::diff::pretty;
 use gearstudy::diff::side::Side;
-use gearstudy::store::manifest::{ColumnRecord, FORMAT, Manifest, StageRecord, TableRecord};
+use gearstudy::store::entry::StoredTable;
+use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use gearstudy::store::parquet;
 use gearstudy::table::data::{Data, Table};
 use gearstudy::table::schema::{Column, Schema};
@@ -36,14 +37,8 @@ fn table(rows: usize, moved: bool) -> Table {
 
 /// The results of a study with this table alone.
 fn publish(folder: &Path, table: &Table) {
-    let record = TableRecord {
-        name: "stage.curve".to_owned(),
-        description: String::new(),
-        rows: table.rows(),
-        content: table.content_hash().to_string(),
-        file: "stage.curve.parquet".to_owned(),
-        columns: table.schema().columns.iter().map(ColumnRecord::from).collect(),
-    };
+    let described = StoredTable::describe(table).expect("it is a table");
+    let record = TableRecord::new("stage", table.schema(), &described);
     let stage = StageRecord {
         name: "stage".to_owned(),
         kind: "ste".to_owned(),

@@ -113,21 +113,6 @@ pub fn by_record(before: &TableRecord, after: &TableRecord, note: String) -> Tab
     }
 }
 
-impl From<&Column> for ColumnRecord {
-    fn from(column: &Column) -> Self {
-        Self {
-            name: column.name.clone(),
-            kind: column.kind.name().to_owned(),
-            unit: column.unit.clone(),
-            description: column.description.clone(),
-            key: column.key,
-            volatile: column.volatile,
-            absolute_tolerance: column.tolerance.absolute,
-            relative_tolerance: column.tolerance.relative,
-        }
-    }
-}
-
 /// What differs between the columns of two tables; volatile ones are left out.
 fn schema_changes(before: &[ColumnRecord], after: &[ColumnRecord]) -> Vec<SchemaChange> {
     let mut changes = Vec::new();

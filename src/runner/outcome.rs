@@ -10,9 +10,7 @@ use crate::stage::Omission;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
-use crate::store::manifest::{
-    ColumnRecord, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
-};
+use crate::store::manifest::{FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord};
 use crate::store::parquet;
 use crate::study::{Study, settings};
 use crate::table::data::Table;
@@ -207,29 +205,8 @@ impl StageOutcome {
             seconds: self.seconds,
             warnings: self.warnings.clone(),
             left_out: self.left_out.iter().map(omission).collect(),
-            tables: self.tables.iter().map(|(schema, table)| table_record(&self.name, schema, table)).collect(),
+            tables: self.tables.iter().map(|(schema, table)| TableRecord::new(&self.name, schema, table)).collect(),
         }
-    }
-}
-
-fn table_record(stage: &str, schema: &Schema, table: &StoredTable) -> TableRecord {
-    let columns = schema.columns.iter().map(|column| ColumnRecord {
-        name: column.name.clone(),
-        kind: column.kind.name().to_owned(),
-        unit: column.unit.clone(),
-        description: column.description.clone(),
-        key: column.key,
-        volatile: column.volatile,
-        absolute_tolerance: column.tolerance.absolute,
-        relative_tolerance: column.tolerance.relative,
-    });
-    TableRecord {
-        name: format!("{stage}.{}", table.name),
-        description: schema.description.clone(),
-        rows: table.rows,
-        content: table.content.to_string(),
-        file: format!("{stage}.{}.parquet", table.name),
-        columns: columns.collect(),
     }
 }
 

@@ -7,14 +7,12 @@
 use super::graph::Graph;
 use super::key::{self, explain, phrase};
 use super::options::Wanted;
-use crate::base::digest::Digest;
 use crate::base::error::Diagnostic;
 use crate::stage::Want;
 use crate::store::entry::StoredTable;
 use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::results::Folder;
 use crate::study::Study;
-use crate::table::schema::Schema;
 
 /// All stages of a study, every one after all it reads.
 #[derive(Clone, Debug, PartialEq)]
@@ -132,10 +130,7 @@ pub fn standing(
                 match stale(record, study.nodes[node].kind.name, &now, axis) {
                     Some(why) => State::Stale(why),
                     None => {
-                        let schemas = graph.outputs[node].iter();
-                        let schemas: Vec<Schema> =
-                            schemas.map(|schema| graph.demands[node].narrowed(schema.clone())).collect();
-                        tables[node] = stored(folder, record, &schemas);
+                        tables[node] = record.tables.iter().map(TableRecord::stored).collect();
                         absent(folder, manifest, record)
                             .filter(|_| !ignore_files)
                             .map_or(State::UpToDate, State::Missing)
@@ -195,22 +190,6 @@ fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'st
         return Some(phrase(&reasons));
     }
     (record.keys.len() != now.len()).then(|| format!("config changed: fewer values of {}", axis.unwrap_or("an axis")))
-}
-
-/// The tables of a stage as its readers see them; none when that cannot be told.
-fn stored(folder: &Folder, record: &StageRecord, schemas: &[Schema]) -> Option<Vec<StoredTable>> {
-    let stored = record.tables.iter().map(|table| {
-        let (_, name) = table.name.split_once('.')?;
-        let schema = schemas.iter().find(|schema| schema.name == name)?;
-        if schema.columns.iter().any(|column| column.on_demand) {
-            // Readers may see a part of it, of which the manifest does not tell the content.
-            return StoredTable::describe(&folder.table(table).ok()?).ok();
-        }
-        let content = Digest::from_hex(&table.content)?;
-        let (name, columns) = (name.to_owned(), Vec::new());
-        Some(StoredTable { name, rows: table.rows, content, base: content, columns, body: None })
-    });
-    stored.collect()
 }
 
 /// The files of a stage that are not there as the manifest lists them.

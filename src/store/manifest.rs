@@ -4,6 +4,10 @@
 
 use serde::{Deserialize, Serialize};
 
+use super::entry::{StoredColumn, StoredTable};
+use crate::base::digest::Digest;
+use crate::table::schema::{Column, Schema};
+
 pub const FORMAT: u32 = 1;
 
 /// The record of one run of one study.
@@ -128,6 +132,19 @@ pub struct TableRecord {
     /// The Parquet file, relative to the manifest.
     pub file: String,
     pub columns: Vec<ColumnRecord>,
+    /// What readers may see of a table with columns on demand: each sees some of them, so the content of all does not
+    /// tell. None for a table that every reader sees whole.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub parts: Option<PartsRecord>,
+}
+
+/// Content hashes of the parts of a table, in hexadecimal.
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+pub struct PartsRecord {
+    /// Without the columns on demand.
+    pub base: String,
+    /// Column on demand, and its content by itself.
+    pub on_demand: Vec<(String, String)>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -141,4 +158,54 @@ pub struct ColumnRecord {
     pub volatile: bool,
     pub absolute_tolerance: f64,
     pub relative_tolerance: f64,
+}
+
+impl TableRecord {
+    /// The record of one table of a stage.
+    #[must_use]
+    pub fn new(stage: &str, schema: &Schema, table: &StoredTable) -> Self {
+        let on_demand = table.columns.iter().map(|column| (column.name.clone(), column.content.to_string()));
+        let parts = PartsRecord { base: table.base.to_string(), on_demand: on_demand.collect() };
+        Self {
+            name: format!("{stage}.{}", table.name),
+            description: schema.description.clone(),
+            rows: table.rows,
+            content: table.content.to_string(),
+            file: format!("{stage}.{}.parquet", table.name),
+            columns: schema.columns.iter().map(ColumnRecord::from).collect(),
+            parts: (!table.columns.is_empty()).then_some(parts),
+        }
+    }
+
+    /// What is known of the table without its file; none when a digest is none.
+    #[must_use]
+    pub fn stored(&self) -> Option<StoredTable> {
+        let name = self.name.split_once('.')?.1.to_owned();
+        let content = Digest::from_hex(&self.content)?;
+        let (base, columns) = match &self.parts {
+            None => (content, Vec::new()),
+            Some(parts) => {
+                let column = |(name, content): &(String, String)| {
+                    Some(StoredColumn { name: name.clone(), content: Digest::from_hex(content)? })
+                };
+                (Digest::from_hex(&parts.base)?, parts.on_demand.iter().map(column).collect::<Option<_>>()?)
+            }
+        };
+        Some(StoredTable { name, rows: self.rows, content, base, columns, body: None })
+    }
+}
+
+impl From<&Column> for ColumnRecord {
+    fn from(column: &Column) -> Self {
+        Self {
+            name: column.name.clone(),
+            kind: column.kind.name().to_owned(),
+            unit: column.unit.clone(),
+            description: column.description.clone(),
+            key: column.key,
+            volatile: column.volatile,
+            absolute_tolerance: column.tolerance.absolute,
+            relative_tolerance: column.tolerance.relative,
+        }
+    }
 }

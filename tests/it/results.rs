@@ -1,7 +1,7 @@
 //! The committed results are those of the committed studies and of this program; nothing is run to find out.
 
-use std::collections::BTreeSet;
-use std::path::Path;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use gearstudy::runner::standing::standing;
@@ -9,30 +9,46 @@ use gearstudy::stage::code_digest;
 use gearstudy::store::results::Folder;
 use gearstudy::study;
 
-/// Studies whose manifest is under version control; without git, every one that has a manifest but `quick`.
-fn committed(top: &Path) -> BTreeSet<String> {
-    let output = Command::new("git").arg("-C").arg(top).args(["ls-files", "results"]).output();
-    let listed = output.ok().filter(|output| output.status.success());
-    let listed = listed.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default();
-    let name = |line: &str| Some(line.strip_prefix("results/")?.strip_suffix("/manifest.json")?.to_owned());
-    let tracked: BTreeSet<String> = listed.lines().filter_map(name).collect();
-    if !tracked.is_empty() {
-        return tracked;
+/// Studies with a manifest under version control, and their files there; without git, all that lies there but `quick`.
+fn committed(top: &Path) -> BTreeMap<String, Vec<PathBuf>> {
+    let output = Command::new("git").arg("-C").arg(top).args(["ls-files", "-z", "results"]).output();
+    let listed = output.ok().filter(|output| output.status.success()).map(|output| output.stdout).unwrap_or_default();
+    let listed = String::from_utf8(listed).unwrap();
+    let mut files: Vec<PathBuf> = listed.split_terminator('\0').map(PathBuf::from).collect();
+    if files.is_empty() {
+        let all = files_in(&top.join("results"));
+        files = all.iter().map(|path| path.strip_prefix(top).unwrap().to_owned()).collect();
+        files.retain(|path| !path.starts_with("results/quick"));
     }
-    let folders = std::fs::read_dir(top.join("results")).unwrap().map(|entry| entry.unwrap());
-    let with_manifest = folders.filter(|entry| entry.path().join("manifest.json").is_file());
-    with_manifest.map(|entry| entry.file_name().to_string_lossy().into_owned()).filter(|name| name != "quick").collect()
+    let mut studies = BTreeMap::<String, Vec<PathBuf>>::new();
+    for file in files {
+        let name = file.iter().nth(1).unwrap().to_string_lossy().into_owned();
+        studies.entry(name).or_default().push(file);
+    }
+    studies.retain(|name, files| files.contains(&Path::new("results").join(name).join("manifest.json")));
+    studies
 }
 
+fn files_in(folder: &Path) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    entries.flat_map(|path| if path.is_dir() { files_in(&path) } else { vec![path] }).collect()
+}
+
+/// Judged from the committed files alone, as in a fresh clone: what else a run left in the folder must not help.
 #[test]
 fn committed_results_are_not_stale() {
     let top = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let names = committed(top);
-    assert!(names.contains("energy_ga"), "{names:?}");
+    let clone = tempfile::tempdir().unwrap();
+    let studies = committed(top);
+    assert!(studies.contains_key("energy_ga"), "{studies:?}");
     let mut problems = Vec::new();
-    for name in names {
+    for (name, files) in studies {
+        for file in files {
+            std::fs::create_dir_all(clone.path().join(&file).parent().unwrap()).unwrap();
+            std::fs::copy(top.join(&file), clone.path().join(&file)).unwrap();
+        }
         let study = study::load(&top.join("studies").join(format!("{name}.yaml"))).unwrap();
-        let folder = Folder::new(&top.join("results"), &study.name);
+        let folder = Folder::new(&clone.path().join("results"), &study.name);
         // Only the small tables are committed; what the manifest says of the others is what they are.
         let found = standing(&study, &folder, code_digest, true).unwrap();
         problems.extend(found.problem().map(|problem| format!("results/{name}: {problem}")));

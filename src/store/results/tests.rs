@@ -3,6 +3,7 @@
 use std::cell::Cell;
 
 use super::*;
+use crate::store::entry::StoredTable;
 use crate::store::parquet::tests::{assert_identical, everything};
 use crate::table::schema::Schema;
 
@@ -30,14 +31,7 @@ fn manifest(tables: &[(&str, Table)]) -> Manifest {
         tables: tables
             .iter()
             .filter(|(stage, _)| *stage == name)
-            .map(|(stage, table)| TableRecord {
-                name: format!("{stage}.{}", table.name()),
-                description: table.schema().description.clone(),
-                rows: table.rows(),
-                content: table.content_hash().to_string(),
-                file: format!("{stage}.{}.parquet", table.name()),
-                columns: vec![],
-            })
+            .map(|(stage, table)| TableRecord::new(stage, table.schema(), &StoredTable::describe(table).unwrap()))
             .collect(),
     };
     Manifest { format: FORMAT, study: "s".to_owned(), stages: vec![stage("pair"), stage("ste")], ..Manifest::default() }

@@ -8,8 +8,9 @@ use gearstudy::base::record::{Record, Value};
 use gearstudy::base::seed::Seed;
 use gearstudy::report::{self, Rendered};
 use gearstudy::stage::{self, Context, Demand, Inputs};
+use gearstudy::store::entry::StoredTable;
 use gearstudy::store::manifest::{
-    ColumnRecord, KeyRecord, Machine, Manifest, OmissionRecord, Program, Source, StageRecord, TableRecord,
+    KeyRecord, Machine, Manifest, OmissionRecord, Program, Source, StageRecord, TableRecord,
 };
 use gearstudy::table::data::Table;
 
@@ -32,24 +33,7 @@ fn report_tables(published: Vec<Value>, figures: Vec<Value>, tables: &BTreeMap<S
 }
 
 fn record_of(stage: &str, table: &Table) -> TableRecord {
-    let columns = table.schema().columns.iter().map(|column| ColumnRecord {
-        name: column.name.clone(),
-        kind: column.kind.name().to_owned(),
-        unit: column.unit.clone(),
-        description: column.description.clone(),
-        key: column.key,
-        volatile: column.volatile,
-        absolute_tolerance: column.tolerance.absolute,
-        relative_tolerance: column.tolerance.relative,
-    });
-    TableRecord {
-        name: format!("{stage}.{}", table.name()),
-        description: table.schema().description.clone(),
-        rows: table.rows(),
-        content: table.content_hash().to_string(),
-        file: format!("{stage}.{}.parquet", table.name()),
-        columns: columns.collect(),
-    }
+    TableRecord::new(stage, table.schema(), &StoredTable::describe(table).unwrap())
 }
 
 pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
