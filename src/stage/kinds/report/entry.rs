@@ -106,7 +106,7 @@ impl Entry {
             let field = if formula.is_claim() { "claim" } else { "formula" };
             let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
             let outcome = Rows::of(&Inputs::default(), with)
-                .and_then(|rows| formula.evaluate(&rows.names(0, None)))
+                .and_then(|rows| formula.evaluate(rows.names(0, &rows.lookup(None))))
                 .map_err(wrong)?;
             if let (Outcome::Number(number), Some(target)) = (outcome, &self.published) {
                 target.stated.check_dimension(number).map_err(wrong)?;
@@ -157,23 +157,24 @@ impl Entry {
             }
             Subject::Formula(formula, with) => {
                 let rows = Rows::of(inputs, with)?;
-                rows.single()?;
-                match formula.evaluate(&rows.names(0, None))? {
+                rows.single(formula)?;
+                match formula.evaluate(rows.names(0, &rows.lookup(None)))? {
                     Outcome::Number(number) => (self.in_published_unit(number)?, 0.0, rows.written(0), String::new()),
                     Outcome::Truth(_) => return Err("a formula gives a number".to_owned()),
                 }
             }
             Subject::Claim(formula, with) => {
                 let rows = Rows::of(inputs, with)?;
+                let (value, count) = (rows.lookup(None), rows.judged(formula));
                 let mut failing = Vec::new();
-                for row in 0..rows.count {
-                    if formula.evaluate(&rows.names(row, None))? == Outcome::Truth(false) {
+                for row in 0..count {
+                    if formula.evaluate(rows.names(row, &value))? == Outcome::Truth(false) {
                         failing.push(row);
                     }
                 }
                 let remark = rows.remark(&failing, formula)?;
-                let held = (rows.count - failing.len()) as f64;
-                (held, rows.count as f64, if rows.count == 1 { rows.written(0) } else { String::new() }, remark)
+                let held = (count - failing.len()) as f64;
+                (held, count as f64, if count == 1 { rows.written(0) } else { String::new() }, remark)
             }
         };
         let published = self.published.as_ref().map_or(total, |target| target.stated.number);
@@ -235,14 +236,15 @@ impl Entry {
     fn prove(&self, inputs: &Inputs, published: f64, computed: f64) -> Result<Option<(bool, String)>, String> {
         let Some(Proof { claim, with }) = &self.proof else { return Ok(None) };
         let rows = Rows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
-        rows.single().map_err(|problem| format!("proof: {problem}"))?;
+        rows.single(claim).map_err(|problem| format!("proof: {problem}"))?;
         let unit = self.published.as_ref().map_or("", |target| target.stated.unit.as_str());
         // A value that is not known yet is NaN, which no formula lets pass.
         let number = |value: f64| if value.is_nan() { Ok(Number::plain(value)) } else { in_si(value, unit) };
         let given = (number(published)?, number(computed)?);
-        let names = rows.names(0, Some(given));
-        let outcome = claim.evaluate(&names).map_err(|problem| format!("proof: {problem}"))?;
-        let numbers = claim.with_numbers(&names, unit).map_err(|problem| format!("proof: {problem}"))?;
+        let value = rows.lookup(Some(given));
+        let names = rows.names(0, &value);
+        let outcome = claim.evaluate(names).map_err(|problem| format!("proof: {problem}"))?;
+        let numbers = claim.with_numbers(names, unit).map_err(|problem| format!("proof: {problem}"))?;
         let written = rows.written(0);
         let written = if written.is_empty() { written } else { format!(", with {written}") };
         let holds = outcome == Outcome::Truth(true);
@@ -327,7 +329,9 @@ fn read_operands(record: &Record, taken: &[&str]) -> Result<Operands, Diagnostic
 fn read_formula(text: &str, with: &Operands, given: &[&str], place: Place) -> Result<Formula, Diagnostic> {
     let names: Vec<&str> = with.iter().map(|(name, _)| name.as_str()).chain(given.iter().copied()).collect();
     let formula = Formula::parse(text, &names).map_err(|message| {
-        Diagnostic::new(message).at(place).help("allowed: + - * / ^ sqrt() abs() min() max() < <= > >= == != && || !")
+        Diagnostic::new(message).at(place).help(
+            "allowed: + - * / ^ sqrt() abs() min() max() < <= > >= == != && || !; over all rows mean() rms() sum()",
+        )
     })?;
     if let Some((unused, _)) = with.iter().find(|(name, _)| formula.names().all(|used| used != name)) {
         return Err(Diagnostic::new(format!("`with` gives `{unused}`, but `{text}` does not use it")).at(place));

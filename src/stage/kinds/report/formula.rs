@@ -2,8 +2,8 @@
 //!
 //! The library parses; the tree is walked here, because a formula must not divide whole numbers (`1 / 2` is a half), must
 //! not add newtons to metres, and must give the same bits on every machine. Allowed: `+ - * / ^`, comparisons, `&&`,
-//! `||`, `!`, sqrt, abs, min, max, sin, cos, tan, atan. Values are SI; an angle counts as a plain number. Must not know:
-//! tables, entries.
+//! `||`, `!`, sqrt, abs, min, max, sin, cos, tan, atan, and over all rows of its operands mean, rms, sum. Values are SI; an
+//! angle counts as a plain number. Must not know: tables, entries.
 
 #[cfg(test)]
 mod tests;
@@ -17,7 +17,9 @@ use super::quantity::{Number, described, power, product, shown, wider};
 
 /// Longer formulas are refused: nobody reads them, and the parser's recursion stays shallow.
 const LONGEST: usize = 600;
-const FUNCTIONS: [&str; 8] = ["abs", "atan", "cos", "max", "min", "sin", "sqrt", "tan"];
+const FUNCTIONS: [&str; 11] = ["abs", "atan", "cos", "max", "mean", "min", "rms", "sin", "sqrt", "sum", "tan"];
+/// Those that make one number of all rows.
+const OVER_ROWS: [&str; 3] = ["mean", "rms", "sum"];
 
 /// What an expression gives.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,8 +28,13 @@ pub enum Outcome {
     Truth(bool),
 }
 
-/// What the names in a formula stand for.
-pub type Names<'a> = &'a dyn Fn(&str) -> Option<Number>;
+/// What the names in a formula stand for, in one row of several.
+#[derive(Clone, Copy)]
+pub struct Names<'a> {
+    pub value: &'a dyn Fn(&str, usize) -> Option<Number>,
+    pub row: usize,
+    pub rows: usize,
+}
 
 /// A parsed and checked expression.
 #[derive(Debug)]
@@ -64,6 +71,12 @@ impl Formula {
     /// The names that occur in it.
     pub fn names(&self) -> impl Iterator<Item = &str> {
         self.root.iter_variable_identifiers()
+    }
+
+    /// Whether a name is used outside of functions over all rows, so that it must stand for one number at a time.
+    #[must_use]
+    pub fn row_by_row(&self, name: &str) -> bool {
+        row_by_row(&self.root, name)
     }
 
     /// # Errors
@@ -144,6 +157,14 @@ fn check(node: &Node<DefaultNumericTypes>, names: &[&str]) -> Result<bool, Strin
             Ok(false)
         }
         other => Err(format!("`{}` has no place in a formula", other.to_string().trim())),
+    }
+}
+
+fn row_by_row(node: &Node<DefaultNumericTypes>, name: &str) -> bool {
+    match node.operator() {
+        Operator::VariableIdentifierRead { identifier } => identifier == name,
+        Operator::FunctionIdentifier { identifier } if OVER_ROWS.contains(&identifier.as_str()) => false,
+        _ => node.children().iter().any(|child| row_by_row(child, name)),
     }
 }
 
@@ -258,8 +279,23 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
         Operator::Const { value: Value::Float(value) } => finite(*value, RATIO),
         Operator::Const { value: Value::Int(value) } => finite(*value as f64, RATIO),
         Operator::VariableIdentifierRead { identifier } => {
-            let value = names(identifier).ok_or_else(|| format!("`{identifier}` is not given"))?;
+            let value = (names.value)(identifier, names.row).ok_or_else(|| format!("`{identifier}` is not given"))?;
             finite(value.si, value.dimension)
+        }
+        Operator::FunctionIdentifier { identifier } if OVER_ROWS.contains(&identifier.as_str()) => {
+            let [child] = arguments(children)[..] else { return Err(format!("`{identifier}` needs one value")) };
+            let of_row = |row| number(child, Names { row, ..names });
+            let values = (0..names.rows).map(of_row).collect::<Result<Vec<_>, _>>()?;
+            let dimension = values.iter().copied().reduce(|a, b| Number { dimension: wider(a, b), ..b });
+            let dimension = dimension.map_or(RATIO, |number| number.dimension);
+            let sum = |of: fn(f64) -> f64| values.iter().map(|value| of(value.si)).sum::<f64>();
+            let count = values.len() as f64;
+            let si = match identifier.as_str() {
+                "mean" => sum(|value| value) / count,
+                "rms" => (sum(|value| value * value) / count).sqrt(),
+                _ => sum(|value| value),
+            };
+            finite(si, dimension)
         }
         Operator::FunctionIdentifier { identifier } => {
             let values =

@@ -1,4 +1,4 @@
-//! What a name in an entry stands for: a quantity as written, or cells of another stage's table.
+//! What a name in an entry stands for: quantities as written, or cells of another stage's table.
 //!
 //! Must not know: verdicts. Everything is SI once it is resolved.
 
@@ -8,7 +8,7 @@ use crate::stage::Inputs;
 use crate::table::data::{Cell, Data, Table};
 use crate::table::select::{CellName, rows_where, unknown_column};
 
-use super::quantity::Number;
+use super::quantity::{Number, described};
 
 /// A quantity or cells, as written.
 #[derive(Clone, Debug)]
@@ -19,29 +19,30 @@ pub struct Operand {
 
 #[derive(Clone, Debug)]
 pub enum Source {
-    Quantity { number: Number, unit: String },
+    /// One, or several of one dimension; with the first one's unit.
+    Quantities {
+        numbers: Vec<Number>,
+        unit: String,
+    },
     Cells(CellName),
 }
 
 impl Operand {
-    /// Reads `50 N m`, or `ste.summary[design=iso].peak_to_peak`.
+    /// Reads `50 N m`, or `0.51 mm, 0.49 mm`, or `ste.summary[design=iso].peak_to_peak`.
     ///
     /// # Errors
     /// A sentence that says what was expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         let text = text.trim();
-        let source = match parse_quantity(text) {
-            Ok(quantity) => Source::Quantity {
-                number: Number { si: quantity.value, dimension: quantity.dimension },
-                unit: split_quantity(text).1.to_owned(),
-            },
+        let first = text.split(',').next().unwrap_or_default();
+        let source = match parse_quantity(first) {
             Err(UnitError::NotANumber(_)) => {
                 let name = CellName::parse(text).map_err(|_| {
                     format!("`{text}` is neither a quantity (`50 N m`) nor a cell (`stage.table[key=value, …].column`)")
                 })?;
                 Source::Cells(name)
             }
-            Err(error) => return Err(format!("`{text}`: {error}")),
+            _ => Source::Quantities { numbers: quantities(text)?, unit: split_quantity(first.trim()).1.to_owned() },
         };
         Ok(Self { text: text.to_owned(), source })
     }
@@ -50,7 +51,7 @@ impl Operand {
     pub fn cell(&self) -> Option<&CellName> {
         match &self.source {
             Source::Cells(name) => Some(name),
-            Source::Quantity { .. } => None,
+            Source::Quantities { .. } => None,
         }
     }
 
@@ -60,12 +61,30 @@ impl Operand {
     /// When no row meets the conditions, or the column holds no numbers.
     pub fn resolve(&self, inputs: &Inputs) -> Result<Values, String> {
         match &self.source {
-            Source::Quantity { number, unit } => {
-                Ok(Values { numbers: vec![*number], unit: unit.clone(), keys: Vec::new(), rows: vec![Vec::new()] })
-            }
+            Source::Quantities { numbers, unit } => Ok(Values {
+                numbers: numbers.clone(),
+                unit: unit.clone(),
+                keys: Vec::new(),
+                rows: vec![Vec::new(); numbers.len()],
+            }),
             Source::Cells(name) => cells(name, inputs).map_err(|problem| format!("`{}`: {problem}", self.text)),
         }
     }
+}
+
+/// Quantities with commas between.
+fn quantities(text: &str) -> Result<Vec<Number>, String> {
+    let mut numbers: Vec<Number> = Vec::new();
+    for item in text.split(',').map(str::trim) {
+        let quantity = parse_quantity(item).map_err(|error| format!("`{item}`: {error}"))?;
+        let number = Number { si: quantity.value, dimension: quantity.dimension };
+        if let Some(first) = numbers.first().filter(|first| !first.fits(number)) {
+            let (a, b) = (described(first.dimension), described(number.dimension));
+            return Err(format!("`{text}` lists {a} and {b}"));
+        }
+        numbers.push(number);
+    }
+    Ok(numbers)
 }
 
 /// The values an operand stands for: one, or one per row.

@@ -25,17 +25,31 @@ impl<'a> Rows<'a> {
             .iter()
             .map(|(name, operand)| operand.resolve(inputs).map_err(|problem| format!("{name} = {problem}")))
             .collect::<Result<_, _>>()?;
-        let leader = values.iter().position(|values| values.numbers.len() > 1);
+        let several = |values: &Values| values.numbers.len() > 1;
+        // Rows that have keys tell where a claim fails; quantities as written have none.
+        let leader = values.iter().position(|values| several(values) && !values.keys.is_empty());
+        let leader = leader.or_else(|| values.iter().position(several));
         let count = leader.map_or(1, |leader| values[leader].numbers.len());
         if let Some(leader) = leader {
+            let first = &values[leader];
+            // Quantities as written have no keys: they stand in the order of the rows.
+            let line_up = |other: &Values| {
+                let written = first.keys.is_empty() || other.keys.is_empty();
+                if written {
+                    other.numbers.len() == count
+                } else {
+                    (&other.keys, &other.rows) == (&first.keys, &first.rows)
+                }
+            };
             for (other, (name, _)) in values.iter().zip(with) {
-                if other.numbers.len() > 1 && (&other.keys, &other.rows) != (&values[leader].keys, &values[leader].rows)
-                {
-                    let (first, keys) = (&with[leader].0, values[leader].keys.join(", "));
+                if other.numbers.len() > 1 && !line_up(other) {
+                    let rows = |values: &Values| match values.keys.join(", ") {
+                        keys if keys.is_empty() => values.numbers.len().to_string(),
+                        keys => format!("{}, by {keys}", values.numbers.len()),
+                    };
+                    let (leader, rows_of_first, rows_of_other) = (&with[leader].0, rows(first), rows(other));
                     return Err(format!(
-                        "the rows of {first} ({count}, by {keys}) and {name} ({}, by {}) do not line up",
-                        other.numbers.len(),
-                        other.keys.join(", ")
+                        "the rows of {leader} ({rows_of_first}) and {name} ({rows_of_other}) do not line up"
                     ));
                 }
             }
@@ -44,12 +58,20 @@ impl<'a> Rows<'a> {
     }
 
     /// # Errors
-    /// When an operand names several rows.
-    pub fn single(&self) -> Result<(), String> {
-        for (values, (_, operand)) in self.values.iter().zip(self.with) {
-            values.single(&operand.text)?;
+    /// When an operand names several rows where the formula means one.
+    pub fn single(&self, formula: &Formula) -> Result<(), String> {
+        for (values, (name, operand)) in self.values.iter().zip(self.with) {
+            if formula.row_by_row(name) {
+                values.single(&operand.text)?;
+            }
         }
         Ok(())
+    }
+
+    /// How often a claim is to be judged: once per row, or once when all rows go into its numbers.
+    pub fn judged(&self, claim: &Formula) -> usize {
+        let mut named = self.with.iter().zip(&self.values);
+        if named.any(|((name, _), values)| values.numbers.len() > 1 && claim.row_by_row(name)) { self.count } else { 1 }
     }
 
     pub fn number(&self, operand: usize, row: usize) -> Number {
@@ -57,20 +79,25 @@ impl<'a> Rows<'a> {
         numbers[if numbers.len() == 1 { 0 } else { row }]
     }
 
-    /// The names of one row; `given` are `published` and `computed`, in a proof.
-    pub fn names(&self, row: usize, given: Option<(Number, Number)>) -> impl Fn(&str) -> Option<Number> + '_ {
-        move |name| match (name, given) {
+    /// What a name stands for in a row; `given` are `published` and `computed`, in a proof.
+    pub fn lookup(&self, given: Option<(Number, Number)>) -> impl Fn(&str, usize) -> Option<Number> + '_ {
+        move |name, row| match (name, given) {
             ("published", Some((published, _))) => Some(published),
             ("computed", Some((_, computed))) => Some(computed),
             _ => self.with.iter().position(|(known, _)| known == name).map(|operand| self.number(operand, row)),
         }
     }
 
+    /// The names of one row.
+    pub fn names<'n>(&self, row: usize, value: &'n dyn Fn(&str, usize) -> Option<Number>) -> Names<'n> {
+        Names { value, row, rows: self.count }
+    }
+
     /// `k1 = 273.8×10⁶ N/m, …`
     pub fn written(&self, row: usize) -> String {
-        let one = |(operand, (name, _)): (usize, &(String, Operand))| {
-            let text = shown(self.number(operand, row), &self.values[operand].unit, 6);
-            format!("{name} = {text}")
+        let one = |(operand, (name, _)): (usize, &(String, Operand))| match self.values[operand].numbers.len() {
+            1 => format!("{name} = {}", shown(self.number(operand, row), &self.values[operand].unit, 6)),
+            several => format!("{name} = {several} values"),
         };
         self.with.iter().enumerate().map(one).collect::<Vec<_>>().join(", ")
     }
@@ -82,18 +109,21 @@ impl<'a> Rows<'a> {
     pub fn remark(&self, failing: &[usize], formula: &Formula) -> Result<String, String> {
         const MOST: usize = 6;
         let Some(&first) = failing.first() else { return Ok(String::new()) };
-        let Some(leader) = self.leader else { return formula.with_numbers(&self.names(first, None), "") };
+        let value = self.lookup(None);
+        let Some(leader) = self.leader.filter(|_| self.judged(formula) > 1) else {
+            return formula.with_numbers(self.names(first, &value), "");
+        };
         let (keys, rows) = (&self.values[leader].keys, &self.values[leader].rows);
         let at = |row: usize| {
             let parts = keys.iter().zip(&rows[row]).map(|(key, value)| format!("{key} {value}"));
-            parts.collect::<Vec<_>>().join(", ")
+            let place = parts.collect::<Vec<_>>().join(", ");
+            if place.is_empty() { format!("value {}", row + 1) } else { place }
         };
         let mut places: Vec<String> = failing.iter().take(MOST).map(|&row| at(row)).collect();
         if failing.len() > MOST {
             places.push(format!("and {} more", failing.len() - MOST));
         }
-        let names: Names = &self.names(first, None);
-        let numbers = formula.with_numbers(names, &self.values[leader].unit)?;
+        let numbers = formula.with_numbers(self.names(first, &value), &self.values[leader].unit)?;
         Ok(format!("does not hold at {}; at {}: {numbers}", places.join("; "), at(first)))
     }
 }

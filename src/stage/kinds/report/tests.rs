@@ -187,6 +187,36 @@ fn rows_of_a_claim_must_line_up() {
     let with = map(&[("a", "ste.summary[design=iso].peak_to_peak"), ("b", "ste.summary[torque=50 N m].peak_to_peak")]);
     let error = verdict(&[("claim", text("a < b")), ("with", with)]).unwrap_err();
     assert!(error.contains("the rows of a (3, by torque) and b (3, by design) do not line up"), "{error}");
+    let with = map(&[("a", "1 um, 2 um"), ("b", "ste.summary[design=iso].peak_to_peak")]);
+    let error = verdict(&[("claim", text("a < b")), ("with", with)]).unwrap_err();
+    assert!(error.contains("the rows of b (3, by torque) and a (2) do not line up"), "{error}");
+}
+
+/// The printed column of a table beside the computed one: row by row, and as one distance.
+#[test]
+fn a_list_of_quantities_stands_beside_the_rows_in_their_order() {
+    let with = map(&[("printed", "1.5 um, 0.7 um, 3.9 um"), ("ours", "ste.summary[design=iso].peak_to_peak")]);
+    let distance = [
+        ("formula", text("rms(ours - printed)")),
+        ("with", with.clone()),
+        ("value", text("0.13 um")),
+        ("tolerance", text("0.01 um")),
+    ];
+    let (word, table) = verdict(&distance).unwrap();
+    assert_eq!(word, "reproduced");
+    let expected = libm::sqrt((0.01 + 0.0025 + 0.04) / 3.0);
+    assert!((table.floats("computed")[0] - expected).abs() < 1e-12, "{}", table.floats("computed")[0]);
+    assert_eq!(table.texts("numbers")[0], "printed = 3 values, ours = 3 values");
+    let (word, table) = verdict(&[("claim", text("ours < printed")), ("with", with.clone())]).unwrap();
+    assert_eq!((word.as_str(), table.texts("found")[0].as_str()), ("unexplained", "holds in 2 of 3"));
+    assert!(table.texts("failing")[0].starts_with("does not hold at torque 50\u{202f}N·m"), "{table:?}");
+    // All rows go into the numbers of this claim, so it is judged once.
+    let claim = text("rms(ours - printed) < 0.2 * mean(printed)");
+    let (word, table) = verdict(&[("claim", claim), ("with", with)]).unwrap();
+    assert_eq!((word.as_str(), table.texts("found")[0].as_str()), ("holds", "holds"));
+    let with = map(&[("a", "1 um, 2 N")]);
+    let error = verdict(&[("formula", text("sum(a)")), ("with", with), ("value", text("1 um"))]).unwrap_err();
+    assert!(error.contains("`1 um, 2 N` lists a length and a force"), "{error}");
 }
 
 #[test]

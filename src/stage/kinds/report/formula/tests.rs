@@ -18,10 +18,18 @@ fn given(name: &str) -> Option<Number> {
     Some(Number { si: quantity.value, dimension: quantity.dimension })
 }
 
-const NAMES: [&str; 6] = ["F", "k1", "k2", "published", "b", "angle"];
+const NAMES: [&str; 7] = ["F", "k1", "k2", "published", "b", "angle", "list"];
+
+/// Three rows: `list` is 1, 2 and 4 mm, all else the same in each.
+const IN_ROW_ONE: Names =
+    Names { value: &|name, row| if name == "list" { listed(row) } else { given(name) }, row: 0, rows: 3 };
+
+fn listed(row: usize) -> Option<Number> {
+    Some(Number { si: [1e-3, 2e-3, 4e-3][row], dimension: LENGTH })
+}
 
 fn value(text: &str) -> Result<Outcome, String> {
-    Formula::parse(text, &NAMES)?.evaluate(&given)
+    Formula::parse(text, &NAMES)?.evaluate(IN_ROW_ONE)
 }
 
 fn plain(text: &str) -> f64 {
@@ -53,15 +61,33 @@ fn arithmetic_is_that_of_real_numbers() {
     }
 }
 
+#[test]
+fn functions_over_rows_make_one_number_of_all() {
+    for (text, expected) in [
+        ("sum(list) / b", 7.0 / 18.0),
+        ("mean(list - b) / b", 7.0 / 3.0 / 18.0 - 1.0),
+        ("rms(list) / b", libm::sqrt(21.0 / 3.0) / 18.0),
+        ("rms(list - mean(list)) / list", libm::sqrt(7.0 - 49.0 / 9.0)),
+        ("sum(1)", 3.0),
+        ("list / b", 1.0 / 18.0),
+    ] {
+        assert!((plain(text) - expected).abs() <= 4.0 * f64::EPSILON, "{text} = {}", plain(text));
+    }
+    let formula = Formula::parse("rms(list - b) < list + F", &NAMES).unwrap();
+    assert!(formula.row_by_row("list") && formula.row_by_row("F") && !formula.row_by_row("b"));
+    assert!(value("rms(list, b)").unwrap_err().contains("`rms` is given 2 values"));
+    assert!(value("mean(list + F)").unwrap_err().contains("do not go together"));
+}
+
 /// The paper's own stiffnesses bound its own transmission error: F/k1 − F/k2 = 2.867 µm (physics: 2.867).
 #[test]
 fn the_bound_on_the_published_error_is_shown_with_its_numbers() {
     let formula = Formula::parse("F / k1 - F / k2 > published", &NAMES).unwrap();
-    assert_eq!(formula.evaluate(&given), Ok(Outcome::Truth(true)));
-    assert_eq!(formula.with_numbers(&given, "um").unwrap(), "2.867\u{202f}µm > 2.316\u{202f}µm");
+    assert_eq!(formula.evaluate(IN_ROW_ONE), Ok(Outcome::Truth(true)));
+    assert_eq!(formula.with_numbers(IN_ROW_ONE, "um").unwrap(), "2.867\u{202f}µm > 2.316\u{202f}µm");
     let refuted = Formula::parse("F / k1 - F / k2 < published && b > 0", &NAMES).unwrap();
     assert_eq!(
-        refuted.with_numbers(&given, "um").unwrap(),
+        refuted.with_numbers(IN_ROW_ONE, "um").unwrap(),
         "2.867\u{202f}µm ≥ 2.316\u{202f}µm and 18000\u{202f}µm > 0\u{202f}µm"
     );
     assert_eq!(formula.names().collect::<Vec<_>>(), ["F", "k1", "F", "k2", "published"]);
@@ -121,7 +147,8 @@ fn what_is_no_formula_is_refused_when_it_is_read() {
 
 #[test]
 fn close_sides_are_shown_with_digits_that_tell_them_apart() {
-    let names: Names = &|name| Some(Number::plain(if name == "b" { 1.000_001 } else { 1.0 }));
+    let one = |name: &str, _| Some(Number::plain(if name == "b" { 1.000_001 } else { 1.0 }));
+    let names = Names { value: &one, row: 0, rows: 1 };
     let formula = Formula::parse("b > F", &NAMES).unwrap();
     assert_eq!(formula.with_numbers(names, "").unwrap(), "1.000001 > 1");
 }
