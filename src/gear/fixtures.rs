@@ -36,7 +36,8 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
         form_radius: base_radius,
         form_roll: 0.0,
         undercut: false,
-        half_base_angle: 0.09,
+        // (π/2)/z + inv 20°.
+        half_base_angle: std::f64::consts::FRAC_PI_2 / f64::from(teeth) + 0.014_904_383_867_336_45,
     }
 }
 
@@ -57,10 +58,31 @@ pub fn pair() -> Pair {
     }
 }
 
-/// The same gears with the end of contact moved.
+/// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker so that as much angle of their
+/// tips is left.
 pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
-    let pair = pair();
-    Pair { contact_ratio: ratio, end_of_contact: pair.start_of_contact + ratio * BASE_PITCH, ..pair }
+    let mut pair = pair();
+    let involute = |pair: &Pair| {
+        let roll = pair.end_of_contact / pair.pinion.base_radius;
+        roll - libm::atan(roll)
+    };
+    let before = involute(&pair);
+    pair.contact_ratio = ratio;
+    pair.end_of_contact = pair.start_of_contact + ratio * BASE_PITCH;
+    pair.pinion.tip_radius = libm::hypot(pair.pinion.base_radius, pair.end_of_contact);
+    pair.pinion.half_base_angle += involute(&pair) - before;
+    pair
+}
+
+/// The same pair with the gear driving: its path of contact is run through backwards.
+pub fn swapped(pair: &Pair) -> Pair {
+    Pair {
+        pinion: pair.gear.clone(),
+        gear: pair.pinion.clone(),
+        start_of_contact: pair.tangent_length - pair.end_of_contact,
+        end_of_contact: pair.tangent_length - pair.start_of_contact,
+        ..pair.clone()
+    }
 }
 
 /// Teeth whose compliance is `value(u, centre)` with u the roll angle; everything in the bending part.

@@ -154,7 +154,7 @@ impl<'a> Beam<'a> {
             bending: 1.5 * moment / stretch,
             shear: self.shear_factor * cosine * cosine * area / (2.0 * shear),
             axial: sine * sine * area / (2.0 * stretch),
-            contact_depth: self.gear.flank(roll).half_thickness / cosine,
+            contact_depth: self.gear.depth_to_centreline(roll),
         }
     }
 }
