@@ -18,17 +18,7 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
     let module = 3e-3;
     let reference_radius = 0.5 * module * f64::from(teeth);
     Gear {
-        specification: Specification {
-            teeth,
-            module,
-            pressure_angle: 20_f64.to_radians(),
-            profile_shift: 0.0,
-            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
-            tip_radius: None,
-            face_width,
-            bore_radius: 0.5 * reference_radius,
-            material: STEEL,
-        },
+        specification: Specification { face_width, ..standard(teeth, module, 2.0) },
         reference_radius,
         base_radius,
         tip_radius: reference_radius + module,
@@ -38,6 +28,21 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
         undercut: false,
         // (π/2)/z + inv 20°.
         half_base_angle: std::f64::consts::FRAC_PI_2 / f64::from(teeth) + 0.014_904_383_867_336_45,
+    }
+}
+
+/// A gear of the standard rack without profile shift, 7 modules wide, its bore r_f/`bore_ratio`.
+pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
+    Specification {
+        teeth,
+        module,
+        pressure_angle: 20_f64.to_radians(),
+        profile_shift: 0.0,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
+        tip_radius: None,
+        face_width: 7.0 * module,
+        bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
+        material: STEEL,
     }
 }
 

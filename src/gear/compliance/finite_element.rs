@@ -57,6 +57,7 @@ pub const METHOD: Method = Method {
         fields: FIELDS,
     },
     whole_pair: false,
+    needs_fillet: true,
     tabulate,
     root_stress: Some(root_stress),
 };

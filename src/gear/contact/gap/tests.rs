@@ -1,5 +1,7 @@
 //! The least gap against brute force, in the model's own terms and with true points, and its continuity.
 
+mod outlines;
+
 use super::*;
 use crate::base::record::Value::{Choice, Number, Quantity};
 use crate::gear::fixtures::{Part, design, pair, swapped};
