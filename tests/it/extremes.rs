@@ -116,7 +116,7 @@ fn displacement_is_inverse_to_the_modulus() {
 #[test]
 fn torques_vanish_and_become_absurd() {
     for method in METHODS {
-        let with = |torque: &str, contact: &str| Case { torque, contact, method, ..PLAIN }.numbers();
+        let with = |torque: &str, contact: &str| Case { method, contact, torque, ..PLAIN }.numbers();
         let [_, unit] = with("1 N m", "linear");
         for (torque, value) in [("1e-9 N m", 1e-9), ("1e9 N m", 1e9)] {
             near(with(torque, "linear")[1], unit * value, 1e-11, method);

@@ -185,7 +185,7 @@ fn tabulate_side(
         (Foundation::Ring, None)
     } else {
         let body = Body::new(root.half_angle, bore_ratio);
-        if bore_ratio < BORE_RATIOS[0] || bore_ratio > BORE_RATIOS[1] {
+        if !(BORE_RATIOS[0]..=BORE_RATIOS[1]).contains(&bore_ratio) {
             return Err(ComplianceError::BoreOfFormula { side, bore_ratio, range: BORE_RATIOS });
         }
         if root.half_angle < LEAST_HALF_ANGLE {

@@ -13,6 +13,9 @@ use crate::gear::geometry::{Pair, Side};
 
 const AMOUNT: f64 = 7.81e-6;
 
+/// A field and its value.
+type Given = (&'static str, Value);
+
 /// Depth of one modification of the pinion where the contact is at path position `s`.
 fn pinion_depth(name: &'static str, values: &[(&'static str, Value)], s: f64) -> f64 {
     let pair = pair();
@@ -235,7 +238,7 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
         assert!((tip / (gear.base_radius * land) - 1.0).abs() < 1e-9 && tip < root);
         let length = ("length", Quantity(3e-3));
         let ends = ("end", Choice("I"));
-        let cases: [(&str, f64, &[(&'static str, Value)]); 7] = [
+        let cases: [(&str, f64, &[Given]); 7] = [
             ("tip_relief", tip, std::slice::from_ref(&length)),
             ("root_relief", root, std::slice::from_ref(&length)),
             ("profile_crowning", tip, &[]),
