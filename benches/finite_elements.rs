@@ -6,8 +6,12 @@ use std::time::Duration;
 use criterion::{Criterion, criterion_group};
 use gearstudy::base::record::Value;
 use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
+use gearstudy::gear::contact::CornerContact;
 use gearstudy::gear::geometry::Pair;
 use gearstudy::gear::geometry::root::RootShape;
+use gearstudy::gear::modification::{Design, family};
+use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearstudy::gear::transmission_error::loading::Loading;
 
 use crate::accuracy::{relative, seconds};
 use crate::article::{Stages, study_path};
@@ -60,7 +64,11 @@ pub fn print() {
     };
     let finest: Vec<f64> = own(&tabulate(&pair, ("elements_across", Value::Integer(48))));
     println!("\nFinite elements, 48 teeth: largest relative error along the flank (48 across: no error), one gear\n");
-    println!("{:>7} {:>9} {:>9} {:>10} {:>10} {:>9}", "across", "elements", "unknowns", "error", "estimate", "ms");
+    println!(
+        "{:>7} {:>9} {:>9} {:>10} {:>10} {:>9} {:>9}",
+        "across", "elements", "unknowns", "error", "estimate", "ms", "exponent"
+    );
+    let mut growth = Growth::default();
     for across in [6, 8, 12, 16, 24, 32] {
         let found = tabulate(&pair, ("elements_across", Value::Integer(across)));
         let values: Vec<f64> = own(&found);
@@ -68,14 +76,73 @@ pub fn print() {
         let mesh = found.meshes[1];
         let taken = 0.5 * seconds(|| tabulate(&pair, ("elements_across", Value::Integer(across))));
         println!(
-            "{across:>7} {:>9} {:>9} {error:>10.1e} {:>10.1e} {:>9.1}",
+            "{across:>7} {:>9} {:>9} {error:>10.1e} {:>10.1e} {:>9.1} {}",
             mesh.elements,
             mesh.unknowns,
             mesh.error_estimate,
-            taken * 1e3
+            taken * 1e3,
+            growth.next(mesh.unknowns as f64, taken)
         );
     }
+    sweeps();
     println!("\nmei2016, whole process without a cache: {} MiB at most in memory", most_memory("mei2016") / 1024);
+}
+
+/// By which power of a number time has grown since the last one.
+#[derive(Default)]
+struct Growth(Option<(f64, f64)>);
+
+impl Growth {
+    fn next(&mut self, number: f64, taken: f64) -> String {
+        let before = self.0.replace((number, taken));
+        before.map_or_else(
+            || format!("{:>9}", "-"),
+            |(size, time)| format!("{:>9.2}", (taken / time).ln() / (number / size).ln()),
+        )
+    }
+}
+
+/// The sweep of `mei2016` over positions and over designs: coupled, load-dependent, corner contact; one thread.
+fn sweeps() {
+    let pair = Stages::of("mei2016").pair();
+    let compliance = tabulate(&pair, ("accuracy", Value::Quantity(0.002))).compliance;
+    let base =
+        MeshCycle::new(&pair, &compliance, Settings { corner_contact: CornerContact::Exact, ..Settings::default() })
+            .expect("its contact ratio is 1.68");
+    let arc = family("arc").expect("it is registered");
+    let design = |index: u32| {
+        let mut design = Design::default();
+        let level = |place: u32| f64::from(index / 5_u32.pow(place) % 5);
+        for (gear, place) in [("gear", 0), ("pinion", 2)] {
+            let values = [
+                ("gear", Value::Choice(gear)),
+                ("tip_share", Value::Number(0.02 + 0.02 * level(place + 1))),
+                ("length_share", Value::Number(0.05 + 0.05 * level(place))),
+            ];
+            design.add(arc, &record(arc.member.fields, &values), &pair).expect("the article has it");
+        }
+        design
+    };
+    let variances = |positions: usize, designs: u32| {
+        let cycle = base.sampled(Settings { positions, ..base.settings });
+        (0..designs).map(|index| Loading::new(&cycle, &design(index), 420.0).variance()).sum::<f64>()
+    };
+    println!("\nGrowth: variance of arcs of mei2016, coupled, corner contact, one thread; 25 designs\n");
+    println!("{:>9} {:>9} {:>12} {:>9}", "positions", "ms", "µs a design", "exponent");
+    let mut growth = Growth::default();
+    for positions in [8, 16, 32, 64, 128, 256, 512, 1024] {
+        let taken = seconds(|| variances(positions, 25));
+        let exponent = growth.next(positions as f64, taken);
+        println!("{positions:>9} {:>9.1} {:>12.1} {exponent}", taken * 1e3, taken * 1e6 / 25.0);
+    }
+    println!("\nThe same over designs, 24 positions\n");
+    println!("{:>9} {:>9} {:>12} {:>9}", "designs", "ms", "µs a design", "exponent");
+    let mut growth = Growth::default();
+    for designs in [5, 25, 125, 625] {
+        let taken = seconds(|| variances(24, designs));
+        let exponent = growth.next(f64::from(designs), taken);
+        println!("{designs:>9} {:>9.1} {:>12.1} {exponent}", taken * 1e3, taken * 1e6 / f64::from(designs));
+    }
 }
 
 /// The largest resident size of a run \[KiB\], as the kernel counts it while the process lives.

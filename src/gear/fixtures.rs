@@ -18,17 +18,7 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
     let module = 3e-3;
     let reference_radius = 0.5 * module * f64::from(teeth);
     Gear {
-        specification: Specification {
-            teeth,
-            module,
-            pressure_angle: 20_f64.to_radians(),
-            profile_shift: 0.0,
-            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
-            tip_radius: None,
-            face_width,
-            bore_radius: 0.5 * reference_radius,
-            material: STEEL,
-        },
+        specification: Specification { face_width, ..standard(teeth, module, 2.0) },
         reference_radius,
         base_radius,
         tip_radius: reference_radius + module,
@@ -36,7 +26,23 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
         form_radius: base_radius,
         form_roll: 0.0,
         undercut: false,
-        half_base_angle: 0.09,
+        // (π/2)/z + inv 20°.
+        half_base_angle: std::f64::consts::FRAC_PI_2 / f64::from(teeth) + 0.014_904_383_867_336_45,
+    }
+}
+
+/// A gear of the standard rack without profile shift, 7 modules wide, its bore r_f/`bore_ratio`.
+pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
+    Specification {
+        teeth,
+        module,
+        pressure_angle: 20_f64.to_radians(),
+        profile_shift: 0.0,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
+        tip_radius: None,
+        face_width: 7.0 * module,
+        bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
+        material: STEEL,
     }
 }
 
@@ -57,10 +63,31 @@ pub fn pair() -> Pair {
     }
 }
 
-/// The same gears with the end of contact moved.
+/// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker so that as much angle of their
+/// tips is left.
 pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
-    let pair = pair();
-    Pair { contact_ratio: ratio, end_of_contact: pair.start_of_contact + ratio * BASE_PITCH, ..pair }
+    let mut pair = pair();
+    let involute = |pair: &Pair| {
+        let roll = pair.end_of_contact / pair.pinion.base_radius;
+        roll - libm::atan(roll)
+    };
+    let before = involute(&pair);
+    pair.contact_ratio = ratio;
+    pair.end_of_contact = pair.start_of_contact + ratio * BASE_PITCH;
+    pair.pinion.tip_radius = libm::hypot(pair.pinion.base_radius, pair.end_of_contact);
+    pair.pinion.half_base_angle += involute(&pair) - before;
+    pair
+}
+
+/// The same pair with the gear driving: its path of contact is run through backwards.
+pub fn swapped(pair: &Pair) -> Pair {
+    Pair {
+        pinion: pair.gear.clone(),
+        gear: pair.pinion.clone(),
+        start_of_contact: pair.tangent_length - pair.end_of_contact,
+        end_of_contact: pair.tangent_length - pair.start_of_contact,
+        ..pair.clone()
+    }
 }
 
 /// Teeth whose compliance is `value(u, centre)` with u the roll angle; everything in the bending part.

@@ -8,6 +8,7 @@ mod calculix;
 mod desk;
 mod determinism;
 mod e2e;
+mod extremes;
 mod layering;
 mod optimize;
 mod python;

@@ -20,9 +20,10 @@ use crate::numeric::surface::Surface;
 
 /// Points per piece of the root: twice what 1e-12 takes.
 const ROOT_POINTS: usize = 40;
-/// Below this bore ratio the fitted body formula gives 1.3 to 1.8 times what the ring it was fitted to gives, and it does
-/// not vanish as the bore reaches the root.
-const LEAST_BORE_RATIO: f64 = 1.2;
+/// Below these bore ratios the fitted body formula gives 1.3 to 1.8 times what the ring it was fitted to gives, and it does
+/// not vanish as the bore reaches the root. Up to the upper end it stays within a sixth of the ring; from there on its
+/// square of the ratio runs away, to a thousand times the ring's at a ratio of a thousand.
+const BORE_RATIOS: [f64; 2] = [1.2, 20.0];
 /// θ_f \[rad\] below which the fitted formula is all 1/θ_f²: half of what it was fitted for. It goes negative there, and
 /// for still more teeth comes back hundreds of times too large.
 const LEAST_HALF_ANGLE: f64 = 0.005;
@@ -45,6 +46,7 @@ pub const METHOD: Method = Method {
         fields: FIELDS,
     },
     whole_pair: false,
+    needs_fillet: false,
     tabulate,
     root_stress: None,
 };
@@ -154,7 +156,7 @@ impl<'a> Beam<'a> {
             bending: 1.5 * moment / stretch,
             shear: self.shear_factor * cosine * cosine * area / (2.0 * shear),
             axial: sine * sine * area / (2.0 * stretch),
-            contact_depth: self.gear.flank(roll).half_thickness / cosine,
+            contact_depth: self.gear.depth_to_centreline(roll),
         }
     }
 }
@@ -183,8 +185,8 @@ fn tabulate_side(
         (Foundation::Ring, None)
     } else {
         let body = Body::new(root.half_angle, bore_ratio);
-        if bore_ratio < LEAST_BORE_RATIO {
-            return Err(ComplianceError::ThinRing { side, bore_ratio, least: LEAST_BORE_RATIO });
+        if !(BORE_RATIOS[0]..=BORE_RATIOS[1]).contains(&bore_ratio) {
+            return Err(ComplianceError::BoreOfFormula { side, bore_ratio, range: BORE_RATIOS });
         }
         if root.half_angle < LEAST_HALF_ANGLE {
             let (half_angle, least) = (root.half_angle, LEAST_HALF_ANGLE);

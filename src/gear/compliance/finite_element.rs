@@ -57,6 +57,7 @@ pub const METHOD: Method = Method {
         fields: FIELDS,
     },
     whole_pair: false,
+    needs_fillet: true,
     tabulate,
     root_stress: Some(root_stress),
 };
@@ -181,10 +182,8 @@ impl<'a> Task<'a> {
         let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
         let nothing = || Series::from_values(lower, upper, &[0.0]);
-        let [contact_depth] = Series::converged(lower, upper, |roll| {
-            [self.gear.flank(roll).half_thickness / libm::cos(self.gear.load_angle(roll))]
-        })
-        .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
+        let [contact_depth] = Series::converged(lower, upper, |roll| [self.gear.depth_to_centreline(roll)])
+            .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [ROLLS; 2], &scaled(&rows.concat())))
             .collect();

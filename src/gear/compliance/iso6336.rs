@@ -27,6 +27,7 @@ pub const METHOD: Method = Method {
         fields: FIELDS,
     },
     whole_pair: true,
+    needs_fillet: false,
     tabulate,
     root_stress: None,
 };

@@ -31,6 +31,8 @@ pub struct Method {
     pub member: Member,
     /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
     pub whole_pair: bool,
+    /// Whether a root with a sharp corner, the shape `base_circle`, is beyond it.
+    pub needs_fillet: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
     /// method does not hold for this pair. The record holds what this method alone can be told.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
@@ -116,8 +118,8 @@ pub enum ComplianceError {
     Root(GeometryError),
     #[error("{}: the tip is too near to a point to be integrated: it is {} thick", .side.name(), Millimetres(*.thickness))]
     Unresolved { side: Side, thickness: f64 },
-    #[error("{}: the root radius is {} times the bore radius, but must be at least {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(*.least))]
-    ThinRing { side: Side, bore_ratio: f64, least: f64 },
+    #[error("{}: the root radius is {} times the bore radius, but must be {} to {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(.range[0]), Plain(.range[1]))]
+    BoreOfFormula { side: Side, bore_ratio: f64, range: [f64; 2] },
     #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.least))]
     ManyTeeth { side: Side, half_angle: f64, least: f64 },
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
@@ -138,7 +140,7 @@ impl ComplianceError {
         match self {
             Self::Root(error) => error.field(),
             Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
-            Self::ThinRing { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::BoreOfFormula { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
             Self::NoIsoStiffness { .. } => "pinion.profile_shift",
             Self::Mesh { error: MeshError::SharpRoot, .. } => "root",
             Self::Mesh { side, error: MeshError::Bore { .. } | MeshError::Rounding { .. }, .. } => {

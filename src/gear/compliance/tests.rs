@@ -9,13 +9,11 @@ use super::{Assumptions, ComplianceError, ContactLaw, Tabulated, ToothCompliance
 use crate::base::error::Place;
 use crate::base::record::{Entry, Record, Value};
 use crate::gear::contact::flattening;
+use crate::gear::fixtures::STEEL;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
-use crate::gear::material::Material;
 use crate::numeric::crossing::bracketed;
 use crate::numeric::quadrature::GaussLegendre;
-
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 
 /// 19/48, m 3 mm, widths 20/18 mm; the rack's tip round is c m/(1 − sin α), its bores r_f/`bore_ratio`.
 fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
@@ -314,13 +312,28 @@ fn formulas_outside_their_range_are_told_or_refused() {
         let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &large(teeth, 1.75), SUMMED).unwrap();
         assert!(by_ring.compliance.gear.body.value(20_f64.to_radians().tan()) > 0.0);
     }
-    let error = energy(&large(48, 1.05), SUMMED).unwrap_err();
-    assert_eq!(error.field(), "gear.bore_radius");
-    assert_eq!(
-        error.to_string(),
-        "gear: the root radius is 1.05 times the bore radius, but must be at least 1.2 times it for the gear body formula; \
-         the body `ring` takes any bore"
-    );
+    for (ratio, shown) in [(1.05, "1.05"), (20.5, "20.5")] {
+        let error = energy(&large(48, ratio), SUMMED).unwrap_err();
+        assert_eq!(error.field(), "gear.bore_radius");
+        assert_eq!(
+            error.to_string(),
+            format!(
+                "gear: the root radius is {shown} times the bore radius, but must be 1.2 to 20 times it for the gear body \
+                 formula; the body `ring` takes any bore"
+            )
+        );
+    }
+    // Inside it is a sixth from the ring at most.
+    for teeth in [26, 60, 150] {
+        for ratio in [8.0, 12.0, 16.0, 19.9] {
+            let pair = large(teeth, ratio);
+            let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair, SUMMED).unwrap();
+            let roll = 20_f64.to_radians().tan();
+            let [formula, ring] =
+                [energy(&pair, SUMMED).unwrap(), by_ring].map(|found| found.compliance.gear.total(roll));
+            assert!((formula / ring - 1.0).abs() < 1.0 / 6.0, "z {teeth}, {ratio}: {}", formula / ring);
+        }
+    }
 }
 
 /// Tier: closed form by the trapezium; a tooth of 48 with no root ends at its root circle, not inside the body.

@@ -42,6 +42,7 @@ pub const METHOD: Method = Method {
         fields: &[],
     },
     whole_pair: false,
+    needs_fillet: false,
     tabulate,
     root_stress: None,
 };

@@ -90,6 +90,13 @@ impl Gear {
         roll - self.half_base_angle
     }
 
+    /// From a flank point along its normal to the tooth's centreline, r_b(u − tan α_1) \[m\]: half of the tooth as its
+    /// load line sees it. It falls from the root to the tip.
+    #[must_use]
+    pub fn depth_to_centreline(&self, roll: f64) -> f64 {
+        self.flank(roll).half_thickness / libm::cos(self.load_angle(roll))
+    }
+
     /// The flank point at a roll angle, with dy/du.
     #[must_use]
     pub fn flank(&self, roll: f64) -> Section {

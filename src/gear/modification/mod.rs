@@ -24,6 +24,7 @@ pub mod tip_relief;
 use std::fmt::Debug;
 use std::sync::Arc;
 
+use self::flank::Flank;
 use super::geometry::{Pair, Side};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Choice, Field, Member};
@@ -123,19 +124,54 @@ impl Design {
     /// Adds a modification, as `family: { fields }` states it, to the gears that its field `gear` names.
     ///
     /// # Errors
-    /// When the fields contradict each other or do not fit the pair.
+    /// When the fields contradict each other or do not fit the pair, or when all modifications of a gear together take
+    /// off more than half of its tooth.
     pub fn add(&mut self, family: &'static Family, record: &Record, pair: &Pair) -> Result<(), Diagnostic> {
         (family.check)(record)?;
         let gear = record.choice(GEAR.name);
         if gear != "gear" {
             let modification = (family.build)(record, pair, Side::Pinion)?;
             self.pinion.push(Part { family: family.member.name, modification });
+            self.check_room(Side::Pinion, pair).map_err(|error| error.or_at(record.place))?;
         }
         if gear != "pinion" {
             let modification = (family.build)(record, pair, Side::Gear)?;
             self.gear.push(Part { family: family.member.name, modification });
+            self.check_room(Side::Gear, pair).map_err(|error| error.or_at(record.place))?;
         }
         Ok(())
+    }
+
+    /// Half of the tooth must be left, since the other flank may be modified alike: no point of the flank may pass the
+    /// tooth's centreline, up to the normal through the middle of the tip land, u_a + ψ_a, where r_b ψ_a is left to take.
+    /// Depths nowhere add material to the active flank, so a part that is refused cannot be mended by one that follows.
+    fn check_room(&self, side: Side, pair: &Pair) -> Result<(), Diagnostic> {
+        let (gear, flank, parts) = (pair.side(side), Flank::new(pair, side), self.side(side));
+        let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
+        let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
+        let edges = parts.iter().flat_map(|part| part.modification.lead_breaks());
+        let lead = looks(face, edges).map(|z| sum(&|part| part.lead(z))).fold(0.0, f64::max);
+        let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks());
+        // The place with the least room; NaN counts as none.
+        let mut tightest = (f64::INFINITY, flank.tip_roll, 0.0);
+        for roll in looks((flank.root_roll, flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll)), breaks) {
+            let depth = sum(&|part| part.depth(roll)) + lead;
+            let room = gear.depth_to_centreline(roll) - depth;
+            if room.is_nan() || room < tightest.0 {
+                tightest = (room, roll, depth);
+            }
+        }
+        let (room, roll, depth) = tightest;
+        if room >= 0.0 {
+            return Ok(());
+        }
+        let [diameter, depth, most] =
+            [flank.diameter(roll.min(flank.tip_roll)), depth, gear.depth_to_centreline(roll)].map(|m| m * 1e3);
+        Err(Diagnostic::new(format!(
+            "the {}'s flank would lose {depth:.6} mm, normal to it, at a diameter of {diameter:.6} mm; all its \
+             modifications together may take 0 to {most:.6} mm there, which is half of the tooth",
+            side.name()
+        )))
     }
 
     /// The sum of the depths of one gear at a roll angle.
@@ -161,6 +197,13 @@ impl Design {
         };
         of(Side::Pinion).chain(of(Side::Gear)).collect()
     }
+}
+
+/// The ends of a range, what lies inside of `breaks`, and equidistant places between.
+fn looks((from, to): (f64, f64), breaks: impl Iterator<Item = Option<f64>>) -> impl Iterator<Item = f64> {
+    let inside = breaks.flatten().filter(move |place| *place > from && *place < to);
+    let between = (1..LOOKS).map(move |look| from + (to - from) * f64::from(look) / f64::from(LOOKS));
+    [from, to].into_iter().chain(between).chain(inside)
 }
 
 /// The family called `name`.
@@ -194,6 +237,9 @@ pub const GEAR: Field = Field::choice(
     ],
     "Which gear is modified.",
 );
+
+/// Into how many parts flank and face are divided to see whether enough of the tooth is left.
+const LOOKS: u32 = 16;
 
 /// The largest amount \[m\]: beyond it a relief is no longer small against the tooth.
 pub(crate) const MOST_AMOUNT: f64 = 5e-3;

@@ -2,15 +2,19 @@
 
 mod tip_curve;
 
+use super::flank::Flank;
 use super::template::Template;
 use super::{Design, FAMILIES, members};
 use crate::base::error::Place;
 use crate::base::record::Entry;
 use crate::base::record::Value::{self, Choice, Group, Member, Number, Quantity, Range};
-use crate::gear::fixtures::{BASE_PITCH, design, pair, record};
-use crate::gear::geometry::Side;
+use crate::gear::fixtures::{BASE_PITCH, Part, design, pair, record};
+use crate::gear::geometry::{Pair, Side};
 
 const AMOUNT: f64 = 7.81e-6;
+
+/// A field and its value.
+type Given = (&'static str, Value);
 
 /// Depth of one modification of the pinion where the contact is at path position `s`.
 fn pinion_depth(name: &'static str, values: &[(&'static str, Value)], s: f64) -> f64 {
@@ -200,6 +204,110 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     assert!(message.contains("`counted_from: single_zone` goes with"), "{message}");
     let message = refused("end_relief", &[amount, ("length", Quantity(10.1e-3))]);
     assert!(message.contains("0 to 10.000000 mm"), "{message}");
+}
+
+/// Half of the tooth, with the place where it ends found apart: the flank's normal is followed point by point until the
+/// point's polar angle passes the centreline.
+fn room_by_bisection(pair: &Pair, side: Side, roll: f64) -> f64 {
+    let gear = pair.side(side);
+    let (sine, cosine) = roll.sin_cos();
+    let beyond = |depth: f64| {
+        let length = gear.base_radius * roll - depth;
+        let (x, y) = (gear.base_radius * cosine + length * sine, gear.base_radius * sine - length * cosine);
+        y.atan2(x) > gear.half_base_angle
+    };
+    let (mut inside, mut outside) = (0.0, 5e-3);
+    assert!(!beyond(inside) && beyond(outside));
+    for _ in 0..60 {
+        let middle = 0.5 * (inside + outside);
+        *(if beyond(middle) { &mut outside } else { &mut inside }) = middle;
+    }
+    inside
+}
+
+#[test]
+fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
+    let pair = pair();
+    for (side, name) in [(Side::Pinion, "pinion"), (Side::Gear, "gear")] {
+        let flank = Flank::new(&pair, side);
+        let gear = pair.side(side);
+        // The normal through the middle of the tip land, and what is left there: both flanks would meet on the tip circle.
+        let land = 0.5 * gear.tip_thickness() / gear.tip_radius;
+        let last = flank.tip_roll + land;
+        let [tip, root] = [last, flank.root_roll].map(|roll| room_by_bisection(&pair, side, roll));
+        assert!((tip / (gear.base_radius * land) - 1.0).abs() < 1e-9 && tip < root);
+        let length = ("length", Quantity(3e-3));
+        let ends = ("end", Choice("I"));
+        let cases: [(&str, f64, &[Given]); 7] = [
+            ("tip_relief", tip, std::slice::from_ref(&length)),
+            ("root_relief", root, std::slice::from_ref(&length)),
+            ("profile_crowning", tip, &[]),
+            ("profile_slope", tip, &[]),
+            ("lead_crowning", tip, &[]),
+            ("helix_slope", tip, &[]),
+            ("end_relief", tip, &[length.clone(), ends]),
+        ];
+        for (family, most, others) in cases {
+            let taken = |amount: f64| {
+                let values = [&[("amount", Quantity(amount))], others].concat();
+                design(&pair, &[(family, name, &values)])
+            };
+            // Crownings and slopes go on growing beyond the nominal corner.
+            let one = taken(1e-6).unwrap();
+            let roll = if family == "root_relief" { flank.root_roll } else { last };
+            let deepest =
+                one.depth(side, roll) + one.lead(-0.5 * flank.face_width).max(one.lead(0.5 * flank.face_width));
+            let limit = most * 1e-6 / deepest;
+            for amount in [0.0, 1e-300, limit * (1.0 - 1e-9)] {
+                assert!(taken(amount).is_ok(), "{family} of {amount:e}");
+            }
+            let message = taken(limit * (1.0 + 1e-9)).unwrap_err().message;
+            let diameter = flank.diameter(if family == "root_relief" { flank.root_roll } else { flank.tip_roll });
+            let range = format!("0 to {:.6} mm there", most * 1e3);
+            assert!(message.contains(&range) && message.contains(&format!("{:.6} mm;", diameter * 1e3)), "{message}");
+        }
+        // Two that fit alone: along the profile and along the face, each half.
+        let half = [("amount", Quantity(0.5001 * tip)), length.clone()];
+        let crown = [("amount", Quantity(0.5001 * tip))];
+        assert!(design(&pair, &[("tip_relief", name, &half)]).is_ok());
+        assert!(design(&pair, &[("lead_crowning", name, &crown)]).is_ok());
+        let message = design(&pair, &[("tip_relief", name, &half), ("lead_crowning", name, &crown)]).unwrap_err();
+        assert!(message.message.contains("all its modifications together"), "{}", message.message);
+        // The other gear's do not count.
+        let other = if name == "pinion" { "gear" } else { "pinion" };
+        let fits = 0.7 * tip.min(0.5e-3);
+        let both = [("amount", Quantity(fits)), length.clone()];
+        assert!(design(&pair, &[("tip_relief", name, &both), ("tip_relief", other, &both)]).is_ok());
+    }
+    // 10 · 1 GN on 0.1 mm of width, over 1e6 N/m²: 1e8 m of relief.
+    let fields = [("application_factor", Number(10.0)), ("tangential_load", Quantity(1e9))];
+    let group = fields.into_iter().chain([("face_width", Quantity(1e-4)), ("mesh_stiffness", Quantity(1e6))]);
+    let fields = group.map(|(name, value)| (name, Entry { value, place: Place::default() })).collect();
+    let iso = Group(crate::base::record::Record { fields, place: Place::default() });
+    assert!(refused("tip_relief", &[("iso_amount", iso), ("fraction", Number(1.0))]).contains("half of the tooth"));
+}
+
+/// Powers that overlap are deepest where none of them ends.
+#[test]
+fn what_reliefs_take_between_their_ends_counts() {
+    let pair = pair();
+    let flank = Flank::new(&pair, Side::Gear);
+    let relief = |amount: f64| {
+        let bulge = [
+            ("amount", Quantity(amount)),
+            ("length", Quantity(flank.length())),
+            ("curve", Choice("power")),
+            ("exponent", Number(0.5)),
+        ];
+        let root: Part = ("root_relief", "gear", &bulge);
+        design(&pair, &[("tip_relief", "gear", &bulge), root, root])
+    };
+    let land = 0.5 * pair.gear.tip_thickness() * pair.gear.base_radius / pair.gear.tip_radius;
+    // √t + 2√(1 − t) is 1 at the tip, 2 at the root and 2.2 between.
+    assert!(relief(0.6 * land).is_ok());
+    let message = relief(0.999 * land).unwrap_err().message;
+    let tip = format!("{:.6} mm;", flank.diameter(flank.tip_roll) * 1e3);
+    assert!(message.contains("half of the tooth") && !message.contains(&tip), "{message}");
 }
 
 #[test]

@@ -11,7 +11,7 @@ use super::loading::Loading;
 use super::stiffness::stiffness;
 use crate::base::record::Value::{Choice, Number, Quantity};
 use crate::gear::compliance::{ContactLaw, PairCompliance};
-use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, varying};
+use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, swapped, varying};
 use crate::gear::geometry::Pair;
 use crate::gear::geometry::Side::{Gear, Pinion};
 use crate::gear::modification::Design;
@@ -244,13 +244,7 @@ fn peak_to_peak_agrees_with_a_brute_grid() {
 #[test]
 fn swapping_the_gears_changes_nothing() {
     let pair = pair();
-    let swapped = Pair {
-        pinion: pair.gear.clone(),
-        gear: pair.pinion.clone(),
-        start_of_contact: pair.tangent_length - pair.end_of_contact,
-        end_of_contact: pair.tangent_length - pair.start_of_contact,
-        ..pair.clone()
-    };
+    let swapped = swapped(&pair);
     let tip = [("amount", Quantity(8e-6)), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
     let face = [("amount", Quantity(6e-6)), ("length", Quantity(4e-3))];

@@ -66,6 +66,8 @@ const FIELDS: &[Field] = &[
 
 /// Where doubling the positions stops.
 const MOST_POSITIONS: usize = 4096;
+/// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
+const LARGE_APPROACH: f64 = 0.5;
 
 struct Ste {
     stiffness: String,
@@ -321,6 +323,16 @@ impl Stage for Ste {
             summaries.push([key(), summary_row(answer, summary_pressure)].concat());
             for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
                 harmonics.push([key(), vec![(index + 1).into(), in_unit(*amplitude, "um").into()]].concat());
+            }
+            let (largest, module) = (answer.summary.largest.value, pair.pinion.specification.module);
+            if largest > LARGE_APPROACH * module {
+                (context.warn)(format!(
+                    "design `{}` at {torque} N m: the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the module of \
+                     {:.6} mm; teeth that bend so far are no longer linear, and the numbers are those of a linear model",
+                    designs[design].1,
+                    largest * 1e3,
+                    module * 1e3,
+                ));
             }
             if let Some(accuracy) = self.accuracy.filter(|accuracy| answer.error > *accuracy) {
                 let (name, reached) = (&designs[design].1, answer.error);

@@ -91,6 +91,13 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         .at(record.place_of("contact"))
         .help("leave `contact` out, or take a method of single teeth"));
     }
+    if method.needs_fillet && assumptions.root == RootShape::BaseCircle {
+        return Err(Diagnostic::new(format!(
+            "`root: {root}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite"
+        ))
+        .at(record.place_of("root"))
+        .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
+    }
     if assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
             .at(record.place_of("contact"))

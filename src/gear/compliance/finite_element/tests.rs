@@ -4,30 +4,16 @@ use super::super::{Assumptions, ComplianceError, ContactLaw, Tabulated, method};
 use crate::base::error::Place;
 use crate::base::record::{Entry, Record, Value};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
+use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Pair, Rack, Side, Specification};
+use crate::gear::geometry::{Pair, Side, Specification};
 use crate::gear::material::Material;
 
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 const COUPLED: Assumptions =
     Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None };
 
-fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
-    Specification {
-        teeth,
-        module,
-        pressure_angle: 20f64.to_radians(),
-        profile_shift: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
-        tip_radius: None,
-        face_width: 7.0 * module,
-        bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
-        material: STEEL,
-    }
-}
-
 fn pair(teeth: [u32; 2], bore_ratio: f64) -> Pair {
-    let [pinion, gear] = teeth.map(|teeth| specification(teeth, 3e-3, bore_ratio));
+    let [pinion, gear] = teeth.map(|teeth| standard(teeth, 3e-3, bore_ratio));
     Pair::new(pinion, gear, None).unwrap()
 }
 
@@ -144,7 +130,7 @@ fn stiffness_scales_with_the_modulus() {
     let with = |youngs_modulus: f64| {
         let [pinion, gear] = [17, 30].map(|teeth| Specification {
             material: Material { youngs_modulus, ..STEEL },
-            ..specification(teeth, 3e-3, 1.4)
+            ..standard(teeth, 3e-3, 1.4)
         });
         finite_element(&Pair::new(pinion, gear, None).unwrap(), 6, COUPLED).unwrap().compliance.gear.total(0.3)
             * youngs_modulus
@@ -157,10 +143,8 @@ fn stiffness_scales_with_the_modulus() {
 #[test]
 fn what_cannot_be_solved_is_refused() {
     let with = |poisson_ratio: f64| {
-        let [pinion, gear] = [17, 30].map(|teeth| Specification {
-            material: Material { poisson_ratio, ..STEEL },
-            ..specification(teeth, 3e-3, 1.4)
-        });
+        let [pinion, gear] = [17, 30]
+            .map(|teeth| Specification { material: Material { poisson_ratio, ..STEEL }, ..standard(teeth, 3e-3, 1.4) });
         Pair::new(pinion, gear, None).unwrap()
     };
     let error = finite_element(&with(0.5), 8, COUPLED).unwrap_err();

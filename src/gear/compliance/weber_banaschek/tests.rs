@@ -3,24 +3,14 @@
 use super::*;
 use crate::gear::compliance::ring::Ring;
 use crate::gear::compliance::{ContactLaw, METHODS};
+use crate::gear::fixtures::standard;
+use crate::gear::geometry::Specification;
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Rack, Specification};
 use crate::gear::material::Material;
 
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-
+/// 1 m wide.
 fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
-    Specification {
-        teeth,
-        module,
-        pressure_angle: 20f64.to_radians(),
-        profile_shift: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
-        tip_radius: None,
-        face_width: 1.0,
-        bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
-        material: STEEL,
-    }
+    Specification { face_width: 1.0, ..standard(teeth, module, bore_ratio) }
 }
 
 fn tabulated(pair: &Pair, root: RootShape, coupled: bool) -> Tabulated {

@@ -1,8 +1,10 @@
 //! The least gap against brute force, in the model's own terms and with true points, and its continuity.
 
+mod outlines;
+
 use super::*;
 use crate::base::record::Value::{Choice, Number, Quantity};
-use crate::gear::fixtures::{Part, design, pair};
+use crate::gear::fixtures::{Part, design, pair, swapped};
 use crate::gear::modification::Design;
 
 fn ramp(amount: f64, length: f64, curve: &'static str) -> [(&'static str, crate::base::record::Value); 3] {
@@ -168,13 +170,7 @@ fn the_gap_is_continuous_and_smooth_between_its_breaks() {
 #[test]
 fn pinion_and_gear_may_change_places() {
     let pair = pair();
-    let swapped = Pair {
-        pinion: pair.gear.clone(),
-        gear: pair.pinion.clone(),
-        start_of_contact: pair.tangent_length - pair.end_of_contact,
-        end_of_contact: pair.tangent_length - pair.start_of_contact,
-        ..pair.clone()
-    };
+    let swapped = swapped(&pair);
     for design in designs(&pair) {
         let [pinion, gear] = profiles(&design);
         let (here, there) = ([pinion.clone(), gear.clone()], [gear, pinion]);

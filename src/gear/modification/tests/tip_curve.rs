@@ -1,25 +1,14 @@
 //! `arc` and `parabola` against their definition: the curves of `mei2016` in the article's own frame, met by bisection.
 
 use crate::base::record::Value::{self, Choice, Number, Quantity, Range};
-use crate::gear::fixtures::{STEEL, design};
-use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use crate::gear::fixtures::{design, standard};
+use crate::gear::geometry::{Gear, Pair, Side};
 use crate::gear::modification::Modification;
 use crate::gear::modification::template::Template;
 
 /// The article's pair: 30/40, module 3 mm.
 fn pair() -> Pair {
-    let gear = |teeth: u32| Specification {
-        teeth,
-        module: 3e-3,
-        pressure_angle: 20_f64.to_radians(),
-        profile_shift: 0.0,
-        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
-        tip_radius: None,
-        face_width: 1e-3,
-        bore_radius: 20e-3,
-        material: STEEL,
-    };
-    Pair::new(gear(30), gear(40), None).unwrap()
+    Pair::new(standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0), None).unwrap()
 }
 
 const FAMILIES: [&str; 2] = ["arc", "parabola"];

@@ -193,13 +193,7 @@ fn loads_balance_and_fulfil_complementarity() {
 #[test]
 fn swapping_the_gears_mirrors_the_curve() {
     let pair = pair();
-    let swapped = Pair {
-        pinion: pair.gear.clone(),
-        gear: pair.pinion.clone(),
-        start_of_contact: pair.tangent_length - pair.end_of_contact,
-        end_of_contact: pair.tangent_length - pair.start_of_contact,
-        ..pair.clone()
-    };
+    let swapped = swapped(&pair);
     let tip = [("amount", Quantity(30e-6)), ("length", Quantity(2e-3)), ("curve", Choice("parabolic"))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
     let of = |pair: &Pair, one: &'static str, two: &'static str| {
