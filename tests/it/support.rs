@@ -9,7 +9,7 @@ pub fn record(fields: &[Field], given: &[(&str, Value)]) -> Record {
     let mut record = Record::default();
     for field in fields {
         let value = given.iter().find(|(name, _)| *name == field.name).map(|(_, value)| value.clone());
-        let value = value.or(match field.presence {
+        let value = value.or_else(|| match field.presence {
             Presence::Default(text) => Some(read(&field.shape, text)),
             Presence::Optional => None,
             Presence::Required => panic!("`{}` must be given", field.name),
