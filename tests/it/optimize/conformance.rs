@@ -37,6 +37,8 @@ fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
         ),
         ("nelder_mead", vec![("edge", Value::Number(1.0))]),
         ("nelder_mead", vec![("start", choice("random")), ("evaluations", integer(50))]),
+        ("powell", vec![("step", Value::Number(1.0))]),
+        ("powell", vec![("start", choice("random")), ("evaluations", integer(50))]),
         ("grid", vec![("levels", levels)]),
         ("latin_hypercube", vec![("points", integer(300))]),
         ("sobol", vec![("points", integer(300))]),
@@ -124,7 +126,7 @@ fn a_seed_gives_one_sequence_however_the_batch_is_evaluated() {
         let (other, _) = points(search(method, &given, &bounds, 6), noise);
         let random = match method {
             "grid" | "sobol" => false,
-            "nelder_mead" => given.contains(&("start", choice("random"))),
+            "nelder_mead" | "powell" => given.contains(&("start", choice("random"))),
             _ => true,
         };
         assert_eq!(other != expected, random, "{method}: another seed");
