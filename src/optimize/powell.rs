@@ -51,6 +51,14 @@ fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strate
         restarts: count(record, "restarts"),
         evaluations: count(record, "evaluations"),
     };
+    // One line along each axis.
+    if limits.evaluations <= 2 * dimension {
+        let message =
+            format!("{} evaluations are too few for a line along each of {dimension} variables", limits.evaluations);
+        return Err(Diagnostic::new(message)
+            .at(record.place_of("evaluations"))
+            .help(format!("give at least {}", 2 * dimension + 1)));
+    }
     Ok(Box::new(Powell::new(start, record.number("step"), limits)))
 }
 
@@ -317,7 +325,8 @@ mod tests {
                 f64::from(u8::from(row == column)) - 2.0 * normal[row] * normal[column] / square
             };
             let entry = |row: usize, column: usize| {
-                (0..dimension).map(|k| reflected(row, k) * 10_f64.powi(k as i32) * reflected(k, column)).sum()
+                let stiffnesses = [1.0, 10.0, 100.0, 1e3, 1e4];
+                (0..dimension).map(|k| reflected(row, k) * stiffnesses[k] * reflected(k, column)).sum()
             };
             Self((0..dimension).map(|row| (0..dimension).map(|column| entry(row, column)).collect()).collect())
         }

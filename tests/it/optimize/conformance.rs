@@ -296,6 +296,7 @@ fn impossible_set_ups_are_refused() {
     assert!(refusal("grid", &[("levels", list(&[100_000]))], 5).contains("too many points to count"));
     assert!(refusal("sobol", &[], 17).contains("at most 16 variables"));
     assert!(refusal("nelder_mead", &[("evaluations", integer(10))], 10).contains("too few"));
+    assert!(refusal("powell", &[("evaluations", integer(10))], 5).contains("too few for a line along each of 5"));
     let polish = [("polish", choice("nelder_mead")), ("polish_evaluations", integer(10))];
     assert!(refusal("differential_evolution", &polish, 11).contains("too few evaluations to polish 11"));
 }
