@@ -10,14 +10,19 @@
 //! between CPUs; and its trajectories may change with a release, which the cached results of a study must not.
 //! Ours were checked against `SciPy`'s (see `tests/reference/optimize.py`).
 //!
+//! None of the crates looked at in 2026 has Powell's direction set; [`powell`] is ours for that reason too.
+//!
 //! Must not know: gears, units, files, clocks, threads.
 
 pub mod bounds;
+pub mod constraints;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod grid;
 pub mod latin_hypercube;
+mod line;
 pub mod nelder_mead;
+pub mod powell;
 pub mod random;
 pub mod sampling;
 pub mod search;
@@ -45,6 +50,7 @@ pub const METHODS: &[&Method] = &[
     &genetic::METHOD,
     &differential_evolution::METHOD,
     &nelder_mead::METHOD,
+    &powell::METHOD,
     &grid::METHOD,
     &latin_hypercube::METHOD,
     &sobol::METHOD,
@@ -67,6 +73,18 @@ pub trait Strategy: Send {
 
     /// The most evaluations it will ask for.
     fn budget(&self) -> usize;
+
+    /// The method as a local search, if it is one: see [`constraints`] for what it is asked then.
+    fn local(&mut self) -> Option<&mut dyn Local> {
+        None
+    }
+}
+
+/// A method that searches from one point.
+pub trait Local {
+    /// Begins anew at a point of the unit cube, because the function has changed; what it has used of its evaluations
+    /// stays used.
+    fn start_over(&mut self, at: Vec<f64>);
 }
 
 /// The methods as a user sees them, for [`crate::base::parameter::Shape::Member`].

@@ -10,7 +10,7 @@
 
 use super::random::uniform;
 use super::search::Reason;
-use super::{Method, Strategy, count};
+use super::{Local, Method, Strategy, count};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
@@ -273,5 +273,19 @@ impl Strategy for NelderMead {
 
     fn budget(&self) -> usize {
         self.limits.evaluations
+    }
+
+    fn local(&mut self) -> Option<&mut dyn Local> {
+        Some(self)
+    }
+}
+
+impl Local for NelderMead {
+    fn start_over(&mut self, at: Vec<f64>) {
+        let (told, edge, limits) = (self.told, self.edge, self.limits);
+        let fresh = Self::new(at, None, edge, limits);
+        let vertices = fresh.batch.clone();
+        *self = Self { told, ..fresh };
+        self.propose(Step::Begin, vertices);
     }
 }

@@ -43,6 +43,7 @@ fn figure(
     let kind = match text("kind")? {
         "bar" => Kind::Bar,
         "points" => Kind::Points,
+        "drawing" => Kind::Drawing,
         _ => Kind::Line,
     };
     let log = text("log")?;
@@ -93,7 +94,11 @@ fn figure(
             is_log: matches!(log, "x" | "both") && kind != Kind::Bar,
         },
         y: Axis { label: label(text("y_label")?, y_column), unit: y_unit, is_log: matches!(log, "y" | "both") },
-        series: drawing.series.into_iter().map(interrupted).collect(),
+        series: if kind == Kind::Drawing {
+            drawing.series
+        } else {
+            drawing.series.into_iter().map(interrupted).collect()
+        },
         marks,
         categories: drawing.categories,
     };

@@ -6,6 +6,7 @@
 
 use std::fmt::Write;
 
+use super::drawing::true_to_scale;
 use super::legend::{self, Colour, Item, Sign};
 use super::scale::{Scale, Tick};
 use crate::base::number::{superscript, unit_symbol};
@@ -26,6 +27,8 @@ pub enum Kind {
     Line,
     Points,
     Bar,
+    /// Lines, true to scale.
+    Drawing,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -153,7 +156,7 @@ impl Plot {
         legend::draw(&mut svg, &legend, &rows, frame.left, title_height);
         self.draw_axes(&mut svg, &frame, is_slanted);
         match self.kind {
-            Kind::Line => self.draw_lines(&mut svg, &frame),
+            Kind::Line | Kind::Drawing => self.draw_lines(&mut svg, &frame),
             Kind::Points => self.draw_points(&mut svg, &frame),
             Kind::Bar => self.draw_bars(&mut svg, &frame),
         }
@@ -173,16 +176,25 @@ impl Plot {
             Scale { low: -0.5, high: self.categories.len().max(1) as f64 - 0.5, is_log: false }
         } else {
             // A point at the very edge would be cut in half.
-            let margin =
-                if self.kind == Kind::Points || self.marks.iter().any(|mark| mark.x.is_some()) { 0.02 } else { 0.0 };
+            let margin = if matches!(self.kind, Kind::Points | Kind::Drawing)
+                || self.marks.iter().any(|mark| mark.x.is_some())
+            {
+                0.02
+            } else {
+                0.0
+            };
             let scale = Scale::around(xs, self.x.is_log, 0.0, false)?;
             let room = if scale.is_log { 0.0 } else { margin * (scale.high - scale.low) };
             Scale { low: scale.low - room, high: scale.high + room, ..scale }
         };
-        let y = Scale::around(ys, self.y.is_log, 0.06, self.kind == Kind::Bar && !self.y.is_log)?;
+        // A drawing need not show where zero is.
+        let room = if self.kind == Kind::Drawing { 0.0 } else { 0.06 };
+        let y = Scale::around(ys, self.y.is_log, room, self.kind == Kind::Bar && !self.y.is_log)?;
         let longest = y.ticks(6).iter().map(|tick| tick.label.chars().count()).max().unwrap_or(0);
         let left = 50.0 + CHARACTER * longest as f64;
-        Some(Frame { left, top, width: WIDTH - left - RIGHT, height: PLOT_HEIGHT, x, y })
+        let width = WIDTH - left - RIGHT;
+        let (x, y, height) = if self.kind == Kind::Drawing { true_to_scale(x, y, width) } else { (x, y, PLOT_HEIGHT) };
+        Some(Frame { left, top, width, height, x, y })
     }
 
     fn empty(&self) -> String {
@@ -206,7 +218,7 @@ impl Plot {
     fn legend(&self) -> Vec<Item> {
         let is_alone = self.series.len() < 2 && self.marks.is_empty();
         let sign = match self.kind {
-            Kind::Line => Sign::Line,
+            Kind::Line | Kind::Drawing => Sign::Line,
             Kind::Points => Sign::Dot,
             Kind::Bar => Sign::Square,
         };
@@ -305,7 +317,7 @@ impl Plot {
                         is_drawing = false;
                         continue;
                     };
-                    if let Some((from_x, from_y)) = last.filter(|_| nth == 0)
+                    if let Some((from_x, from_y)) = last.filter(|_| nth == 0 && self.kind == Kind::Line)
                         && (x - from_x).abs() < 0.03 * frame.width
                     {
                         let _ = write!(jumps, "M{} {}L{} {}", at(from_x), at(from_y), at(x), at(y));
@@ -320,7 +332,7 @@ impl Plot {
             }
             let _ = write!(svg, r#"<path class="series" {style} d="{line}"/>"#);
             let count = series.runs.iter().map(Vec::len).sum::<usize>();
-            if count <= 24 {
+            if count <= 24 && self.kind == Kind::Line {
                 // Few points: show where they are, a line between them is only a guide.
                 dots(svg, frame, series, self.colour(index), 2.6);
             }

@@ -184,6 +184,7 @@ fn read_table(path: &Path, stage: &str, table: &str) -> hdf5_metno::Result<Resul
         description: get_word(&group, "description")?,
         columns,
         on_demand: get::<bool>(&group, "on_demand")?.unwrap_or(false),
+        files: Vec::new(),
     };
     Ok(Table::from_columns(schema, data).map_err(|error| error.to_string()))
 }

@@ -132,6 +132,9 @@ pub struct TableRecord {
     /// The Parquet file, relative to the manifest.
     pub file: String,
     pub columns: Vec<ColumnRecord>,
+    /// Files beside the manifest that hold the table's lines: `stage.name`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub files: Vec<String>,
     /// What readers may see of a table with columns on demand: each sees some of them, so the content of all does not
     /// tell. None for a table that every reader sees whole.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -173,6 +176,7 @@ impl TableRecord {
             content: table.content.to_string(),
             file: format!("{stage}.{}.parquet", table.name),
             columns: schema.columns.iter().map(ColumnRecord::from).collect(),
+            files: schema.files.iter().map(|name| format!("{stage}.{name}")).collect(),
             parts: (!table.columns.is_empty()).then_some(parts),
         }
     }

@@ -147,6 +147,7 @@ fn table_schema(schema: &ArrowSchema) -> Result<Schema, String> {
         description: text(schema.metadata(), "description"),
         columns,
         on_demand: schema.metadata().contains_key("on_demand"),
+        files: Vec::new(),
     })
 }
 

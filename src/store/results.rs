@@ -1,4 +1,5 @@
-//! The results folder of a study: `<stage>.<table>.parquet`, `<study>.h5`, `manifest.json`.
+//! The results folder of a study: `<stage>.<table>.parquet`, `<study>.h5`, `manifest.json`, and the files that tables hold
+//! line by line, `<stage>.<file>`.
 //!
 //! Only what changed is written, so version control sees no noise and a run with nothing to do reads the manifest and
 //! the sizes of the files, nothing else. A stage that did not finish, or was not asked for, keeps the tables of its
@@ -18,7 +19,7 @@ use super::file::{self, Durability};
 use super::hdf5;
 use super::manifest::{FORMAT, FileRecord, Machine, Manifest, Program, StageRecord, TableRecord};
 use super::parquet;
-use crate::table::data::Table;
+use crate::table::data::{Data, Table};
 
 pub const MANIFEST: &str = "manifest.json";
 
@@ -39,6 +40,8 @@ pub struct Changes {
     pub manifest: bool,
     /// Parquet files to write.
     pub tables: Vec<String>,
+    /// Files to write whose lines tables hold.
+    pub files: Vec<String>,
     pub hdf5: bool,
     /// Files of tables that are no more.
     pub remove: Vec<String>,
@@ -129,7 +132,7 @@ impl Folder {
         if let Some(mut old) = old.clone() {
             // Whatever is about to be replaced is struck from the list first: if this run is killed, the next one
             // must not take a new file for the old one of the same size.
-            old.files.retain(|record| !changes.tables.contains(&record.file));
+            old.files.retain(|record| ![&changes.tables, &changes.files].iter().any(|new| new.contains(&record.file)));
             self.write_manifest(&old)?;
         }
         for table in new.stages.iter().flat_map(|stage| &stage.tables) {
@@ -139,6 +142,11 @@ impl Folder {
                 file::write(&path, &bytes(stage, name)?, Durability::Lazy)?;
             }
             new.files.push(self.record(&table.file)?);
+            let wanted: Vec<&String> = table.files.iter().filter(|file| changes.files.contains(file)).collect();
+            if !wanted.is_empty() {
+                self.write_files(table, &wanted)?;
+            }
+            new.files.extend(table.files.iter().map(|file| self.record(file)).collect::<Result<Vec<_>, _>>()?);
         }
         self.write_hdf5(&mut new, changes.hdf5)?;
         new = match old {
@@ -200,17 +208,22 @@ impl Folder {
             .filter(|table| !(old_tables.contains(table) && intact(&table.file)))
             .map(|table| table.file.clone())
             .collect();
+        let held = |table: &&&TableRecord| {
+            let known = old_tables.contains(table);
+            table.files.iter().filter(|file| !(known && intact(file))).cloned().collect::<Vec<_>>()
+        };
+        let files: Vec<String> = new_tables.iter().flat_map(|table| held(&table)).collect();
         let with_hdf5 = cfg!(feature = "hdf5");
         let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&self.hdf5_file()));
-        let listed =
-            |file: &str| new_tables.iter().any(|table| table.file == file) || (with_hdf5 && file == self.hdf5_file());
-        // A manifest from elsewhere may name anything; only files right here are ours.
-        let here = |file: &str| Path::new(file).file_name().is_some_and(|name| name == file);
+        let listed = |file: &str| {
+            let of_table = |table: &&TableRecord| table.file == file || table.files.iter().any(|held| held == file);
+            new_tables.iter().any(of_table) || (with_hdf5 && file == self.hdf5_file())
+        };
         let old_files = old.iter().flat_map(|old| &old.files).map(|record| record.file.clone());
         let remove: Vec<String> = old_files.filter(|file| !listed(file) && here(file)).collect();
         let says_something_new = old.is_none_or(|old| essence(old) != essence(new));
-        let manifest = says_something_new || hdf5 || !tables.is_empty() || !remove.is_empty();
-        Changes { manifest, tables, hdf5, remove }
+        let manifest = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();
+        Changes { manifest, tables, files, hdf5, remove }
     }
 
     /// Whether a file is there in the size that the manifest lists.
@@ -224,6 +237,25 @@ impl Folder {
         let path = self.path.join(file);
         let metadata = fs::metadata(&path).map_err(StoreError::io("read", &path))?;
         Ok(FileRecord { file: file.to_owned(), bytes: metadata.len() })
+    }
+
+    /// Writes files whose lines a table holds; its own file is there.
+    fn write_files(&self, record: &TableRecord, wanted: &[&String]) -> Result<(), StoreError> {
+        let table = self.table(record)?;
+        let (Some(Data::Text(names)), Some(Data::Text(lines))) = (table.column("file"), table.column("text")) else {
+            let problem = "it holds no files".to_owned();
+            return Err(StoreError::Format { table: record.name.clone(), problem });
+        };
+        for file in wanted.iter().filter(|file| here(file)) {
+            let (_, own) = split(file);
+            let mut text = String::new();
+            for (_, line) in names.iter().zip(lines).filter(|(name, _)| *name == own) {
+                text += line;
+                text.push('\n');
+            }
+            file::write(&self.path.join(file), text.as_bytes(), Durability::Lazy)?;
+        }
+        Ok(())
     }
 
     #[cfg(feature = "hdf5")]
@@ -253,6 +285,11 @@ impl Folder {
         bytes.push(b'\n');
         file::write(&path, &bytes, Durability::Lazy)
     }
+}
+
+/// A manifest from elsewhere may name anything; only files right here are ours.
+fn here(file: &str) -> bool {
+    Path::new(file).file_name().is_some_and(|name| name == file)
 }
 
 fn complete(stage: &StageRecord) -> bool {

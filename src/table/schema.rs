@@ -135,12 +135,27 @@ pub struct Schema {
     pub columns: Vec<Column>,
     /// Computed only when somebody asks for it by name.
     pub on_demand: bool,
+    /// Files that the table holds line by line, in its text columns `file` and `text`: the store puts them beside the
+    /// tables. No part of the table's content.
+    pub files: Vec<String>,
 }
 
 impl Schema {
     #[must_use]
     pub fn new(name: &str, description: &str, columns: Vec<Column>) -> Self {
-        Self { name: name.to_owned(), description: description.to_owned(), columns, on_demand: false }
+        let (name, description) = (name.to_owned(), description.to_owned());
+        Self { name, description, columns, on_demand: false, files: Vec::new() }
+    }
+
+    /// A table that holds these files.
+    #[must_use]
+    pub fn of_files(name: &str, description: &str, files: Vec<String>) -> Self {
+        let columns = vec![
+            Column::text("file", "Name of the file.").key(),
+            Column::integer("line", "Number of the line, from 1.").key(),
+            Column::text("text", "The line."),
+        ];
+        Self { files, ..Self::new(name, description, columns) }
     }
 
     #[must_use]

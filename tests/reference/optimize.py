@@ -35,6 +35,15 @@ def corners(x):
     return total
 
 
+def bent(x):
+    """Smooth, not quadratic, with every variable tied to the next; its lowest point is on no bound."""
+    total = 0.0
+    for k, t in enumerate(x):
+        u = x[k + 1] if k + 1 < len(x) else x[0]
+        total += (k + 1.0) * (t - 0.2 * (k + 1.0)) ** 2 + (t * u - 0.3) ** 2
+    return total
+
+
 def steps(x):
     """Flat nearly everywhere: ties decide."""
     total = 0.0
@@ -62,6 +71,31 @@ def simplex():
             method="Nelder-Mead",
             bounds=Bounds(np.zeros(dimension), np.ones(dimension)),
             options=dict(initial_simplex=first, adaptive=True, xatol=1e-8, fatol=np.inf, maxfev=5000, maxiter=5000),
+        )
+        rows.append(
+            dict(function=name, dimension=dimension, evaluations=found.nfev, value=found.fun, point=list(found.x))
+        )
+    return rows
+
+
+def directions():
+    """Powell's method; its way depends on the line search, so only where it ends is compared. SciPy's search between
+    bounds stops early in the valley of the first function, which has its minimum inside: there it is given none."""
+    rows = []
+    for name, function, dimension in [
+        ("rosenbrock", rosenbrock, 2),
+        ("rosenbrock", rosenbrock, 3),
+        ("rosenbrock", rosenbrock, 5),
+        ("slope", slope, 3),
+        ("corners", corners, 4),
+        ("bent", bent, 4),
+    ]:
+        found = minimize(
+            function,
+            np.full(dimension, 0.5),
+            method="Powell",
+            bounds=None if name == "rosenbrock" else Bounds(np.zeros(dimension), np.ones(dimension)),
+            options=dict(xtol=1e-12, ftol=1e-15),
         )
         rows.append(
             dict(function=name, dimension=dimension, evaluations=found.nfev, value=found.fun, point=list(found.x))
@@ -174,4 +208,4 @@ def write(tables):
     print("{\n" + ",\n".join(texts) + "\n}")
 
 
-write(dict(nelder_mead=simplex(), differential_evolution=evolution(), genetic=genetic(), sobol=sobol()))
+write(dict(nelder_mead=simplex(), powell=directions(), differential_evolution=evolution(), genetic=genetic(), sobol=sobol()))

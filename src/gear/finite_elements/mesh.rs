@@ -100,7 +100,7 @@ impl Mesh {
     /// When an element is folded over.
     pub fn new(outline: &Outline, sizing: &Sizing) -> Result<Self, MeshError> {
         let level = sizing.level;
-        let cut_point = outline.tooth[0].curve.point(outline.tooth[0].lower);
+        let cut_point = outline.tooth[0].point(outline.tooth[0].lower);
         let cut_thickness = 2.0 * cut_point[0];
         let body_size = ALONG * cut_thickness / level;
         let mut root_points = chain(&outline.body, |stretch| divide(stretch, TURN / level, |_| body_size));
@@ -242,7 +242,7 @@ fn chain(
     let mut points: Vec<[f64; 2]> = Vec::new();
     for stretch in stretches {
         points.pop();
-        points.extend(divide(stretch).into_iter().map(|parameter| stretch.curve.point(parameter)));
+        points.extend(divide(stretch).into_iter().map(|parameter| stretch.point(parameter)));
     }
     points
 }

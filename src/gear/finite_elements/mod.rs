@@ -15,11 +15,13 @@ pub mod sector;
 mod tests;
 pub mod wheel;
 
-use super::geometry::error::{Millimetres, Plain};
+use super::geometry::error::{GeometryError, Millimetres, Plain};
 
 /// Why a gear cannot be meshed or solved.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum MeshError {
+    #[error(transparent)]
+    Profile(#[from] GeometryError),
     #[error("its root meets the root circle in a sharp corner, where no stress is finite; it needs a fillet")]
     SharpRoot,
     #[error("element {element} of {elements} of the mesh is folded over; a finer mesh may not be")]

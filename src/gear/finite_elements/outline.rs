@@ -1,12 +1,16 @@
 //! The outline of half a tooth in units of the module: root land, root curve, involute, and how nodes are spread on it.
 //!
-//! Tooth frame: y along the tooth's centreline from the gear's centre, x across, the right half. Nodes lie on the exact
-//! curves; only where on them is approximate. Must not know: elements, elasticity.
+//! The curves are those of the full profile (`geometry/outline`). Nodes lie on the exact curves; only where on them is
+//! approximate. Must not know: elements, elasticity.
 
 use std::f64::consts::{FRAC_PI_4, PI};
 
 use super::MeshError;
 use crate::gear::geometry::Gear;
+use crate::gear::geometry::outline::Outline as Profile;
+use crate::gear::geometry::outline::curve::{Curve, Part, Segment};
+use crate::gear::geometry::outline::roots::Toe;
+use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::{Piece, Root};
 
 /// Samples of a curve from which its length and direction are taken.
@@ -16,51 +20,26 @@ const NO_LAND: f64 = 1e-6;
 /// Inclination against the circumference at which the tooth is cut off the body.
 const CUT_INCLINATION: f64 = FRAC_PI_4;
 
-/// A smooth curve of the outline, over its parameter.
-#[derive(Clone, Copy, Debug)]
-pub enum Curve {
-    /// The root circle, over the angle from the centreline, downwards.
-    Land {
-        radius: f64,
-    },
-    Root {
-        piece: Piece,
-        module: f64,
-    },
-    /// Over the roll angle.
-    Involute {
-        base_radius: f64,
-        half_base_angle: f64,
-    },
+/// A stretch of a curve, between two of its parameters; its points are in modules.
+#[derive(Clone, Debug)]
+pub struct Stretch {
+    part: Part,
+    curve: Curve,
+    module: f64,
+    pub lower: f64,
+    pub upper: f64,
 }
 
-impl Curve {
+impl Stretch {
     /// The point \[modules\] at a parameter.
     #[must_use]
     pub fn point(&self, parameter: f64) -> [f64; 2] {
-        match *self {
-            Self::Land { radius } => {
-                let (sine, cosine) = libm::sincos(-parameter);
-                [radius * sine, radius * cosine]
-            }
-            Self::Root { piece, module } => {
-                let section = piece.section(parameter);
-                [section.half_thickness / module, section.height / module]
-            }
-            Self::Involute { base_radius, half_base_angle } => {
-                let (sine, cosine) = libm::sincos(parameter - half_base_angle);
-                [base_radius * (parameter * cosine - sine), base_radius * (cosine + parameter * sine)]
-            }
-        }
+        self.curve.point(parameter).map(|length| length / self.module)
     }
-}
 
-/// A stretch of a curve.
-#[derive(Clone, Copy, Debug)]
-pub struct Stretch {
-    pub curve: Curve,
-    pub lower: f64,
-    pub upper: f64,
+    fn between(&self, lower: f64, upper: f64) -> Self {
+        Self { lower, upper, ..self.clone() }
+    }
 }
 
 /// Half a tooth's outline, cut where the tooth leaves the body.
@@ -87,10 +66,10 @@ struct Samples {
 
 impl Samples {
     fn new(stretch: &Stretch) -> Self {
-        let Stretch { curve, lower, upper } = *stretch;
+        let Stretch { lower, upper, .. } = *stretch;
         let parameters: Vec<f64> =
             (0..=SAMPLES).map(|k| lower + (upper - lower) * (k as f64 / SAMPLES as f64)).collect();
-        let points: Vec<[f64; 2]> = parameters.iter().map(|&parameter| curve.point(parameter)).collect();
+        let points: Vec<[f64; 2]> = parameters.iter().map(|&parameter| stretch.point(parameter)).collect();
         let mut lengths = vec![0.0];
         for pair in points.windows(2) {
             let step = libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
@@ -111,33 +90,28 @@ impl Outline {
     /// The outline of a gear's teeth with a root.
     ///
     /// # Errors
-    /// When the root has a re-entrant corner.
+    /// When the root has a re-entrant corner, or the tooth no full profile.
     pub fn new(gear: &Gear, root: &Root) -> Result<Self, MeshError> {
         let module = gear.specification.module;
-        let half_pitch = PI / f64::from(gear.specification.teeth);
-        let root_radius = gear.root_radius / module;
         let smooth = matches!(root.pieces.first(), Some(Piece::Trochoid(_) | Piece::Arc { .. }));
         if !smooth {
             return Err(MeshError::SharpRoot);
         }
-        let mut stretches: Vec<Stretch> = Vec::new();
-        if root_radius * (half_pitch - root.half_angle) > NO_LAND {
-            let curve = Curve::Land { radius: root_radius };
-            stretches.push(Stretch { curve, lower: -half_pitch, upper: -root.half_angle });
-        }
-        stretches.extend(root.pieces.iter().map(|&piece| {
-            let (lower, upper) = piece.range();
-            Stretch { curve: Curve::Root { piece, module }, lower, upper }
-        }));
-        let base_radius = gear.base_radius / module;
-        let curve = Curve::Involute { base_radius, half_base_angle: gear.half_base_angle };
-        stretches.push(Stretch { curve, lower: root.form_roll, upper: gear.tip_roll() });
+        let profile = Profile::new(gear, Toe::of(root), Tip::Land, None)?;
+        let half_pitch = profile.half_pitch();
+        let is_none = |segment: &Segment| {
+            segment.part == Part::RootLand && gear.root_radius * (segment.to - segment.from) <= NO_LAND * module
+        };
+        let wanted = profile.segments.into_iter().filter(|segment| segment.part != Part::TipLand && !is_none(segment));
+        let stretches: Vec<Stretch> = wanted
+            .map(|Segment { part, curve, from, to }| Stretch { part, curve, module, lower: from, upper: to })
+            .collect();
 
         let (place, parameter) = cut(&stretches);
-        let Stretch { curve, lower, upper } = stretches[place];
+        let whole = &stretches[place];
         let mut body = stretches[..place].to_vec();
-        body.push(Stretch { curve, lower, upper: parameter });
-        let mut tooth = vec![Stretch { curve, lower: parameter, upper }];
+        body.push(whole.between(whole.lower, parameter));
+        let mut tooth = vec![whole.between(parameter, whole.upper)];
         tooth.extend_from_slice(&stretches[place + 1..]);
         let bore_radius = gear.specification.bore_radius / module;
         Ok(Self { body, tooth, half_pitch, bore_radius, tip_half_angle: gear.half_angle_at_roll(gear.tip_roll()) })
@@ -146,7 +120,7 @@ impl Outline {
 
 /// Where the tooth is cut off: at the inclination of 45°, or half of what the first curve reaches, if that is less.
 fn cut(stretches: &[Stretch]) -> (usize, f64) {
-    let place = usize::from(matches!(stretches[0].curve, Curve::Land { .. }));
+    let place = usize::from(stretches[0].part == Part::RootLand);
     let samples = Samples::new(&stretches[place]);
     let steepest = (0..SAMPLES).map(|k| samples.inclination(k)).fold(0.0, f64::max);
     let wanted = CUT_INCLINATION.min(0.5 * steepest);

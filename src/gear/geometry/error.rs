@@ -69,6 +69,28 @@ pub enum Problem {
         "a circular fillet of radius {radius} does not fit between two teeth: the fillets would overlap by {overlap}"
     )]
     FilletDoesNotFit { radius: Millimetres, overlap: Millimetres },
+    #[error(
+        "an arc of radius {radius} at the root does not fit between two teeth: neighbouring arcs would overlap by {overlap}; its radius must be at most {largest}"
+    )]
+    RootArcTooLarge { radius: Millimetres, overlap: Millimetres, largest: Millimetres },
+    #[error(
+        "{construction} begins on the base circle and ends on the root circle, so the root radius {root} must be below the base radius {base}; with this rack that is so below {most} teeth, and there are {teeth}"
+    )]
+    NothingBelowBase { construction: &'static str, root: Millimetres, base: Millimetres, teeth: u32, most: Plain },
+    #[error(
+        "no centre of an arc lies between tooth and space: on the base circle the tooth takes up {angle} deg on either side of its centreline, but must take up less than {most} deg"
+    )]
+    NoSpace { angle: Plain, most: Plain },
+    #[error(
+        "the root curve cuts the tooth off at a radius of {height}; {teeth} teeth need a profile shift of at least {least} modules not to be undercut"
+    )]
+    CutOff { height: Millimetres, teeth: u32, least: Plain },
+    #[error(
+        "the tip is broken by {size}, but must be by {largest} at most, where the two flanks' breaks meet or no flank is left"
+    )]
+    TipBreakTooLarge { size: Millimetres, largest: Millimetres },
+    #[error("the modified flank ends below its own root: {depth} are taken off where the root begins")]
+    ReliefTooDeep { depth: Millimetres },
 }
 
 /// How deep interference reaches.
@@ -150,6 +172,12 @@ impl GeometryError {
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
             Problem::NoFlank { .. } | Problem::Interference { .. } => Parameter::Teeth,
+            Problem::RootArcTooLarge { .. }
+            | Problem::NothingBelowBase { .. }
+            | Problem::NoSpace { .. }
+            | Problem::CutOff { .. } => return "outline.root",
+            Problem::TipBreakTooLarge { .. } => return "outline.tip",
+            Problem::ReliefTooDeep { .. } => return "outline.flank",
             Problem::Pointed { tip_is_given, .. } if !tip_is_given => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,
             Problem::Bore { .. } => Parameter::BoreRadius,

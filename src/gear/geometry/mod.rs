@@ -5,6 +5,7 @@
 pub mod error;
 pub mod gear;
 pub mod involute;
+pub mod outline;
 pub mod pair;
 pub mod root;
 pub mod trochoid;

@@ -15,6 +15,7 @@ use super::error::{GeometryError, Millimetres, Problem};
 use super::involute::Section;
 use super::trochoid::Trochoid;
 use crate::base::parameter::Choice;
+use crate::numeric::crossing;
 
 /// How a tooth ends at its root.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -126,6 +127,43 @@ impl Gear {
 
     fn circular_fillet(&self) -> Result<Root, GeometryError> {
         let radius = self.specification.rack.tip_radius * self.specification.module;
+        let root = self.unbounded_fillet(radius);
+        let overlap = self.overlap(&root);
+        if overlap > 1e-9 * self.root_radius {
+            return Err(Problem::FilletDoesNotFit { radius: Millimetres(radius), overlap: Millimetres(overlap) }.into());
+        }
+        Ok(root)
+    }
+
+    /// A root whose arc has this radius \[m\], tangent to the root circle and to the flank.
+    ///
+    /// # Errors
+    /// When the arcs of neighbouring teeth would overlap; the message names the largest radius.
+    pub fn fillet(&self, radius: f64) -> Result<Root, GeometryError> {
+        let root = self.unbounded_fillet(radius);
+        let overlap = self.overlap(&root);
+        if overlap > 1e-9 * self.root_radius {
+            let [radius, overlap, largest] = [radius, overlap, self.largest_fillet()].map(Millimetres);
+            return Err(Problem::RootArcTooLarge { radius, overlap, largest }.into());
+        }
+        Ok(root)
+    }
+
+    /// The radius \[m\] with which the arcs of neighbouring teeth meet in the middle of the space.
+    #[must_use]
+    pub fn largest_fillet(&self) -> f64 {
+        let excess = |radius: f64| self.overlap(&self.unbounded_fillet(radius));
+        // The space on the tip circle is wider than the arc can be.
+        crossing::bracketed(0.0, 2.0 * PI * self.tip_radius / f64::from(self.specification.teeth), excess)
+            .unwrap_or(0.0)
+    }
+
+    /// How far the arcs of neighbouring teeth overlap on the root circle \[m\]; negative where land is left.
+    fn overlap(&self, root: &Root) -> f64 {
+        2.0 * self.root_radius * (root.half_angle - PI / f64::from(self.specification.teeth))
+    }
+
+    fn unbounded_fillet(&self, radius: f64) -> Root {
         let centre_radius = self.root_radius + radius;
         // A circle tangent to an involute has its centre on the flank's normal, which is tangent to the base circle.
         let along = ((centre_radius - self.base_radius) * (centre_radius + self.base_radius)).max(0.0).sqrt();
@@ -145,10 +183,6 @@ impl Gear {
             let lower = ((centre_radius - radius) * (centre_radius + radius)).sqrt();
             pieces.push(Piece::Radial { angle: self.half_base_angle, lower, upper: self.base_radius });
         }
-        let overlap = 2.0 * self.root_radius * (centre_angle - PI / f64::from(self.specification.teeth));
-        if overlap > 1e-9 * self.root_radius {
-            return Err(Problem::FilletDoesNotFit { radius: Millimetres(radius), overlap: Millimetres(overlap) }.into());
-        }
-        Ok(Root { half_angle: centre_angle, form_roll, pieces })
+        Root { half_angle: centre_angle, form_roll, pieces }
     }
 }

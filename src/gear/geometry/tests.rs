@@ -1,6 +1,8 @@
 //! Published and independently computed values, the cutter as an oracle, and inputs that must be refused.
 
 mod cutter;
+mod meshing;
+mod outline;
 
 use std::f64::consts::PI;
 

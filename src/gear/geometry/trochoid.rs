@@ -123,16 +123,31 @@ impl Trochoid {
 
     /// The point at q = asinh(cot γ), in which the curve is smooth from end to end, with dy/dq.
     ///
-    /// dy/dγ = −cos(γ − φ) R with the curve's radius of curvature R = ρ + (e/sin γ + ρ) e/(r sin² γ).
+    /// dy/dγ = −cos(γ − φ) R with the curve's rate R = ds/dγ = ρ + (e/sin γ + ρ) e/(r sin² γ) and the turn φ.
     #[must_use]
     pub fn section(&self, q: f64) -> Section {
-        let normal_angle = FRAC_PI_2 - libm::atan(libm::sinh(q));
-        let (half_thickness, height) = self.point(normal_angle);
+        let [half_thickness, height] = self.point_at(q);
+        let (tilt, rate, _) = self.rates(q);
+        Section { half_thickness, height, height_rate: libm::cos(tilt) * rate / libm::cosh(q) }
+    }
+
+    /// The point at q.
+    #[must_use]
+    pub fn point_at(&self, q: f64) -> [f64; 2] {
+        let (x, y) = self.point(FRAC_PI_2 - libm::atan(libm::sinh(q)));
+        [x, y]
+    }
+
+    /// At q: the angle γ − φ of the curve's normal against x; R = ds/dγ \[m\]; and d(γ − φ)/dγ = 1 + e/(r sin² γ), which
+    /// over R is the curvature. At the root circle their ratio is the known ρ + e²/(r + e).
+    #[must_use]
+    pub fn rates(&self, q: f64) -> (f64, f64, f64) {
         let stretch = libm::cosh(q);
         let turn = (self.depth * libm::sinh(q) + self.offset) / self.reference_radius;
         let distance = self.depth * stretch + self.round;
-        let curvature_radius = self.round + distance * self.depth * stretch * stretch / self.reference_radius;
-        Section { half_thickness, height, height_rate: libm::cos(normal_angle - turn) * curvature_radius / stretch }
+        let lean = self.depth * stretch / self.reference_radius * stretch;
+        let rate = self.round + distance * self.depth * stretch * stretch / self.reference_radius;
+        (FRAC_PI_2 - libm::atan(libm::sinh(q)) - turn, rate, 1.0 + lean)
     }
 
     /// γ at the joint with the involute; the curve runs from π/2 down to it.

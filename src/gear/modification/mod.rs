@@ -11,6 +11,7 @@ pub mod flank;
 pub mod helix_slope;
 pub mod lead_crowning;
 pub mod parabola;
+pub mod profile;
 pub mod profile_crowning;
 pub mod profile_slope;
 pub mod relief;

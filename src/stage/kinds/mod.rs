@@ -1,5 +1,6 @@
 //! The registry of stage kinds: one line each.
 
+pub mod export;
 pub mod geometry;
 pub mod modification;
 pub mod optimizer;

@@ -322,7 +322,9 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
             "instrument": reference(&tool(&stage.kind)),
             "actionStatus": reference("http://schema.org/CompletedActionStatus"),
             "object": references(read),
-            "result": references(stage.tables.iter().map(|table| format!("{folder}{}", table.file))),
+            "result": references(stage.tables.iter().flat_map(|table| {
+                [&table.file].into_iter().chain(&table.files).map(|file| format!("{folder}{file}"))
+            })),
             "resourceUsage": references([&seconds]),
         })));
         entities.push(json!({
@@ -350,6 +352,11 @@ fn files(description: &Description<'_>) -> Vec<Value> {
     let described = others.map(|name| {
         let inside = name.strip_prefix(&folder).unwrap_or(name);
         let table = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|table| table.file == inside);
+        let holder = manifest
+            .stages
+            .iter()
+            .flat_map(|stage| &stage.tables)
+            .find(|table| table.files.iter().any(|file| file == inside));
         let mut entity = Map::new();
         let mut put = |key: &str, value: Value| drop(entity.insert(key.to_owned(), value));
         put("@id", json!(name));
@@ -359,7 +366,7 @@ fn files(description: &Description<'_>) -> Vec<Value> {
             MANIFEST => "What was run, from what, where, and what came of it.",
             SCHEMA => "The schema of the study.",
             CITATION => "How to cite gearstudy.",
-            _ => table.map_or("", |table| table.description.as_str()),
+            _ => table.or(holder).map_or("", |table| table.description.as_str()),
         };
         if !what.is_empty() {
             put("description", json!(what));
@@ -387,6 +394,8 @@ fn format_of(name: &str) -> Option<&'static str> {
         "json" => "application/json",
         "html" => "text/html",
         "svg" => "image/svg+xml",
+        "dxf" => "image/vnd.dxf",
+        "csv" => "text/csv",
         "yaml" | "cff" => "application/yaml",
         _ => return None,
     })

@@ -177,3 +177,41 @@ fn a_manifest_from_elsewhere_removes_nothing_outside() {
     publish(&folder, &tables, Manifest { title: "new".into(), ..manifest(&tables) });
     assert!(root.path().join("precious").exists());
 }
+
+/// A table that holds two files, with these texts in the second.
+fn drawing(texts: &[&str]) -> Table {
+    let schema = Schema::of_files("files", "What was drawn.", vec!["a.csv".to_owned(), "b.dxf".to_owned()]);
+    let mut rows: Vec<crate::table::data::Row> = vec![vec!["a.csv".into(), 1_usize.into(), "x,y".into()]];
+    rows.extend(texts.iter().enumerate().map(|(at, text)| vec!["b.dxf".into(), (at + 1).into(), (*text).into()]));
+    Table::from_rows(schema, rows).unwrap()
+}
+
+#[test]
+fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::new(root.path(), "s");
+    let with = |texts: &[&str]| vec![("ste", drawing(texts)), ("pair", everything(1))];
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+    let (first, _) = publish(&folder, &with(&["0", "EOF"]), manifest(&with(&["0", "EOF"])));
+    assert_eq!(first.changes.files, ["ste.a.csv", "ste.b.dxf"]);
+    assert_eq!((read("ste.a.csv").as_str(), read("ste.b.dxf").as_str()), ("x,y\n", "0\nEOF\n"));
+    let listed = |published: &Published, name: &str| {
+        published.manifest.files.iter().find(|record| record.file == name).map(|record| record.bytes)
+    };
+    assert_eq!((listed(&first, "ste.a.csv"), listed(&first, "ste.b.dxf")), (Some(4), Some(6)));
+    let nothing = |_: &str, _: &str| panic!("nothing is read");
+    assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"]))), Changes::default());
+    let facts = || Facts { program: Program::default(), machine: Machine::default(), written: "now".into() };
+    assert_eq!(folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing).unwrap().changes, Changes::default());
+
+    // A file that was cut short comes back from its table.
+    fs::write(folder.path().join("ste.b.dxf"), "0").unwrap();
+    let again = folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing).unwrap();
+    assert_eq!((again.changes.files.len(), read("ste.b.dxf").as_str()), (1, "0\nEOF\n"));
+
+    let (second, _) = publish(&folder, &with(&["0", "EOF", "9"]), manifest(&with(&["0", "EOF", "9"])));
+    assert_eq!((second.changes.tables.len(), listed(&second, "ste.b.dxf")), (1, Some(8)));
+    let (last, _) = publish(&folder, &[("pair", everything(1))], manifest(&[("pair", everything(1))]));
+    assert_eq!(last.changes.remove, ["ste.files.parquet", "ste.a.csv", "ste.b.dxf"]);
+    assert!(!files(&folder).iter().any(|name| name.starts_with("ste.")), "{:?}", files(&folder));
+}

@@ -37,6 +37,8 @@ fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
         ),
         ("nelder_mead", vec![("edge", Value::Number(1.0))]),
         ("nelder_mead", vec![("start", choice("random")), ("evaluations", integer(50))]),
+        ("powell", vec![("step", Value::Number(1.0))]),
+        ("powell", vec![("start", choice("random")), ("evaluations", integer(50))]),
         ("grid", vec![("levels", levels)]),
         ("latin_hypercube", vec![("points", integer(300))]),
         ("sobol", vec![("points", integer(300))]),
@@ -124,7 +126,7 @@ fn a_seed_gives_one_sequence_however_the_batch_is_evaluated() {
         let (other, _) = points(search(method, &given, &bounds, 6), noise);
         let random = match method {
             "grid" | "sobol" => false,
-            "nelder_mead" => given.contains(&("start", choice("random"))),
+            "nelder_mead" | "powell" => given.contains(&("start", choice("random"))),
             _ => true,
         };
         assert_eq!(other != expected, random, "{method}: another seed");
@@ -294,6 +296,7 @@ fn impossible_set_ups_are_refused() {
     assert!(refusal("grid", &[("levels", list(&[100_000]))], 5).contains("too many points to count"));
     assert!(refusal("sobol", &[], 17).contains("at most 16 variables"));
     assert!(refusal("nelder_mead", &[("evaluations", integer(10))], 10).contains("too few"));
+    assert!(refusal("powell", &[("evaluations", integer(10))], 5).contains("too few for a line along each of 5"));
     let polish = [("polish", choice("nelder_mead")), ("polish_evaluations", integer(10))];
     assert!(refusal("differential_evolution", &polish, 11).contains("too few evaluations to polish 11"));
 }

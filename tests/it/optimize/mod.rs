@@ -1,6 +1,7 @@
 //! The optimisers seen from outside: what every method promises, known functions, other implementations.
 
 mod conformance;
+mod constrained;
 mod functions;
 mod reference;
 

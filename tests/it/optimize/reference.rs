@@ -42,6 +42,14 @@ fn function(name: &str) -> fn(&[f64]) -> f64 {
             }
             total
         },
+        "bent" => |x| {
+            let mut total = 0.0;
+            for (k, t) in x.iter().enumerate() {
+                let (weight, next) = (k as f64 + 1.0, x[(k + 1) % x.len()]);
+                total += weight * (t - 0.2 * weight).powi(2) + (t * next - 0.3).powi(2);
+            }
+            total
+        },
         "steps" => |x| x.iter().map(|t| (50.0 * (t - 0.7).abs()).floor()).sum(),
         _ => panic!("no function `{name}`"),
     }
@@ -60,6 +68,23 @@ fn the_simplex_moves_as_scipy_s_does() {
         for (ours, theirs) in best.point.iter().zip(row["point"].as_array().unwrap()) {
             assert_eq!(ours.to_bits(), theirs.as_f64().unwrap().to_bits(), "{name} in {dimension} variables");
         }
+    }
+}
+
+/// SciPy's line search looks at the whole line and comes near a bound only to its tolerance, so only the ends are compared.
+#[test]
+fn powell_s_method_ends_where_scipy_s_does() {
+    for row in reference("powell") {
+        let name = row["function"].as_str().unwrap();
+        let dimension = row["dimension"].as_u64().unwrap() as usize;
+        let found = run(search("powell", &[], &vec![(0.0, 1.0); dimension], 1), function(name));
+        let best = found.best().unwrap();
+        println!("{name} {dimension}: {} evaluations, SciPy {}", found.evaluations(), row["evaluations"]);
+        assert!((best.value - number(&row, "value")).abs() < 1e-7, "{name} in {dimension}: {:e}", best.value);
+        for (ours, theirs) in best.point.iter().zip(row["point"].as_array().unwrap()) {
+            assert!((ours - theirs.as_f64().unwrap()).abs() < 1e-7, "{name} in {dimension} variables: {ours}");
+        }
+        assert!(found.evaluations() as f64 <= 2.0 * number(&row, "evaluations"), "{name} in {dimension} variables");
     }
 }
 

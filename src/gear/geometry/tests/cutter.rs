@@ -32,21 +32,22 @@ fn distance_to_rack_tooth(specification: &Specification, x: f64, y: f64) -> f64 
 }
 
 /// Least distance of a point of the tooth (x, y) to the rack over the whole roll.
-fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
+pub(super) fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
     let specification = &gear.specification;
     let pitch = PI * specification.module;
     let at = |roll: f64| {
-        // The tooth turns by `roll`, the rack moves with the pitch circle; its tooth is half a pitch beside.
+        // The tooth turns by `roll`, the rack moves with the pitch circle; its teeth are half a pitch beside. Of all its
+        // teeth, the one within half a pitch is the nearest: they are convex and alike.
         let (sine, cosine) = roll.sin_cos();
-        let across = x * cosine - y * sine + gear.reference_radius * roll;
+        let across = x * cosine - y * sine + gear.reference_radius * roll - 0.5 * pitch;
         let depth = gear.reference_radius - (x * sine + y * cosine);
-        (-1..=1)
-            .map(|k| distance_to_rack_tooth(specification, across - (f64::from(k) + 0.5) * pitch, depth))
-            .fold(f64::INFINITY, f64::min)
+        distance_to_rack_tooth(specification, across - (across / pitch).round() * pitch, depth)
     };
-    let reach = 1.2;
-    let steps = 2400;
-    let scan = |k: i32| reach * (2.0 * f64::from(k) / f64::from(steps) - 1.0);
+    // Contact is within cot α times the depth of the rack's tooth from the pitch point.
+    let reach = 12.0 * specification.module / gear.reference_radius;
+    let steps = 1200;
+    let centre = x.atan2(y);
+    let scan = |k: i32| centre + reach * (2.0 * f64::from(k) / f64::from(steps) - 1.0);
     let nearest = (0..=steps).min_by(|a, b| at(scan(*a)).total_cmp(&at(scan(*b)))).unwrap();
     let (mut lower, mut upper) = (scan(nearest - 1), scan(nearest + 1));
     for _ in 0..60 {

@@ -19,6 +19,7 @@ const KINDS: &[Choice] = &[
     Choice { name: "line", summary: "a line for each series" },
     Choice { name: "points", summary: "markers only" },
     Choice { name: "bar", summary: "bars over the words or numbers of the x column" },
+    Choice { name: "drawing", summary: "lines, true to scale: both axes have one length per unit" },
 ];
 
 const LOG: &[Choice] = &[
@@ -127,6 +128,10 @@ impl Figure {
             if let Some(record) = entry.value.record() {
                 published.push(read_mark(record)?);
             }
+        }
+        if record.choice("kind") == "drawing" && record.choice("log") != "none" {
+            let message = "a drawing that is true to scale has no logarithmic axis";
+            return Err(Diagnostic::new(message).at(record.place_of("log")));
         }
         Ok(Self {
             number,
@@ -278,6 +283,13 @@ impl Figure {
                 column(name)?;
             }
         }
+        if self.kind == "drawing" && unit != Some(&x.unit) {
+            return Err(format!(
+                "a drawing needs one unit on both axes, not {} and {}",
+                x.unit,
+                unit.unwrap_or_default()
+            ));
+        }
         Ok((x.unit.clone(), unit.unwrap_or_default().to_owned()))
     }
 }
@@ -361,7 +373,7 @@ pub fn schemas() -> [Schema; 2] {
             Column::integer("figure", "Number of the figure, in the order of the study.").key(),
             Column::text("name", "Name of the file in `figures/`."),
             Column::text("title", "What is shown."),
-            Column::text("kind", "Line, points or bar."),
+            Column::text("kind", "Line, points, bar or drawing."),
             Column::text("tables", "The tables it is drawn from, `stage.table`, separated by commas."),
             Column::text("x", "Column of the x axis."),
             Column::text("y", "Columns of the y axis, separated by commas."),

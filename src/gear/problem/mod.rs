@@ -1,0 +1,78 @@
+//! Small design problems on one gear in closed form: variables in a box, an objective, constraints; and their registry.
+//!
+//! An optimiser needs nothing else of them. Values in SI. Must not know: how anything is searched, tables.
+
+pub mod root_arc;
+
+use super::geometry::Gear;
+use super::geometry::error::GeometryError;
+use crate::base::parameter::Member;
+use crate::base::record::Record;
+use crate::base::units::Dimension;
+
+/// One value that is free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variable {
+    pub name: &'static str,
+    pub dimension: Dimension,
+    /// SI.
+    pub least: f64,
+    pub most: f64,
+}
+
+/// What a point of the box is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worth {
+    /// To be made small.
+    pub objective: f64,
+    /// Each must not be negative.
+    pub constraints: Vec<f64>,
+}
+
+impl Worth {
+    /// The objective where every constraint holds, +∞ elsewhere: what a method that knows no constraints is given.
+    #[must_use]
+    pub fn admissible(&self) -> f64 {
+        if self.constraints.iter().all(|value| *value >= 0.0) { self.objective } else { f64::INFINITY }
+    }
+}
+
+/// A problem with everything but its variables fixed.
+pub trait Problem: Send + Sync {
+    fn variables(&self) -> Vec<Variable>;
+
+    /// The dimension of the objective.
+    fn dimension(&self) -> Dimension;
+
+    /// What the constraints are called, in their order.
+    fn constraints(&self) -> &'static [&'static str];
+
+    fn worth(&self, point: &[f64]) -> Worth;
+}
+
+/// Sets a problem up for a gear, or says why there is none.
+pub type Build = fn(&Record, &Gear) -> Result<Box<dyn Problem>, GeometryError>;
+
+/// A problem as registered.
+pub struct Family {
+    pub member: Member,
+    pub build: Build,
+}
+
+/// Every problem, in the order in which they are listed to the user.
+pub const FAMILIES: &[&Family] = &[&root_arc::FAMILY];
+
+/// The problems as a user may write them, for [`crate::base::parameter::Shape::Member`].
+#[must_use]
+pub fn members() -> &'static [Member] {
+    const MEMBERS: [Member; FAMILIES.len()] = {
+        let mut members = [FAMILIES[0].member; FAMILIES.len()];
+        let mut at = 0;
+        while at < FAMILIES.len() {
+            members[at] = FAMILIES[at].member;
+            at += 1;
+        }
+        members
+    };
+    &MEMBERS
+}

@@ -1,0 +1,164 @@
+//! `kind: export`: the profiles of a pair as files that other programs read: DXF, SVG, points as CSV.
+//!
+//! Everything is taken from the points of the table `outline`; arcs and lines are rebuilt exactly from what the table says
+//! of their ends, every other curve becomes the chords between its points. So how dense the points are, whether one tooth
+//! or the whole gear is drawn, and with which root, is said where the outline is made. The files travel as lines of a
+//! table: they are cached, compared, archived and removed like any other result.
+//!
+//! There is no STEP: `truck-stepio` 0.3, the one crate that is kept, brings 78 others and their solid modeller for what
+//! would be an extruded contour. Must not know: how a profile is made.
+
+mod contour;
+mod dxf;
+mod svg;
+#[cfg(test)]
+mod tests;
+
+use contour::{Contour, contours};
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::record::{Record, Value};
+use crate::stage::{Context, Inputs, Kind, Port, Stage};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+pub const KIND: Kind = Kind {
+    name: "export",
+    version: 1,
+    summary: "Profiles as files for drawing, cutting and meshing programs: DXF, SVG, CSV.",
+    fields: FIELDS,
+    example: "
+kind: export
+pair: geometry
+gear: both
+formats: [dxf, svg, csv]
+",
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::reference("pair", &["geometry"], "The pair; its `outline` says what is drawn and how densely."),
+    Field::choice("gear", GEARS, "Which gears; each has files of its own.").default("both"),
+    Field::new("formats", Shape::List(&Shape::Choice(FORMATS)), "Which files.").default("[dxf, svg, csv]"),
+];
+
+const GEARS: &[Choice] = &[
+    Choice { name: "both", summary: "pinion and gear" },
+    Choice { name: "pinion", summary: "the pinion" },
+    Choice { name: "gear", summary: "the mating gear" },
+];
+
+const FORMATS: &[Choice] = &[
+    Choice { name: "dxf", summary: "DXF of AutoCAD 2000 in mm: ARC, LINE, LWPOLYLINE, the bore as CIRCLE" },
+    Choice { name: "svg", summary: "SVG, true to scale in mm" },
+    Choice { name: "csv", summary: "the points, in mm" },
+];
+
+struct Export {
+    pair: String,
+    gears: Vec<&'static str>,
+    formats: Vec<&'static str>,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let gears = match record.choice("gear") {
+        "both" => vec!["pinion", "gear"],
+        one => vec![one],
+    };
+    let mut formats = Vec::new();
+    for entry in record.list("formats") {
+        let Value::Choice(format) = entry.value else { continue };
+        if formats.contains(&format) {
+            return Err(Diagnostic::new(format!("the format `{format}` is named twice")).at(entry.place));
+        }
+        formats.push(format);
+    }
+    if formats.is_empty() {
+        return Err(Diagnostic::new("no format is named")
+            .at(record.place_of("formats"))
+            .help("name at least one of dxf, svg, csv"));
+    }
+    Ok(Box::new(Export { pair: record.reference("pair").to_owned(), gears, formats }))
+}
+
+fn contours_schema() -> Schema {
+    Schema::new(
+        "contours",
+        "What was drawn of each gear.",
+        vec![
+            Column::text("gear", "Which gear: pinion or gear.").key(),
+            Column::flag("closed", "Whether it is the whole gear; else one tooth, from space to space."),
+            Column::integer("lines", "Number of straight lines."),
+            Column::integer("arcs", "Number of arcs."),
+            Column::integer("polylines", "Number of curves drawn as chords between points."),
+            Column::integer("points", "Number of points on these curves."),
+            Column::float("chord_error", "um", "No chord is farther than this from its curve.").tolerance(1e-9, 1e-6),
+            Column::float("gap", "mm", "Largest distance from the end of a curve to the start of the next.")
+                .tolerance(1e-9, 0.0),
+            Column::float("area", "mm^2", "Area inside the closed contour as drawn, less the bore; NaN for one tooth.")
+                .allows_nan(),
+        ],
+    )
+}
+
+impl Export {
+    fn files_schema(&self) -> Schema {
+        let name = |gear: &&str| self.formats.iter().map(|format| format!("{gear}.{format}")).collect::<Vec<_>>();
+        let files = self.gears.iter().flat_map(|gear| name(&gear)).collect();
+        Schema::of_files("files", "The files, line by line; each also lies beside the tables.", files)
+    }
+}
+
+fn contour_row(contour: &Contour) -> Row {
+    let [lines, arcs, polylines] = contour.counts();
+    vec![
+        contour.gear.as_str().into(),
+        contour.closed.into(),
+        lines.into(),
+        arcs.into(),
+        polylines.into(),
+        contour.points.len().into(),
+        (1e3 * contour.chord_error()).into(),
+        contour.gap().into(),
+        contour.area().into(),
+    ]
+}
+
+impl Stage for Export {
+    fn inputs(&self) -> Vec<Port> {
+        vec![Port::tables("pair", &self.pair, &["gears", "outline"])]
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![contours_schema(), self.files_schema()]
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let all = contours(inputs.table("pair", "outline")?, inputs.table("pair", "gears")?)?;
+        let wanted: Vec<&Contour> =
+            self.gears.iter().filter_map(|gear| all.iter().find(|contour| contour.gear == *gear)).collect();
+        let mut rows = Vec::new();
+        for contour in &wanted {
+            for format in &self.formats {
+                context.check_stop()?;
+                let lines = match *format {
+                    "dxf" => dxf::lines(contour),
+                    "svg" => svg::lines(contour),
+                    _ => contour.csv(),
+                };
+                let file = format!("{}.{format}", contour.gear);
+                let numbered = lines.into_iter().enumerate();
+                rows.extend(
+                    numbered.map(|(at, line)| -> Row { vec![file.as_str().into(), (at + 1).into(), line.into()] }),
+                );
+            }
+        }
+        let failed = |error: TableError| Failure::new(error.to_string());
+        let rows_of_contours = wanted.iter().map(|contour| contour_row(contour)).collect();
+        Ok(vec![
+            Table::from_rows(contours_schema(), rows_of_contours).map_err(failed)?,
+            Table::from_rows(self.files_schema(), rows).map_err(failed)?,
+        ])
+    }
+}

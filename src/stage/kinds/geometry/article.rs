@@ -1,0 +1,79 @@
+//! The article's root arc with every value its equations name, as printed and as derived (zhai2020, 13 to 31).
+//!
+//! Must not know: which root is drawn.
+
+use super::drawn::Drawn;
+use crate::base::units::in_unit;
+use crate::gear::geometry::Gear;
+use crate::gear::problem::root_arc::RootArc;
+use crate::table::data::Row;
+use crate::table::schema::{Column, Schema};
+
+type Get = fn(&RootArc) -> f64;
+
+const LENGTHS: &[(&str, &str, Get)] = &[
+    ("x_a", "X of A, the point of the flank on the base circle.", |arc| arc.base.a[0]),
+    ("y_a", "Y of A.", |arc| arc.base.a[1]),
+    ("h", "H = r_b − r_f (17).", |arc| arc.base.base_radius - arc.base.root_radius),
+    ("r_c", "Radius of the arc (18).", |arc| arc.article().radius),
+    ("x_c", "X of its centre (19).", |arc| arc.article().centre[0]),
+    ("y_c", "Y of its centre (20), with the sign that makes flank and arc share a tangent.", |arc| {
+        arc.article().centre[1]
+    }),
+    ("y_c_printed", "Y of its centre as equation 20 is printed.", |arc| 2.0 * arc.base.a[1] - arc.article().centre[1]),
+    ("gap", "How far the arc's circle passes outside the root circle.", |arc| arc.base.gap(arc.article())),
+    ("objective", "F of equation 28 at this arc.", |arc| arc.objective(arc.article())),
+    ("radius_less_dedendum", "r_c − h_f, which (29) wants not to be negative.", |arc| {
+        arc.inequalities_derived(arc.article())[0]
+    }),
+    ("middle_less_centre", "(x_a + x_a1)/2 − x_c, which (30) wants not to be negative.", |arc| {
+        arc.inequalities_derived(arc.article())[1]
+    }),
+    ("centre_less_a", "x_c − x_a, which (30) wants not to be negative.", |arc| {
+        arc.inequalities_derived(arc.article())[2]
+    }),
+    (
+        "middle_less_a_printed",
+        "Room that (30) leaves to x_c with A where (26) puts it; negative: none, at any z.",
+        |arc| {
+            let [_, below, above] = arc.inequalities_printed(arc.article());
+            below + above
+        },
+    ),
+    ("r_c_touching", "(r_b² − r_f²)/(2 r_f): the arc from A that touches the root circle.", |arc| {
+        arc.base.touching_radius()
+    }),
+    ("r_c_middle", "r_b tan(π/z − ψ_b): the arc from A whose centre is in the middle of the space.", |arc| {
+        arc.base.middle_radius()
+    }),
+    ("r_c_optimal", "Radius of the best arc of the corrected problem.", |arc| arc.optimum().radius),
+    ("gap_optimal", "How far that arc passes outside the root circle.", |arc| arc.base.gap(arc.optimum())),
+];
+
+#[must_use]
+pub fn schema() -> Schema {
+    let mut columns = vec![
+        Column::text("gear", "Which gear: pinion or gear.").key(),
+        Column::float("theta", "deg", "θ, the angle of A from the tooth's centreline (16)."),
+        Column::float("theta_printed", "deg", "The same as equation 26 is printed."),
+    ];
+    columns.extend(
+        LENGTHS.iter().map(|(name, description, _)| Column::float(name, "mm", description).tolerance(1e-9, 1e-9)),
+    );
+    Schema::new(
+        "root_arc",
+        "The root arc of zhai2020; no row for a gear whose root circle is not inside its base circle.",
+        columns,
+    )
+    .on_demand()
+}
+
+#[must_use]
+pub fn row(drawn: &Drawn, gear: &Gear) -> Option<Row> {
+    let arc = RootArc::new(gear).ok()?;
+    let angles = [arc.base.angle, arc.printed_angle()].map(|angle| in_unit(angle, "deg").into());
+    let mut row: Row = vec![drawn.side.name().into()];
+    row.extend(angles);
+    row.extend(LENGTHS.iter().map(|(_, _, get)| in_unit(get(&arc), "mm").into()));
+    Some(row)
+}

@@ -1,0 +1,98 @@
+//! The pair in mesh as curves to draw: three teeth of each gear, path of contact, circles.
+//!
+//! Frame: the pinion's centre is the origin, the gear's is at (0, a_w); a tooth of the pinion points at a space of the
+//! gear. Must not know: how it is drawn.
+
+use std::f64::consts::PI;
+
+use super::drawn::Drawn;
+use crate::base::units::in_unit;
+use crate::gear::geometry::outline::sample::Density;
+use crate::gear::geometry::{Pair, Side};
+use crate::table::data::Row;
+use crate::table::schema::{Column, Schema};
+
+/// Half the angle of the circles that are drawn, in pitches.
+const REACH: f64 = 1.6;
+/// Points of an arc of a circle.
+const ARC: usize = 60;
+
+#[must_use]
+pub fn schema() -> Schema {
+    Schema::new(
+        "mesh_drawing",
+        "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre is the origin.",
+        vec![
+            Column::text("curve", "What it is.").key(),
+            Column::integer("run", "Counts lines that do not meet, such as the circles of the two gears.").key(),
+            Column::integer("point", "Number of the point on it.").key(),
+            Column::float("x", "mm", "Across the line of centres.").tolerance(1e-9, 1e-9),
+            Column::float("y", "mm", "Along the line of centres, from the pinion to the gear.").tolerance(1e-9, 1e-9),
+        ],
+    )
+    .on_demand()
+}
+
+/// The rows of a pair with its two profiles.
+#[must_use]
+pub fn rows(pair: &Pair, [pinion, gear]: [&Drawn; 2], density: Density) -> Vec<Row> {
+    let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
+    let half_gear_pitch = PI / f64::from(pair.gear.specification.teeth);
+    lines.push(("pinion", teeth(pinion, density, -1..=1, 0.0)));
+    let upside_down = teeth(gear, density, -2..=1, half_gear_pitch);
+    lines.push(("gear", upside_down.into_iter().map(|point| opposite(pair, point)).collect()));
+    let (sine, cosine) = libm::sincos(pair.working_pressure_angle);
+    let on_path = |s: f64| {
+        let foot = pair.pinion.base_radius;
+        [s * cosine - foot * sine, foot * cosine + s * sine]
+    };
+    lines.push(("line of action", vec![on_path(0.0), on_path(pair.tangent_length)]));
+    lines.push(("path of contact", vec![on_path(pair.start_of_contact), on_path(pair.end_of_contact)]));
+    for side in [Side::Pinion, Side::Gear] {
+        let of = pair.side(side);
+        let reach = REACH * 2.0 * PI / f64::from(of.specification.teeth);
+        let circles = [
+            ("base circles", of.base_radius),
+            ("pitch circles", of.base_radius / cosine),
+            ("tip circles", of.tip_radius),
+        ];
+        for (name, radius) in circles {
+            let arc = (0..=ARC).map(|step| {
+                let (sine, cosine) = libm::sincos(reach * (2.0 * step as f64 / ARC as f64 - 1.0));
+                let point = [radius * sine, radius * cosine];
+                if side == Side::Pinion { point } else { opposite(pair, point) }
+            });
+            lines.push((name, arc.collect()));
+        }
+    }
+    let mut rows = Vec::new();
+    for (at, (name, points)) in lines.iter().enumerate() {
+        let run = 1 + lines[..at].iter().filter(|(other, _)| other == name).count();
+        rows.extend(points.iter().enumerate().map(|(index, [x, y])| -> Row {
+            vec![(*name).into(), run.into(), (index + 1).into(), in_unit(*x, "mm").into(), in_unit(*y, "mm").into()]
+        }));
+    }
+    rows
+}
+
+/// From the gear's own frame, y towards the pinion, to the pair's.
+fn opposite(pair: &Pair, [x, y]: [f64; 2]) -> [f64; 2] {
+    [-x, pair.centre_distance - y]
+}
+
+/// Neighbouring teeth in the gear's own frame, turned by an angle.
+fn teeth(drawn: &Drawn, density: Density, numbers: std::ops::RangeInclusive<i32>, turn: f64) -> Vec<[f64; 2]> {
+    let tooth = drawn.outline.tooth(density);
+    let first = *numbers.start();
+    numbers
+        .flat_map(|number| {
+            let angle = turn + 2.0 * drawn.outline.half_pitch() * f64::from(number);
+            let (sine, cosine) = libm::sincos(angle);
+            let points = tooth.iter().skip(usize::from(number > first)).map(move |point| {
+                let [x, y] = point.local.position;
+                [cosine * x - sine * y, sine * x + cosine * y]
+            });
+            points.collect::<Vec<_>>()
+        })
+        .collect()
+}
