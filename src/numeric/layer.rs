@@ -13,7 +13,9 @@ pub fn add_influences(length: f64, scale: f64, count: usize, stride: usize, matr
     let slices = count as f64;
     if length.is_infinite() || count == 1 {
         for row in matrix.chunks_mut(stride).take(count) {
-            row[..count].iter_mut().for_each(|entry| *entry += scale);
+            for entry in &mut row[..count] {
+                *entry += scale;
+            }
         }
         return;
     }

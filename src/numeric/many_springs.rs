@@ -139,7 +139,9 @@ impl Factor {
                 return None;
             }
             let root = pivot.sqrt();
-            entries.iter_mut().for_each(|entry| *entry /= root);
+            for entry in entries.iter_mut() {
+                *entry /= root;
+            }
             let (done, below) = self.solved[column..].split_at_mut(1);
             done[0] = done[0].map(|value| value / root);
             for (value, entry) in below.iter_mut().zip(&entries[1..]) {

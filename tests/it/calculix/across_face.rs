@@ -102,14 +102,20 @@ impl Plate {
         }
         deck += "*NSET, NSET=HELD\n";
         for &node in &self.held {
-            (0..=SLICES).for_each(|layer| writeln!(deck, "{}", self.node(node, layer)).unwrap());
+            for layer in 0..=SLICES {
+                writeln!(deck, "{}", self.node(node, layer)).unwrap();
+            }
             if corners.binary_search(&node).is_ok() {
-                (0..SLICES).for_each(|layer| writeln!(deck, "{}", self.between(node, layer)).unwrap());
+                for layer in 0..SLICES {
+                    writeln!(deck, "{}", self.between(node, layer)).unwrap();
+                }
             }
         }
         deck += "*NSET, NSET=WATCHED\n";
         for layer in 0..=SLICES {
-            watched.iter().for_each(|&node| writeln!(deck, "{}", self.node(node, layer)).unwrap());
+            for &node in watched {
+                writeln!(deck, "{}", self.node(node, layer)).unwrap();
+            }
         }
         deck += "*MATERIAL, NAME=ALL\n*ELASTIC\n1., 0.3\n*SOLID SECTION, ELSET=ALL, MATERIAL=ALL\n";
         deck += "*STEP\n*STATIC\n*BOUNDARY\nHELD, 1, 3\n*CLOAD\n";
