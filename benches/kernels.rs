@@ -4,6 +4,7 @@ use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
 use gearstudy::gear::compliance::ContactLaw::{Linear, LoadDependent};
+use gearstudy::gear::contact::SliceCoupling;
 use gearstudy::gear::geometry::Pair;
 use gearstudy::gear::transmission_error::curve::Wanted;
 use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -12,7 +13,7 @@ use gearstudy::gear::transmission_error::loading::Loading;
 use crate::article::{Stages, TORQUE, assumptions, compliance, cycle};
 use crate::brief;
 
-criterion_group!(name = benches; config = brief(); targets = tables, curves, stages);
+criterion_group!(name = benches; config = brief(); targets = tables, curves, slices, stages);
 
 /// What no modification changes.
 fn tables(criterion: &mut Criterion) {
@@ -53,6 +54,23 @@ fn curves(criterion: &mut Criterion) {
         group.bench_function(format!("peak-to-peak {name}"), |bencher| {
             bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).peak_to_peak());
         });
+    }
+}
+
+/// The same crowned design with slices that hold each other.
+fn slices(criterion: &mut Criterion) {
+    let mut stages = Stages::new();
+    let (pair, design) = (stages.pair(), stages.design("ga"));
+    let mut group = criterion.benchmark_group("ste");
+    for contact in [Linear, LoadDependent] {
+        let compliance = compliance(&pair, assumptions(contact, true));
+        for slices in [11, 41] {
+            let settings = Settings { slices, slice_coupling: SliceCoupling::Plate, ..Settings::default() };
+            let cycle = MeshCycle::new(&pair, &compliance, settings).expect("the pair has teeth");
+            group.bench_function(format!("curve {contact:?} {slices} coupled slices"), |bencher| {
+                bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+            });
+        }
     }
 }
 

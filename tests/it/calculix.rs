@@ -3,6 +3,7 @@
 //! What ours takes from one sector, Fourier series and tables of influences, it takes from whole gears in one piece, and
 //! contact from pressing flank on flank.
 
+mod across_face;
 mod contact;
 mod press;
 mod program;

@@ -3,6 +3,7 @@
 //! Micro-geometry never enters these tables; it only changes gaps. Lengths in m, forces in N.
 //! Must not know: modification, load.
 
+pub mod across_face;
 pub mod energy;
 pub mod finite_element;
 pub mod iso6336;

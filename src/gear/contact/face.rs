@@ -46,13 +46,20 @@ impl<'a> Face<'a> {
     /// has no closed form: on the part of each quadratic stretch that is in contact, or on each stretch of another kind.
     #[must_use]
     pub fn new(design: &Design, width: f64, rule: &'a Rule) -> Self {
+        Self::between(design, [-0.5 * width, 0.5 * width], rule)
+    }
+
+    /// The same for the part of the face between two z.
+    #[must_use]
+    pub fn between(design: &Design, [from, to]: [f64; 2], rule: &'a Rule) -> Self {
+        let width = to - from;
         let parts = || design.pinion.iter().chain(&design.gear).map(|part| &part.modification);
         if !parts().any(|part| part.varies_along_face()) {
             return Self { offset: 0.0, mean: 0.0, shape: Shape::Flat, rule };
         }
-        let mut cuts = vec![-0.5 * width, 0.5 * width];
+        let mut cuts = vec![from, to];
         for z in parts().flat_map(|part| part.lead_breaks()).flatten() {
-            if z.abs() < 0.5 * width {
+            if z > from && z < to {
                 cuts.push(z);
             }
         }

@@ -131,6 +131,27 @@ impl Loading<'_> {
         (points, summary)
     }
 
+    /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
+    #[must_use]
+    pub fn peak_to_peak(&self) -> f64 {
+        let trace = self.trace();
+        let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
+        let rows = &self.cycle.rows;
+        let largest = trace.largest(rows, value).value;
+        if self.holds(largest) { largest - trace.smallest(rows, value).value } else { f64::INFINITY }
+    }
+
+    /// The variance of the transmission error over the cycle \[m²\], an integral mean, infinite beyond what is modelled:
+    /// the lean path for optimisers.
+    #[must_use]
+    pub fn variance(&self) -> f64 {
+        let trace = self.trace();
+        if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.holds(*value)) {
+            return f64::INFINITY;
+        }
+        harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
+    }
+
     /// Room for the curve: spans at zone ends, relief starts and first touches come on top.
     fn no_points(&self, wanted: Wanted) -> Vec<Point> {
         let spans = self.cycle.period() / self.span_length(wanted.harmonics) + 8.0;

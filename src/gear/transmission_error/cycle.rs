@@ -6,12 +6,13 @@
 //! the springs are the pairs of a window of whole base pitches, as many at every position, from one base pitch before A to
 //! at least one after E; zones then only count the pairs inside the path of contact. Must not know: modification, load.
 
+use super::across::Across;
 use super::path::Path;
 use super::trace::Rows;
 use crate::base::error::Failure;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::Pair;
 use crate::gear::material::Material;
 use crate::numeric::chebyshev::Series;
@@ -30,14 +31,16 @@ const CORNERS: usize = 2;
 pub struct Settings {
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     pub positions: usize,
-    /// Slices on each smooth stretch of the face that is in contact, where there is no closed form.
+    /// Slices on each smooth stretch of the face that is in contact, where there is no closed form; where slices are
+    /// coupled, equal ones on the whole face.
     pub slices: usize,
     pub corner_contact: CornerContact,
+    pub slice_coupling: SliceCoupling,
 }
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { positions: 64, slices: 17, corner_contact: CornerContact::None }
+        Self { positions: 64, slices: 17, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None }
     }
 }
 
@@ -61,6 +64,8 @@ pub struct MeshCycle {
     pub zones: Vec<Zone>,
     pub(super) path: Path,
     pub(super) elasticity: Elasticity,
+    /// Where slices hold each other.
+    pub(super) across: Option<Across>,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
     coupling: Vec<Graded>,
     pub(super) rows: Rows,
@@ -96,6 +101,10 @@ impl MeshCycle {
         let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
         let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
         let (pinion_series, gear_series) = (compliance.pinion.total_series(), compliance.gear.total_series());
+        let across = match settings.slice_coupling {
+            SliceCoupling::None => None,
+            SliceCoupling::Plate => Some(Across::new(pair, compliance, &path, face_width)?),
+        };
         let total = |series: &Option<Series>, tooth: &ToothCompliance, roll: f64| {
             series.as_ref().map_or_else(|| tooth.total(roll), |series| series.value(roll))
         };
@@ -144,14 +153,16 @@ impl MeshCycle {
         let zones = zones(ratio, pair.base_pitch);
         let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
         let springs = exact.then_some(springs);
-        Ok(Self { pair: pair.clone(), settings, springs, face_width, zones, path, elasticity, coupling, rows, slices })
+        let pair = pair.clone();
+        Ok(Self { pair, settings, springs, face_width, zones, path, elasticity, across, coupling, rows, slices })
     }
 
-    /// The same cycle with the same corner contact, sampled otherwise.
+    /// The same cycle with the same corner contact and coupling of slices, sampled otherwise.
     #[must_use]
     pub fn sampled(&self, settings: Settings) -> Self {
-        // Corner contact is in the quick copies.
-        let settings = Settings { corner_contact: self.settings.corner_contact, ..settings };
+        // Both are in the quick copies.
+        let Settings { corner_contact, slice_coupling, .. } = self.settings;
+        let settings = Settings { corner_contact, slice_coupling, ..settings };
         Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
     }
 

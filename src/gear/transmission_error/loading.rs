@@ -4,6 +4,7 @@
 //! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
 //! everything is smooth. Must not know: what is done with the values.
 
+use super::across::Sliced;
 use super::cycle::{Elasticity, MeshCycle};
 use super::trace::{NODES, Span, Trace};
 use crate::gear::contact::CornerContact;
@@ -15,7 +16,6 @@ use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST, PerSpring, Springs};
 use crate::numeric::crossing::crossing;
-use crate::numeric::harmonics;
 
 /// Cuts closer than this share of the base pitch are one.
 const CLOSEST: f64 = 1e-10;
@@ -29,6 +29,8 @@ pub struct Loading<'a> {
     /// F = T / r_b1 \[N\].
     pub force: f64,
     face: Face<'a>,
+    /// Where slices of the face hold each other.
+    pub(super) slices: Option<Sliced<'a>>,
     profiles: [Vec<&'a dyn Modification>; 2],
     corners: Option<Corners<'a>>,
     /// Cycle positions at which a profile is not smooth, ascending.
@@ -65,6 +67,8 @@ pub struct State {
     /// The approach without load: the smallest gap and what the whole face has lost \[m\].
     pub unloaded: f64,
     pub balance: Balance,
+    /// The largest load per width of each pair \[N/m\], where slices hold each other.
+    peaks: Option<PerSpring>,
 }
 
 impl State {
@@ -88,6 +92,7 @@ impl<'a> Loading<'a> {
         let mut loading = Self {
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
+            slices: Sliced::new(cycle, design, &face),
             face,
             profiles,
             corners: None,
@@ -187,18 +192,23 @@ impl<'a> Loading<'a> {
         let carried = self.carried(position, pairs);
         let Carried { count, springs, positions, gaps, smallest } = &carried;
         let (springs, positions, gaps) = (&springs[..*count], &positions[..*count], &gaps[..*count]);
-        let balance =
-            if self.force > 0.0 { self.loaded(springs, positions, gaps) } else { complementarity::unloaded(gaps) };
+        let (balance, peaks) = if self.force > 0.0 {
+            self.loaded(springs, positions, gaps)
+        } else {
+            (complementarity::unloaded(gaps), None)
+        };
         let unloaded = smallest + self.face.offset;
         if self.corners.is_none() {
-            return State { unloaded, balance };
+            return State { unloaded, balance, peaks };
         }
-        let mut spread = Balance { loads: [0.0; MOST], interference: [OUT_OF_REACH; MOST], ..balance };
-        for (index, &spring) in springs.iter().enumerate() {
-            spread.loads[spring] = balance.loads[index];
-            spread.interference[spring] = balance.interference[index];
-        }
-        State { unloaded, balance: spread }
+        let spread = |values: &PerSpring, missing: f64| {
+            let mut spread = [missing; MOST];
+            springs.iter().zip(values).for_each(|(&spring, value)| spread[spring] = *value);
+            spread
+        };
+        let (loads, interference) = (spread(&balance.loads, 0.0), spread(&balance.interference, OUT_OF_REACH));
+        let balance = Balance { loads, interference, ..balance };
+        State { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
     }
 
     /// The pairs that can touch at all; with corner contact only those that come near enough.
@@ -253,8 +263,14 @@ impl<'a> Loading<'a> {
         2.0 * (alone + self.face.mean)
     }
 
-    fn loaded(&self, springs: &[usize], positions: &[f64], gaps: &[f64]) -> Balance {
-        match &self.cycle.elasticity {
+    fn loaded(&self, springs: &[usize], positions: &[f64], gaps: &[f64]) -> (Balance, Option<PerSpring>) {
+        if let Some(slices) = &self.slices {
+            let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
+            let above = self.alone(positions[nearest]);
+            let (balance, peaks) = slices.balance(self.cycle, springs, positions, gaps, [self.force, above]);
+            return (balance, Some(peaks));
+        }
+        let balance = match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST];
                 for (slot, s) in stiffness.iter_mut().zip(positions) {
@@ -273,7 +289,8 @@ impl<'a> Loading<'a> {
                 let above = pairs.above(nearest, self.force);
                 self.balanced(springs, positions, gaps, &pairs, above)
             }
-        }
+        };
+        (balance, None)
     }
 
     fn balanced(
@@ -310,6 +327,9 @@ impl<'a> Loading<'a> {
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
     #[must_use]
     pub fn line_load(&self, position: f64, state: &State, spring: usize) -> f64 {
+        if let Some(peaks) = state.peaks {
+            return peaks[spring];
+        }
         let interference = state.balance.interference[spring];
         if self.face.is_flat() || interference <= 0.0 {
             return state.balance.loads[spring] / self.cycle.face_width;
@@ -414,26 +434,5 @@ impl<'a> Loading<'a> {
     pub(super) fn span_length(&self, harmonics: usize) -> f64 {
         let spans = (self.cycle.settings.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
         self.cycle.period() / spans.max(1.0)
-    }
-
-    /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
-    #[must_use]
-    pub fn peak_to_peak(&self) -> f64 {
-        let trace = self.trace();
-        let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        let rows = &self.cycle.rows;
-        let largest = trace.largest(rows, value).value;
-        if self.holds(largest) { largest - trace.smallest(rows, value).value } else { f64::INFINITY }
-    }
-
-    /// The variance of the transmission error over the cycle \[m²\], an integral mean, infinite beyond what is modelled:
-    /// the lean path for optimisers.
-    #[must_use]
-    pub fn variance(&self) -> f64 {
-        let trace = self.trace();
-        if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.holds(*value)) {
-            return f64::INFINITY;
-        }
-        harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
     }
 }

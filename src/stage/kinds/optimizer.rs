@@ -8,7 +8,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, LENGTH, TORQUE, in_unit};
-use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::template::{Template, Variable};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -54,9 +54,17 @@ const FIELDS: &[Field] = &[
         "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
     )
     .default("64"),
-    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
-        .default("17"),
+    Field::integer(
+        "slices",
+        1,
+        10_000,
+        "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
+         whole face, 200 at most.",
+    )
+    .default("17"),
     Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
+    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.")
         .default("none"),
 ];
 
@@ -100,6 +108,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         _ => None,
     };
     let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
+    let slice_coupling = SliceCoupling::named(record.choice("slice_coupling"));
+    let slices = whole("slices");
+    if slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
+        return Err(Diagnostic::new(format!(
+            "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
+        ))
+        .at(record.place_of("slices")));
+    }
     let name = record.text("name");
     if name.is_empty() || name.chars().count() > 64 || !name.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) {
         return Err(Diagnostic::new(format!("`{}` cannot be the name of a design", name.escape_debug()))
@@ -117,8 +133,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         name: name.to_owned(),
         settings: Settings {
             positions: whole("positions"),
-            slices: whole("slices"),
+            slices,
             corner_contact: CornerContact::named(record.choice("corner_contact")),
+            slice_coupling,
         },
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.

@@ -12,7 +12,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
-use crate::gear::contact::{CORNER_CONTACTS, CornerContact};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -48,9 +48,17 @@ const FIELDS: &[Field] = &[
         "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
     )
     .default("64"),
-    Field::integer("slices", 1, 10_000, "Slices on each smooth stretch of the face where no closed form exists.")
-        .default("17"),
+    Field::integer(
+        "slices",
+        1,
+        10_000,
+        "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
+         whole face, 200 at most.",
+    )
+    .default("17"),
     Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
+    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.")
         .default("none"),
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
     Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
@@ -96,6 +104,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(place));
         }
     }
+    let slice_coupling = SliceCoupling::named(record.choice("slice_coupling"));
+    let slices = whole("slices");
+    if slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
+        return Err(Diagnostic::new(format!(
+            "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
+        ))
+        .at(record.place_of("slices")));
+    }
     Ok(Box::new(Ste {
         stiffness: record.reference("stiffness").to_owned(),
         designs,
@@ -103,8 +119,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         accuracy: record.maybe_quantity("accuracy"),
         settings: Settings {
             positions: whole("positions"),
-            slices: whole("slices"),
+            slices,
             corner_contact: CornerContact::named(record.choice("corner_contact")),
+            slice_coupling,
         },
         harmonics: whole("harmonics"),
         samples: whole("samples"),
@@ -268,10 +285,13 @@ impl Stage for Ste {
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        let mut omissions = vec![Omission::new(
-            "slices across the face",
-            "crowning, slopes and linear or parabolic end relief have a closed form under linear contact",
-        )];
+        let slices = match self.settings.slice_coupling {
+            SliceCoupling::None => {
+                "crowning, slopes and linear or parabolic end relief have a closed form under linear contact"
+            }
+            SliceCoupling::Plate => "one does for designs that do not vary across the face",
+        };
+        let mut omissions = vec![Omission::new("slices across the face", slices)];
         if self.settings.corner_contact == CornerContact::None {
             omissions
                 .push(Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only"));

@@ -7,7 +7,7 @@ use crate::gear::fixtures;
 use crate::gear::geometry::Side;
 
 fn exact(pair: &Pair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
-    let settings = Settings { positions, slices: 9, corner_contact: CornerContact::Exact };
+    let settings = Settings { positions, slices: 9, corner_contact: CornerContact::Exact, ..Settings::default() };
     MeshCycle::new(pair, compliance, settings).unwrap()
 }
 

@@ -1,0 +1,42 @@
+//! The slices of the tooth pairs at one mesh position as springs behind gaps.
+//!
+//! A slice is a strip of the face with the contact of its flanks and what its own load does to the teeth; what loads on
+//! other slices do to it is the solver's coupling. Load in N on the slice. Must not know: how slices hold each other.
+
+use super::face::Face;
+use super::flattening::InSeries;
+use crate::numeric::complementarity::Springs;
+
+/// A slice under the interference of its highest place.
+#[derive(Clone, Copy, Debug)]
+pub enum Slice {
+    /// Stiffness \[N/m\].
+    Linear(f64),
+    /// Per width.
+    Logarithmic(InSeries),
+}
+
+/// Slice by slice, pair by pair.
+pub struct Slices<'a> {
+    pub slices: Vec<Slice>,
+    /// The deviations within each slice, the same for all pairs.
+    pub faces: &'a [Face<'a>],
+    /// Width of a slice \[m\].
+    pub width: f64,
+}
+
+impl Springs for Slices<'_> {
+    fn response(&self, spring: usize, interference: f64) -> (f64, f64) {
+        let face = &self.faces[spring % self.faces.len()];
+        match &self.slices[spring] {
+            Slice::Linear(stiffness) => {
+                let (passed, share) = face.passed(interference);
+                (stiffness * passed, stiffness * share)
+            }
+            Slice::Logarithmic(slice) => {
+                let (load, slope) = face.summed(interference, |depth| slice.load(depth));
+                (self.width * load, self.width * slope)
+            }
+        }
+    }
+}
