@@ -7,7 +7,7 @@ use std::path::Path;
 use criterion::{Criterion, criterion_group};
 use gearstudy::diff::compare::{Options, compare};
 use gearstudy::diff::pretty;
-use gearstudy::diff::side::Side;
+use gearstudy::history::side::Side;
 use gearstudy::store::entry::StoredTable;
 use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use gearstudy::store::parquet;

@@ -6,8 +6,11 @@ pub mod base;
 pub mod cli;
 pub mod diff;
 pub mod gear;
+pub mod history;
 pub mod numeric;
 pub mod optimize;
+#[cfg(feature = "frames")]
+pub mod query;
 pub mod report;
 pub mod runner;
 pub mod stage;

@@ -7,7 +7,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study, 3 a stage failed, \
+#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, 3 a stage failed, \
     4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -100,6 +100,8 @@ pub enum Command {
     },
     /// Say what changed between two sets of results, and why, without running anything.
     Diff(Differences),
+    /// Ask the tables of any studies and commits in SQL; without a query, say which tables there are.
+    Query(Question),
     /// Put a study and all its results into one file that describes itself: a Workflow Run RO-Crate.
     Archive {
         study: PathBuf,
@@ -157,6 +159,25 @@ pub enum Format {
     Pretty,
     Csv,
     Json,
+    Markdown,
+}
+
+/// What is asked, of which results.
+#[derive(Args, Debug, Clone)]
+pub struct Question {
+    /// One SELECT; a table is `study.stage.table`, at a commit `"REVISION:study.stage.table"`.
+    pub sql: Option<String>,
+    /// The revision or folder of results that is meant where a table does not say it [default: the results folder].
+    #[arg(long, value_name = "REVISION")]
+    pub at: Option<String>,
+    /// The study whose tables may be called `stage.table`; not needed where there is one alone.
+    #[arg(long, value_name = "NAME")]
+    pub study: Option<String>,
+    #[arg(long, value_enum, default_value_t = Format::Pretty)]
+    pub format: Format,
+    /// Write to this file, as its name ends: .csv, .json, .md or .parquet.
+    #[arg(long, short, value_name = "FILE", conflicts_with = "format")]
+    pub output: Option<PathBuf>,
 }
 
 /// What to compare, and how far apart is the same.

@@ -10,10 +10,10 @@ use super::pages::terminal_width;
 use super::progress::out;
 use crate::base::error::nearest;
 use crate::diff::compare::{Options, compare};
-use crate::diff::git::Repository;
 use crate::diff::model::Comparison;
-use crate::diff::side::Side;
 use crate::diff::{html, markdown, pretty};
+use crate::history::git::Repository;
+use crate::history::side::Side;
 use crate::store::cache::Cache;
 use crate::store::results::MANIFEST;
 use crate::study;
@@ -66,7 +66,7 @@ fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {
     }
 }
 
-fn working_tree(places: &Places) -> Result<Side, Ending> {
+pub(super) fn working_tree(places: &Places) -> Result<Side, Ending> {
     if places.results.is_dir() {
         return Ok(Side::folder(&places.results, places.results.display().to_string()));
     }
@@ -90,7 +90,12 @@ fn read_words(asked: &Differences, places: &Places, repository: &Result<Reposito
     Ok(Asked { sides, studies })
 }
 
-fn side(word: &str, places: &Places, repository: &Result<Repository, String>) -> Result<Option<Side>, String> {
+/// What a word means that may be a folder or a revision.
+pub(super) fn side(
+    word: &str,
+    places: &Places,
+    repository: &Result<Repository, String>,
+) -> Result<Option<Side>, String> {
     let path = Path::new(word);
     if path.is_dir()
         && (word.contains(['/', '\\', '.']) || Side::folder(path, "").studies().is_ok_and(|all| !all.is_empty()))
@@ -145,7 +150,7 @@ fn named(
 }
 
 /// The name in a study's file; other words are names.
-fn study_name(word: &str) -> String {
+pub(super) fn study_name(word: &str) -> String {
     let path = PathBuf::from(word);
     if !path.extension().is_some_and(|extension| extension == "yaml" || extension == "yml") {
         return word.to_owned();

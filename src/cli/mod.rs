@@ -9,6 +9,7 @@ pub mod draw;
 pub mod pages;
 pub mod print;
 pub mod progress;
+mod query;
 pub mod run;
 pub mod show;
 pub mod verify;
@@ -29,6 +30,9 @@ pub enum Ending {
     Usage(String),
     #[error("{0}")]
     Invalid(Box<LoadError>),
+    /// A query that makes no sense, or asks for what is not there.
+    #[error("{0}")]
+    Query(String),
     /// A stage failed; what it said was printed where it happened.
     #[error("{0}")]
     Failed(String),
@@ -45,7 +49,7 @@ impl Ending {
     pub fn code(&self) -> i32 {
         match self {
             Self::Usage(_) => 1,
-            Self::Invalid(_) => 2,
+            Self::Invalid(_) | Self::Query(_) => 2,
             Self::Failed(_) => 3,
             Self::Differs(_) => 4,
             // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
@@ -111,6 +115,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             *format,
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
+        Command::Query(asked) => query::query(asked, places, quiet),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {

@@ -1,14 +1,32 @@
-//! Printing a table: for people, as CSV, as JSON. Must not know: where the table came from.
+//! Printing rows: for people, as CSV, JSON and Markdown. Must not know: where they came from.
 
-use comfy_table::{Cell, CellAlignment, ContentArrangement, Row, Table as Drawn, presets};
+use comfy_table::{Cell as DrawnCell, CellAlignment, ContentArrangement, Row, Table as Drawn, presets};
 use serde_json::{Map, Value, json};
 
-use crate::store::csv::{self, heading};
-use crate::table::data::{Data, Table};
+use crate::diff::markdown::escaped;
+use crate::store::csv::{heading, write_cells};
+use crate::table::data::{Cell, Table};
 use crate::table::schema::Type;
 use crate::table::select::{parse_conditions, rows_where, unknown_column};
 
 use super::arguments::Format;
+
+/// Rows to print, wherever they come from.
+pub struct Grid<'a> {
+    pub columns: Vec<Heading>,
+    pub rows: usize,
+    /// By row and column; `None` where there is nothing.
+    pub cell: Box<dyn Fn(usize, usize) -> Option<Cell> + 'a>,
+}
+
+pub struct Heading {
+    /// In JSON.
+    pub name: String,
+    /// Everywhere else: with the unit.
+    pub shown: String,
+    /// Numbers stand on the right.
+    pub is_number: bool,
+}
 
 /// The rows and columns that were asked for, as text.
 ///
@@ -26,41 +44,95 @@ pub fn table(table: &Table, conditions: &[String], columns: &[String], format: F
         let find = |name: &String| table.schema().position(name).ok_or_else(|| unknown_column(table.schema(), name));
         columns.iter().map(find).collect::<Result<_, _>>()?
     };
-    match format {
-        Format::Pretty => Ok(pretty(table, &rows, &chosen)),
-        Format::Csv => csv(table, &rows, &chosen),
-        Format::Json => Ok(json_rows(table, &rows, &chosen)),
-    }
+    let headings = chosen.iter().map(|&index| {
+        let column = &table.schema().columns[index];
+        let is_number = matches!(column.kind, Type::Float | Type::Integer);
+        Heading { name: column.name.clone(), shown: heading(column), is_number }
+    });
+    let grid = Grid {
+        columns: headings.collect(),
+        rows: rows.len(),
+        cell: Box::new(|row, column| Some(table.columns()[chosen[column]].cell(rows[row]))),
+    };
+    grid.text(format)
 }
 
-fn pretty(table: &Table, rows: &[usize], columns: &[usize]) -> String {
-    let mut drawn = Drawn::new();
-    drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
-    drawn.set_header(columns.iter().map(|&index| heading(&table.schema().columns[index])));
-    for &row in rows {
-        drawn.add_row(Row::from(
-            columns
-                .iter()
-                .map(|&index| {
-                    let data = &table.columns()[index];
-                    let align = if matches!(data.kind(), Type::Float | Type::Integer) {
-                        CellAlignment::Right
-                    } else {
-                        CellAlignment::Left
-                    };
-                    Cell::new(shown(data, row)).set_alignment(align)
-                })
-                .collect::<Vec<_>>(),
-        ));
+impl Grid<'_> {
+    /// # Errors
+    /// When it cannot be written as CSV, which is a mistake of this program.
+    pub fn text(&self, format: Format) -> Result<String, String> {
+        match format {
+            Format::Pretty => Ok(self.pretty()),
+            Format::Csv => self.csv(),
+            Format::Json => Ok(self.json()),
+            Format::Markdown => Ok(self.markdown()),
+        }
     }
-    let count = if rows.len() == 1 { "1 row".to_owned() } else { format!("{} rows", rows.len()) };
-    format!("{drawn}\n{count}\n")
+
+    fn row(&self, row: usize) -> impl Iterator<Item = Option<Cell>> {
+        (0..self.columns.len()).map(move |column| (self.cell)(row, column))
+    }
+
+    fn pretty(&self) -> String {
+        let mut drawn = Drawn::new();
+        drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
+        drawn.set_header(self.columns.iter().map(|column| &column.shown));
+        for row in 0..self.rows {
+            let cell = |(cell, column): (Option<Cell>, &Heading)| {
+                let align = if column.is_number { CellAlignment::Right } else { CellAlignment::Left };
+                DrawnCell::new(shown(cell.as_ref())).set_alignment(align)
+            };
+            drawn.add_row(Row::from(self.row(row).zip(&self.columns).map(cell).collect::<Vec<_>>()));
+        }
+        let count = if self.rows == 1 { "1 row".to_owned() } else { format!("{} rows", self.rows) };
+        format!("{drawn}\n{count}\n")
+    }
+
+    fn csv(&self) -> Result<String, String> {
+        let mut bytes = Vec::new();
+        let broken = |error: &dyn std::fmt::Display| format!("the table could not be written as CSV: {error}");
+        let headings = self.columns.iter().map(|column| column.shown.clone());
+        write_cells(headings, (0..self.rows).map(|row| self.row(row)), &mut bytes).map_err(|error| broken(&error))?;
+        String::from_utf8(bytes).map_err(|error| broken(&error))
+    }
+
+    fn json(&self) -> String {
+        let value = |cell: Option<Cell>| match cell {
+            // JSON has no NaN: null says "not applicable here".
+            Some(Cell::Float(value)) => serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number),
+            Some(Cell::Integer(value)) => json!(value),
+            Some(Cell::Text(value)) => json!(value),
+            Some(Cell::Flag(value)) => json!(value),
+            None => Value::Null,
+        };
+        let line = |row: usize| {
+            let names = self.columns.iter().map(|column| column.name.clone());
+            let object: Map<String, Value> = names.zip(self.row(row).map(value)).collect();
+            format!("  {}", Value::Object(object))
+        };
+        let lines: Vec<String> = (0..self.rows).map(line).collect();
+        if lines.is_empty() { "[]\n".to_owned() } else { format!("[\n{}\n]\n", lines.join(",\n")) }
+    }
+
+    fn markdown(&self) -> String {
+        let line = |cells: Vec<String>| format!("| {} |\n", cells.join(" | "));
+        let rules = self.columns.iter().map(|column| if column.is_number { "---:" } else { "---" }.to_owned());
+        let mut text = line(self.columns.iter().map(|column| escaped(&column.shown)).collect());
+        text += &line(rules.collect());
+        for row in 0..self.rows {
+            text += &line(self.row(row).map(|cell| escaped(&shown(cell.as_ref()))).collect());
+        }
+        text
+    }
 }
 
 /// A number with eight significant digits and no trailing zeros; the exact value is in the CSV and the JSON.
-fn shown(data: &Data, row: usize) -> String {
-    let Data::Float(values) = data else { return data.cell(row).to_string() };
-    let value = values[row];
+fn shown(cell: Option<&Cell>) -> String {
+    let value = match cell {
+        None => return "–".to_owned(),
+        Some(Cell::Float(value)) => *value,
+        Some(cell) => return cell.to_string(),
+    };
     if value == 0.0 || !value.is_finite() {
         return if value.is_nan() { "–".to_owned() } else { value.to_string() };
     }
@@ -78,32 +150,6 @@ fn shown(data: &Data, row: usize) -> String {
 
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
-}
-
-fn csv(table: &Table, rows: &[usize], columns: &[usize]) -> Result<String, String> {
-    let mut bytes = Vec::new();
-    let broken = |error: &dyn std::fmt::Display| format!("the table could not be written as CSV: {error}");
-    csv::write(table, columns, rows, &mut bytes).map_err(|error| broken(&error))?;
-    String::from_utf8(bytes).map_err(|error| broken(&error))
-}
-
-fn json_rows(table: &Table, rows: &[usize], columns: &[usize]) -> String {
-    let value = |index: usize, row: usize| match &table.columns()[index] {
-        // JSON has no NaN: null says "not applicable here".
-        Data::Float(values) => serde_json::Number::from_f64(values[row]).map_or(Value::Null, Value::Number),
-        Data::Integer(values) => json!(values[row]),
-        Data::Text(values) => json!(values[row]),
-        Data::Flag(values) => json!(values[row]),
-    };
-    let name = |index: usize| table.schema().columns[index].name.clone();
-    let lines: Vec<String> = rows
-        .iter()
-        .map(|&row| {
-            let object: Map<String, Value> = columns.iter().map(|&index| (name(index), value(index, row))).collect();
-            format!("  {}", Value::Object(object))
-        })
-        .collect();
-    if lines.is_empty() { "[]\n".to_owned() } else { format!("[\n{}\n]\n", lines.join(",\n")) }
 }
 
 #[cfg(test)]
@@ -125,6 +171,9 @@ mod tests {
         let parsed: Value = serde_json::from_str(&print(Format::Json)).unwrap();
         assert_eq!(parsed[0]["peak_to_peak"], 0.728_123_456_789);
         assert_eq!(parsed[1]["peak_to_peak"], Value::Null);
+        let markdown =
+            "| design | peak\\_to\\_peak \\[um\\] |\n| --- | ---: |\n| iso, long | 0.72812346 |\n| none | – |\n";
+        assert_eq!(print(Format::Markdown), markdown);
     }
 
     #[test]
@@ -136,7 +185,7 @@ mod tests {
 
     #[test]
     fn numbers_are_short_and_honest() {
-        let shown_as = |value: f64| shown(&Data::Float(vec![value]), 0);
+        let shown_as = |value: f64| shown(Some(&Cell::Float(value)));
         assert_eq!(shown_as(2.738e8), "273800000");
         assert_eq!(shown_as(2.738e10), "2.738e10");
         assert_eq!(shown_as(0.1 + 0.2), "0.3");

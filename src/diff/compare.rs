@@ -2,10 +2,12 @@
 //!
 //! Must not know: how the outcome is shown.
 
+use std::collections::BTreeMap;
+
 use super::model::{Comparison, Flip, StageDiff, State, StudyDiff, TableDiff};
-use super::side::{Got, Side};
 use super::{table, verdict, why};
 use crate::base::error::suggest;
+use crate::history::side::{Got, Side};
 use crate::store::cache::Cache;
 use crate::store::manifest::{Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
@@ -165,12 +167,20 @@ fn one_sided(name: &str, manifest: &Manifest, state: State) -> StudyDiff {
 
 fn one_sided_stage(stage: &StageRecord, state: State) -> StageDiff {
     let tables = stage.tables.iter().map(|record| one_sided_table(record, state)).collect();
-    StageDiff { name: stage.name.clone(), kind: stage.kind.clone(), state, why: Vec::new(), tables }
+    StageDiff { name: stage.name.clone(), kind: stage.kind.clone(), renamed_from: None, state, why: Vec::new(), tables }
 }
 
 fn one_sided_table(record: &TableRecord, state: State) -> TableDiff {
     let (rows_before, rows_after) = if state == State::Added { (0, record.rows) } else { (record.rows, 0) };
     TableDiff { name: record.name.clone(), state, rows_before, rows_after, ..TableDiff::default() }
+}
+
+/// Whether a stage is one that is gone, under another name: names are in no key, so nothing else need have changed.
+fn is_renamed(gone: &StageRecord, new: &StageRecord) -> bool {
+    let contents = |stage: &StageRecord| -> BTreeMap<String, String> {
+        stage.tables.iter().map(|table| (table.table().to_owned(), table.content.clone())).collect()
+    };
+    gone.kind == new.kind && !new.tables.is_empty() && contents(gone) == contents(new)
 }
 
 /// One study that both sides have.
@@ -188,14 +198,17 @@ impl Task<'_> {
     fn study(&self, name: &str) -> (StudyDiff, Vec<Flip>) {
         let (old, new) = (&self.old.1, &self.new.1);
         let (mut stages, mut flips) = (Vec::new(), Vec::new());
+        let is_in = |manifest: &Manifest, name: &str| manifest.stages.iter().any(|stage| stage.name == name);
+        let mut gone: Vec<&StageRecord> = old.stages.iter().filter(|stage| !is_in(new, &stage.name)).collect();
         for stage in &new.stages {
-            match old.stages.iter().find(|earlier| earlier.name == stage.name) {
-                None => stages.push(one_sided_stage(stage, State::Added)),
-                Some(earlier) => stages.push(self.stage(name, earlier, stage, &mut flips)),
-            }
+            let same_name = old.stages.iter().find(|earlier| earlier.name == stage.name);
+            let renamed = || Some(gone.remove(gone.iter().position(|earlier| is_renamed(earlier, stage))?));
+            stages.push(match same_name.or_else(renamed) {
+                None => one_sided_stage(stage, State::Added),
+                Some(earlier) => self.stage(name, earlier, stage, &mut flips),
+            });
         }
-        let gone = old.stages.iter().filter(|stage| !new.stages.iter().any(|other| other.name == stage.name));
-        stages.extend(gone.map(|stage| one_sided_stage(stage, State::Removed)));
+        stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, State::Removed)));
         let state = State::of_parts(stages.iter().map(|stage| stage.state));
         (StudyDiff { name: name.to_owned(), state, stages }, flips)
     }
@@ -203,13 +216,13 @@ impl Task<'_> {
     fn stage(&self, study: &str, old: &StageRecord, new: &StageRecord, flips: &mut Vec<Flip>) -> StageDiff {
         let mut tables = Vec::new();
         for record in &new.tables {
-            let Some(earlier) = old.tables.iter().find(|earlier| earlier.name == record.name) else {
+            let Some(earlier) = old.tables.iter().find(|earlier| earlier.table() == record.table()) else {
                 tables.push(one_sided_table(record, State::Added));
                 continue;
             };
             tables.push(self.table(study, (old, earlier), (new, record), flips));
         }
-        let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.name == table.name));
+        let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.table() == table.table()));
         tables.extend(gone.map(|table| one_sided_table(table, State::Removed)));
         let mut why = why::reasons((&self.old.1, old), (&self.new.1, new));
         let mut state = State::of_parts(tables.iter().map(|table| table.state));
@@ -219,7 +232,8 @@ impl Task<'_> {
         if state.differs() && why.is_empty() {
             why.push(why::unknown(&self.old.1, &self.new.1));
         }
-        StageDiff { name: new.name.clone(), kind: new.kind.clone(), state, why, tables }
+        let renamed_from = (old.name != new.name).then(|| old.name.clone());
+        StageDiff { name: new.name.clone(), kind: new.kind.clone(), renamed_from, state, why, tables }
     }
 
     fn table(

@@ -34,6 +34,8 @@ struct StudyView<'a> {
     study: &'a StudyDiff,
     sign: &'static str,
     sum: String,
+    /// Of the study as a whole, and of stages that came out the same.
+    remarks: Vec<String>,
     stages: Vec<StageView<'a>>,
     tables: Vec<TableView<'a>>,
 }
@@ -42,7 +44,7 @@ struct StudyView<'a> {
 struct StageView<'a> {
     stage: &'a StageDiff,
     sign: &'static str,
-    word: &'static str,
+    word: String,
     why: Vec<String>,
 }
 
@@ -83,22 +85,21 @@ pub fn page(comparison: &Comparison) -> Result<String, String> {
 }
 
 fn study(study: &StudyDiff) -> StudyView<'_> {
-    let whole = matches!(study.state, State::Added | State::Removed);
-    let told: Vec<&StageDiff> =
-        study.stages.iter().filter(|stage| !whole && (stage.state != State::Same || !stage.why.is_empty())).collect();
+    let told = words::told(study);
     let changed = told.iter().filter(|stage| stage.state <= State::Changed);
     let tables = changed.flat_map(|stage| &stage.tables).filter(|table| table.state != State::Same);
     StudyView {
         study,
         sign: study.state.sign(),
         sum: words::sum(study),
+        remarks: words::program(study).into_iter().chain(words::brief(study)).collect(),
         tables: tables.map(table).collect(),
         stages: told
             .iter()
             .map(|stage| StageView {
                 stage,
                 sign: stage.state.sign(),
-                word: stage.state.word(),
+                word: words::state(stage),
                 why: words::reasons(&stage.why),
             })
             .collect(),

@@ -2,7 +2,7 @@
 //!
 //! Must not know: who shows it. Every text of a study is escaped.
 
-use super::model::{Comparison, StageDiff, State, StudyDiff, TableDiff};
+use super::model::{Comparison, State, StudyDiff, TableDiff};
 use super::words;
 
 /// The whole comparison.
@@ -37,17 +37,16 @@ pub fn text(comparison: &Comparison) -> String {
 fn study(study: &StudyDiff) -> String {
     let mut text =
         format!("\n### {} {}\n\n{}\n", study.state.sign(), escaped(&study.name), escaped(&words::sum(study)));
-    if matches!(study.state, State::Added | State::Removed) {
-        return text;
+    let told = words::told(study);
+    for sentence in words::program(study).into_iter().chain(words::brief(study)) {
+        text += &format!("\n{}\n", escaped(&sentence));
     }
-    let told: Vec<&StageDiff> =
-        study.stages.iter().filter(|stage| stage.state != State::Same || !stage.why.is_empty()).collect();
     if told.is_empty() {
         return text;
     }
     let rows = told.iter().map(|stage| {
         let why: Vec<String> = words::reasons(&stage.why).iter().map(|reason| escaped(reason)).collect();
-        let state = format!("{} {}", stage.state.sign(), stage.state.word());
+        let state = format!("{} {}", stage.state.sign(), escaped(&words::state(stage)));
         [format!("`{}`", stage.name), escaped(&stage.kind), state, why.join("<br>")]
     });
     text += "\n";
@@ -113,7 +112,7 @@ fn table<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; 
 }
 
 /// A text that Markdown shows as it is, on one line.
-fn escaped(text: &str) -> String {
+pub fn escaped(text: &str) -> String {
     let mut shown = String::with_capacity(text.len());
     for character in text.chars() {
         match character {

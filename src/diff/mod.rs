@@ -1,18 +1,16 @@
 //! Two sets of results, from manifests and tables alone: what changed, by how much, and why.
 //!
-//! `git` and `side` say where results lie, `rows` and `columns` compare one table, `why` explains one stage, `verdict`
-//! one published number; `compare` puts them together into the `model`, which `pretty`, `markdown` and `html` show. Must
-//! not know: how anything was computed. Nothing is run or checked out.
+//! `rows` and `columns` compare one table, `why` explains one stage, `verdict` one published number; `compare` puts them
+//! together into the `model`, which `pretty`, `markdown` and `html` show. Must not know: how anything was computed, where
+//! results lie.
 
 mod columns;
 pub mod compare;
-pub mod git;
 pub mod html;
 pub mod markdown;
 pub mod model;
 pub mod pretty;
 mod rows;
-pub mod side;
 pub mod table;
 #[cfg(test)]
 mod tests;

@@ -107,6 +107,8 @@ pub struct StudyDiff {
 pub struct StageDiff {
     pub name: String,
     pub kind: String,
+    /// What the stage was called before: the same kind, the same tables.
+    pub renamed_from: Option<String>,
     pub state: State,
     /// What it was computed from that differs; may say something although every value is the same.
     pub why: Vec<Reason>,

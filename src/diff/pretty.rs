@@ -28,10 +28,9 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     for study in &comparison.studies {
         page.blank();
         page.wrap("", &format!("{} {}: {}", study.state.sign(), study.name, words::sum(study)));
-        let told = |stage: &&StageDiff| stage.state != State::Same || !stage.why.is_empty();
-        if !matches!(study.state, State::Added | State::Removed) {
-            study.stages.iter().filter(told).for_each(|stage| page.stage(stage));
-        }
+        words::program(study).iter().for_each(|program| page.wrap("  ", program));
+        words::told(study).into_iter().for_each(|stage| page.stage(stage));
+        words::brief(study).iter().for_each(|sentence| page.wrap("  = ", sentence));
     }
     for remark in &comparison.remarks {
         page.blank();
@@ -53,7 +52,7 @@ impl Page {
     }
 
     fn stage(&mut self, stage: &StageDiff) {
-        self.wrap("  ", &format!("{} {} ({}): {}", stage.state.sign(), stage.name, stage.kind, stage.state.word()));
+        self.wrap("  ", &format!("{} {} ({}): {}", stage.state.sign(), stage.name, stage.kind, words::state(stage)));
         for reason in words::reasons(&stage.why) {
             self.wrap("      why: ", &reason);
         }

@@ -2,7 +2,9 @@
 //!
 //! Must not know: terminals, HTML, Markdown.
 
-use super::model::{ColumnDiff, Comparison, Extreme, Flip, Key, Reason, State, StudyDiff, TableDiff, Value};
+use super::model::{
+    ColumnDiff, Comparison, Extreme, Flip, Key, Part, Reason, StageDiff, State, StudyDiff, TableDiff, Value,
+};
 use crate::base::number::{significant, unit_symbol, with_unit};
 
 /// Significant digits of differences.
@@ -84,11 +86,14 @@ pub fn changed(column: &ColumnDiff) -> String {
     if beyond.is_empty() { all } else { format!("{all}, {beyond}") }
 }
 
-/// `config pinion.face_width: 20 mm → 22 mm`.
+/// `config pinion.face_width: 20 mm → 22 mm`. What the code was and is is said once for a study: [`program`].
 fn reason(reason: &Reason) -> String {
     let mut text = reason.part.word().to_owned();
     if !reason.what.is_empty() {
         text += &format!(" {}", reason.what);
+    }
+    if reason.part == Part::Code {
+        return text;
     }
     match (&reason.before, &reason.after) {
         (Some(before), Some(after)) => text += &format!(": {} → {}", short(before), short(after)),
@@ -101,11 +106,62 @@ fn reason(reason: &Reason) -> String {
 
 /// All reasons of a stage: those without values in one phrase.
 pub fn reasons(why: &[Reason]) -> Vec<String> {
-    let (told, bare): (Vec<&Reason>, Vec<&Reason>) =
-        why.iter().partition(|why| why.before.is_some() || why.after.is_some());
+    let tells = |why: &&Reason| why.part != Part::Code && (why.before.is_some() || why.after.is_some());
+    let (told, bare): (Vec<&Reason>, Vec<&Reason>) = why.iter().partition(tells);
     let bare: Vec<String> = bare.into_iter().map(reason).collect();
     let bare = (!bare.is_empty()).then(|| bare.join(", "));
     told.into_iter().map(reason).chain(bare).collect()
+}
+
+/// `program: gearstudy 0.1.0 at 59b124e → gearstudy 0.1.0 at 0ccb5e2`, where the code of any stage changed with it.
+pub fn program(study: &StudyDiff) -> Option<String> {
+    let mut reasons = study.stages.iter().flat_map(|stage| &stage.why);
+    let (before, after) = reasons
+        .find_map(|why| (why.part == Part::Code).then_some(Some((why.before.as_ref()?, why.after.as_ref()?)))?)?;
+    Some(format!("program: {before} → {after}"))
+}
+
+/// Stages that are told one by one.
+pub fn told(study: &StudyDiff) -> Vec<&StageDiff> {
+    if matches!(study.state, State::Added | State::Removed) {
+        return Vec::new();
+    }
+    let told = |stage: &&StageDiff| {
+        stage.state != State::Same || stage.renamed_from.is_some() || (!stage.why.is_empty() && !is_brief(stage))
+    };
+    study.stages.iter().filter(told).collect()
+}
+
+/// Stages that were computed from something else and came out the same, all of a kind in one sentence: `code changed in
+/// 14 stages, values the same`.
+pub fn brief(study: &StudyDiff) -> Vec<String> {
+    let mut groups: Vec<(String, Vec<&str>)> = Vec::new();
+    for stage in study.stages.iter().filter(|stage| is_brief(stage)) {
+        let mut parts: Vec<&str> = stage.why.iter().map(|why| why.part.word()).collect();
+        parts.dedup();
+        let parts = parts.join(" and ");
+        match groups.iter_mut().find(|(of, _)| *of == parts) {
+            Some((_, stages)) => stages.push(&stage.name),
+            None => groups.push((parts, vec![&stage.name])),
+        }
+    }
+    let sentence = |(parts, stages): (String, Vec<&str>)| match stages[..] {
+        [one] => format!("{parts} changed in {one}, values the same"),
+        _ => format!("{parts} changed in {}, values the same", count(stages.len(), "stage")),
+    };
+    groups.into_iter().map(sentence).collect()
+}
+
+/// A field that changed and did nothing is worth its own line; what came from outside the stage is not.
+fn is_brief(stage: &StageDiff) -> bool {
+    let outside = |why: &Reason| matches!(why.part, Part::Code | Part::Input | Part::Seed | Part::Demand);
+    stage.state == State::Same && stage.renamed_from.is_none() && !stage.why.is_empty() && stage.why.iter().all(outside)
+}
+
+/// `changed`, `same, renamed from stiffness`.
+pub fn state(stage: &StageDiff) -> String {
+    let renamed = stage.renamed_from.as_ref().map(|name| format!(", renamed from {name}"));
+    stage.state.word().to_owned() + &renamed.unwrap_or_default()
 }
 
 /// Long texts of a study, cut.

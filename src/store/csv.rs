@@ -18,12 +18,27 @@ pub fn heading(column: &Column) -> String {
 /// # Errors
 /// When `sink` cannot be written to.
 pub fn write(table: &Table, columns: &[usize], rows: &[usize], sink: &mut dyn io::Write) -> io::Result<()> {
+    let headings = columns.iter().map(|&column| heading(&table.schema().columns[column]));
+    let cells = |&row: &usize| columns.iter().map(move |&column| Some(table.columns()[column].cell(row)));
+    write_cells(headings, rows.iter().map(cells), sink)
+}
+
+/// Writes cells row by row; `None` is an empty cell too.
+///
+/// # Errors
+/// When `sink` cannot be written to.
+pub fn write_cells(
+    headings: impl Iterator<Item = String>,
+    rows: impl Iterator<Item = impl Iterator<Item = Option<Cell>>>,
+    sink: &mut dyn io::Write,
+) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
-    writer.write_record(columns.iter().map(|&column| heading(&table.schema().columns[column])))?;
-    for &row in rows {
-        writer.write_record(columns.iter().map(|&column| match table.columns()[column].cell(row) {
-            Cell::Float(value) if value.is_nan() => String::new(),
-            cell => cell.to_string(),
+    writer.write_record(headings.collect::<Vec<_>>())?;
+    for row in rows {
+        writer.write_record(row.map(|cell| match cell {
+            None => String::new(),
+            Some(Cell::Float(value)) if value.is_nan() => String::new(),
+            Some(cell) => cell.to_string(),
         }))?;
     }
     writer.flush()

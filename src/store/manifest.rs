@@ -181,10 +181,16 @@ impl TableRecord {
         }
     }
 
+    /// The table's own name, without its stage's.
+    #[must_use]
+    pub fn table(&self) -> &str {
+        self.name.split_once('.').map_or("", |(_, table)| table)
+    }
+
     /// What is known of the table without its file; none when a digest is none.
     #[must_use]
     pub fn stored(&self) -> Option<StoredTable> {
-        let name = self.name.split_once('.')?.1.to_owned();
+        let name = self.table().to_owned();
         let content = Digest::from_hex(&self.content)?;
         let (base, columns) = match &self.parts {
             None => (content, Vec::new()),

@@ -2,6 +2,8 @@
 //! only when they are meant to.
 
 #[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
+mod emulated;
+#[cfg(all(target_os = "linux", target_env = "gnu", target_arch = "x86_64"))]
 mod processor;
 
 use std::collections::BTreeMap;

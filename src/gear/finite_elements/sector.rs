@@ -34,6 +34,20 @@ enum Freedom {
     Edge(usize),
 }
 
+/// In which order the sums of a factorisation are made. All but the first are there to see by how much that moves results:
+/// so does a processor that the library takes other instructions for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Order {
+    /// Dense blocks of columns.
+    Blocks,
+    /// Column by column.
+    #[cfg(test)]
+    Columns,
+    /// The inside as it is numbered, with much more fill.
+    #[cfg(test)]
+    Numbered,
+}
+
 /// A factorised sector.
 pub struct Sector {
     /// Two for each node: along x and y, on the edges radial and clockwise.
@@ -64,6 +78,10 @@ impl Sector {
     /// # Errors
     /// When an element is folded over, or the stiffness is not positive definite to rounding.
     pub fn new(mesh: &Mesh, elasticity: &Elasticity) -> Result<Self, MeshError> {
+        Self::factorised(mesh, elasticity, Order::Blocks)
+    }
+
+    pub(super) fn factorised(mesh: &Mesh, elasticity: &Elasticity, order: Order) -> Result<Self, MeshError> {
         let (freedoms, inside) = number(mesh);
         let edge = 2 * mesh.left.len();
         let (sine, cosine) = libm::sincos(mesh.half_pitch);
@@ -95,7 +113,7 @@ impl Sector {
             }
         }
         triplets.extend((inside..inside + 2 * edge).map(|place| Triplet::new(place, place, SUPPORT)));
-        let factor = Factor::new(&triplets, inside, inside + 2 * edge)?;
+        let factor = Factor::new(&triplets, inside, inside + 2 * edge, order)?;
         let supported = factor.trailing(inside);
         Ok(Self { freedoms, directions, inside, edge, factor, supported })
     }
@@ -233,7 +251,12 @@ struct Factor {
 
 impl Factor {
     /// Of a matrix by the triplets of its lower half; freedoms from `inside` on are eliminated last, in their order.
-    fn new(triplets: &[Triplet<usize, usize, f64>], inside: usize, size: usize) -> Result<Self, MeshError> {
+    fn new(
+        triplets: &[Triplet<usize, usize, f64>],
+        inside: usize,
+        size: usize,
+        order: Order,
+    ) -> Result<Self, MeshError> {
         let matrix = SparseColMat::try_new_from_triplets(size, size, triplets).map_err(|_| MeshError::Memory)?;
         let inner: Vec<_> = triplets.iter().filter(|entry| entry.row < inside).copied().collect();
         let inner = SparseColMat::try_new_from_triplets(inside, inside, &inner).map_err(|_| MeshError::Memory)?;
@@ -243,14 +266,21 @@ impl Factor {
         let stack = MemStack::new(&mut memory);
         amd::order_maybe_unsorted(&mut forward, &mut inverse, inner.symbolic(), amd::Control::default(), stack)
             .map_err(|_| MeshError::Memory)?;
-        for order in [&mut forward, &mut inverse] {
-            order.extend(inside..size);
+        for direction in [&mut forward, &mut inverse] {
+            #[cfg(test)]
+            if order == Order::Numbered {
+                *direction = (0..inside).collect();
+            }
+            direction.extend(inside..size);
         }
-        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size));
-        let params = CholeskySymbolicParams {
-            supernodal_flop_ratio_threshold: SupernodalThreshold::FORCE_SUPERNODAL,
-            ..CholeskySymbolicParams::default()
+        let threshold = match order {
+            #[cfg(test)]
+            Order::Columns => SupernodalThreshold::FORCE_SIMPLICIAL,
+            _ => SupernodalThreshold::FORCE_SUPERNODAL,
         };
+        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size));
+        let params =
+            CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..CholeskySymbolicParams::default() };
         let symbolic = factorize_symbolic_cholesky(matrix.symbolic(), Side::Lower, ordering, params)
             .map_err(|_| MeshError::Memory)?;
         let mut values = vec![0.0; symbolic.len_val()];
@@ -273,17 +303,27 @@ impl Factor {
     fn trailing(&self, first: usize) -> Vec<Vec<f64>> {
         let size = self.symbolic.nrows() - first;
         let mut lower = vec![vec![0.0; size]; size];
-        if let SymbolicCholeskyRaw::Supernodal(symbolic) = self.symbolic.raw() {
-            let factor = SupernodalLltRef::new(symbolic, &self.values);
-            for index in 0..symbolic.n_supernodes() {
-                let node = factor.supernode(index);
-                let (start, values) = (node.start(), node.val());
-                for column in first.max(start)..start + values.ncols() {
-                    let rows = (start..start + values.ncols()).chain(node.pattern().iter().copied());
-                    for (row, &value) in rows.zip(values.col(column - start).iter()) {
-                        if row >= column {
-                            lower[column - first][row - first] = value;
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                let factor = SupernodalLltRef::new(symbolic, &self.values);
+                for index in 0..symbolic.n_supernodes() {
+                    let node = factor.supernode(index);
+                    let (start, values) = (node.start(), node.val());
+                    for column in first.max(start)..start + values.ncols() {
+                        let rows = (start..start + values.ncols()).chain(node.pattern().iter().copied());
+                        for (row, &value) in rows.zip(values.col(column - start).iter()) {
+                            if row >= column {
+                                lower[column - first][row - first] = value;
+                            }
                         }
+                    }
+                }
+            }
+            SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                for (column, slots) in (first..).zip(&mut lower) {
+                    let range = symbolic.col_ptr()[column]..symbolic.col_ptr()[column + 1];
+                    for (&row, &value) in symbolic.row_idx()[range.clone()].iter().zip(&self.values[range]) {
+                        slots[row - first] = value;
                     }
                 }
             }

@@ -3,6 +3,7 @@
 mod convergence;
 mod elements;
 mod extremes;
+mod orders;
 mod whole_gear;
 
 use super::MeshError;

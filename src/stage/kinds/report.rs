@@ -198,6 +198,7 @@ fn verdicts() -> Schema {
             Column::text("unit", "Unit of published, computed, difference, tolerance and expected."),
             Column::float("difference", "", "Computed − published.").tolerance(1e-12, 1e-6),
             Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0.")
+                .tolerance(1e-9, 1e-6)
                 .allows_nan(),
             Column::float("tolerance", "", "How far apart the two may be and still agree."),
             Column::float("expected", "", "The value the study stands by.").allows_nan(),

@@ -116,6 +116,32 @@ fn links_and_repeated_names_are_refused() {
     refused(&patched(&twice, b"b.yaml", b"a.yaml"), "two entries `a.yaml`");
 }
 
+/// An entry whose bytes hold another one, header and all, and a directory that lists both: readers that go by the
+/// directory see two files, those that go from header to header one.
+#[test]
+fn entries_inside_each_other_are_refused() {
+    let stored = SimpleFileOptions::default().compression_method(zip::CompressionMethod::Stored);
+    let find = |bytes: &[u8], from: usize, wanted: &[u8]| {
+        from + bytes[from..].windows(wanted.len()).position(|window| window == wanted).unwrap()
+    };
+    let alone = with("b.yaml", stored, b"x");
+    let name = find(&alone, 0, b"b.yaml");
+    let inner = &alone[name - 30..name + "b.yaml".len() + 1];
+    assert!(inner.starts_with(b"PK\x03\x04"));
+    let mut writer = ZipWriter::new_append(Cursor::new(pack(&entries()).unwrap())).unwrap();
+    for (name, bytes) in [("a.bin", inner), ("b.yaml", b"x")] {
+        writer.start_file(name, stored).unwrap();
+        writer.write_all(bytes).unwrap();
+    }
+    let mut bytes = writer.finish().unwrap().into_inner();
+    assert!(check(&bytes).is_ok(), "side by side they are two files");
+    let within = find(&bytes, 0, inner);
+    let listed = bytes.windows(4).rposition(|window| window == b"PK\x01\x02").unwrap();
+    assert_eq!(&bytes[listed + 46..listed + 52], b"b.yaml");
+    bytes[listed + 42..listed + 46].copy_from_slice(&u32::try_from(within).unwrap().to_le_bytes());
+    refused(&bytes, "is damaged");
+}
+
 /// The size of the table, as both directories write it.
 fn declared(bytes: &[u8], size: u32) -> Vec<u8> {
     patched(

@@ -3,6 +3,11 @@
 use std::fs;
 use std::process::Command;
 
+use gearstudy::diff::compare::{Options, compare};
+use gearstudy::diff::pretty;
+use gearstudy::history::side::Side;
+use gearstudy::store::parquet;
+use gearstudy::table::data::{Data, Table};
 use serde_json::Value;
 
 use crate::desk::Desk;
@@ -243,4 +248,114 @@ fn what_makes_no_sense_is_said_in_one_sentence() {
     fs::write(desk.path("results/broken/manifest.json"), "{").unwrap();
     let (out, error) = desk.run(&["diff"], 1);
     assert!(out.contains("≠ quick") && error.contains("is damaged"), "{out}\n{error}");
+}
+
+/// The results as another program would have left them: other digests of code, and more as `change` says.
+fn other_program(desk: &Desk, folder: &str, change: impl Fn(&mut Value)) {
+    let path = desk.path(folder).join("quick/manifest.json");
+    let mut manifest: Value = serde_json::from_slice(&fs::read(&path).unwrap()).unwrap();
+    manifest["program"]["version"] = "0.0.9".into();
+    for stage in manifest["stages"].as_array_mut().unwrap() {
+        for key in stage["keys"].as_array_mut().unwrap() {
+            key["code"] = "0".repeat(64).into();
+            key["key"] = "1".repeat(64).into();
+        }
+    }
+    change(&mut manifest);
+    fs::write(path, serde_json::to_vec(&manifest).unwrap()).unwrap();
+}
+
+fn copied(desk: &Desk, to: &str) {
+    fs::create_dir_all(desk.path(to).join("quick")).unwrap();
+    for entry in fs::read_dir(desk.path("results/quick")).unwrap().map(Result::unwrap) {
+        if entry.path().is_file() {
+            fs::copy(entry.path(), desk.path(to).join("quick").join(entry.file_name())).unwrap();
+        }
+    }
+}
+
+#[test]
+fn another_program_with_the_same_values_is_one_line() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    copied(&desk, "old");
+    other_program(&desk, "old", |_| ());
+    let diff = json(&desk, &["old", "results"], 0);
+    assert!(["pair", "ste", "report"].iter().all(|name| why(&diff, name) == ["code"]), "{diff:#}");
+    let (pretty, _) = desk.run(&["diff", "old", "results"], 0);
+    let lines: Vec<&str> = pretty.lines().collect();
+    assert!(lines.contains(&"  = code changed in 6 stages, values the same"), "{pretty}");
+    assert_eq!(pretty.matches("code").count(), 1, "{pretty}");
+    assert_eq!(pretty.matches("0.0.9").count(), 1, "{pretty}");
+    for format in ["markdown", "html"] {
+        let (text, _) = desk.run(&["diff", "old", "results", "--format", format], 0);
+        assert!(text.matches("code changed in 6 stages").count() == 1, "{text}");
+        assert!(text.matches("0.0.9").count() == 1, "{text}");
+    }
+
+    // One value of one stage moved, and another demand: that stage by itself, the others still in one line.
+    other_program(&desk, "old", |manifest| {
+        let stages = manifest["stages"].as_array_mut().unwrap();
+        let pair = stages.iter_mut().find(|stage| stage["name"] == "pair").unwrap();
+        pair["keys"][0]["demand"] = "0".repeat(64).into();
+        let stiffness = stages.iter_mut().find(|stage| stage["name"] == "stiffness").unwrap();
+        let tables = stiffness["tables"].as_array_mut().unwrap();
+        let summary = tables.iter_mut().find(|table| table["name"] == "stiffness.summary").unwrap();
+        let file = desk.path("old/quick/stiffness.summary.parquet");
+        let table = parquet::read(fs::read(&file).unwrap()).unwrap();
+        let position = table.schema().position("mean").unwrap();
+        let mut columns = table.columns().to_vec();
+        let Data::Float(values) = &mut columns[position] else { panic!() };
+        values[0] *= 1.001;
+        let table = Table::from_columns(table.schema().clone(), columns).unwrap();
+        summary["content"] = table.content_hash().to_string().into();
+        fs::write(file, parquet::write(&table).unwrap()).unwrap();
+    });
+    let diff = json(&desk, &["old", "results"], 4);
+    assert_eq!(
+        (why(&diff, "pair"), why(&diff, "stiffness")),
+        (vec!["code".into(), "demand".into()], vec!["code".into()])
+    );
+    let summary = table(&diff, "stiffness.summary");
+    assert_eq!((&summary["state"], &summary["columns"][0]["name"]), (&"changed".into(), &"mean".into()));
+    let (pretty, _) = desk.run(&["diff", "old", "results"], 4);
+    assert!(pretty.contains("  ≠ stiffness (stiffness): changed\n      why: code\n"), "{pretty}");
+    assert!(pretty.contains("  = code changed in 4 stages, values the same"), "{pretty}");
+    assert!(pretty.contains("  = code and demand changed in pair, values the same"), "{pretty}");
+
+    // In a terminal of 80 columns no line is longer.
+    let (old, new) = (Side::folder(&desk.path("old"), "old"), Side::folder(&desk.path("results"), "new"));
+    let text = pretty::text(&compare(&old, &new, &Options::default()).unwrap(), 80);
+    let longest = text.lines().map(|line| line.chars().count()).max().unwrap();
+    assert!((60..=80).contains(&longest), "{longest}\n{text}");
+}
+
+#[test]
+fn a_stage_with_another_name_is_told_as_that() {
+    let desk = committed();
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let text = text
+        .replace("  stiffness: { kind", "  springs: { kind")
+        .replace("stiffness: stiffness\n", "stiffness: springs\n");
+    fs::write(desk.path("quick.yaml"), text.replace("table: stiffness.curve", "table: springs.curve")).unwrap();
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let (out, _) = desk.run(&["diff", "--format", "json", "--cache", "none"], 4);
+    let diff: Value = serde_json::from_str(&out).unwrap();
+    let springs = stage(&diff, "springs");
+    assert_eq!((&springs["state"], &springs["renamed_from"]), (&"same".into(), &"stiffness".into()));
+    let stages = diff["studies"][0]["stages"].as_array().unwrap();
+    assert!(stages.iter().all(|stage| stage["name"] != "stiffness" && stage["state"] != "added"), "{diff:#}");
+    for name in ["optimum", "ste"] {
+        assert_eq!(stage(&diff, name)["state"], "same", "a name is in no key");
+    }
+    let (pretty, _) = desk.run(&["diff"], 4);
+    assert!(pretty.contains("= springs (stiffness): same, renamed from stiffness\n"), "{pretty}");
+    // With other values it is another stage.
+    edit(&desk, "root: trochoid", "root: circular_fillet");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let diff = json(&desk, &[], 4);
+    assert_eq!(
+        (&stage(&diff, "springs")["state"], &stage(&diff, "stiffness")["state"]),
+        (&"added".into(), &"removed".into())
+    );
 }

@@ -1,6 +1,6 @@
-//! One of the two sets of results: those of a commit, or those in a folder.
+//! One set of results: those of a commit, or those in a folder.
 //!
-//! Must not know: what is compared with what.
+//! Must not know: what is done with them.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -13,13 +13,13 @@ use crate::store::parquet;
 use crate::store::results::MANIFEST;
 use crate::table::data::Table;
 
-/// Where one side's files come from.
+/// Where the files come from.
 enum Source {
     Folder(PathBuf),
     Commit(Files),
 }
 
-/// One side of a comparison.
+/// One set of results.
 pub struct Side {
     /// In words, for headings: `HEAD (59b124e)`.
     pub label: String,
@@ -155,8 +155,7 @@ fn pointer(bytes: &[u8]) -> Option<&'static str> {
 
 /// The table as it was computed on this machine, chunk by chunk.
 fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
-    let name = record.name.split_once('.')?.1;
-    let part = |key: &str| cache?.table(Digest::from_hex(key)?, name).ok();
+    let part = |key: &str| cache?.table(Digest::from_hex(key)?, record.table()).ok();
     let parts: Vec<Table> = stage.keys.iter().map(|record| part(&record.key)).collect::<Option<_>>()?;
     let table = Table::concatenated(&parts.iter().collect::<Vec<_>>()).ok()??;
     (table.content_hash().to_string() == record.content).then_some(table)

@@ -1,0 +1,37 @@
+//! SQL over the tables of any studies and commits.
+//!
+//! `names` finds the tables in the text, `tables` reads them, `frame` hands both to polars and takes the rows back. Behind
+//! the feature `frames`. Must not know: how the answer is shown; what the tables mean.
+
+mod frame;
+mod names;
+pub mod tables;
+
+use crate::table::data::Cell;
+use tables::Tables;
+
+/// The rows that a query gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Answer {
+    pub columns: Vec<Column>,
+}
+
+/// One column of an answer; `None` where SQL says NULL.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Column {
+    pub name: String,
+    /// Whether it holds numbers.
+    pub is_number: bool,
+    pub cells: Vec<Option<Cell>>,
+}
+
+/// Answers one query.
+///
+/// # Errors
+/// One sentence: what is wrong with the text, a table or column that is not there, or what polars cannot do.
+pub fn ask(text: &str, tables: &mut Tables<'_>) -> Result<Answer, String> {
+    let query = names::parse(text)?;
+    let found = query.tables.iter().map(|name| Ok((name.as_str(), tables.read(name)?)));
+    let found = found.collect::<Result<Vec<_>, String>>()?;
+    frame::answer(&query, &found)
+}

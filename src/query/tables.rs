@@ -1,0 +1,125 @@
+//! Tables by name: `study.stage.table`, of the results folder or, with a prefix, of a commit.
+//!
+//! Must not know: SQL.
+
+use crate::base::error::suggest;
+use crate::history::side::{Got, Side};
+use crate::store::cache::Cache;
+use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::table::data::Table;
+
+/// Opens the results of a revision or a folder; those that are meant where none is named.
+pub type Open<'a> = &'a dyn Fn(Option<&str>) -> Result<Side, String>;
+
+/// All tables that a query can read.
+pub struct Tables<'a> {
+    open: Open<'a>,
+    /// What `stage.table` is a table of; the only study there is, where this is none.
+    study: Option<&'a str>,
+    /// Has tables that are not kept with the results.
+    cache: Option<&'a Cache>,
+    sides: Vec<(Option<String>, Side)>,
+}
+
+/// A study of a side: its name, its folder, and what was run.
+struct Study {
+    name: String,
+    folder: String,
+    manifest: Manifest,
+}
+
+impl<'a> Tables<'a> {
+    #[must_use]
+    pub fn new(open: Open<'a>, study: Option<&'a str>, cache: Option<&'a Cache>) -> Self {
+        Self { open, study, cache, sides: Vec::new() }
+    }
+
+    /// The table of this name: `stage.table` or `study.stage.table`, behind `revision:` where another side is meant.
+    ///
+    /// # Errors
+    /// One sentence: there is none, with the nearest there is, or its values are not kept.
+    pub fn read(&mut self, name: &str) -> Result<Table, String> {
+        // A revision may have colons in it, a table has none.
+        let (revision, inside) = match name.rsplit_once(':') {
+            Some((revision, inside)) => (Some(revision), inside),
+            None => (None, name),
+        };
+        let (study, cache) = (self.study, self.cache);
+        let side = self.side(revision)?;
+        let studies = studies(side)?;
+        let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
+        let Some((of, stage, record)) = find(&studies, only, inside) else {
+            let known = known(&studies, only, inside.matches('.').count());
+            let help = suggest(inside, known.iter().map(String::as_str));
+            return Err(format!("there is no table `{inside}` in {}; {help}", side.label));
+        };
+        match side.table(&of.folder, stage, record, cache) {
+            Got::Table(table) => Ok(*table),
+            Got::Without(why) => {
+                Err(format!("`{inside}` {why}, and the cache does not have it; `gearstudy run` computes it again"))
+            }
+        }
+    }
+
+    /// Every table, in the words of a query, with its rows and columns.
+    ///
+    /// # Errors
+    /// When the results cannot be read.
+    pub fn list(&mut self) -> Result<Vec<(String, TableRecord)>, String> {
+        let wanted = self.study;
+        let studies = studies(self.side(None)?)?;
+        let wanted = studies.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
+        let tables = wanted.flat_map(|study| {
+            let records = study.manifest.stages.into_iter().flat_map(|stage| stage.tables);
+            records.map(move |record| (format!("{}.{}", study.name, record.name), record)).collect::<Vec<_>>()
+        });
+        Ok(tables.collect())
+    }
+
+    fn side(&mut self, revision: Option<&str>) -> Result<&Side, String> {
+        let at = match self.sides.iter().position(|(known, _)| known.as_deref() == revision) {
+            Some(at) => at,
+            None => {
+                self.sides.push((revision.map(str::to_owned), (self.open)(revision)?));
+                self.sides.len() - 1
+            }
+        };
+        Ok(&self.sides[at].1)
+    }
+}
+
+fn studies(side: &Side) -> Result<Vec<Study>, String> {
+    let mut studies = Vec::new();
+    for folder in side.studies()? {
+        if let Some(manifest) = side.manifest(&folder)? {
+            let name = if side.is_single() { manifest.study.clone() } else { folder.clone() };
+            studies.push(Study { name, folder, manifest });
+        }
+    }
+    if studies.is_empty() { Err(format!("there are no results in {}", side.label)) } else { Ok(studies) }
+}
+
+fn find<'a>(
+    studies: &'a [Study],
+    only: Option<&str>,
+    name: &str,
+) -> Option<(&'a Study, &'a StageRecord, &'a TableRecord)> {
+    let (study, table) = match name.matches('.').count() {
+        1 => (only?, name),
+        _ => name.split_once('.')?,
+    };
+    let of = studies.iter().find(|candidate| candidate.name == study)?;
+    let mut tables = of.manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(move |record| (stage, record)));
+    tables.find(|(_, record)| record.name == table).map(|(stage, record)| (of, stage, record))
+}
+
+/// Names with as many points as the one that was asked for, where there are such.
+fn known(studies: &[Study], only: Option<&str>, points: usize) -> Vec<String> {
+    let short = points < 2 && only.is_some();
+    let wanted = studies.iter().filter(|study| !short || only == Some(&study.name));
+    let names = wanted.flat_map(|study| {
+        let records = study.manifest.stages.iter().flat_map(|stage| &stage.tables);
+        records.map(move |record| if short { record.name.clone() } else { format!("{}.{}", study.name, record.name) })
+    });
+    names.collect()
+}

@@ -1,0 +1,73 @@
+//! Queries made to break something: an answer or one sentence, never a crash.
+
+use gearstudy::query::Answer;
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+use crate::Shop;
+
+/// Panics of polars are caught and said; here they only fill the screen.
+fn ask(shop: &Shop, query: &str) -> Result<Answer, String> {
+    let answer = shop.ask(query);
+    if let Err(problem) = &answer {
+        assert!(!problem.is_empty() && !problem.contains('\n'), "{query}: {problem}");
+    }
+    answer
+}
+
+#[test]
+fn deep_and_long_queries_are_refused_or_answered() {
+    let shop = Shop::new();
+    let chain = |terms: usize| format!("SELECT point{} FROM s.rows", " + 1".repeat(terms));
+    assert_eq!(ask(&shop, &chain(190)).unwrap().columns[0].cells[0], Some(191_i64.into()));
+    assert!(ask(&shop, &chain(2000)).unwrap_err().contains("more than 200 terms within each other"));
+    assert!(ask(&shop, &chain(5000)).unwrap_err().contains("the longest has 16384"));
+    let nested = format!("SELECT {}1{}", "(".repeat(3000), ")".repeat(3000));
+    assert!(ask(&shop, &nested).unwrap_err().contains("no SQL"));
+    let within =
+        |depth: usize| (0..depth).fold("s.more".to_owned(), |inner, _| format!("(SELECT * FROM {inner}) AS a"));
+    assert!(ask(&shop, &format!("SELECT * FROM {}", within(10))).is_ok());
+    assert!(ask(&shop, &format!("SELECT * FROM {}", within(500))).is_err());
+    // As long as a text may be.
+    let union = |more: usize| format!("SELECT 1{}", " UNION SELECT 1".repeat(more));
+    assert!(ask(&shop, &union(63)).is_ok());
+    assert!(ask(&shop, &union(64)).unwrap_err().contains("more than 64 SELECTs"));
+    assert!(ask(&shop, &union(1000)).unwrap_err().contains("more than 64 SELECTs"));
+    let _ = ask(&shop, &format!("SELECT {} 1 FROM s.rows", "x AS x, ".repeat(1500)));
+    let _ = ask(&shop, &format!("SELECT * FROM s.rows WHERE point IN ({})", "1,".repeat(8000)));
+    assert!(ask(&shop, &format!("SELECT {}x FROM s.rows", "-".repeat(3000))).is_err());
+    assert!(ask(&shop, &format!("SELECT {}inside FROM s.rows", "NOT ".repeat(3000))).is_err());
+}
+
+#[test]
+fn mutated_queries_never_crash() {
+    let shop = Shop::new();
+    let seeds = [
+        "SELECT design, COUNT(*) AS n, MAX(x) FROM s.rows WHERE x > 0.5 GROUP BY design HAVING n > 1 ORDER BY n LIMIT 3",
+        "SELECT r.point, m.words FROM s.rows AS r LEFT JOIN s.more AS m ON r.design = m.design WHERE inside OR x IS NULL",
+        "WITH a AS (SELECT * FROM s.rows) SELECT CASE WHEN x < 0 THEN 'low' ELSE 'high' END, x * point FROM a",
+        "SELECT design || 'x', ROUND(x, 2), CAST(point AS TEXT), SUBSTR(design, 1, 1) FROM s.rows UNION ALL SELECT 1, 2, 3, 4",
+        "SELECT x, SUM(x) OVER (PARTITION BY design ORDER BY point) FROM s.rows",
+    ];
+    let words: Vec<&str> =
+        seeds.iter().flat_map(|seed| seed.split(' ')).chain(["NULL", "-1", "''", "1e999", "*"]).collect();
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut below = |limit: usize| usize::try_from(random.next_u64() % (limit.max(1) as u64)).unwrap();
+    let (mut answered, mut problems) = (0, std::collections::BTreeSet::new());
+    for round in 0..400 {
+        let mut query: Vec<&str> = seeds[round % seeds.len()].split(' ').collect();
+        for _ in 0..=below(2) / 2 {
+            let at = below(query.len());
+            match below(3) {
+                0 => query[at] = words[below(words.len())],
+                1 => drop(query.remove(at)),
+                _ => query.insert(at, words[below(words.len())]),
+            }
+        }
+        match ask(&shop, &query.join(" ")) {
+            Ok(_) => answered += 1,
+            Err(problem) => drop(problems.insert(problem)),
+        }
+    }
+    assert!(answered > 20 && problems.len() > 50, "{answered} {}", problems.len());
+}

@@ -1,0 +1,278 @@
+//! `gearstudy query`: what SQL gives, against counts by hand and the program's other ways to the same tables; and what it
+//! refuses.
+
+#[path = "../it/desk.rs"]
+#[allow(dead_code)]
+mod desk;
+mod hostile;
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+use gearstudy::history::side::Side;
+use gearstudy::query::tables::Tables;
+use gearstudy::query::{Answer, ask};
+use gearstudy::store::entry::StoredTable;
+use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
+use gearstudy::store::parquet;
+use gearstudy::table::data::{Cell, Table};
+use gearstudy::table::schema::{Column, Schema};
+use serde_json::Value;
+use tempfile::TempDir;
+
+use crate::desk::Desk;
+
+/// Results of two studies, `small` with the tables `s.rows` and `s.more`, `other` with `s.rows`.
+pub struct Shop(TempDir);
+
+impl Shop {
+    pub fn new() -> Self {
+        let rows = |scale: f64| {
+            let columns = vec![
+                Column::text("design", "").key(),
+                Column::integer("point", "").key(),
+                Column::float("x", "um", "").allows_nan(),
+                Column::flag("inside", ""),
+            ];
+            let row = |design: &str, point: i64, x: f64, inside: bool| {
+                vec![Cell::from(design), point.into(), (scale * x).into(), inside.into()]
+            };
+            let rows = vec![
+                row("b", 1, 1.0, true),
+                row("b", 2, 2.0, false),
+                row("a", 1, 0.1 + 0.2, true),
+                row("a", 2, f64::NAN, true),
+                row("a", 3, -4.5, false),
+            ];
+            Table::from_rows(Schema::new("rows", "Some rows.", columns), rows).unwrap()
+        };
+        let columns = vec![Column::text("design", "").key(), Column::text("words", "")];
+        let more = vec![vec![Cell::from("b"), "é | <b>".into()], vec!["c".into(), "".into()]];
+        let more = Table::from_rows(Schema::new("more", "", columns), more).unwrap();
+        let shop = Self(tempfile::tempdir().unwrap());
+        shop.publish("small", &[&rows(1.0), &more]);
+        shop.publish("other", &[&rows(10.0)]);
+        shop
+    }
+
+    pub fn path(&self) -> &Path {
+        self.0.path()
+    }
+
+    fn publish(&self, study: &str, tables: &[&Table]) {
+        let folder = self.path().join(study);
+        fs::create_dir(&folder).unwrap();
+        let record = |table: &&Table| {
+            let record = TableRecord::new("s", table.schema(), &StoredTable::describe(table).unwrap());
+            fs::write(folder.join(&record.file), parquet::write(table).unwrap()).unwrap();
+            record
+        };
+        let stage = StageRecord {
+            name: "s".to_owned(),
+            kind: "ste".to_owned(),
+            version: 1,
+            keys: Vec::new(),
+            config: Value::Null,
+            status: "ran".to_owned(),
+            why: String::new(),
+            seconds: 0.0,
+            warnings: Vec::new(),
+            left_out: Vec::new(),
+            tables: tables.iter().map(record).collect(),
+        };
+        let manifest = Manifest { format: FORMAT, study: study.to_owned(), stages: vec![stage], ..Manifest::default() };
+        fs::write(folder.join("manifest.json"), serde_json::to_vec(&manifest).unwrap()).unwrap();
+    }
+
+    pub fn ask(&self, query: &str) -> Result<Answer, String> {
+        let open = |revision: Option<&str>| match revision {
+            None => Ok(Side::folder(self.path(), "the shop")),
+            Some(revision) => Err(format!("there is no revision `{revision}`")),
+        };
+        ask(query, &mut Tables::new(&open, Some("small"), None))
+    }
+
+    /// The rows as text, cells with a space between, NULL as a dash.
+    #[track_caller]
+    fn rows(&self, query: &str) -> Vec<String> {
+        let answer = self.ask(query).unwrap_or_else(|problem| panic!("{query}: {problem}"));
+        let rows = answer.columns.first().map_or(0, |column| column.cells.len());
+        let cell = |cell: &Option<Cell>| cell.as_ref().map_or("-".to_owned(), Cell::to_string);
+        let row =
+            |row: usize| answer.columns.iter().map(|column| cell(&column.cells[row])).collect::<Vec<_>>().join(" ");
+        (0..rows).map(row).collect()
+    }
+}
+
+#[test]
+fn answers_are_those_counted_by_hand() {
+    let shop = Shop::new();
+    let check = |query: &str, wanted: &[&str]| assert_eq!(shop.rows(query), wanted, "{query}");
+    // The table as it is: sorted by key, NaN as NULL, the last bit of a sum kept.
+    let all = ["a 1 0.30000000000000004 true", "a 2 - true", "a 3 -4.5 false", "b 1 1 true", "b 2 2 false"];
+    check("SELECT * FROM s.rows", &all);
+    check("SELECT design, point FROM s.rows WHERE x > 0.5 AND NOT inside", &["b 2"]);
+    // NULL counts as nothing: 5 rows, 4 numbers; their sum is −1.2.
+    check("SELECT COUNT(*), COUNT(x) AS n, ROUND(SUM(x), 12), MIN(point) FROM s.rows", &["5 4 -1.2 1"]);
+    // Groups come in the order of their values, at every run.
+    for _ in 0..20 {
+        check(
+            "SELECT design, COUNT(*) AS n, MAX(x) FROM s.rows GROUP BY design",
+            &["a 3 0.30000000000000004", "b 2 2"],
+        );
+        check("SELECT DISTINCT inside FROM s.rows", &["false", "true"]);
+    }
+    check("SELECT point FROM s.rows ORDER BY x DESC NULLS LAST LIMIT 2", &["2", "1"]);
+    let joined = "SELECT r.point, m.words FROM s.rows AS r JOIN s.more AS m ON r.design = m.design";
+    check(joined, &["1 é | <b>", "2 é | <b>"]);
+    check(&joined.replace("JOIN", "FULL JOIN"), &["1 é | <b>", "1 -", "2 é | <b>", "2 -", "3 -", "- "]);
+    check("SELECT words FROM s.more WHERE design IN (SELECT design FROM s.rows)", &["é | <b>"]);
+    check("WITH big AS (SELECT * FROM s.rows WHERE x >= 1) SELECT COUNT(*) FROM big", &["2"]);
+    check("SELECT design FROM s.more UNION SELECT design FROM s.rows", &["a", "b", "c"]);
+    check("SELECT 1 + 1 AS a, 'a' || 'b' AS b, 7 / 2 AS c, ABS(-3) AS d", &["2 ab 3.5 3"]);
+    let rank = "SELECT design, point, ROW_NUMBER() OVER (PARTITION BY design ORDER BY point DESC) AS n FROM s.rows";
+    check(&format!("{rank} ORDER BY design, n"), &["a 3 1", "a 2 2", "a 1 3", "b 2 1", "b 1 2"]);
+}
+
+#[test]
+fn a_table_has_one_name_however_it_is_written() {
+    let shop = Shop::new();
+    let names =
+        ["s.rows", "small.s.rows", "\"s.rows\"", "\"small.s.rows\"", "\"small\".s.\"rows\"", "small.\"s.rows\""];
+    for name in names {
+        let query = format!("SELECT COUNT(*) FROM {name} WHERE inside");
+        assert_eq!(shop.rows(&query), ["3"], "{name}");
+        assert_eq!(shop.rows(&query.replace("small", "other")), ["3"], "{name}");
+    }
+    // Before a column it is written the same way; two studies side by side.
+    let ratio = "SELECT DISTINCT ROUND(other.s.rows.x / small.s.rows.x, 9) FROM small.s.rows JOIN other.s.rows ON \
+                 small.s.rows.design = other.s.rows.design AND small.s.rows.point = other.s.rows.point \
+                 WHERE small.s.rows.x IS NOT NULL";
+    assert_eq!(shop.rows(ratio), ["10"]);
+    assert_eq!(shop.ask("SELECT s.rows.* FROM s.rows").unwrap().columns.len(), 4);
+    // A column called like a part of a table's name is that column.
+    assert_eq!(
+        shop.rows("SELECT rows.point FROM s.more AS s JOIN s.rows AS rows ON s.design = rows.design"),
+        ["1", "2"]
+    );
+}
+
+#[test]
+fn what_is_wrong_is_said_in_one_sentence_with_the_nearest_name() {
+    let shop = Shop::new();
+    for (query, wanted) in [
+        ("SELEC * FROM s.rows", "the query is no SQL: "),
+        ("", "a query is one SELECT"),
+        ("SELECT 1; SELECT 2", "a query is one SELECT"),
+        ("DROP TABLE s.rows", "a query is one SELECT"),
+        ("DELETE FROM s.rows", "a query is one SELECT"),
+        ("CREATE TABLE a AS SELECT * FROM s.rows", "a query is one SELECT"),
+        ("SELECT * FROM s.row", "there is no table `s.row` in the shop; did you mean `s.rows`?"),
+        ("SELECT * FROM small.s.mor", "did you mean `small.s.more`?"),
+        ("SELECT * FROM smal.s.rows", "did you mean `small.s.rows`?"),
+        ("SELECT * FROM rows", "there is no table `rows`"),
+        ("SELECT * FROM a.b.c.d.e", "there is no table `a.b.c.d.e`"),
+        ("SELECT * FROM \"HEAD~9:small.s.rows\"", "there is no revision `HEAD~9`"),
+        ("SELECT desing FROM s.rows", "there is no column `desing`; did you mean `design`?"),
+        ("SELECT r.desing FROM s.rows AS r", "`desing`"),
+        ("SELECT design FROM s.rows WHERE pointt > 1", "did you mean `point`?"),
+        ("SELECT x, SUM(x) OVER () FROM s.rows", "two columns of the answer are called `x`; give one another name"),
+        ("SELECT 1, 2", "two columns of the answer are called `literal`"),
+        ("SELECT nonsense(x) FROM s.rows", "the query cannot be answered: "),
+        ("SELECT * FROM read_csv('/etc/passwd')", "`read_csv` cannot be called"),
+        ("SELECT * FROM read_parquet('x.parquet')", "`read_parquet` cannot be called"),
+        ("SELECT design + 1 FROM s.rows", "the query cannot be answered: "),
+    ] {
+        let problem = shop.ask(query).expect_err(query);
+        assert!(problem.contains(wanted) && !problem.contains('\n'), "{query}: {problem}");
+    }
+    fs::remove_file(shop.path().join("small/s.more.parquet")).unwrap();
+    let problem = shop.ask("SELECT * FROM s.more").unwrap_err();
+    let wanted = "`s.more` is not there in the shop, and the cache does not have it; `gearstudy run` computes it again";
+    assert_eq!(problem, wanted);
+}
+
+fn git(desk: &Desk, words: &[&str]) {
+    let identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"];
+    let output = Command::new("git").arg("-C").arg(desk.path("")).args(identity).args(words).output().unwrap();
+    assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
+}
+
+fn json(desk: &Desk, words: &[&str]) -> Vec<BTreeMap<String, Value>> {
+    serde_json::from_str(&desk.run(words, 0).0).unwrap()
+}
+
+/// As a user does it: over commits, from the cache, into files.
+#[test]
+fn queries_reach_studies_and_commits() {
+    let desk = Desk::with("quick.yaml");
+    git(&desk, &["init", "-q", "-b", "main"]);
+    fs::write(desk.path(".gitignore"), ".gearstudy/\nresults/*/*.curve.parquet\n").unwrap();
+    let (_, error) = desk.run(&["query", "SELECT 1 FROM ste.summary"], 2);
+    assert!(error.contains("there is no results folder `results`"), "{error}");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    git(&desk, &["add", "-A"]);
+    git(&desk, &["commit", "-qm", "one"]);
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    fs::write(desk.path("quick.yaml"), text.replace("bore_radius: 18 mm", "bore_radius: 17 mm")).unwrap();
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    git(&desk, &["commit", "-qam", "two"]);
+
+    // The program's own way to the same table.
+    let own = json(&desk, &["table", "quick.yaml", "ste.summary", "--format", "json"]);
+    let asked = json(&desk, &["query", "SELECT * FROM quick.ste.summary", "--format", "json"]);
+    assert!(!own.is_empty() && own == asked);
+    let mean = json(&desk, &["query", "SELECT AVG(mean) AS m FROM ste.summary", "--format", "json"]);
+    let values: Vec<f64> = own.iter().map(|row| row["mean"].as_f64().unwrap()).collect();
+    let by_hand = values.iter().sum::<f64>() / values.len() as f64;
+    assert!((mean[0]["m"].as_f64().unwrap() / by_hand - 1.0).abs() < 1e-14);
+
+    // Across commits: what `diff` says of them.
+    let across = "SELECT MAX(ABS(new.mean - old.mean)) AS most FROM \"main:quick.ste.summary\" AS new \
+                  JOIN \"HEAD~1:quick.ste.summary\" AS old ON new.design = old.design AND new.torque = old.torque";
+    let most = json(&desk, &["query", across, "--format", "json"])[0]["most"].as_f64().unwrap();
+    let diff: Value = serde_json::from_str(&desk.run(&["diff", "HEAD~1", "HEAD", "--format", "json"], 4).0).unwrap();
+    let stages = diff["studies"][0]["stages"].as_array().unwrap();
+    let tables = stages.iter().flat_map(|stage| stage["tables"].as_array().unwrap());
+    let summary = tables.clone().find(|table| table["name"] == "ste.summary").unwrap();
+    let column = summary["columns"].as_array().unwrap().iter().find(|column| column["name"] == "mean").unwrap();
+    assert!(most > 0.0 && most == column["largest_absolute"]["difference"].as_f64().unwrap().abs());
+    let count = |words: &[&str]| json(&desk, &[&["query", "--format", "json"], words].concat())[0]["n"].clone();
+    let bore = "SELECT bore_radius AS n FROM pair.gears WHERE gear = 'pinion'";
+    assert_eq!((count(&[bore]), count(&[bore, "--at", "HEAD~1"])), (17.0.into(), 18.0.into()));
+    assert_eq!(count(&[bore, "--at", "results/quick"]), 17.0);
+    // Not kept in git: from the cache; without one, said.
+    let curve = "SELECT COUNT(*) AS n FROM \"HEAD~1:quick.ste.curve\"";
+    assert!(count(&[curve]).as_u64().unwrap() > 100);
+    let (_, error) = desk.run(&["query", curve, "--cache", "none"], 2);
+    assert!(error.contains("`quick.ste.curve` is not kept at HEAD~1 (") && error.contains("the cache"), "{error}");
+    for (words, wanted) in [
+        (["--at", "mian"], "there is no revision `mian`; did you mean `main`?"),
+        (["--study", "quik"], "there is no table `pair.gears`"),
+    ] {
+        let (out, error) = desk.run(&[&["query", bore][..], &words].concat(), 2);
+        assert!(out.is_empty() && error.contains(wanted) && error.lines().count() == 1, "{error}");
+    }
+
+    // Formats and files hold the same cells.
+    let few = "SELECT gear, bore_radius AS b FROM pair.gears ORDER BY b";
+    let (pretty, _) = desk.run(&["query", few], 0);
+    assert!(pretty.contains("gear") && pretty.contains("17") && pretty.ends_with("2 rows\n"), "{pretty}");
+    let (csv, _) = desk.run(&["query", few, "--format", "csv"], 0);
+    assert_eq!(csv, "gear,b\npinion,17\ngear,28\n");
+    let (markdown, _) = desk.run(&["query", few, "--format", "markdown"], 0);
+    assert_eq!(markdown, "| gear | b |\n| --- | ---: |\n| pinion | 17 |\n| gear | 28 |\n");
+    desk.run(&["query", few, "-o", "few.csv"], 0);
+    assert_eq!(fs::read_to_string(desk.path("few.csv")).unwrap(), csv);
+    desk.run(&["query", few, "-o", "few.parquet", "--quiet"], 0);
+    let table = parquet::read(fs::read(desk.path("few.parquet")).unwrap()).unwrap();
+    assert_eq!(
+        (table.texts("gear"), table.floats("b")),
+        (&["pinion".to_owned(), "gear".into()][..], &[17.0, 28.0][..])
+    );
+    assert!(desk.run(&["query", few, "-o", "few.txt"], 1).1.contains("ends in none of"));
+    let (listed, _) = desk.run(&["query"], 0);
+    assert!(listed.contains("quick.ste.summary  ") && listed.contains("  peak_to_peak [um]: "), "{listed}");
+}
