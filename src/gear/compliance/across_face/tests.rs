@@ -1,3 +1,5 @@
+//! Lengths against another program, closed forms, scales, and how many sections they take.
+
 use super::*;
 use crate::gear::compliance::weber_banaschek::Body;
 use crate::gear::geometry::{Rack, Specification};
@@ -81,10 +83,8 @@ fn lengths_scale_with_the_module() {
 fn sections_suffice() {
     let gear = gear(19, 1.0, 1.75);
     let shape = Shape::new(&gear, 8.0);
-    let halved = |[height, extent, _]: [f64; 3]| {
-        // Thickness anew, from the flank alone, is only good there: compare above the base circle's joint.
-        [height - 0.25 * extent, height + 0.25 * extent].map(|y| [y, 0.5 * extent])
-    };
+    let halved =
+        |[height, extent, _]: [f64; 3]| [height - 0.25 * extent, height + 0.25 * extent].map(|y| [y, 0.5 * extent]);
     // Thickness is piecewise linear to second order, so halved sections interpolate it.
     let rows = &shape.sections;
     let thickness = |y: f64| {
