@@ -9,6 +9,7 @@ pub mod draw;
 pub mod pages;
 pub mod print;
 pub mod progress;
+#[cfg(feature = "frames")]
 mod query;
 pub mod run;
 pub mod show;
@@ -115,7 +116,14 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             *format,
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
+        #[cfg(feature = "frames")]
         Command::Query(asked) => query::query(asked, places, quiet),
+        #[cfg(not(feature = "frames"))]
+        Command::Query(_) => Err(Ending::Usage(
+            "this program was built without `query`; `cargo build --release --features frames` builds it with it, in \
+             some minutes"
+                .to_owned(),
+        )),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {

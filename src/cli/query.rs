@@ -1,190 +1,168 @@
-//! The command `query`: SQL over tables, in a build that can.
+//! The command `query`: SQL over tables, in a build that has the feature `frames`.
 //!
 //! Must not know: how a query is answered.
 
-use super::Ending;
-use super::arguments::{Places, Question};
+use std::panic;
+use std::path::Path;
 
-/// Without the feature: how to get it.
-#[cfg(not(feature = "frames"))]
-pub(super) fn query(_: &Question, _: &Places, _: bool) -> Result<(), Ending> {
-    Err(Ending::Usage(
-        "this program was built without `query`; `cargo build --release --features frames` builds it with it (some \
-         minutes)"
-            .to_owned(),
-    ))
+use super::Ending;
+use super::arguments::{Format, Places, Question};
+use super::diff::{side, study_name, working_tree};
+use super::print::{Grid, Heading};
+use super::progress::out;
+use crate::history::git::Repository;
+use crate::query::tables::Tables;
+use crate::query::{Answer, ask};
+use crate::store::cache::Cache;
+use crate::store::file::{self, Durability};
+use crate::store::parquet;
+use crate::table::data::{Cell, Data, Table};
+use crate::table::schema::{Column, Schema};
+
+pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<(), Ending> {
+    let target = asked.output.as_deref().map(|path| Target::of(path).map_err(Ending::Usage)).transpose()?;
+    let cache = places.cache.exists().then(|| Cache::open(&places.cache)).transpose();
+    let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
+    let repository = Repository::around(&places.results);
+    let open = |revision: Option<&str>| {
+        let Some(word) = revision.or(asked.at.as_deref()) else {
+            return working_tree(places).map_err(|error| error.to_string());
+        };
+        let none = || match repository.as_ref().map(|repository| repository.commit(word)) {
+            Ok(Err(problem)) => problem,
+            Err(problem) => problem.clone(),
+            Ok(Ok(_)) => format!("there are no results at `{word}`"),
+        };
+        side(word, places, &repository)?.ok_or_else(none)
+    };
+    let study = asked.study.as_deref().map(study_name);
+    let mut tables = Tables::new(&open, study.as_deref(), cache.as_ref());
+    let Some(text) = &asked.sql else {
+        out(&list(&mut tables).map_err(Ending::Usage)?);
+        return Ok(());
+    };
+    let answer = quietly(|| ask(text, &mut tables)).map_err(Ending::Query)?;
+    match (asked.output.as_deref(), target) {
+        (Some(path), Some(target)) => write(&answer, path, target, quiet),
+        _ => {
+            out(&grid(&answer).text(asked.format).map_err(Ending::Usage)?);
+            Ok(())
+        }
+    }
 }
 
-#[cfg(feature = "frames")]
-pub(super) use with_frames::query;
+/// What polars panics about, it also returns; nobody need read it twice.
+fn quietly<T>(work: impl FnOnce() -> T) -> T {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let result = work();
+    panic::set_hook(hook);
+    result
+}
 
-#[cfg(feature = "frames")]
-mod with_frames {
-    use std::panic;
-    use std::path::Path;
+/// Every table and its columns with their units, since an answer has none.
+fn list(tables: &mut Tables<'_>) -> Result<String, String> {
+    let mut text = String::new();
+    for (name, record) in tables.list()? {
+        text += &format!("{name}  {} rows\n", record.rows);
+        for column in &record.columns {
+            let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
+            text += &format!("  {}{unit}: {}\n", column.name, column.description);
+        }
+    }
+    Ok(text)
+}
 
-    use super::super::arguments::Format;
-    use super::super::diff::{side, study_name, working_tree};
-    use super::super::print::{Grid, Heading};
-    use super::super::progress::out;
-    use super::{Ending, Places, Question};
-    use crate::history::git::Repository;
-    use crate::query::tables::Tables;
-    use crate::query::{Answer, ask};
-    use crate::store::cache::Cache;
-    use crate::store::file::{self, Durability};
-    use crate::store::parquet;
-    use crate::table::data::{Cell, Data, Table};
-    use crate::table::schema::{Column, Schema};
+fn grid(answer: &Answer) -> Grid<'_> {
+    let heading = |column: &crate::query::Column| {
+        let name = column.name.clone();
+        Heading { shown: name.clone(), name, is_number: column.is_number }
+    };
+    Grid {
+        columns: answer.columns.iter().map(heading).collect(),
+        rows: answer.columns.first().map_or(0, |column| column.cells.len()),
+        cell: Box::new(|row, column| answer.columns[column].cells[row].clone()),
+    }
+}
 
-    pub(in super::super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<(), Ending> {
-        let target = asked.output.as_deref().map(|path| Target::of(path).map_err(Ending::Usage)).transpose()?;
-        let cache = places.cache.exists().then(|| Cache::open(&places.cache)).transpose();
-        let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
-        let repository = Repository::around(&places.results);
-        let open = |revision: Option<&str>| {
-            let Some(word) = revision.or(asked.at.as_deref()) else {
-                return working_tree(places).map_err(|error| error.to_string());
-            };
-            let none = || match repository.as_ref().map(|repository| repository.commit(word)) {
-                Ok(Err(problem)) => problem,
-                Err(problem) => problem.clone(),
-                Ok(Ok(_)) => format!("there are no results at `{word}`"),
-            };
-            side(word, places, &repository)?.ok_or_else(none)
+/// What a file's name asks for.
+#[derive(Clone, Copy)]
+enum Target {
+    Text(Format),
+    Parquet,
+}
+
+impl Target {
+    fn of(path: &Path) -> Result<Self, String> {
+        match path.extension().and_then(|end| end.to_str()) {
+            Some("csv") => Ok(Self::Text(Format::Csv)),
+            Some("json") => Ok(Self::Text(Format::Json)),
+            Some("md") => Ok(Self::Text(Format::Markdown)),
+            Some("parquet") => Ok(Self::Parquet),
+            _ => Err(format!("`{}` ends in none of .csv, .json, .md, .parquet", path.display())),
+        }
+    }
+}
+
+fn write(answer: &Answer, path: &Path, target: Target, quiet: bool) -> Result<(), Ending> {
+    let bytes = match target {
+        Target::Text(format) => grid(answer).text(format).map_err(Ending::Usage)?.into_bytes(),
+        Target::Parquet => {
+            let table = table(answer).map_err(Ending::Query)?;
+            parquet::write(&table).map_err(|error| Ending::Usage(error.to_string()))?
+        }
+    };
+    file::write(path, &bytes, Durability::Lazy).map_err(|error| Ending::Usage(error.to_string()))?;
+    let rows = answer.columns.first().map_or(0, |column| column.cells.len());
+    if !quiet {
+        out(&format!("wrote {}, {rows} rows\n", path.display()));
+    }
+    Ok(())
+}
+
+/// The rows as a table of this program; where a number does not apply, it has NaN.
+fn table(answer: &Answer) -> Result<Table, String> {
+    let (mut columns, mut data) = (Vec::new(), Vec::new());
+    for column in &answer.columns {
+        let empty = || {
+            let name = &column.name;
+            format!(
+                "`{name}` has empty cells, which only columns of numbers have in a Parquet file of this program: \
+                 write COALESCE({name}, …)"
+            )
         };
-        let study = asked.study.as_deref().map(study_name);
-        let mut tables = Tables::new(&open, study.as_deref(), cache.as_ref());
-        let Some(text) = &asked.sql else {
-            out(&list(&mut tables).map_err(Ending::Usage)?);
-            return Ok(());
-        };
-        let answer = quietly(|| ask(text, &mut tables)).map_err(Ending::Query)?;
-        match (asked.output.as_deref(), target) {
-            (Some(path), Some(target)) => write(&answer, path, target, quiet),
-            _ => {
-                out(&grid(&answer).text(asked.format).map_err(Ending::Usage)?);
-                Ok(())
+        let cells = &column.cells;
+        let first = cells.iter().flatten().next();
+        let (own, values) = match first {
+            None | Some(Cell::Float(_)) => {
+                let values = cells.iter().map(|cell| match cell {
+                    Some(Cell::Float(value)) => *value,
+                    _ => f64::NAN,
+                });
+                (Column::float(&column.name, "", "").allows_nan(), Data::Float(values.collect()))
             }
-        }
-    }
-
-    /// What polars panics about, it also returns; nobody need read it twice.
-    fn quietly<T>(work: impl FnOnce() -> T) -> T {
-        let hook = panic::take_hook();
-        panic::set_hook(Box::new(|_| {}));
-        let result = work();
-        panic::set_hook(hook);
-        result
-    }
-
-    /// Every table and its columns with their units, since an answer has none.
-    fn list(tables: &mut Tables<'_>) -> Result<String, String> {
-        let mut text = String::new();
-        for (name, record) in tables.list()? {
-            text += &format!("{name}  {} rows\n", record.rows);
-            for column in &record.columns {
-                let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
-                text += &format!("  {}{unit}: {}\n", column.name, column.description);
+            Some(Cell::Integer(_)) => {
+                let value = |cell: &Option<Cell>| match cell {
+                    Some(Cell::Integer(value)) => Ok(*value),
+                    _ => Err(empty()),
+                };
+                (Column::integer(&column.name, ""), Data::Integer(cells.iter().map(value).collect::<Result<_, _>>()?))
             }
-        }
-        Ok(text)
-    }
-
-    fn grid(answer: &Answer) -> Grid<'_> {
-        let heading = |column: &crate::query::Column| {
-            let name = column.name.clone();
-            Heading { shown: name.clone(), name, is_number: column.is_number }
-        };
-        Grid {
-            columns: answer.columns.iter().map(heading).collect(),
-            rows: answer.columns.first().map_or(0, |column| column.cells.len()),
-            cell: Box::new(|row, column| answer.columns[column].cells[row].clone()),
-        }
-    }
-
-    /// What a file's name asks for.
-    #[derive(Clone, Copy)]
-    enum Target {
-        Text(Format),
-        Parquet,
-    }
-
-    impl Target {
-        fn of(path: &Path) -> Result<Self, String> {
-            match path.extension().and_then(|end| end.to_str()) {
-                Some("csv") => Ok(Self::Text(Format::Csv)),
-                Some("json") => Ok(Self::Text(Format::Json)),
-                Some("md") => Ok(Self::Text(Format::Markdown)),
-                Some("parquet") => Ok(Self::Parquet),
-                _ => Err(format!("`{}` ends in none of .csv, .json, .md, .parquet", path.display())),
+            Some(Cell::Text(_)) => {
+                let value = |cell: &Option<Cell>| cell.as_ref().map(Cell::to_string).ok_or_else(empty);
+                (Column::text(&column.name, ""), Data::Text(cells.iter().map(value).collect::<Result<_, _>>()?))
             }
-        }
-    }
-
-    fn write(answer: &Answer, path: &Path, target: Target, quiet: bool) -> Result<(), Ending> {
-        let bytes = match target {
-            Target::Text(format) => grid(answer).text(format).map_err(Ending::Usage)?.into_bytes(),
-            Target::Parquet => {
-                let table = table(answer).map_err(Ending::Query)?;
-                parquet::write(&table).map_err(|error| Ending::Usage(error.to_string()))?
+            Some(Cell::Flag(_)) => {
+                let value = |cell: &Option<Cell>| match cell {
+                    Some(Cell::Flag(value)) => Ok(*value),
+                    _ => Err(empty()),
+                };
+                (Column::flag(&column.name, ""), Data::Flag(cells.iter().map(value).collect::<Result<_, _>>()?))
             }
         };
-        file::write(path, &bytes, Durability::Lazy).map_err(|error| Ending::Usage(error.to_string()))?;
-        let rows = answer.columns.first().map_or(0, |column| column.cells.len());
-        if !quiet {
-            out(&format!("wrote {}, {rows} rows\n", path.display()));
-        }
-        Ok(())
+        columns.push(own);
+        data.push(values);
     }
-
-    /// The rows as a table of this program; where a number does not apply, it has NaN.
-    fn table(answer: &Answer) -> Result<Table, String> {
-        let (mut columns, mut data) = (Vec::new(), Vec::new());
-        for column in &answer.columns {
-            let empty = || {
-                let name = &column.name;
-                format!(
-                    "`{name}` has empty cells, which only columns of numbers have in a Parquet file of this program: \
-                     write COALESCE({name}, …)"
-                )
-            };
-            let cells = &column.cells;
-            let first = cells.iter().flatten().next();
-            let (own, values) = match first {
-                None | Some(Cell::Float(_)) => {
-                    let values = cells.iter().map(|cell| match cell {
-                        Some(Cell::Float(value)) => *value,
-                        _ => f64::NAN,
-                    });
-                    (Column::float(&column.name, "", "").allows_nan(), Data::Float(values.collect()))
-                }
-                Some(Cell::Integer(_)) => {
-                    let value = |cell: &Option<Cell>| match cell {
-                        Some(Cell::Integer(value)) => Ok(*value),
-                        _ => Err(empty()),
-                    };
-                    (
-                        Column::integer(&column.name, ""),
-                        Data::Integer(cells.iter().map(value).collect::<Result<_, _>>()?),
-                    )
-                }
-                Some(Cell::Text(_)) => {
-                    let value = |cell: &Option<Cell>| cell.as_ref().map(Cell::to_string).ok_or_else(empty);
-                    (Column::text(&column.name, ""), Data::Text(cells.iter().map(value).collect::<Result<_, _>>()?))
-                }
-                Some(Cell::Flag(_)) => {
-                    let value = |cell: &Option<Cell>| match cell {
-                        Some(Cell::Flag(value)) => Ok(*value),
-                        _ => Err(empty()),
-                    };
-                    (Column::flag(&column.name, ""), Data::Flag(cells.iter().map(value).collect::<Result<_, _>>()?))
-                }
-            };
-            columns.push(own);
-            data.push(values);
-        }
-        Table::from_columns(Schema::new("query", "The answer to a query.", columns), data)
-            .map_err(|error| error.to_string())
-    }
+    Table::from_columns(Schema::new("query", "The answer to a query.", columns), data)
+        .map_err(|error| error.to_string())
 }

@@ -28,9 +28,15 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     for study in &comparison.studies {
         page.blank();
         page.wrap("", &format!("{} {}: {}", study.state.sign(), study.name, words::sum(study)));
-        words::program(study).iter().for_each(|program| page.wrap("  ", program));
-        words::told(study).into_iter().for_each(|stage| page.stage(stage));
-        words::brief(study).iter().for_each(|sentence| page.wrap("  = ", sentence));
+        if let Some(program) = words::program(study) {
+            page.wrap("  ", &program);
+        }
+        for stage in words::told(study) {
+            page.stage(stage);
+        }
+        for sentence in words::brief(study) {
+            page.wrap("  = ", &sentence);
+        }
     }
     for remark in &comparison.remarks {
         page.blank();

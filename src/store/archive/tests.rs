@@ -126,7 +126,7 @@ fn entries_inside_each_other_are_refused() {
     };
     let alone = with("b.yaml", stored, b"x");
     let name = find(&alone, 0, b"b.yaml");
-    let inner = &alone[name - 30..name + "b.yaml".len() + 1];
+    let inner = &alone[name - 30..=name + "b.yaml".len()];
     assert!(inner.starts_with(b"PK\x03\x04"));
     let mut writer = ZipWriter::new_append(Cursor::new(pack(&entries()).unwrap())).unwrap();
     for (name, bytes) in [("a.bin", inner), ("b.yaml", b"x")] {
