@@ -25,19 +25,15 @@ pub struct Variable {
 pub struct Worth {
     /// To be made small.
     pub objective: f64,
-    /// Each must not be negative, and is of the order of −1 where it is clearly broken: lengths as shares of a length. As
-    /// many for every point; an equation is two, of both signs.
+    /// Each must not be negative.
     pub constraints: Vec<f64>,
 }
-
-/// How much of a constraint may be broken by a point that counts as keeping it.
-pub const KEPT: f64 = 1e-7;
 
 impl Worth {
     /// The objective where every constraint holds, +∞ elsewhere: what a method that knows no constraints is given.
     #[must_use]
     pub fn admissible(&self) -> f64 {
-        if self.constraints.iter().all(|value| *value >= -KEPT) { self.objective } else { f64::INFINITY }
+        if self.constraints.iter().all(|value| *value >= 0.0) { self.objective } else { f64::INFINITY }
     }
 }
 
