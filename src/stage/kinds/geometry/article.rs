@@ -15,7 +15,7 @@ type Get = fn(&RootArc) -> f64;
 
 const LENGTHS: &[(&str, &str, Get)] = &[
     ("x_a", "X of A, the point of the flank on the base circle.", |arc| arc.base.a[0]),
-    ("y_a", "Y of A.", |arc| arc.base.a[1]),
+    ("y_a", "Y of the same point.", |arc| arc.base.a[1]),
     ("h", "H = r_b − r_f (17).", |arc| arc.base.base_radius - arc.base.root_radius),
     ("r_c", "Radius of the arc (18).", |arc| arc.article().radius),
     ("x_c", "X of its centre (19).", |arc| arc.article().centre[0]),

@@ -39,8 +39,8 @@ pub fn outline_schema() -> Schema {
             Column::text("curve", "What it lies on: line, arc, trochoid, involute, modified_involute."),
             Column::float("radius", "mm", "Distance from the gear's centre."),
             Column::float("angle", "deg", "Polar angle from the y axis, counterclockwise.").tolerance(1e-9, 1e-9),
-            Column::float("x", "mm", "Across.").tolerance(1e-9, 1e-9),
-            Column::float("y", "mm", "Up.").tolerance(1e-9, 1e-9),
+            Column::float("x", "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
+            Column::float("y", "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
             Column::float("direction", "deg", "Direction of the tangent from the x axis, counterclockwise.")
                 .tolerance(1e-7, 1e-9),
             Column::float("curvature", "1/mm", "Curvature, positive where convex; NaN where it is infinite.")
