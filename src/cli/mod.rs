@@ -15,6 +15,9 @@ pub mod verify;
 
 use std::ffi::OsString;
 
+/// What the program allocates with.
+pub use crate::stage::memory::Allocator;
+
 use clap::Parser;
 
 use crate::study::{self, LoadError, Study};

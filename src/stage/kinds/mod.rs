@@ -1,5 +1,6 @@
 //! The registry of stage kinds: one line each.
 
+pub mod accuracy;
 pub mod geometry;
 pub mod modification;
 pub mod optimizer;
@@ -10,5 +11,12 @@ pub mod stiffness;
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] =
-    &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND, &report::KIND];
+pub const KINDS: &[&Kind] = &[
+    &geometry::KIND,
+    &modification::KIND,
+    &stiffness::KIND,
+    &optimizer::KIND,
+    &ste::KIND,
+    &accuracy::KIND,
+    &report::KIND,
+];
