@@ -10,4 +10,6 @@ pub(crate) mod fixtures;
 pub mod geometry;
 pub mod material;
 pub mod modification;
+#[cfg(test)]
+pub(crate) mod random;
 pub mod transmission_error;

@@ -69,3 +69,30 @@ pub fn most_during<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
     // Nothing that is worth measuring does without memory: no allocator counted.
     (result, most.filter(|most| *most > 0))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The tests do not install it; called by hand it counts what it hands out, and only while it is asked to.
+    #[test]
+    fn the_most_that_was_held_is_counted() {
+        let block = |size| Layout::from_size_align(size, 8).unwrap();
+        let take = |size| unsafe { Allocator.alloc(block(size)) };
+        let give = |pointer, size| unsafe { Allocator.dealloc(pointer, block(size)) };
+        let old = take(5000);
+        let ((), most) = most_during(|| {
+            let one = take(1000);
+            let two = unsafe { Allocator.realloc(one, block(1000), 3000) };
+            give(two, 3000);
+            let three = unsafe { Allocator.alloc_zeroed(block(2000)) };
+            assert_eq!(most_during(|| ()).1, None, "only one measures at a time");
+            give(three, 2000);
+            give(old, 5000);
+            give(take(4000), 4000);
+        });
+        assert_eq!(most, Some(3000));
+        give(take(9000), 9000);
+        assert_eq!(most_during(|| ()).1, None, "nothing was counted");
+    }
+}

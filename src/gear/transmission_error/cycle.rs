@@ -152,7 +152,9 @@ impl MeshCycle {
     pub fn sampled(&self, settings: Settings) -> Self {
         // Corner contact is in the quick copies.
         let settings = Settings { corner_contact: self.settings.corner_contact, ..settings };
-        Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
+        let same = settings.slices == self.settings.slices;
+        let slices = if same { self.slices.clone() } else { Rule::new(settings.slices) };
+        Self { settings, slices, ..self.clone() }
     }
 
     /// p_b \[m\].

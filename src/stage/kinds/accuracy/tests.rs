@@ -104,7 +104,11 @@ fn an_order_is_observed_only_where_one_number_was_changed() {
     assert_eq!(refined(vec![member("a", 16), ("word", Choice("x")), ("length", Quantity(1e-3))]), None);
     assert_eq!(refined(vec![member("a", 16), ("word", Choice("y")), ("length", Quantity(2e-3))]), None);
     assert_eq!(refined(vec![member("b", 16), ("word", Choice("x")), ("length", Quantity(2e-3))]), None);
-    assert_eq!(refined(vec![member("a", 8), ("word", Choice("x")), ("length", Quantity(2e-3))]), None, "nothing changed");
+    assert_eq!(
+        refined(vec![member("a", 8), ("word", Choice("x")), ("length", Quantity(2e-3))]),
+        None,
+        "nothing changed"
+    );
     let more = vec![member("a", 16), ("word", Choice("x")), ("length", Quantity(2e-3)), ("more", Flag(true))];
     assert_eq!(refined(more), None);
 }
