@@ -98,7 +98,7 @@ fn the_estimate_of_the_ring_s_harmonics_holds() {
     }
 }
 
-/// As many pairs as a test has time for: 24 of them, 48 gears.
+/// As many pairs as a test has time for: 16 of them, 32 gears.
 #[test]
 fn the_estimate_of_the_mesh_holds() {
     let mut random = Random::new(22);
@@ -114,9 +114,9 @@ fn the_estimate_of_the_mesh_holds() {
         (method("finite_element").unwrap().tabulate)(&record(fields), pair, assumptions).unwrap()
     };
     let mut ratios = Vec::new();
-    for _ in 0..24 {
+    for _ in 0..16 {
         let pair = random.pair();
-        let (truth, found) = (solve(&pair, 16), solve(&pair, random.of(&[6, 8])));
+        let (truth, found) = (solve(&pair, 14), solve(&pair, 6));
         for mesh in &found.meshes {
             let [one, two] = [&found, &truth].map(|tabulated| match mesh.side {
                 Side::Pinion => &tabulated.compliance.pinion,
@@ -125,5 +125,5 @@ fn the_estimate_of_the_mesh_holds() {
             ratios.push(mesh.error_estimate / difference(one, two));
         }
     }
-    check("mesh", ratios, 48);
+    check("mesh", ratios, 32);
 }

@@ -14,7 +14,7 @@ use crate::gear::transmission_error::sampling::{Against, Sampled};
 /// Below this an error is not that of sampling: the floor of the estimates.
 const FLOOR: f64 = 1e-10;
 /// What counts as the truth: errors are a hundredth of those that are estimated.
-const TRUTH: Settings = Settings { positions: 400, slices: 401, corner_contact: CornerContact::None };
+const TRUTH: Settings = Settings { positions: 192, slices: 257, corner_contact: CornerContact::None };
 
 struct Case {
     base: MeshCycle,
@@ -93,7 +93,7 @@ fn the_estimate_from_coarser_samplings_holds() {
         let settings = Settings { positions, slices, ..TRUTH };
         let ratios = if case.is_sliced() { &mut sliced } else { &mut closed };
         ratios.add(sampled.error(settings), error(settings));
-        let accuracy = random.scaled(1e-4, 3e-2);
+        let accuracy = random.scaled(5e-4, 3e-2);
         let chosen = sampled.coarsest(TRUTH, accuracy);
         if sampled.error(chosen) <= accuracy {
             wished.add(accuracy, error(chosen));
