@@ -112,7 +112,7 @@ impl Stages {
 
 /// What the study's `stiffness` and `stiffness_coupled` say, with either contact law.
 pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
-    Assumptions { root: RootShape::CircularFillet, contact, coupled, torque: None }
+    Assumptions { root: RootShape::CircularFillet, contact, coupled, torque: None, accuracy: None }
 }
 
 /// The energy method on a pair.

@@ -20,13 +20,19 @@ use crate::support::record;
 
 criterion_group!(name = benches; config = brief().sample_size(10); targets = finite_elements);
 
-const COUPLED: Assumptions =
-    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::LoadDependent, coupled: true, torque: None };
+const COUPLED: Assumptions = Assumptions {
+    root: RootShape::Trochoid,
+    contact: ContactLaw::LoadDependent,
+    coupled: true,
+    torque: None,
+    accuracy: None,
+};
 
-/// Both gears of a pair, with the mesh or to the accuracy that `option` says.
-fn tabulate(pair: &Pair, option: (&'static str, Value)) -> Tabulated {
+/// Both gears of a pair, from so many elements across, to an accuracy if one is wanted.
+fn tabulate(pair: &Pair, across: i64, accuracy: Option<f64>) -> Tabulated {
     let method = compliance::method("finite_element").expect("it is registered");
-    (method.tabulate)(&record(method.member.fields, &[option]), pair, COUPLED).expect("the pair can be meshed")
+    let options = record(method.member.fields, &[("elements_across", Value::Integer(across))]);
+    (method.tabulate)(&options, pair, Assumptions { accuracy, ..COUPLED }).expect("the pair can be meshed")
 }
 
 /// Two gears of 48 teeth: half of the time is one gear's.
@@ -43,7 +49,7 @@ fn finite_elements(criterion: &mut Criterion) {
         bencher.iter_custom(|times| {
             let began = std::time::Instant::now();
             for _ in 0..times {
-                std::hint::black_box(tabulate(&pair, ("accuracy", Value::Quantity(0.002))));
+                std::hint::black_box(tabulate(&pair, 16, Some(0.002)));
             }
             began.elapsed() / 2
         });
@@ -62,7 +68,7 @@ pub fn print() {
         let body = &tabulated.compliance.gear.body;
         (0..=20).map(|k| body.value(body.lower() + f64::from(k) / 20.0 * (body.upper() - body.lower()))).collect()
     };
-    let finest: Vec<f64> = own(&tabulate(&pair, ("elements_across", Value::Integer(48))));
+    let finest: Vec<f64> = own(&tabulate(&pair, 48, None));
     println!("\nFinite elements, 48 teeth: largest relative error along the flank (48 across: no error), one gear\n");
     println!(
         "{:>7} {:>9} {:>9} {:>10} {:>10} {:>9} {:>9}",
@@ -70,11 +76,11 @@ pub fn print() {
     );
     let mut growth = Growth::default();
     for across in [6, 8, 12, 16, 24, 32] {
-        let found = tabulate(&pair, ("elements_across", Value::Integer(across)));
+        let found = tabulate(&pair, across, None);
         let values: Vec<f64> = own(&found);
         let error = values.iter().zip(&finest).map(|(value, exact)| relative(*value, *exact)).fold(0.0, f64::max);
         let mesh = found.meshes[1];
-        let taken = 0.5 * seconds(|| tabulate(&pair, ("elements_across", Value::Integer(across))));
+        let taken = 0.5 * seconds(|| tabulate(&pair, across, None));
         println!(
             "{across:>7} {:>9} {:>9} {error:>10.1e} {:>10.1e} {:>9.1} {}",
             mesh.elements,
@@ -105,7 +111,7 @@ impl Growth {
 /// The sweep of `mei2016` over positions and over designs: coupled, load-dependent, corner contact; one thread.
 fn sweeps() {
     let pair = Stages::of("mei2016").pair();
-    let compliance = tabulate(&pair, ("accuracy", Value::Quantity(0.002))).compliance;
+    let compliance = tabulate(&pair, 16, Some(0.002)).compliance;
     let base =
         MeshCycle::new(&pair, &compliance, Settings { corner_contact: CornerContact::Exact, ..Settings::default() })
             .expect("its contact ratio is 1.68");

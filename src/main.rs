@@ -2,6 +2,10 @@
 
 use std::panic;
 
+/// Counts what a stage asks to be measured, and is the system's otherwise.
+#[global_allocator]
+static ALLOCATOR: gearstudy::cli::Allocator = gearstudy::cli::Allocator;
+
 fn main() {
     // A panic is a bug of this program, never the user's: it gets its own exit code and asks to be reported.
     let code = panic::catch_unwind(|| gearstudy::cli::main(std::env::args_os())).unwrap_or_else(|_| {

@@ -40,6 +40,9 @@ pub enum Shape {
     Group(&'static [Field]),
     /// Exactly one member of a family: `name`, or `name: { fields }`.
     Member(fn() -> &'static [Member]),
+    /// Fields of the stage that the [`Shape::Reference`] field of this name names, declared before this one. They stand
+    /// in the place of that stage's own, each as a whole; the value is the record of all of that stage's fields.
+    Overrides(&'static str),
 }
 
 /// A word that a field may hold, and what it means.

@@ -4,6 +4,8 @@
 //! the spelling in the YAML. The typed getters panic on a name or type that was not declared: that is a mistake of
 //! this program, and the conformance test builds every registered kind to find it. Must not know: YAML.
 
+use std::collections::BTreeSet;
+
 use super::digest::Writer;
 use super::error::Place;
 use super::units::Dimension;
@@ -33,6 +35,19 @@ pub enum Value {
     Map(Vec<(String, Entry)>),
     Group(Record),
     Member(&'static str, Record),
+    /// Another stage with some of its fields replaced.
+    Variant(Variant),
+}
+
+/// A stage's fields, some of them replaced.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variant {
+    /// The stage's kind.
+    pub kind: &'static str,
+    /// What was replaced, as written, on one line.
+    pub written: String,
+    /// All fields.
+    pub record: Record,
 }
 
 /// A value and where it stands (a default stands where its parent does).
@@ -97,6 +112,7 @@ impl Record {
     getter!(map, maybe_map, Value::Map(value) => value.as_slice(), &[(String, Entry)]);
     getter!(group, maybe_group, Value::Group(value) => value, &Record);
     getter!(member, maybe_member, Value::Member(name, record) => (*name, record), (&'static str, &Record));
+    getter!(variant, maybe_variant, Value::Variant(variant) => variant, &Variant);
     getter!(
         /// The values of an axis field.
         axis, maybe_axis, Value::Axis(values) => values.as_slice(), &[f64]);
@@ -111,6 +127,22 @@ impl Record {
             }
         }
         part
+    }
+
+    /// The kinds of the variants of other stages inside, by name, each once.
+    #[must_use]
+    pub fn kinds(&self) -> BTreeSet<&'static str> {
+        fn gather(value: &Value, into: &mut BTreeSet<&'static str>) {
+            match value {
+                Value::List(entries) => entries.iter().for_each(|entry| gather(&entry.value, into)),
+                Value::Map(entries) => entries.iter().for_each(|(_, entry)| gather(&entry.value, into)),
+                Value::Variant(variant) => drop(into.insert(variant.kind)),
+                other => other.record().into_iter().for_each(|record| into.extend(record.kinds())),
+            }
+        }
+        let mut kinds = BTreeSet::new();
+        self.fields.iter().for_each(|(_, entry)| gather(&entry.value, &mut kinds));
+        kinds
     }
 
     /// Writes names and values, not places.
@@ -169,14 +201,19 @@ impl Value {
                 record.write(writer);
                 writer
             }
+            Self::Variant(variant) => {
+                writer.text("variant").text(variant.kind).text(&variant.written);
+                variant.record.write(writer);
+                writer
+            }
         };
     }
 
-    /// The record inside, for a group or a member.
+    /// The record inside, for a group, a member or a variant.
     #[must_use]
     pub fn record(&self) -> Option<&Record> {
         match self {
-            Self::Group(record) | Self::Member(_, record) => Some(record),
+            Self::Group(record) | Self::Member(_, record) | Self::Variant(Variant { record, .. }) => Some(record),
             _ => None,
         }
     }

@@ -19,6 +19,12 @@ impl Seed {
         Self(Writer::new("gearstudy 1 stage seed").digest(&number(study)).text(stage).finish())
     }
 
+    /// One of many seeds that start here.
+    #[must_use]
+    pub fn branch(&self, index: usize) -> Self {
+        Self(Writer::new("gearstudy 1 seed branch").digest(&self.0).count(index).finish())
+    }
+
     #[must_use]
     pub fn digest(&self) -> Digest {
         self.0
@@ -52,5 +58,9 @@ mod tests {
         assert_ne!(draw(7, "optimum", 0), draw(7, "optimum", 1));
         assert_ne!(draw(7, "optimum", 0), draw(8, "optimum", 0));
         assert_ne!(draw(7, "optimum", 0), draw(7, "optimum2", 0));
+        let seed = Seed::of_stage(7, "optimum");
+        assert_ne!(seed.branch(0), seed);
+        assert_ne!(seed.branch(0), seed.branch(1));
+        assert_eq!(seed.branch(1), Seed::of_stage(7, "optimum").branch(1));
     }
 }

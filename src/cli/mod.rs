@@ -17,6 +17,9 @@ pub mod verify;
 
 use std::ffi::OsString;
 
+/// What the program allocates with.
+pub use crate::stage::memory::Allocator;
+
 use clap::Parser;
 
 use crate::study::{self, LoadError, Study};

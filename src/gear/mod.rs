@@ -11,4 +11,6 @@ pub mod geometry;
 pub mod material;
 pub mod modification;
 pub mod problem;
+#[cfg(test)]
+pub(crate) mod random;
 pub mod transmission_error;

@@ -16,6 +16,8 @@ pub struct Figure {
     pub plot: Plot,
     /// The tables it is drawn from.
     pub tables: String,
+    /// Whether an axis shows what differs from run to run.
+    pub varies: bool,
 }
 
 /// Reads the tables `figures` and `figure_published` of a report stage.
@@ -55,6 +57,7 @@ fn figure(
         name => Some(tables(name).ok_or_else(|| ReportError::Missing(name.to_owned()))?),
     };
     let mut drawing = Drawing::default();
+    let mut varies = false;
     let (mut x_unit, mut y_unit) = (String::new(), String::new());
     for name in &names {
         let table = tables(name).ok_or_else(|| ReportError::Missing(name.clone()))?;
@@ -68,6 +71,8 @@ fn figure(
                 (false, false) => String::new(),
             };
             let first = drawing.series.len();
+            let volatile = |name: &str| table.schema().column(name).is_some_and(|column| column.volatile);
+            varies |= volatile(x) || volatile(y);
             drawing.add(&table, &rows, kind, [x, y, text("series")?, text("segments")?], &prefix)?;
             x_unit.clone_from(&unit(&table, x));
             y_unit.clone_from(&unit(&table, y));
@@ -102,7 +107,13 @@ fn figure(
         marks,
         categories: drawing.categories,
     };
-    Ok(Figure { name: text("name")?.to_owned(), note: text("note")?.to_owned(), plot, tables: names.join(", ") })
+    Ok(Figure {
+        name: text("name")?.to_owned(),
+        note: text("note")?.to_owned(),
+        plot,
+        tables: names.join(", "),
+        varies,
+    })
 }
 
 /// The value of a column in the only row that meets the conditions.

@@ -3,6 +3,7 @@
 //! Must not know: how anything was computed, and where tables are kept. The same tables give the same bytes, apart from
 //! the section of the page about the run itself.
 
+mod choice;
 mod drawing;
 mod figure;
 mod legend;

@@ -1,12 +1,13 @@
 //! The page: what stands on it, put into words and handed to the template, which escapes every text.
 //!
-//! Must not know: how a figure is drawn. Everything that differs from run to run stands in the template's last section.
+//! Must not know: how a figure is drawn. Everything that differs from run to run stands behind the template's last mark.
 
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use serde::Serialize;
 
+use super::choice::{self, Choice};
 use super::figure::Figure;
 use super::{ReportError, flags, integers, plot, texts, verdict};
 use crate::base::number::{significant, unit_symbol, with_unit};
@@ -32,6 +33,9 @@ struct View<'a> {
     total: i64,
     attention: i64,
     parts: Vec<PartView>,
+    /// Whether a figure shows what differs from run to run.
+    varies: bool,
+    choices: Vec<Choice>,
     left_out: Vec<Remark>,
     warnings: Vec<Remark>,
     failures: Vec<&'a StageRecord>,
@@ -67,6 +71,7 @@ struct FigureView {
     tables: String,
     /// Made by `plot`, which escapes what it is given.
     svg: String,
+    varies: bool,
 }
 
 #[derive(Serialize)]
@@ -137,7 +142,9 @@ pub fn html(
         counts,
         total,
         attention,
+        varies: parts.iter().flat_map(|part| &part.figures).any(|figure| figure.varies),
         parts,
+        choices: choice::choices(manifest, tables)?,
         left_out,
         warnings,
         failures,
@@ -179,6 +186,7 @@ fn part_view(part: &Part) -> Result<PartView, ReportError> {
         note: figure.note.clone(),
         tables: figure.tables.clone(),
         svg: figure.plot.svg(false),
+        varies: figure.varies,
     });
     Ok(PartView { stage: part.stage.clone(), rows: verdict::rows(&part.verdicts)?, figures: figures.collect() })
 }
@@ -222,7 +230,7 @@ fn short(digest: &str) -> String {
     digest.chars().take(12).collect()
 }
 
-fn seconds(seconds: f64) -> String {
+pub(super) fn seconds(seconds: f64) -> String {
     if seconds < 0.1 {
         with_unit(&significant(1e3 * seconds, 3), "ms")
     } else {

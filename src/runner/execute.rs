@@ -4,7 +4,7 @@
 //! and the next one goes on from there. Failures are never kept. Tables stay in memory only while a stage that is not
 //! finished reads them. Order and number of threads enter no result. Must not know: how progress is drawn.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -96,8 +96,9 @@ pub fn execute(
             board: Mutex::new(board),
             loaded: Mutex::default(),
             shares: Mutex::default(),
+            turns: Mutex::default(),
         };
-        pool.in_place_scope_fifo(|scope| run.spawn(scope, &queued));
+        pool.in_place_scope_fifo(|scope| run.spawn(scope, 0, queued));
         debug_assert!(run.board().halted.is_some() || run.loaded().is_empty(), "nobody reads these tables any more");
         board = run.board.into_inner().unwrap_or_else(PoisonError::into_inner);
     }
@@ -123,6 +124,15 @@ pub(super) struct Run<'a> {
     loaded: Mutex<Loaded>,
     /// By node and part, 0 to 1.
     pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
+    turns: Mutex<Turns>,
+}
+
+/// Who is at work, and who waits until nobody is.
+#[derive(Default)]
+struct Turns {
+    running: usize,
+    /// Stages that run alone, in the order in which they became ready.
+    waiting: VecDeque<usize>,
 }
 
 impl<'a> Run<'a> {
@@ -134,8 +144,25 @@ impl<'a> Run<'a> {
         self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn spawn<'s>(&'s self, scope: &ScopeFifo<'s>, queued: &[usize]) {
-        for &node in queued {
+    /// Starts what was queued, after `finished` stages came to their end. Stages that run alone wait until no other one
+    /// runs or can. They are held back here and not by a lock in the stage: a thread that waits for parts of one stage
+    /// takes up another one meanwhile, which must never wait for the first.
+    fn spawn<'s>(&'s self, scope: &ScopeFifo<'s>, finished: usize, queued: Vec<usize>) {
+        let nodes = self.board().study.nodes.as_slice();
+        let (alone, mut ready): (Vec<usize>, Vec<usize>) =
+            queued.into_iter().partition(|node| nodes[*node].stage.runs_alone());
+        {
+            let mut turns = self.turns.lock().unwrap_or_else(PoisonError::into_inner);
+            turns.waiting.extend(alone);
+            turns.running = turns.running - finished + ready.len();
+            if turns.running == 0
+                && let Some(next) = turns.waiting.pop_front()
+            {
+                turns.running = 1;
+                ready.push(next);
+            }
+        }
+        for node in ready {
             let missing = self.board().nodes[node].missing.clone();
             if missing.is_empty() {
                 scope.spawn_fifo(move |scope| {
@@ -220,7 +247,7 @@ impl<'a> Run<'a> {
         let queued = if board.halted.is_some() { Vec::new() } else { board.settle() };
         self.loaded().retain(|(node, _), _| board.is_read(*node));
         drop(board);
-        self.spawn(scope, &queued);
+        self.spawn(scope, 1, queued);
     }
 
     /// What the tables of a stage are, all parts being known; keeps in memory what others are going to read.

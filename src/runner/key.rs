@@ -11,7 +11,7 @@ use super::graph::{Graph, Input};
 use crate::base::digest::{Digest, Writer};
 use crate::base::record::Record;
 use crate::base::seed::Seed;
-use crate::stage::{Demand, Kind};
+use crate::stage::{self, Demand, Kind};
 use crate::store::entry::StoredTable;
 use crate::store::manifest::KeyRecord;
 use crate::study::Study;
@@ -36,7 +36,11 @@ pub fn parts<'t>(
     let of_study = &study.nodes[node];
     let chunks = chunks(of_study.kind, &of_study.record);
     let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
-    let code = code(of_study.kind.name);
+    // A stage that runs variants of another depends on that one's code too.
+    let code = of_study.record.kinds().into_iter().fold(code(of_study.kind.name), |all, nested| {
+        let version = stage::kind(nested).map_or(0, |kind| kind.version);
+        format!("{all} {nested} {version} {}", code(nested))
+    });
     let common = Parts {
         kind: of_study.kind,
         code: &code,

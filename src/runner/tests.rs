@@ -33,6 +33,30 @@ static COUNTS: Mutex<BTreeMap<String, usize>> = Mutex::new(BTreeMap::new());
 /// Makes stages in mode `random` differ from run to run.
 static RANDOM: AtomicBool = AtomicBool::new(false);
 
+/// How many stages of a bench are running.
+static RUNNING: Mutex<BTreeMap<String, usize>> = Mutex::new(BTreeMap::new());
+
+struct Company(String);
+
+impl Company {
+    fn join(bench: &str) -> Self {
+        *RUNNING.lock().unwrap().entry(bench.to_owned()).or_default() += 1;
+        Self(bench.to_owned())
+    }
+
+    fn size(&self) -> usize {
+        RUNNING.lock().unwrap()[&self.0]
+    }
+}
+
+impl Drop for Company {
+    fn drop(&mut self) {
+        if let Some(count) = RUNNING.lock().unwrap().get_mut(&self.0) {
+            *count -= 1;
+        }
+    }
+}
+
 const fn axis(chunk: usize) -> Field {
     Field {
         name: "torque",
@@ -99,7 +123,13 @@ impl Stage for Probe {
         self.mode() == "seeded"
     }
 
+    fn runs_alone(&self) -> bool {
+        self.mode() == "alone"
+    }
+
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let folder = self.record.text("counter").rsplit_once('/').map_or("", |(folder, _)| folder).to_owned();
+        let company = Company::join(&folder);
         *COUNTS.lock().unwrap().entry(self.record.text("counter").to_owned()).or_default() += 1;
         let mut value = self.record.number("value");
         for tables in inputs.ports.values() {
@@ -117,6 +147,12 @@ impl Stage for Probe {
             "ignores_seed" => value += f64::from(context.seed.generator(1).next_u32()),
             "warn" => (context.warn)("outside its range".to_owned()),
             "slow" => std::thread::sleep(Duration::from_millis(20)),
+            "alone" => {
+                for _ in 0..10 {
+                    assert_eq!(company.size(), 1, "somebody else runs");
+                    std::thread::sleep(Duration::from_millis(2));
+                }
+            }
             "until_stopped" => {
                 while context.check_stop().is_ok() {
                     std::thread::sleep(Duration::from_millis(1));

@@ -6,6 +6,7 @@
 pub mod compliance;
 pub mod designs;
 pub mod kinds;
+pub mod memory;
 pub mod pair;
 
 use std::collections::BTreeMap;
@@ -43,6 +44,11 @@ pub trait Stage: Send + Sync {
     /// Whether it draws random numbers. The seed is part of the key of those that do; the others are given a seed that
     /// never changes, so one that says nothing and draws all the same still has tables that fit their key.
     fn uses_seed(&self) -> bool {
+        false
+    }
+
+    /// Whether nothing else may run beside it, because it measures time or memory.
+    fn runs_alone(&self) -> bool {
         false
     }
 

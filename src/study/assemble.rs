@@ -6,6 +6,7 @@ use std::path::Path;
 
 use super::decode::{Decoder, Reference};
 use super::document::{Content, Node as Tree, Pair, parse};
+use super::overrides::Stages;
 use super::words::{alternatives, quote};
 use super::{Node, Source, Study, links, settings};
 use crate::base::error::{Diagnostic, Place, suggest};
@@ -65,7 +66,7 @@ pub fn study(text: &str, path: &Path, kinds: &[&'static Kind]) -> Result<Study, 
     };
     let start = pairs.first().map_or(root.place, |pair| pair.place);
     let belong = ranges_belong(kinds);
-    let keys = Decoder::new(&belong).record(&root, KEYS, &["stages"], "the study", start)?;
+    let keys = Decoder::new(&belong, Stages::default()).record(&root, KEYS, &["stages"], "the study", start)?;
     let name = keys.text("study").to_owned();
     check_name("study", &name, keys.place_of("study"))?;
 
@@ -122,10 +123,12 @@ fn drafts(stages: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Dr
             return Err(Diagnostic::new(message).at(stages.node.place).help(written));
         }
     };
-    pairs.iter().map(|pair| draft(pair, kinds, belong)).collect()
+    let stages = Stages { pairs, kinds };
+    pairs.iter().map(|pair| draft(pair, stages, belong)).collect()
 }
 
-fn draft(pair: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Draft, Diagnostic> {
+fn draft(pair: &Pair, stages: Stages, belong: &str) -> Result<Draft, Diagnostic> {
+    let kinds = stages.kinds;
     let (name, place) = (&pair.key, pair.place);
     check_name("stage", name, place)?;
     let known = || kinds.iter().map(|kind| kind.name);
@@ -140,7 +143,7 @@ fn draft(pair: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Draft, Di
         return Err(Diagnostic::new(message).at(place).help(format!("kinds are {}", alternatives(known()))));
     };
     let kind = kind_named(wanted, kinds)?;
-    let mut decoder = Decoder::new(belong);
+    let mut decoder = Decoder::new(belong, stages);
     let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(name), place)?;
     Ok(Draft { name: name.clone(), place, kind, record, references: decoder.references })
 }

@@ -4,16 +4,19 @@
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
 use super::document::{Content, Node, Pair, nothing, parse};
+use super::overrides::{self, Stages};
 use super::quantity::Measure;
 use super::words::{self, alternatives, quote};
 use crate::base::error::{Diagnostic, Place, suggest};
 use crate::base::parameter::{Field, Member, Presence, Shape};
-use crate::base::record::{Entry, Record, Value};
+use crate::base::record::{Entry, Record, Value, Variant};
 use crate::base::units::{parse_quantity, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
 pub struct Reference {
+    /// The field.
+    pub field: &'static str,
     pub stage: String,
     pub place: Place,
     pub kinds: &'static [&'static str],
@@ -24,6 +27,8 @@ pub struct Decoder<'a> {
     pub references: Vec<Reference>,
     /// Where `[least, most]` belongs: `` in the `design` of an `optimizer` stage ``.
     pub ranges_belong: &'a str,
+    /// All stages as written, for fields that override those of another one.
+    stages: Stages<'a>,
     chooses: bool,
 }
 
@@ -35,8 +40,8 @@ struct Owner<'a> {
 }
 
 impl<'a> Decoder<'a> {
-    pub fn new(ranges_belong: &'a str) -> Self {
-        Self { references: Vec::new(), ranges_belong, chooses: false }
+    pub fn new(ranges_belong: &'a str, stages: Stages<'a>) -> Self {
+        Self { references: Vec::new(), ranges_belong, stages, chooses: false }
     }
 
     /// Reads the fields of a mapping called `label` that stands at `place`; `others` are keys that somebody else reads.
@@ -134,7 +139,7 @@ impl<'a> Decoder<'a> {
             }
             Shape::Reference(kinds) => {
                 let stage = scalar(name, node, shape)?.to_owned();
-                self.references.push(Reference { stage: stage.clone(), place: node.place, kinds });
+                self.references.push(Reference { field: field.name, stage: stage.clone(), place: node.place, kinds });
                 Value::Reference(stage)
             }
             Shape::List(item) => {
@@ -159,6 +164,10 @@ impl<'a> Decoder<'a> {
             Shape::Member(members) => {
                 let (member, record) = self.member(name, node, members())?;
                 Value::Member(member, record)
+            }
+            Shape::Overrides(of) => {
+                let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
+                Value::Variant(self.variant(of, node, pairs)?)
             }
         };
         Ok(Entry { value, place: node.place })
@@ -199,6 +208,20 @@ impl<'a> Decoder<'a> {
             return Err(not_fields(inside, member.fields, &[], &quote(member.name)));
         }
         Ok((member.name, self.record(inside, member.fields, &[], &quote(member.name), place)?))
+    }
+
+    /// The fields of the stage that the field `of` names, with those in `pairs` in the place of its own.
+    fn variant(&mut self, of: &str, node: &Node, pairs: &[Pair]) -> Result<Variant, Diagnostic> {
+        let named = self.references.iter().find(|reference| reference.field == of).cloned();
+        let Some(Reference { stage, place, .. }) = named else {
+            let message = format!("{} is not known, so nothing of it can be replaced", quote(of));
+            return Err(Diagnostic::new(message).at(node.place));
+        };
+        let (kind, merged) = self.stages.merged(&stage, place, pairs)?;
+        let around = std::mem::replace(&mut self.chooses, false);
+        let record = self.record(&merged, kind.fields, &["kind"], &quote(&stage), node.place);
+        self.chooses = around;
+        Ok(Variant { kind: kind.name, written: overrides::written(pairs), record: record? })
     }
 
     fn ranges(&self) -> Result<(), &'a str> {

@@ -104,5 +104,6 @@ fn holds(shape: &Shape) -> String {
         Shape::Map(item) => format!("names of your own, each with {}", holds(item)),
         Shape::Group(_) => "these fields".to_owned(),
         Shape::Member(_) => "one of these, `name` or `name: { fields }`".to_owned(),
+        Shape::Overrides(of) => format!("fields of the stage in `{of}`, in the place of its own"),
     }
 }

@@ -8,6 +8,7 @@ mod decode;
 pub mod describe;
 mod document;
 mod links;
+mod overrides;
 mod quantity;
 mod read;
 pub mod schema;

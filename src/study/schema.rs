@@ -166,6 +166,8 @@ impl Families {
             Shape::Map(item) => json!({ "type": "object", "additionalProperties": self.shape(item, field, chooses) }),
             Shape::Group(fields) => self.object(fields, chooses),
             Shape::Member(members) => json!({ "$ref": format!("#/$defs/{}", self.family(members(), field, chooses)) }),
+            // Which fields there are depends on the kind of the other stage, which no schema can look up.
+            Shape::Overrides(_) => json!({ "type": "object", "propertyNames": { "not": { "const": "kind" } } }),
         }
     }
 

@@ -38,6 +38,8 @@ fn value(shape: &Shape, value: &Value) -> Json {
             Shape::Group(fields) => shown(fields, record),
             _ => Json::Null,
         },
+        // The rest is that of the other stage, which the manifest shows as well.
+        Value::Variant(variant) => json!(variant.written),
         Value::Member(name, record) => {
             let Shape::Member(family) = shape else { return Json::Null };
             match family().iter().find(|member| member.name == *name) {

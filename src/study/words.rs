@@ -139,6 +139,7 @@ pub fn expected(shape: &Shape) -> String {
         Shape::Map(_) => "a mapping from names".to_owned(),
         Shape::Group(fields) => format!("a mapping with the fields {}", names(fields)),
         Shape::Member(members) => alternatives(members().iter().map(|member| member.name)),
+        Shape::Overrides(of) => format!("a mapping from fields of the stage in {} to other values", quote(of)),
     }
 }
 

@@ -3,6 +3,7 @@
 #![allow(clippy::float_cmp, reason = "tests say where a value must be met exactly")]
 #![allow(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the numbers are the tests' own")]
 
+mod accuracy;
 mod archive;
 mod calculix;
 mod desk;

@@ -6,9 +6,9 @@
 //! and Automation in Design 109 (1987) 189–196, with the root included; plane stress. The gear body comes from
 //! `sainsot` or `ring`. Must not know: modification, load.
 
-use super::ring::Ring;
+use super::ring::{self, Ring};
 use super::sainsot::Body;
-use super::{Assumptions, ComplianceError, Method, PairCompliance, Tabulated, ToothCompliance};
+use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
 use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
 use crate::gear::geometry::involute::Section;
@@ -37,7 +37,17 @@ const FIELDS: &[Field] = &[
     Field::number("shear_factor", 1.0, 2.0, "how much more a section shears than under a uniform shear stress")
         .default("1.2"),
     Field::choice("body", BODIES, "what the gear body under the tooth is taken from").default("sainsot"),
+    Field::integer(
+        "harmonics",
+        LEAST_HARMONICS,
+        MOST_HARMONICS,
+        "harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes",
+    )
+    .default("100"),
 ];
+
+const LEAST_HARMONICS: i64 = 10;
+const MOST_HARMONICS: i64 = 2000;
 
 pub const METHOD: Method = Method {
     member: Member {
@@ -53,14 +63,28 @@ pub const METHOD: Method = Method {
 
 fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let mut warnings = Vec::new();
+    let uses_ring = assumptions.coupled || options.choice("body") == "ring";
+    let [least, most] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
+    let harmonics = match assumptions.accuracy {
+        Some(accuracy) => ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, least, most),
+        None => options.integer("harmonics") as f64,
+    };
+    let mut error_estimate = ROUNDING;
     let mut side = |side| {
-        let (compliance, warning) = tabulate_side(options, pair, side, assumptions)?;
+        let (compliance, warning) = tabulate_side(options, pair, side, assumptions, harmonics)?;
         warnings.extend(warning);
+        if uses_ring {
+            let ends = [compliance.body.lower(), compliance.body.upper()];
+            let share = ends.map(|roll| compliance.body.value(roll) / compliance.total(roll));
+            let of_ring = ring::error(harmonics, assumptions.coupled) * share[0].max(share[1]);
+            error_estimate = error_estimate.max(ROUNDING + of_ring);
+        }
         Ok::<_, ComplianceError>(compliance)
     };
     let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
     let Assumptions { contact, coupled, .. } = assumptions;
-    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes: Vec::new() })
+    let compliance = PairCompliance { pinion, gear, contact, coupled };
+    Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new() })
 }
 
 /// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.
@@ -173,6 +197,7 @@ fn tabulate_side(
     pair: &Pair,
     side: Side,
     assumptions: Assumptions,
+    harmonics: f64,
 ) -> Result<(ToothCompliance, Option<String>), ComplianceError> {
     let gear = pair.side(side);
     let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
@@ -202,7 +227,7 @@ fn tabulate_side(
     } else {
         Vec::new()
     };
-    let ring = Ring::new(gear, root.half_angle);
+    let ring = Ring::new(gear, root.half_angle).with_harmonics(harmonics);
     let needs_ring = assumptions.coupled || matches!(foundation, Foundation::Ring);
     let offsets: Vec<f64> = std::iter::once(0.0).chain(steps.iter().copied()).collect();
     let influences = if needs_ring { ring.influences(&offsets) } else { Vec::new() };

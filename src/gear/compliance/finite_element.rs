@@ -11,9 +11,8 @@ mod tests;
 use super::{
     Assumptions, ComplianceError, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance, neighbours,
 };
-use crate::base::parameter::{Field, Member, Shape};
+use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
-use crate::base::units::RATIO;
 use crate::gear::finite_elements::element::{PLANES, Plane};
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
@@ -39,15 +38,10 @@ const FIELDS: &[Field] = &[
         "elements_across",
         6,
         64,
-        "elements across a tooth, taken as an even number; all other sizes follow from it",
+        "elements across a tooth, taken as an even number; all other sizes follow from it; where an accuracy is wanted, \
+         from how many on",
     )
     .default("16"),
-    Field::new(
-        "accuracy",
-        Shape::Quantity { dimension: RATIO, least: 2e-4, most: 0.1 },
-        "refine from `elements_across` on until the estimated error of the compliances is this small",
-    )
-    .optional(),
 ];
 
 pub const METHOD: Method = Method {
@@ -63,25 +57,18 @@ pub const METHOD: Method = Method {
 };
 
 fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let mut warnings = Vec::new();
-    let mut meshes = Vec::new();
+    let mut meshes: Vec<MeshFacts> = Vec::new();
     let mut side = |side| {
         let task = Task::new(options, pair, side, assumptions)?;
         let (solution, facts) = task.solve()?;
-        if let Some(accuracy) = task.accuracy.filter(|accuracy| facts.error_estimate > *accuracy) {
-            warnings.push(format!(
-                "{}: an accuracy of {:.2e} was asked for, {:.2e} is reached with the finest mesh, {MOST} elements across",
-                side.name(),
-                accuracy,
-                facts.error_estimate,
-            ));
-        }
         meshes.push(facts);
         task.tables(&solution)
     };
     let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
     let Assumptions { contact, coupled, .. } = assumptions;
-    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes })
+    let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+    let compliance = PairCompliance { pinion, gear, contact, coupled };
+    Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes })
 }
 
 fn root_stress(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Vec<RootStress>, ComplianceError> {
@@ -129,7 +116,7 @@ impl<'a> Task<'a> {
             root,
             plane,
             across: even(across),
-            accuracy: options.maybe_quantity("accuracy"),
+            accuracy: assumptions.accuracy,
             rolls,
             neighbours: if assumptions.coupled { neighbours(pair, side) } else { 0 },
         })

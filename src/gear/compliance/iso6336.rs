@@ -8,7 +8,7 @@
 //! flanks is in c′. For standard basic rack teeth, x1 ≥ x2, −0.5 ≤ x1 + x2 ≤ 2, F_t/b ≥ 100 N/mm, ε_α of 1.2 and more.
 //! Must not know: the tooth's shape beyond teeth numbers and shifts. Results in SI, N/(m·m) = Pa: 1 N/(mm µm) = 1e9 Pa.
 
-use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, Tabulated, ToothCompliance};
+use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
 use crate::gear::geometry::{Pair, Side, Specification};
@@ -159,7 +159,8 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         contact: ContactLaw::Included,
         coupled: false,
     };
-    Ok(Tabulated { compliance, warnings: warnings(&inputs, pair, assumptions.torque), meshes: Vec::new() })
+    let warnings = warnings(&inputs, pair, assumptions.torque);
+    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new() })
 }
 
 /// A sentence for each range of the standard that the pair is outside of.
@@ -241,8 +242,13 @@ mod tests {
     }
 
     fn tables(pair: &Pair, torque: Option<f64>) -> Tabulated {
-        let assumptions =
-            Assumptions { root: RootShape::BaseCircle, contact: ContactLaw::Linear, coupled: true, torque };
+        let assumptions = Assumptions {
+            root: RootShape::BaseCircle,
+            contact: ContactLaw::Linear,
+            coupled: true,
+            torque,
+            accuracy: None,
+        };
         tabulate(&Record::default(), pair, assumptions).unwrap()
     }
 

@@ -54,6 +54,9 @@ pub struct Assumptions {
     /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
     /// compliance.
     pub torque: Option<f64>,
+    /// Wanted error of a tooth's compliances, relative to its own; a method takes the cheapest settings that meet it, or
+    /// those it is told and those it has where there is none.
+    pub accuracy: Option<f64>,
 }
 
 /// What a method gives.
@@ -61,6 +64,9 @@ pub struct Assumptions {
 pub struct Tabulated {
     pub compliance: PairCompliance,
     pub warnings: Vec<String>,
+    /// How far off the compliances may be from what the method would give with perfect numerics, in units of the tooth's
+    /// own.
+    pub error_estimate: f64,
     /// One per gear, for methods that mesh the teeth.
     pub meshes: Vec<MeshFacts>,
 }
@@ -90,6 +96,9 @@ pub struct RootStress {
     /// Radius of the place \[m\].
     pub radius: f64,
 }
+
+/// Relative error of what is integrated and interpolated to rounding, as values of another program with 40 digits bound it.
+pub const ROUNDING: f64 = 1e-12;
 
 /// The method called `name`.
 #[must_use]

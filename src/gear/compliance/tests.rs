@@ -1,5 +1,6 @@
 //! Reference values to 40 digits, golden values of a published pair, and what must not change them.
 
+mod accuracy;
 mod reference;
 
 use super::energy::Beam;
@@ -39,13 +40,22 @@ fn pair(bore_ratio: f64) -> Pair {
 fn options(body: &'static str) -> Record {
     let entry = |value| Entry { value, place: Place::default() };
     Record {
-        fields: vec![("shear_factor", entry(Value::Number(1.2))), ("body", entry(Value::Choice(body)))],
+        fields: vec![
+            ("shear_factor", entry(Value::Number(1.2))),
+            ("body", entry(Value::Choice(body))),
+            ("harmonics", entry(Value::Integer(100))),
+        ],
         place: Place::default(),
     }
 }
 
-const SUMMED: Assumptions =
-    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: false, torque: None };
+const SUMMED: Assumptions = Assumptions {
+    root: RootShape::Trochoid,
+    contact: ContactLaw::Linear,
+    coupled: false,
+    torque: None,
+    accuracy: None,
+};
 
 fn energy(pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     (method("energy").unwrap().tabulate)(&options("sainsot"), pair, assumptions)

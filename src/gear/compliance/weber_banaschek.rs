@@ -22,7 +22,7 @@ mod tests;
 use std::f64::consts::PI;
 
 use super::energy::Beam;
-use super::{Assumptions, ComplianceError, Method, PairCompliance, Tabulated, ToothCompliance};
+use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
 use crate::base::parameter::Member;
 use crate::base::record::Record;
 use crate::gear::geometry::involute::Section;
@@ -52,7 +52,8 @@ fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<
     let mut side = |side| tabulate_side(pair, side, assumptions, &mut warnings);
     let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
     let Assumptions { contact, coupled, .. } = assumptions;
-    Ok(Tabulated { compliance: PairCompliance { pinion, gear, contact, coupled }, warnings, meshes: Vec::new() })
+    let compliance = PairCompliance { pinion, gear, contact, coupled };
+    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new() })
 }
 
 fn tabulate_side(

@@ -128,6 +128,12 @@ impl<'a> Face<'a> {
         self.shape == Shape::Flat
     }
 
+    /// Whether its shape itself is cut into slices.
+    #[must_use]
+    pub fn is_sliced(&self) -> bool {
+        matches!(self.shape, Shape::Sliced(_))
+    }
+
     /// Φ(w) and dΦ/dw, the share of the face in contact, for w > 0.
     #[must_use]
     #[inline]

@@ -163,7 +163,9 @@ impl MeshCycle {
         // Both are in the quick copies.
         let Settings { corner_contact, slice_coupling, .. } = self.settings;
         let settings = Settings { corner_contact, slice_coupling, ..settings };
-        Self { settings, slices: Rule::new(settings.slices), ..self.clone() }
+        let same = settings.slices == self.settings.slices;
+        let slices = if same { self.slices.clone() } else { Rule::new(settings.slices) };
+        Self { settings, slices, ..self.clone() }
     }
 
     /// p_b \[m\].

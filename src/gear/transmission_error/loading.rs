@@ -153,6 +153,14 @@ impl<'a> Loading<'a> {
         self.corners = Some(Corners { gaps, window, limit });
     }
 
+    /// Whether the number of slices across the face matters: not where every pair's load has a closed form.
+    #[must_use]
+    pub fn uses_slices(&self) -> bool {
+        self.slices.is_some()
+            || self.face.is_sliced()
+            || (!self.face.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
+    }
+
     /// Whether an approach is within what is modelled: with corner contact, below the gap at which a pair would touch that
     /// is no longer looked at, or whose tip would pass the other one.
     #[must_use]

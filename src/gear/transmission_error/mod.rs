@@ -9,6 +9,7 @@ pub mod curve;
 pub mod cycle;
 pub mod loading;
 mod path;
+pub mod sampling;
 pub mod stiffness;
 #[cfg(test)]
 mod tests;

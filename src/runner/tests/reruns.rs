@@ -260,3 +260,19 @@ fn results_are_published_once() {
     specs[2] = stage("c", 101.0).of(&["a"]);
     assert_eq!(run(&specs).1.changes.tables, ["c.values.parquet", "d.values.parquet"]);
 }
+
+/// Whatever else is ready waits, before and after; the order of the study says who comes first.
+#[test]
+fn a_stage_that_runs_alone_has_no_company() {
+    let mut bench = Bench::new();
+    bench.options.jobs = 4;
+    let mut specs = vec![stage("first", 1.0).mode("alone"), stage("second", 1.0).mode("alone")];
+    for name in ["a", "b", "c", "d", "e"] {
+        specs.push(stage(name, 1.0).mode("slow"));
+    }
+    specs.push(stage("after", 1.0).mode("slow").of(&["first"]));
+    specs.push(stage("last", 1.0).mode("alone").of(&["second", "a"]));
+    let outcome = bench.run(&specs);
+    assert_eq!(outcome.faults().count(), 0);
+    assert_eq!(bench.computed().len(), specs.len());
+}

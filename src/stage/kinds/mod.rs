@@ -1,5 +1,6 @@
 //! The registry of stage kinds: one line each.
 
+pub mod accuracy;
 pub mod export;
 pub mod geometry;
 pub mod modification;
@@ -11,5 +12,12 @@ pub mod stiffness;
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] =
-    &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND, &report::KIND];
+pub const KINDS: &[&Kind] = &[
+    &geometry::KIND,
+    &modification::KIND,
+    &stiffness::KIND,
+    &optimizer::KIND,
+    &ste::KIND,
+    &accuracy::KIND,
+    &report::KIND,
+];

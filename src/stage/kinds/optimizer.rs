@@ -2,12 +2,14 @@
 //!
 //! Every value of the designs that is given as `[least, most]` is a variable. Must not know: how any method searches.
 
+mod sampling;
+
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
-use crate::base::units::{ANGLE, LENGTH, TORQUE, in_unit};
+use crate::base::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
 use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::template::{Template, Variable};
@@ -62,6 +64,14 @@ const FIELDS: &[Field] = &[
          whole face, 200 at most.",
     )
     .default("17"),
+    Field::quantity(
+        "accuracy",
+        RATIO,
+        1e-9,
+        0.1,
+        "Wanted relative accuracy of the objective at the design that is found; sets positions and slices.",
+    )
+    .optional(),
     Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
         .default("none"),
     Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.")
@@ -91,7 +101,22 @@ struct Optimizer {
     template: Template,
     name: String,
     settings: Settings,
+    accuracy: Option<f64>,
 }
+
+/// What a search came to.
+struct Found {
+    search: Search,
+    reason: Reason,
+    /// Every design and its objective, if asked for.
+    tried: Vec<(Vec<f64>, f64)>,
+    settings: Settings,
+    /// Estimated relative error of the objective at the best design.
+    error: f64,
+}
+
+/// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
+const ROUNDS: usize = 4;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let at = record.group("at");
@@ -137,6 +162,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             corner_contact: CornerContact::named(record.choice("corner_contact")),
             slice_coupling,
         },
+        accuracy: record.maybe_quantity("accuracy"),
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
     optimizer.search(crate::base::seed::Seed::of_stage(0, "")).map(drop)?;
@@ -176,6 +202,10 @@ impl Optimizer {
             Column::integer("evaluations", "How often the objective was computed."),
             Column::integer("generations", "How many batches the search took."),
             Column::text("ended", "Why the search ended."),
+            Column::integer("positions", "Positions per base pitch that were used."),
+            Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
+            Column::float("error_estimate", "", "Estimated relative error of the objective from positions and slices.")
+                .tolerance(1e-9, 0.0),
         ];
         // On a plateau many designs are as good: values of variables are compared loosely.
         columns.extend(self.template.variables().iter().map(|variable| {
@@ -247,6 +277,28 @@ impl Optimizer {
         if self.worst { values.fold(0.0, f64::max) } else { values.sum::<f64>() / self.torques.len() as f64 }
     }
 
+    /// The search with one sampling.
+    fn found(&self, context: &Context, base: &MeshCycle, pair: &Pair, settings: Settings) -> Result<Found, Failure> {
+        let cycle = base.sampled(settings);
+        let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
+        let budget = search.budget().max(1) as f64;
+        let wanted = context.demand.table("evaluations");
+        let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
+        let mut done = 0_usize;
+        let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
+            context.check_stop()?;
+            let values: Vec<f64> = points.par_iter().map(|point| self.value(&cycle, pair, point)).collect();
+            if wanted {
+                tried.extend(points.iter().cloned().zip(values.iter().copied()));
+            }
+            done += points.len();
+            (context.progress)(done as f64 / budget);
+            Ok(values)
+        })?;
+        let error = search.best().map_or(1.0, |best| self.error(base, pair, &best.point, settings));
+        Ok(Found { search, reason, tried, settings, error })
+    }
+
     /// Why a search found no design at all, by the one in the middle of the box.
     fn nothing_built(&self, pair: &Pair) -> Failure {
         let variables = self.template.variables();
@@ -273,7 +325,8 @@ impl Optimizer {
         elements
     }
 
-    fn tables(&self, search: &Search, reason: Reason, pair: &Pair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
+    fn tables(&self, found: &Found, pair: &Pair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
+        let Found { search, reason, settings, error, .. } = found;
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
@@ -288,6 +341,9 @@ impl Optimizer {
             search.evaluations().into(),
             search.history().len().into(),
             reason.to_string().into(),
+            settings.positions.into(),
+            settings.slices.into(),
+            (*error).into(),
         ];
         row.extend(
             self.template
@@ -350,25 +406,26 @@ impl Stage for Optimizer {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let read = |table| inputs.table("stiffness", table);
         let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
-        let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
-        let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
-        let budget = search.budget().max(1) as f64;
-        let wanted = context.demand.table("evaluations");
-        let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
-        let mut done = 0_usize;
-        let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
-            context.check_stop()?;
-            let values: Vec<f64> = points.par_iter().map(|point| self.value(&cycle, &pair, point)).collect();
-            if wanted {
-                tried.extend(points.iter().cloned().zip(values.iter().copied()));
+        let base = MeshCycle::new(&pair, &compliance, self.settings)?;
+        let mut settings = self.first_settings(&base, &pair);
+        let mut round = 1;
+        let found = loop {
+            let found = self.found(context, &base, &pair, settings)?;
+            let (Some(accuracy), Some(best)) = (self.accuracy, found.search.best()) else { break found };
+            if found.error <= accuracy {
+                break found;
             }
-            done += points.len();
-            (context.progress)(done as f64 / budget);
-            Ok(values)
-        })?;
-        let mut tables = self.tables(&search, reason, &pair, &cycle)?;
-        if wanted {
-            let rows = self.evaluation_rows(&tried);
+            let next = sampling::finer(settings, self.settings_for(&base, &pair, &best.point, accuracy));
+            if round == ROUNDS || next == settings {
+                let reached = found.error;
+                (context.warn)(format!("the objective is accurate to {reached:.1e}, not to {accuracy:.1e}"));
+                break found;
+            }
+            (settings, round) = (next, round + 1);
+        };
+        let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
+        if context.demand.table("evaluations") {
+            let rows = self.evaluation_rows(&found.tried);
             let table = Table::from_rows(self.evaluations_schema(), rows);
             tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
         }

@@ -17,6 +17,7 @@ use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::sampling::{Against, Sampled};
 use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, designs, pair};
 use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
@@ -39,8 +40,14 @@ const FIELDS: &[Field] = &[
     Field::reference("stiffness", &["stiffness"], "The pair's compliances."),
     Field::new("designs", Shape::List(&Shape::Reference(&["modification", "optimizer"])), "Who gives the designs."),
     Field::quantity("torque", TORQUE, 0.0, 1e9, "Torque on the pinion.").axis(1),
-    Field::quantity("accuracy", RATIO, 1e-9, 0.1, "Wanted relative accuracy of the peak-to-peak; sets the positions.")
-        .optional(),
+    Field::quantity(
+        "accuracy",
+        RATIO,
+        1e-9,
+        0.1,
+        "Wanted relative accuracy of the peak-to-peak; sets positions and slices.",
+    )
+    .optional(),
     Field::integer(
         "positions",
         8,
@@ -72,8 +79,6 @@ const FIELDS: &[Field] = &[
     .default("0 deg"),
 ];
 
-/// Where doubling the positions stops.
-const MOST_POSITIONS: usize = 4096;
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
 const LARGE_APPROACH: f64 = 0.5;
 
@@ -157,7 +162,8 @@ fn summary_schema() -> Schema {
         Column::float("largest_load_share", "", "Largest share of the load on one pair."),
         Column::float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.").on_demand(),
         Column::integer("positions", "Positions per base pitch that were used."),
-        Column::float("error_estimate", "", "Relative change of the peak-to-peak from half the positions.")
+        Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
+        Column::float("error_estimate", "", "Estimated relative error of the peak-to-peak from positions and slices.")
             .tolerance(1e-9, 0.0),
         Column::float("seconds", "s", "Time for this row.").volatile(),
     ]);
@@ -209,7 +215,7 @@ fn harmonics_schema() -> Schema {
 struct Answer {
     points: Vec<Point>,
     summary: Summary,
-    positions: usize,
+    settings: Settings,
     error: f64,
     seconds: f64,
 }
@@ -217,28 +223,19 @@ struct Answer {
 impl Ste {
     fn answer(
         &self,
-        cycles: &[MeshCycle],
+        base: &MeshCycle,
         (design, name): (&Design, &str),
         torque: f64,
         wanted: Wanted,
     ) -> Result<Answer, Failure> {
         let began = Instant::now();
-        let coarse = |cycle: &MeshCycle| Loading::new(cycle, design, torque).peak_to_peak();
-        let change = |before: f64, now: f64| (now - before).abs() / now.abs().max(f64::MIN_POSITIVE);
-        let mut before = coarse(&cycles[0]);
-        let mut last = &cycles[1];
-        // The last one is summarised in any case.
-        if let Some(accuracy) = self.accuracy {
-            for (index, cycle) in cycles.iter().enumerate().skip(1) {
-                let now = coarse(cycle);
-                last = cycle;
-                if change(before, now) <= accuracy || index + 1 == cycles.len() {
-                    break;
-                }
-                before = now;
-            }
-        }
-        let loading = Loading::new(last, design, torque);
+        let sliced = Loading::new(base, design, torque).uses_slices();
+        let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
+            Loading::new(&base.sampled(settings), design, torque).peak_to_peak()
+        });
+        let settings = self.accuracy.map_or(self.settings, |accuracy| sampled.coarsest(self.settings, accuracy));
+        let cycle = base.sampled(settings);
+        let loading = Loading::new(&cycle, design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
         if !loading.holds(summary.largest.value) {
             let (found, most) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
@@ -247,25 +244,12 @@ impl Ste {
                  up to {most:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
             )));
         }
-        let error = change(before, summary.peak_to_peak);
+        if self.accuracy.is_none() {
+            sampled.know(settings, summary.peak_to_peak);
+        }
+        let error = sampled.error(settings);
         let seconds = began.elapsed().as_secs_f64();
-        Ok(Answer { points, summary, positions: last.settings.positions, error, seconds })
-    }
-
-    /// Cycles from half the positions up: two when no accuracy is asked for, as many as it may take otherwise.
-    fn cycles(
-        &self,
-        pair: &crate::gear::geometry::Pair,
-        compliance: &crate::gear::compliance::PairCompliance,
-    ) -> Result<Vec<MeshCycle>, Failure> {
-        let (first, count) = match self.accuracy {
-            Some(_) => (8, (MOST_POSITIONS / 8).ilog2() as usize + 1),
-            None => (self.settings.positions.div_ceil(2), 2),
-        };
-        let base = MeshCycle::new(pair, compliance, self.settings)?;
-        let positions =
-            |index: usize| if self.accuracy.is_none() && index == 1 { self.settings.positions } else { first << index };
-        Ok((0..count).map(|index| base.sampled(Settings { positions: positions(index), ..self.settings })).collect())
+        Ok(Answer { points, summary, settings, error, seconds })
     }
 }
 
@@ -308,7 +292,7 @@ impl Stage for Ste {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let read = |table| inputs.table("stiffness", table);
         let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
-        let cycles = self.cycles(&pair, &compliance)?;
+        let base = MeshCycle::new(&pair, &compliance, self.settings)?;
         let mut designs: Vec<(Design, String)> = Vec::new();
         let mut givers: Vec<&str> = Vec::new();
         for (index, giver) in (1..).zip(&self.designs) {
@@ -330,17 +314,20 @@ impl Stage for Ste {
         let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
         let tasks: Vec<(usize, f64)> =
             (0..designs.len()).flat_map(|design| self.torques.iter().map(move |torque| (design, *torque))).collect();
-        let answers: Vec<Answer> = tasks
+        // Equidistant samples alone need no curve.
+        let of_curves = ["summary", "curve", "harmonics"].iter().any(|table| context.demand.table(table));
+        let answered = if of_curves { tasks.as_slice() } else { &[] };
+        let answers: Vec<Answer> = answered
             .par_iter()
             .map(|&(design, torque)| {
                 context.check_stop()?;
                 let (design, name) = &designs[design];
-                self.answer(&cycles, (design, name.as_str()), torque, wanted)
+                self.answer(&base, (design, name.as_str()), torque, wanted)
             })
             .collect::<Result<_, Failure>>()?;
 
         let (mut summaries, mut harmonics): (Vec<Row>, Vec<Row>) = Default::default();
-        for (&(design, torque), answer) in tasks.iter().zip(&answers) {
+        for (&(design, torque), answer) in answered.iter().zip(&answers) {
             let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
             summaries.push([key(), summary_row(answer, summary_pressure)].concat());
             for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
@@ -364,7 +351,7 @@ impl Stage for Ste {
             }
         }
         let keys: Vec<(&str, f64)> =
-            tasks.iter().map(|&(design, torque)| (designs[design].1.as_str(), torque)).collect();
+            answered.iter().map(|&(design, torque)| (designs[design].1.as_str(), torque)).collect();
         let curves = curve_columns(&keys, &answers, curve_pressure);
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
@@ -377,7 +364,7 @@ impl Stage for Ste {
             let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
             for &(design, torque) in &tasks {
                 let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
-                let loading = Loading::new(&cycles[1], &designs[design].0, torque);
+                let loading = Loading::new(&base, &designs[design].0, torque);
                 let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);
                 rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
                 row.push([key, summary].concat());
@@ -410,7 +397,8 @@ fn summary_row(answer: &Answer, pressure: bool) -> Row {
     if pressure {
         row.push(in_unit(summary.largest_pressure.map_or(f64::NAN, |largest| largest.value), "MPa").into());
     }
-    row.extend([answer.positions.into(), answer.error.into(), answer.seconds.into()]);
+    let Settings { positions, slices, .. } = answer.settings;
+    row.extend([positions.into(), slices.into(), answer.error.into(), answer.seconds.into()]);
     row
 }
 

@@ -7,7 +7,7 @@ use std::time::Instant;
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
-use crate::base::units::{TORQUE, in_unit};
+use crate::base::units::{RATIO, TORQUE, in_unit};
 use crate::gear::compliance::iso6336;
 use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use crate::gear::geometry::Pair;
@@ -51,6 +51,14 @@ const FIELDS: &[Field] = &[
         "Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.",
     )
     .optional(),
+    Field::quantity(
+        "accuracy",
+        RATIO,
+        1e-12,
+        0.1,
+        "Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet it.",
+    )
+    .optional(),
     Field::integer("positions", 8, 100_000, "Positions per base pitch; the ends of contact come on top.").default("64"),
 ];
 
@@ -83,6 +91,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
         coupled: record.choice("coupling") == "body",
         torque,
+        accuracy: record.maybe_quantity("accuracy"),
     };
     if method.whole_pair && assumptions.contact != ContactLaw::Linear {
         return Err(Diagnostic::new(format!(
@@ -145,6 +154,12 @@ fn summary_schema() -> Schema {
             extreme("double_max", "Largest stiffness with two pairs in contact."),
             Column::float("mean", "N/m", "Integral mean over the mesh cycle."),
             Column::integer("fewest_pairs", "Pairs in contact where they are fewest."),
+            Column::float(
+                "error_estimate",
+                "%",
+                "Estimated numerical error of the compliances, in units of a tooth's own.",
+            )
+            .tolerance(1e-9, 1e-2),
             Column::float("seconds", "s", "Time for tabulating the compliances.").volatile(),
         ],
     )
@@ -282,11 +297,19 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings, meshes } = (self.method.tabulate)(&self.options, &pair, self.assumptions)
-            .map_err(|error| Failure::new(error.to_string()))?;
+        let Tabulated { compliance, warnings, error_estimate, meshes } =
+            (self.method.tabulate)(&self.options, &pair, self.assumptions)
+                .map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
         for warning in warnings {
             (context.warn)(warning);
+        }
+        if let Some(accuracy) = self.assumptions.accuracy.filter(|accuracy| error_estimate > *accuracy) {
+            (context.warn)(format!(
+                "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
+                 {accuracy:.1e}",
+                self.method.member.name
+            ));
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
@@ -312,7 +335,12 @@ impl Stage for Stiffness {
             found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
         };
         let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
-        row.extend([summary.mean.into(), summary.fewest.pairs.into(), seconds.into()]);
+        row.extend([
+            summary.mean.into(),
+            summary.fewest.pairs.into(),
+            in_unit(error_estimate, "%").into(),
+            seconds.into(),
+        ]);
         tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
         tables.push(mesh_table(&meshes).map_err(failed)?);
         if context.demand.table("iso6336") {

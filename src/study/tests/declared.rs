@@ -204,7 +204,7 @@ fn every_declared_field_is_one_that_a_study_can_give() {
                     assert!(dimension == RATIO || example(dimension, least, most).is_some(), "{name} has no example");
                 }
                 if matches!(field.presence, Presence::Default(_)) {
-                    let read = Decoder::new("").record(
+                    let read = Decoder::new("", crate::study::overrides::Stages::default()).record(
                         &nothing(Place::default()),
                         std::slice::from_ref(field),
                         &[],

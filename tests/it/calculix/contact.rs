@@ -80,8 +80,13 @@ fn inside(mesh: &Mesh, point: [f64; 2]) -> ([usize; NODES], [f64; NODES]) {
 fn tabulated(pair: &Pair) -> PairCompliance {
     let method = method("finite_element").unwrap();
     let options = record(method.member.fields, &[("elements_across", Value::Integer(12))]);
-    let assumptions =
-        Assumptions { root: RootShape::Trochoid, contact: ContactLaw::LoadDependent, coupled: true, torque: None };
+    let assumptions = Assumptions {
+        root: RootShape::Trochoid,
+        contact: ContactLaw::LoadDependent,
+        coupled: true,
+        torque: None,
+        accuracy: None,
+    };
     (method.tabulate)(&options, pair, assumptions).unwrap().compliance
 }
 

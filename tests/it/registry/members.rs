@@ -233,7 +233,7 @@ fn every_optimiser_finds_something_better_than_nothing() {
 #[test]
 fn a_method_that_meshes_says_with_what() {
     let text = study(
-        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6, accuracy: 0.5 % } } }\n",
+        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, accuracy: 0.5 % }\n",
     );
     let loaded = load(&text);
     let ran = walk(&loaded);

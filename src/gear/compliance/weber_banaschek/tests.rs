@@ -15,7 +15,7 @@ fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
 
 fn tabulated(pair: &Pair, root: RootShape, coupled: bool) -> Tabulated {
     let method = METHODS.iter().find(|method| method.member.name == "weber_banaschek").unwrap();
-    let assumptions = Assumptions { root, contact: ContactLaw::LoadDependent, coupled, torque: None };
+    let assumptions = Assumptions { root, contact: ContactLaw::LoadDependent, coupled, torque: None, accuracy: None };
     (method.tabulate)(&Record::default(), pair, assumptions).unwrap()
 }
 

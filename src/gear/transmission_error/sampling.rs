@@ -1,0 +1,142 @@
+//! How far sampling puts a number of the mesh cycle off, and the coarsest sampling that meets an accuracy.
+//!
+//! The number is taken at several samplings. From coarser ones: the error is what halving, quartering … changes, each
+//! halving trusted to cost four times the error; of several the largest, for on faces that are cut into slices a single
+//! change can be small by chance. From a finer one, four times as fine: dearer, but right for means and variances too,
+//! which few spans hold as well as half of them. Must not know: what the number is.
+
+use super::cycle::Settings;
+use crate::gear::contact::{MOST_COUPLED_SLICES, SliceCoupling};
+
+/// The estimate over the largest of the changes.
+const SAFETY: f64 = 1.5;
+/// By how much a halving is trusted to change the error.
+const FALL: f64 = 4.0;
+/// Coarser samplings that are looked at: slices change a number by chance, positions hardly at all.
+const HALVINGS_OF_POSITIONS: usize = 1;
+const HALVINGS_OF_SLICES: usize = 3;
+/// Relative error that is left when sampling adds none.
+const ROUNDING: f64 = 1e-10;
+/// The fewest positions of which half are another sampling: with fewer every smooth stretch is one span.
+const LEAST_POSITIONS: usize = 16;
+const MOST_POSITIONS: usize = 4096;
+const LEAST_SLICES: usize = 9;
+const MOST_SLICES: usize = 1025;
+
+/// What samplings are compared with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Against {
+    Coarser,
+    Finer,
+}
+
+/// A number that depends on the sampling.
+pub struct Sampled<F> {
+    number: F,
+    /// Whether slices matter.
+    sliced: bool,
+    against: Against,
+    known: Vec<(Settings, f64)>,
+}
+
+impl<F: FnMut(Settings) -> f64> Sampled<F> {
+    pub fn new(sliced: bool, against: Against, number: F) -> Self {
+        Self { number, sliced, against, known: Vec::new() }
+    }
+
+    /// Says what the number is with some settings, so that it need not be computed.
+    pub fn know(&mut self, settings: Settings, value: f64) {
+        self.known.push((settings, value));
+    }
+
+    fn value(&mut self, settings: Settings) -> f64 {
+        if let Some((_, value)) = self.known.iter().find(|(known, _)| *known == settings) {
+            return *value;
+        }
+        let value = (self.number)(settings);
+        self.known.push((settings, value));
+        value
+    }
+
+    fn change(&mut self, settings: Settings, other: Settings) -> f64 {
+        let (value, other) = (self.value(settings), self.value(other));
+        if value.to_bits() == other.to_bits() {
+            0.0
+        } else {
+            (value - other).abs() / value.abs().max(f64::MIN_POSITIVE)
+        }
+    }
+
+    /// Estimated relative error with these settings, 1 at most: more says that nothing is known.
+    pub fn error(&mut self, settings: Settings) -> f64 {
+        (ROUNDING + self.by_positions(settings) + self.by_slices(settings)).min(1.0)
+    }
+
+    fn by_positions(&mut self, settings: Settings) -> f64 {
+        let with = |positions| Settings { positions, ..settings };
+        if self.against == Against::Finer {
+            return SAFETY * self.change(settings, with(4 * settings.positions));
+        }
+        if settings.positions < LEAST_POSITIONS {
+            return SAFETY * self.change(settings, with(2 * LEAST_POSITIONS));
+        }
+        let coarser = halves(settings.positions, HALVINGS_OF_POSITIONS, LEAST_POSITIONS / 2);
+        self.by_halving(settings, coarser.map(with))
+    }
+
+    fn by_slices(&mut self, settings: Settings) -> f64 {
+        if !self.sliced {
+            return 0.0;
+        }
+        // What slices change hardly depends on the positions.
+        let settings = Settings { positions: settings.positions.min(LEAST_POSITIONS), ..settings };
+        let with = |slices| Settings { slices, ..settings };
+        let finer = 4 * settings.slices - 3;
+        let allowed = settings.slice_coupling == SliceCoupling::None || finer <= MOST_COUPLED_SLICES;
+        if self.against == Against::Finer && allowed {
+            return SAFETY * self.change(settings, with(finer));
+        }
+        if settings.slices < 5 {
+            return SAFETY * self.change(settings, with(LEAST_SLICES));
+        }
+        let coarser = halves(settings.slices, HALVINGS_OF_SLICES, 3);
+        self.by_halving(settings, coarser.map(with))
+    }
+
+    /// `coarser` are samplings that halve the count each time.
+    fn by_halving(&mut self, settings: Settings, coarser: impl Iterator<Item = Settings>) -> f64 {
+        let (mut largest, mut trust) = (0.0_f64, 1.0);
+        for other in coarser {
+            largest = largest.max(self.change(settings, other) / trust);
+            trust *= FALL;
+        }
+        SAFETY * largest
+    }
+
+    /// The coarsest settings whose estimated error is no more than `accuracy`, or the finest there are.
+    pub fn coarsest(&mut self, settings: Settings, accuracy: f64) -> Settings {
+        let mut found = Settings { positions: LEAST_POSITIONS, ..settings };
+        let share = if self.sliced { 0.5 } else { 1.0 };
+        if self.sliced {
+            found.slices = LEAST_SLICES;
+            while self.by_slices(found) > share * (accuracy - ROUNDING) && 2 * found.slices - 1 <= most_slices(found) {
+                found.slices = 2 * found.slices - 1;
+            }
+        }
+        while self.by_positions(found) > share * (accuracy - ROUNDING) && found.positions < MOST_POSITIONS {
+            found.positions *= 2;
+        }
+        found
+    }
+}
+
+/// Coupled slices cost the cube of their number.
+fn most_slices(settings: Settings) -> usize {
+    if settings.slice_coupling == SliceCoupling::Plate { MOST_COUPLED_SLICES } else { MOST_SLICES }
+}
+
+/// Half of the count, a quarter …, rounded up, as long as they are `least`.
+fn halves(count: usize, most: usize, least: usize) -> impl Iterator<Item = usize> {
+    let halve = |count: &usize| Some(count.div_ceil(2));
+    std::iter::successors(Some(count), halve).skip(1).take(most).take_while(move |count| *count >= least)
+}

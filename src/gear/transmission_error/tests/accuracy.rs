@@ -1,0 +1,128 @@
+//! Estimated errors of sampling against the truth, over hundreds of random pairs, loads and designs.
+
+use crate::base::error::Place;
+use crate::base::record::{Entry, Record, Value};
+use crate::gear::compliance::{Assumptions, ContactLaw, method};
+use crate::gear::contact::{CornerContact, SliceCoupling};
+use crate::gear::geometry::root::RootShape;
+use crate::gear::modification::Design;
+use crate::gear::random::Random;
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::sampling::{Against, Sampled};
+
+/// Below this an error is not that of sampling: the floor of the estimates.
+const FLOOR: f64 = 1e-10;
+/// What counts as the truth: errors are a hundredth of those that are estimated.
+const TRUTH: Settings =
+    Settings { positions: 192, slices: 257, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None };
+
+struct Case {
+    base: MeshCycle,
+    design: Design,
+    torque: f64,
+}
+
+impl Case {
+    fn random(random: &mut Random) -> Self {
+        let pair = random.pair();
+        let entry = |value| Entry { value, place: Place::default() };
+        let fields = vec![
+            ("shear_factor", entry(Value::Number(1.2))),
+            ("body", entry(Value::Choice("sainsot"))),
+            ("harmonics", entry(Value::Integer(10))),
+        ];
+        let options = Record { fields, place: Place::default() };
+        let contact = random.of(&[ContactLaw::Linear, ContactLaw::LoadDependent]);
+        let coupled = random.share() < 0.2;
+        let assumptions = Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None, accuracy: None };
+        let Ok(found) = (method("energy").unwrap().tabulate)(&options, &pair, assumptions) else {
+            return Self::random(random);
+        };
+        let base = MeshCycle::new(&pair, &found.compliance, TRUTH).unwrap();
+        let (design, torque) = (random.design(&pair), random.torque(&pair));
+        Self { base, design, torque }
+    }
+
+    fn is_sliced(&self) -> bool {
+        Loading::new(&self.base, &self.design, self.torque).uses_slices()
+    }
+
+    fn peak_to_peak(&self, settings: Settings) -> f64 {
+        Loading::new(&self.base.sampled(settings), &self.design, self.torque).peak_to_peak()
+    }
+
+    fn variance(&self, settings: Settings) -> f64 {
+        Loading::new(&self.base.sampled(settings), &self.design, self.torque).variance()
+    }
+}
+
+/// Estimates over true errors.
+#[derive(Default)]
+struct Ratios(Vec<f64>);
+
+impl Ratios {
+    fn add(&mut self, estimate: f64, error: f64) {
+        self.0.push(estimate / error.max(FLOOR));
+    }
+
+    /// Holds in 99 of 100, and is no more than 30 times the error in the median.
+    #[track_caller]
+    fn check(&mut self, what: &str, least: usize) {
+        self.0.sort_by(f64::total_cmp);
+        let (count, holds) = (self.0.len(), self.0.iter().filter(|ratio| **ratio >= 1.0).count());
+        let median = self.0[count / 2];
+        println!("{what}: {holds} of {count} hold, median {median:.1}");
+        assert!(count >= least, "{what}: only {count}");
+        assert!(holds * 100 >= count * 99, "{what}: holds in {holds} of {count}");
+        assert!(median <= 30.0, "{what}: {median} times the error in the median");
+    }
+}
+
+#[test]
+fn the_estimate_from_coarser_samplings_holds() {
+    let mut random = Random::new(11);
+    let (mut sliced, mut closed) = (Ratios::default(), Ratios::default());
+    // Of what sampling a wish picks, as a share of the wish.
+    let (mut wished, mut coarse) = (Ratios::default(), 0);
+    for _ in 0..300 {
+        let case = Case::random(&mut random);
+        let truth = case.peak_to_peak(TRUTH);
+        let error = |settings| (case.peak_to_peak(settings) / truth - 1.0).abs();
+        let mut sampled = Sampled::new(case.is_sliced(), Against::Coarser, |settings| case.peak_to_peak(settings));
+        let [positions, slices] = [random.of(&[8, 16, 24, 40, 64]), random.of(&[3, 5, 9, 17, 24])];
+        let settings = Settings { positions, slices, ..TRUTH };
+        let ratios = if case.is_sliced() { &mut sliced } else { &mut closed };
+        ratios.add(sampled.error(settings), error(settings));
+        let accuracy = random.scaled(5e-4, 3e-2);
+        let chosen = sampled.coarsest(TRUTH, accuracy);
+        if sampled.error(chosen) <= accuracy {
+            wished.add(accuracy, error(chosen));
+            coarse += usize::from(chosen.slices <= 33 && chosen.positions == 16);
+        }
+    }
+    sliced.check("with slices", 150);
+    closed.check("in closed form", 60);
+    let held = wished.0.iter().filter(|ratio| **ratio >= 1.0).count();
+    assert!(wished.0.len() > 250 && held * 100 >= wished.0.len() * 99, "{held} of {}", wished.0.len());
+    assert!(coarse > 100, "a coarse sampling is enough for most wishes: {coarse}");
+}
+
+#[test]
+fn the_estimate_from_a_finer_sampling_holds() {
+    let mut random = Random::new(12);
+    let (mut peaks, mut variances) = (Ratios::default(), Ratios::default());
+    for _ in 0..200 {
+        let case = Case::random(&mut random);
+        let settings = Settings { positions: random.of(&[8, 16, 24, 40]), slices: random.of(&[5, 9, 17]), ..TRUTH };
+        let of = |ratios: &mut Ratios, number: &dyn Fn(Settings) -> f64| {
+            let truth = number(TRUTH);
+            let mut sampled = Sampled::new(case.is_sliced(), Against::Finer, number);
+            ratios.add(sampled.error(settings), (number(settings) / truth - 1.0).abs());
+        };
+        of(&mut peaks, &|settings| case.peak_to_peak(settings));
+        of(&mut variances, &|settings| case.variance(settings));
+    }
+    peaks.check("peak-to-peak", 200);
+    variances.check("variance", 200);
+}

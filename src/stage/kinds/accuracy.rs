@@ -1,0 +1,186 @@
+//! `kind: accuracy`: error against cost of another stage's settings, measured against settings that have converged.
+//!
+//! Ladders are lists of settings, each a few fields that stand in the place of the other stage's own. Every variant is
+//! that stage, built by its kind and run with the inputs it would have in the study; of its tables only the asked
+//! quantities are compared. Must not know: any kind by name, or what a quantity means.
+
+mod quantity;
+mod tables;
+mod trial;
+mod variant;
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Field, Shape};
+use crate::base::record::{Entry, Record, Value};
+use crate::base::units::RATIO;
+use crate::stage::{Context, Demand, Inputs, Kind, Port, Stage};
+use crate::table::data::Table;
+use crate::table::schema::Schema;
+
+use quantity::Quantity;
+use trial::{Plan, Trial};
+use variant::Variant;
+
+pub const KIND: Kind = Kind {
+    name: "accuracy",
+    version: 1,
+    summary: "Error and cost of a stage's settings against converged ones, and the cheapest that meet an accuracy.",
+    fields: FIELDS,
+    example: "
+kind: accuracy
+of: ste
+quantities: [summary.peak_to_peak, summary.mean]
+reference: { positions: 512 }
+ladders:
+  positions: [{ positions: 8 }, { positions: 16 }, { positions: 32 }]
+",
+    build,
+};
+
+const FIELDS: &[Field] = &[
+    Field::reference("of", &[], "The stage whose settings are tried; it reads there what it reads in the study."),
+    Field::new(
+        "quantities",
+        Shape::List(&Shape::Text),
+        "Columns of its tables, `table.column` or `table[key=value, …].column`; of several rows the worst one counts.",
+    ),
+    Field::new("reference", Shape::Overrides("of"), "The settings that count as converged."),
+    Field::new(
+        "ladders",
+        Shape::Map(&Shape::List(&Shape::Overrides("of"))),
+        "Settings to try, in lists with names of their own, from coarse to fine.",
+    ),
+    Field::new(
+        "evaluations",
+        Shape::Text,
+        "A column of its tables that counts its work; of several rows the sum counts.",
+    )
+    .optional(),
+    Field::integer("repeats", 1, 1000, "How often each run is repeated; the median time counts.").default("3"),
+    Field::integer("seeds", 1, 1000, "With how many seeds a stage that draws random numbers is run.").default("1"),
+    Field::new(
+        "wanted",
+        Shape::List(&Shape::Quantity { dimension: RATIO, least: 1e-15, most: 10.0 }),
+        "Relative accuracies for which the cheapest setting is looked for.",
+    )
+    .default("[1 %, 0.1 %, 0.01 %]"),
+];
+
+struct Accuracy {
+    quantities: Vec<Quantity>,
+    evaluations: Option<Quantity>,
+    reference: Variant,
+    ladders: Vec<Ladder>,
+    plan: Plan,
+    wanted: Vec<f64>,
+}
+
+/// Settings from coarse to fine.
+struct Ladder {
+    name: String,
+    steps: Vec<Variant>,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let reference = Variant::build("reference".to_owned(), record.variant("reference"))?;
+    let mut ladders = Vec::new();
+    for (name, entry) in record.map("ladders") {
+        let Value::List(items) = &entry.value else { continue };
+        let step = |(step, item): (usize, &Entry)| match &item.value {
+            Value::Variant(variant) => Some(Variant::build(format!("{name} {step}"), variant)),
+            _ => None,
+        };
+        let steps = (1..).zip(items).filter_map(step).collect::<Result<_, _>>()?;
+        ladders.push(Ladder { name: name.clone(), steps });
+    }
+    if ladders.iter().all(|ladder| ladder.steps.is_empty()) {
+        return Err(Diagnostic::new("the ladders are empty").at(record.place_of("ladders")));
+    }
+    let variants = || ladders.iter().flat_map(|ladder| &ladder.steps).chain([&reference]);
+    let read = |text: &str, place| {
+        let quantity = Quantity::read(text).map_err(|problem| Diagnostic::new(problem).at(place))?;
+        for variant in variants() {
+            quantity.check(&variant.stage.outputs()).map_err(|found| found.at(place))?;
+        }
+        Ok(quantity)
+    };
+    let mut quantities: Vec<Quantity> = Vec::new();
+    for entry in record.list("quantities") {
+        let Value::Text(text) = &entry.value else { continue };
+        let quantity = read(text, entry.place)?;
+        if quantities.iter().any(|other| other.name == quantity.name) {
+            return Err(Diagnostic::new(format!("`{}` is listed twice", quantity.name)).at(entry.place));
+        }
+        quantities.push(quantity);
+    }
+    if quantities.is_empty() {
+        return Err(Diagnostic::new("no quantities are given").at(record.place_of("quantities")));
+    }
+    let evaluations = record.maybe_text("evaluations").map(|text| read(text, record.place_of("evaluations")));
+    let evaluations = evaluations.transpose()?;
+    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(1);
+    let number = |entry: &Entry| if let Value::Quantity(value) = entry.value { Some(value) } else { None };
+    let mut wanted: Vec<f64> = record.list("wanted").iter().filter_map(number).collect();
+    wanted.sort_by(f64::total_cmp);
+    wanted.dedup();
+    let plan = Plan { repeats: whole("repeats"), seeds: whole("seeds") };
+    Ok(Box::new(Accuracy { quantities, evaluations, reference, ladders, plan, wanted }))
+}
+
+impl Accuracy {
+    /// All variants, the reference first.
+    fn variants(&self) -> Vec<&Variant> {
+        [&self.reference].into_iter().chain(self.ladders.iter().flat_map(|ladder| &ladder.steps)).collect()
+    }
+
+    /// Of the tables only those with an asked quantity.
+    fn demand(&self) -> Demand {
+        let mut demand = Demand::default();
+        let schemas = self.reference.stage.outputs();
+        for quantity in self.quantities.iter().chain(&self.evaluations) {
+            quantity.ask(&schemas, &mut demand);
+        }
+        demand
+    }
+}
+
+impl Stage for Accuracy {
+    fn inputs(&self) -> Vec<Port> {
+        variant::ports(&self.variants()).into_iter().map(|(port, _)| port).collect()
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        tables::schemas()
+    }
+
+    fn uses_seed(&self) -> bool {
+        self.variants().iter().any(|variant| variant.stage.uses_seed())
+    }
+
+    fn runs_alone(&self) -> bool {
+        true
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let variants = self.variants();
+        let ports = variant::ports(&variants);
+        let demand = self.demand();
+        let total = variants.iter().map(|variant| self.plan.runs(variant.stage.as_ref())).sum::<usize>() as f64;
+        let mut done = 0;
+        let mut trials: Vec<Trial> = Vec::new();
+        for (index, variant) in variants.iter().enumerate() {
+            let inputs = variant::inputs(&ports, index, inputs);
+            let reached = done as f64 / total;
+            let share = self.plan.runs(variant.stage.as_ref()) as f64 / total;
+            let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
+            let inner = Context { demand: &demand, progress: &progress, ..*context };
+            let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
+            trials.push(trial::run(variant, &self.plan, asked, &inner, &inputs)?);
+            done += self.plan.runs(variant.stage.as_ref());
+        }
+        tables::tables(self, &trials, context.demand).map_err(Failure::new)
+    }
+}
+
+#[cfg(test)]
+mod tests;

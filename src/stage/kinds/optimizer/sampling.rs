@@ -1,0 +1,55 @@
+//! Samplings for a wanted accuracy of the objective: picked before the search, checked at what it found.
+//!
+//! Before the search a few designs of the box stand for those it will try; what counts is the design it finds. Must not
+//! know: how the search goes on.
+
+use super::Optimizer;
+use crate::gear::geometry::Pair;
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::sampling::{Against, Sampled};
+
+/// Places on the diagonal of the box that stand for all of it.
+const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+impl Optimizer {
+    /// The settings to begin with.
+    pub fn first_settings(&self, base: &MeshCycle, pair: &Pair) -> Settings {
+        let Some(accuracy) = self.accuracy else { return self.settings };
+        let variables = self.template.variables();
+        let at = |share: &f64| -> Vec<f64> {
+            variables.iter().map(|variable| variable.least + share * (variable.most - variable.least)).collect()
+        };
+        let chosen = PROBES.iter().map(at).map(|point| self.settings_for(base, pair, &point, accuracy));
+        chosen.reduce(finer).unwrap_or(self.settings)
+    }
+
+    /// The coarsest settings that meet an accuracy at one design.
+    pub fn settings_for(&self, base: &MeshCycle, pair: &Pair, point: &[f64], accuracy: f64) -> Settings {
+        self.at(base, pair, point, |mut sampled| sampled.coarsest(self.settings, accuracy)).unwrap_or(self.settings)
+    }
+
+    /// Estimated relative error of the objective at one design.
+    pub fn error(&self, base: &MeshCycle, pair: &Pair, point: &[f64], settings: Settings) -> f64 {
+        self.at(base, pair, point, |mut sampled| sampled.error(settings)).unwrap_or(1.0)
+    }
+
+    /// None where the design cannot be built.
+    fn at<T>(
+        &self,
+        base: &MeshCycle,
+        pair: &Pair,
+        point: &[f64],
+        look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,
+    ) -> Option<T> {
+        let design = self.template.design(pair, point).ok()?;
+        let sliced = self.torques.iter().any(|torque| Loading::new(base, &design, *torque).uses_slices());
+        let mut value = |settings| self.value(&base.sampled(settings), pair, point);
+        Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
+    }
+}
+
+/// As fine as either.
+pub fn finer(one: Settings, two: Settings) -> Settings {
+    Settings { positions: one.positions.max(two.positions), slices: one.slices.max(two.slices), ..one }
+}
