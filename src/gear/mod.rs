@@ -10,4 +10,5 @@ pub(crate) mod fixtures;
 pub mod geometry;
 pub mod material;
 pub mod modification;
+pub mod stability;
 pub mod transmission_error;
