@@ -47,7 +47,12 @@ pub struct Axis {
     pub set: fn(&mut Point, f64),
 }
 
-const fn logarithmic(name: &'static str, unit: &'static str, [least, most]: [f64; 2], set: fn(&mut Point, f64)) -> Axis {
+const fn logarithmic(
+    name: &'static str,
+    unit: &'static str,
+    [least, most]: [f64; 2],
+    set: fn(&mut Point, f64),
+) -> Axis {
     Axis { name, unit, least, most, logarithmic: true, absent: 0.0, set }
 }
 
@@ -69,15 +74,21 @@ pub const AXES: &[Axis] = &[
     logarithmic("module", "mm", [1e-5, 0.1], Point::set_module),
     logarithmic("pinion_teeth", "", [5.0, 2000.0], |point, value| point.teeth[0] = value.round()),
     logarithmic("gear_teeth", "", [5.0, 2000.0], |point, value| point.teeth[1] = value.round()),
-    linear("pinion_shift", "", [-1.0, 1.5], |point, value| point.shift[0] = value),
-    linear("gear_shift", "", [-1.0, 1.5], |point, value| point.shift[1] = value),
-    linear("pressure_angle", "deg", [10.0 * DEGREE, 35.0 * DEGREE], |point, value| point.pressure_angle = value),
+    Axis { absent: 0.4, ..linear("pinion_shift", "", [-1.0, 1.5], |point, value| point.shift[0] = value) },
+    Axis { absent: 0.4, ..linear("gear_shift", "", [-1.0, 1.5], |point, value| point.shift[1] = value) },
+    Axis {
+        absent: 0.5,
+        ..linear("pressure_angle", "deg", [10.0 * DEGREE, 35.0 * DEGREE], |point, value| point.pressure_angle = value)
+    },
     logarithmic("face_width", "mm", [1e-6, 10.0], |point, value| point.face_width = [value; 2]),
     Axis { absent: 0.3, ..logarithmic("relief", "um", [1e-12, 3e-3], |point, value| point.relief = value) },
     logarithmic("relief_length", "mm", [1e-9, 1e-2], |point, value| point.relief_length = value),
     Axis { absent: 0.3, ..logarithmic("crowning", "um", [1e-12, 3e-3], |point, value| point.crowning = value) },
     linear("bore", "", [1e-3, 1.0 - 1e-9], |point, value| point.bore = [value; 2]),
-    Axis { absent: 0.6, ..linear("contact_ratio", "", [1.0001, 3.0], |point, value| point.contact_ratio = Some(value)) },
+    Axis {
+        absent: 0.6,
+        ..linear("contact_ratio", "", [1.0001, 3.0], |point, value| point.contact_ratio = Some(value))
+    },
 ];
 
 /// The axis called `name`.
@@ -140,7 +151,13 @@ impl Point {
         let mean = (self.material[0].youngs_modulus * self.material[1].youngs_modulus).sqrt();
         let moduli = [mean * ratio.sqrt(), mean / ratio.sqrt()];
         let (least, most) = (moduli[0].min(moduli[1]), moduli[0].max(moduli[1]));
-        let factor = if most > 1e15 { 1e15 / most } else if least < 1.0 { 1.0 / least } else { 1.0 };
+        let factor = if most > 1e15 {
+            1e15 / most
+        } else if least < 1.0 {
+            1.0 / least
+        } else {
+            1.0
+        };
         for (material, modulus) in self.material.iter_mut().zip(moduli) {
             material.youngs_modulus = (modulus * factor).clamp(1.0, 1e15);
         }

@@ -13,7 +13,8 @@ use crate::numeric::complementarity::MOST;
 
 /// Where in a zone it is looked at.
 const SHARES: [f64; 9] = [0.0, 1e-9, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0 - 1e-9, 1.0];
-/// Distance from a zone's end, in base pitches, and how many deflections per base pitch a curve may rise there.
+/// Distance from a zone's end, in base pitches, and how many deflections per base pitch a curve may rise there besides
+/// what reliefs make it rise.
 const NEAR: f64 = 1e-9;
 const STEEPEST: f64 = 1e3;
 /// A few sums and products.
@@ -37,13 +38,8 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
     let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
     let s = |index: usize| cycle.path_position(position, index);
     let rolls = |index: usize| [pair.roll(Side::Pinion, s(index)), pair.roll(Side::Gear, s(index))];
-    let mut found = Pairs {
-        count,
-        gaps: [0.0; MOST],
-        largest_gap: 0.0,
-        compliance: [[0.0; MOST]; MOST],
-        laws: [None; MOST],
-    };
+    let mut found =
+        Pairs { count, gaps: [0.0; MOST], largest_gap: 0.0, compliance: [[0.0; MOST]; MOST], laws: [None; MOST] };
     for j in 0..count {
         let [pinion, gear] = rolls(j);
         found.gaps[j] = design.depth(Side::Pinion, pinion) + design.depth(Side::Gear, gear);
@@ -95,7 +91,8 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     findings.push(Finding::new("no NaN, no infinity", strange as f64, 0.0));
 
     let (mut imbalance, mut negative, mut condition) = (0.0_f64, 0.0_f64, 1.0_f64);
-    let (mut growth, mut softening, mut jump) = (0.0_f64, 0.0_f64, 0.0_f64);
+    let (mut growth, mut softening) = (0.0_f64, 0.0_f64);
+    let mut jump = (0.0_f64, 1.0_f64);
     let mut residual = Some((0.0_f64, ROUNDING));
     let ladder = [1.0, 2.0].map(|factor| Loading::new(&built.cycle, &built.design, case.torque * factor));
     for zone in &built.cycle.zones {
@@ -118,8 +115,16 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
         }
         for (end, inwards) in [(zone.start, 1.0), (zone.end, -1.0)] {
             let at = |position: f64| loading.state(position, zone.pairs).transmission_error();
-            let (here, near) = (at(end), at(end + inwards * NEAR * built.cycle.period()));
-            jump = jump.max((here - near).abs() / here.abs().max(near.abs()));
+            let distance = NEAR * built.cycle.period();
+            let (here, near) = (at(end), at(end + inwards * distance));
+            let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
+            let size = here.abs().max(near.abs());
+            // Both flanks of a pair may be relieved there; a shorter relief than the distance is passed over.
+            let limit = NEAR * STEEPEST + ROUNDING + (distance * ramps).min(2.0 * case.relief) / size;
+            let change = (here - near).abs() / size;
+            if change * jump.1 >= jump.0 * limit {
+                jump = (change, limit);
+            }
         }
     }
     findings.push(Finding::new("load balance", imbalance, ROUNDING));
@@ -130,7 +135,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     ));
     findings.push(Finding::new("deflection grows with the load", growth, 1.0 - TABLE));
     findings.push(Finding::new("deflection grows no faster than the load", softening, 1.0 + TABLE));
-    findings.push(Finding::new("continuous at the ends of zones", jump, NEAR * STEEPEST + ROUNDING));
+    findings.push(Finding::new("continuous at the ends of zones", jump.0, jump.1));
     findings.push(Finding::new("condition of the compliance matrix", condition, 1.0 / f64::EPSILON.sqrt()));
     [summary.mean, summary.peak_to_peak]
 }
@@ -200,7 +205,8 @@ impl Pairs {
             }
         }
         let values = (0..n).map(|k| matrix[k][k]);
-        let (least, most) = values.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
+        let (least, most) =
+            values.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
         if least > 0.0 { most / least } else { f64::INFINITY }
     }
 }

@@ -9,6 +9,8 @@ use crate::gear::modification::Design;
 use crate::gear::transmission_error::loading::Loading;
 use crate::numeric::double_double::Double;
 
+/// The place of the stiffness where one pair more than the fewest is in contact.
+const MOST_PAIRS: usize = 10;
 /// −log10 ε.
 pub const DIGITS: f64 = 15.95;
 
@@ -65,6 +67,12 @@ pub(super) fn check(
         report.findings.push(Finding::refused("second evaluation of the loaded pair", reason));
     }
     for index in 0..count {
+        if index == MOST_PAIRS && built.cycle.zones.len() == 1 {
+            report
+                .findings
+                .push(Finding::refused(NAMES[index], "the contact ratio is a whole number: there is one zone"));
+            continue;
+        }
         let (value, exact, condition) = (found[index], exact[index], conditions[index]);
         let lost = lost(value, exact);
         let limit = MOST_LOST + libm::log10(condition.max(1.0));

@@ -234,9 +234,28 @@ impl Case {
     }
 }
 
-/// All invariants of a case. The rule is for the second evaluation.
+/// Rules of the second evaluation: a fine one for values, a coarse one for condition numbers.
+pub struct Rules {
+    fine: Rule,
+    coarse: Rule,
+}
+
+impl Rules {
+    #[must_use]
+    pub fn new() -> Self {
+        Self { fine: Rule::new(20, 24), coarse: Rule::new(10, 12) }
+    }
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// All invariants of a case.
 #[must_use]
-pub fn check(case: &Case, rule: &Rule) -> Report {
+pub fn check(case: &Case, rules: &Rules) -> Report {
     let built = match case.build() {
         Ok(built) => built,
         Err((step, reason)) => {
@@ -246,8 +265,8 @@ pub fn check(case: &Case, rule: &Rule) -> Report {
     let mut report = Report::default();
     let values = contact::check(case, &built, &mut report.findings);
     let inputs = case.inputs();
-    let exact = precise::evaluate(&inputs, rule);
-    let conditions = precise::conditions(&inputs, &exact, rule);
+    let exact = precise::evaluate(&inputs, &rules.fine);
+    let conditions = precise::conditions(&inputs, &rules.coarse);
     digits::check(case, &built, values, (&exact, &conditions), &mut report);
     let [.., mean, peak_to_peak] = conditions;
     symmetry::check(case, values, [mean, peak_to_peak], &mut report.findings);

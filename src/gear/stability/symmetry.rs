@@ -7,8 +7,8 @@ use super::{Case, Finding, MOST_LOST};
 use crate::gear::transmission_error::curve::Wanted;
 use crate::gear::transmission_error::loading::Loading;
 
-/// 2¹⁰.
-const SCALE: f64 = 1024.0;
+/// 2¹⁰ and 2⁵ either way: the first that leaves every length in its range.
+const SCALES: [f64; 4] = [1.0 / 1024.0, 1024.0, 0.03125, 32.0];
 
 /// Mean and peak-to-peak.
 pub(super) fn values(case: &Case) -> Result<[f64; 2], String> {
@@ -29,8 +29,8 @@ fn difference(found: [f64; 2], expected: [f64; 2], conditions: [f64; 2]) -> f64 
 /// Mean and peak-to-peak are compared relative to themselves and their condition numbers.
 pub(super) fn check(case: &Case, values_here: [f64; 2], conditions: [f64; 2], findings: &mut Vec<Finding>) {
     let limit = f64::EPSILON * libm::pow(10.0, MOST_LOST);
-    for (invariant, other, factor) in
-        [("scale", scaled(case)), ("which gear drives", swapped(case))].map(|(name, (case, factor))| (name, case, factor))
+    for (invariant, other, factor) in [("scale", scaled(case)), ("which gear drives", swapped(case))]
+        .map(|(name, (case, factor))| (name, case, factor))
     {
         match values(&other) {
             Ok(found) => {
@@ -44,19 +44,21 @@ pub(super) fn check(case: &Case, values_here: [f64; 2], conditions: [f64; 2], fi
 
 /// Lengths times k, torque times k³: loads grow with k², loads per width with k, displacements with k.
 fn scaled(case: &Case) -> (Case, f64) {
-    let factor = if case.gears[0].module > 1e-4 { 1.0 / SCALE } else { SCALE };
-    let mut other = case.clone();
-    for gear in &mut other.gears {
-        gear.module *= factor;
-        gear.face_width *= factor;
-        gear.bore_radius *= factor;
-        gear.tip_radius = gear.tip_radius.map(|radius| radius * factor);
-    }
-    other.relief *= factor;
-    other.relief_length *= factor;
-    other.crowning *= factor;
-    other.torque *= factor * factor * factor;
-    (other, factor)
+    let by = |factor: f64| {
+        let mut other = case.clone();
+        for gear in &mut other.gears {
+            gear.module *= factor;
+            gear.face_width *= factor;
+            gear.bore_radius *= factor;
+            gear.tip_radius = gear.tip_radius.map(|radius| radius * factor);
+        }
+        other.relief *= factor;
+        other.relief_length *= factor;
+        other.crowning *= factor;
+        other.torque *= factor * factor * factor;
+        (other, factor)
+    };
+    SCALES.into_iter().map(by).find(|(other, _)| other.pair().is_ok()).unwrap_or_else(|| by(SCALES[0]))
 }
 
 /// The same force on the line of action.

@@ -89,12 +89,12 @@ fn the_second_evaluation_meets_published_values() {
 
 #[test]
 fn the_base_case_holds() {
-    let rule = Rule::new(20, 24);
+    let rules = Rules::new();
     for (relief, crowning, torque) in [(0.0, 0.0, 50.0), (9e-6, 0.0, 50.0), (9e-6, 20e-6, 20.0)] {
         let mut case = base();
         (case.relief, case.relief_length, case.crowning, case.torque) = (relief, 4e-3, crowning, torque);
         let began = std::time::Instant::now();
-        let report = check(&case, &rule);
+        let report = check(&case, &rules);
         eprintln!("{:?}", began.elapsed());
         for finding in &report.findings {
             eprintln!("{finding:?}");

@@ -37,10 +37,8 @@ pub fn traps(base: &Point, model: &Model) -> Vec<Case> {
             (point.teeth[0], point.shift[0]) = (count, shift);
         });
     }
-    let other_root = Model {
-        assumptions: super::Assumptions { root: RootShape::BaseCircle, ..model.assumptions },
-        ..model.clone()
-    };
+    let other_root =
+        Model { assumptions: super::Assumptions { root: RootShape::BaseCircle, ..model.assumptions }, ..model.clone() };
     add("z 48 without a root: base circle inside the root circle", &other_root, &|_| {});
     for ratio in [0.9, 1.0 + 1e-12, 2.0, 2.3, 2.7] {
         add(&format!("contact ratio {ratio}"), model, &move |point| {

@@ -19,6 +19,8 @@ use crate::numeric::harmonics;
 
 /// Cuts closer than this share of the base pitch are one.
 const CLOSEST: f64 = 1e-10;
+/// The same where a pair takes up or loses load: a deep relief takes it away next to where it starts.
+const CLOSEST_CHANGE: f64 = 1e-14;
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
 
@@ -33,6 +35,8 @@ pub struct Loading<'a> {
     corners: Option<Corners<'a>>,
     /// Cycle positions at which a profile is not smooth, ascending.
     breaks: Vec<f64>,
+    /// Interferences at which the load of a pair is not smooth, besides 0.
+    levels: Vec<f64>,
 }
 
 /// What corner contact adds.
@@ -85,7 +89,9 @@ impl<'a> Loading<'a> {
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
         };
         let profiles = [of(Side::Pinion), of(Side::Gear)];
+        let levels = face.levels();
         let mut loading = Self {
+            levels,
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
             face,
@@ -164,7 +170,7 @@ impl<'a> Loading<'a> {
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
-        Self { force: 0.0, ..self.clone() }
+        Self { force: 0.0, levels: Vec::new(), ..self.clone() }
     }
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
@@ -368,8 +374,8 @@ impl<'a> Loading<'a> {
             && let Some((position, pair)) = self.change(span, &states)
         {
             *cuts -= 1;
-            let before = Span { end: position, touches: [span.touches[0], Some(pair)], ..*span };
-            let after = Span { start: position, touches: [Some(pair), span.touches[1]], ..*span };
+            let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
+            let after = Span { start: position, touches: [pair, span.touches[1]], ..*span };
             let middle = self.smooth(&before, first, cuts, visit);
             return self.smooth(&after, middle, cuts, visit);
         }
@@ -377,23 +383,26 @@ impl<'a> Loading<'a> {
         states[NODES - 1]
     }
 
-    /// The first change of the set of loaded pairs between the nodes of a span: where, and of which pair.
-    fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, usize)> {
-        let closest = CLOSEST * self.cycle.period();
+    /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
+    /// interference passes: where, and for a first or last touch of which pair.
+    fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, Option<usize>)> {
+        let closest = CLOSEST_CHANGE * self.cycle.period();
         for node in 0..NODES - 1 {
+            let ends = [node == 0, node + 2 == NODES];
             for pair in 0..self.cycle.springs(span.pairs) {
-                let (before, after) =
-                    (states[node].balance.interference[pair], states[node + 1].balance.interference[pair]);
-                let ends = [node == 0, node + 2 == NODES];
-                let at_known_end = (0..2).any(|end| ends[end] && span.touches[end] == Some(pair));
-                if (before > 0.0) == (after > 0.0) || at_known_end {
-                    continue;
-                }
-                let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
-                let interference = |position: f64| self.state(position, span.pairs).balance.interference[pair];
-                let at = crossing(interference, (from, before), (to, after), 0.1 * closest);
-                if at - span.start > closest && span.end - at > closest {
-                    return Some((at, pair));
+                let known = (0..2).any(|end| ends[end] && span.touches[end] == Some(pair));
+                let touch = if known { None } else { Some((0.0, Some(pair))) };
+                for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
+                    let [before, after] = [node, node + 1].map(|node| states[node].balance.interference[pair] - level);
+                    if (before > 0.0) == (after > 0.0) {
+                        continue;
+                    }
+                    let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
+                    let above = |position: f64| self.state(position, span.pairs).balance.interference[pair] - level;
+                    let at = crossing(above, (from, before), (to, after), 0.1 * closest);
+                    if at - span.start > closest && span.end - at > closest {
+                        return Some((at, touch));
+                    }
                 }
             }
         }
@@ -419,7 +428,8 @@ impl<'a> Loading<'a> {
     /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        let trace = self.trace();
+        // Extrema are refined on the function itself and need no smooth spans.
+        let trace = Self { levels: Vec::new(), ..self.clone() }.trace();
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         let rows = &self.cycle.rows;
         let largest = trace.largest(rows, value).value;

@@ -4,11 +4,19 @@ pub mod geometry;
 pub mod modification;
 pub mod optimizer;
 pub mod report;
+pub mod stability;
 pub mod ste;
 pub mod stiffness;
 
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] =
-    &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND, &report::KIND];
+pub const KINDS: &[&Kind] = &[
+    &geometry::KIND,
+    &modification::KIND,
+    &stiffness::KIND,
+    &optimizer::KIND,
+    &ste::KIND,
+    &stability::KIND,
+    &report::KIND,
+];

@@ -11,6 +11,8 @@ use crate::numeric::double_double::Double;
 
 /// Steps between a span's ends at which a touch or an extremum is looked for.
 const STEPS: usize = 24;
+/// Zones shorter than this share of the base pitch are not there, as a definition.
+const SHORTEST_ZONE: f64 = 1e-9;
 
 /// The pair on its path of contact.
 pub struct Mesh<'a> {
@@ -30,17 +32,22 @@ pub struct Mesh<'a> {
 
 /// 2/π Σ(1 − ν²)/E.
 fn flattening(gears: &[GearInputs; 2]) -> Double {
-    let of = |gear: &GearInputs| {
-        (Double::ONE - Double::from(gear.poisson_ratio).square()) / gear.youngs_modulus
-    };
+    let of = |gear: &GearInputs| (Double::ONE - Double::from(gear.poisson_ratio).square()) / gear.youngs_modulus;
     (of(&gears[0]) + of(&gears[1])).times_power_of_two(2.0) / Double::PI
 }
 
 /// How a pair of teeth answers an interference.
 enum Spring {
-    Linear { stiffness: Double },
+    Linear {
+        stiffness: Double,
+    },
     /// α, β and the compliance of both teeth per load per width.
-    Logarithmic { constant: Double, rate: Double, compliance: Double, width: f64 },
+    Logarithmic {
+        constant: Double,
+        rate: Double,
+        compliance: Double,
+        width: f64,
+    },
 }
 
 impl Spring {
@@ -132,13 +139,17 @@ impl<'a> Mesh<'a> {
         (self.end - self.start) / self.base_pitch
     }
 
-    /// Start, end and number of pairs of each zone.
-    fn zones(&self) -> Vec<(Double, Double, usize)> {
+    /// Start, end and number of pairs of each zone; a contact ratio within 1e-9 of a whole number is that number.
+    pub fn zones(&self) -> Vec<(Double, Double, usize)> {
         let ratio = self.contact_ratio();
-        let whole = ratio.high.floor();
+        let whole = (ratio.high + SHORTEST_ZONE).floor().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a contact ratio
         let fewest = whole as usize;
-        let shared = (ratio - whole) * self.base_pitch;
+        let share = ratio - whole;
+        if share.high < SHORTEST_ZONE {
+            return vec![(Double::ZERO, self.base_pitch, fewest)];
+        }
+        let shared = share * self.base_pitch;
         vec![(Double::ZERO, shared, fewest + 1), (shared, self.base_pitch, fewest)]
     }
 
@@ -162,12 +173,7 @@ impl<'a> Mesh<'a> {
             let bracket = (depth / half_width).logarithm() - nu.half() / (Double::ONE - nu);
             constant += (factor * bracket).times_power_of_two(2.0);
         }
-        Spring::Logarithmic {
-            constant,
-            rate: total.half(),
-            compliance: compliance * self.width,
-            width: self.width,
-        }
+        Spring::Logarithmic { constant, rate: total.half(), compliance: compliance * self.width, width: self.width }
     }
 
     fn gap(&self, s: Double) -> Double {
@@ -206,19 +212,17 @@ impl<'a> Mesh<'a> {
                 break;
             }
         }
-        State {
-            error: gaps[nearest] + approach,
-            interference: open.iter().map(|gap| approach - *gap).collect(),
-        }
+        State { error: gaps[nearest] + approach, interference: open.iter().map(|gap| approach - *gap).collect() }
     }
 
     /// F/δ without modifications, in the middle of the zones with the fewest and with the most pairs.
     pub fn stiffness(&self, teeth: &[Tooth; 2]) -> [Double; 2] {
         let zones = self.zones();
-        [1, 0].map(|zone| {
+        [zones.len() - 1, 0].map(|zone| {
             let (from, to, pairs) = zones[zone];
             let middle = (from + to).half();
-            let springs = (0..pairs).map(|index| self.spring(teeth, self.start + middle + self.base_pitch * index as f64));
+            let springs =
+                (0..pairs).map(|index| self.spring(teeth, self.start + middle + self.base_pitch * index as f64));
             let springs: Vec<Spring> = springs.collect();
             let mut approach = springs[0].above(self.force, Double::ZERO);
             for _ in 0..300 {
@@ -283,18 +287,18 @@ impl<'a> Mesh<'a> {
         spans
     }
 
-    /// Where a pair takes up or loses load.
+    /// Where a pair takes up or loses load, or comes into contact all over its face.
     fn touches(&self, teeth: &[Tooth; 2], (from, to): (Double, Double), pairs: usize) -> Vec<Double> {
         let [one, two] = &self.inputs.gears;
-        if one.relief.high == 0.0 && two.relief.high == 0.0 {
+        if one.relief.high == 0.0 && two.relief.high == 0.0 && self.crown.high == 0.0 {
             return Vec::new();
         }
         let place = |index: usize| from + (to - from) * (index as f64) / STEPS as f64;
         let states: Vec<State> = (0..=STEPS).map(|index| self.state(teeth, place(index), pairs)).collect();
         let mut touches = Vec::new();
         for index in 0..STEPS {
-            for pair in 0..pairs {
-                let carries = |state: &State| state.interference[pair] > Double::ZERO;
+            for (pair, level) in (0..pairs).flat_map(|pair| [(pair, Double::ZERO), (pair, self.crown)]) {
+                let carries = |state: &State| state.interference[pair] > level;
                 if carries(&states[index]) != carries(&states[index + 1]) {
                     let (mut low, mut high) = (place(index), place(index + 1));
                     for _ in 0..70 {

@@ -100,8 +100,9 @@ pub fn evaluate(inputs: &Inputs, rule: &Rule) -> Quantities<Double> {
 }
 
 /// Relative changes per relative change of what rounding touches first: pressure angle, profile shifts (as parts of a
-/// module), tip radii, relief, crowning and torque. Their sum is the condition number of each quantity.
-pub fn conditions(inputs: &Inputs, exact: &Quantities<Double>, rule: &Rule) -> Quantities<f64> {
+/// module), tip radii, relief, crowning and torque. Their sum is the condition number of each quantity; a coarse rule
+/// will do, since it serves both sides of each difference.
+pub fn conditions(inputs: &Inputs, rule: &Rule) -> Quantities<f64> {
     const STEP: f64 = 1e-11;
     let scale = Double::ONE + STEP;
     let changes: [fn(&mut Inputs, Double); 8] = [
@@ -110,18 +111,23 @@ pub fn conditions(inputs: &Inputs, exact: &Quantities<Double>, rule: &Rule) -> Q
         |inputs, scale| inputs.gears[1].shift += scale - 1.0,
         |inputs, scale| inputs.gears[0].tip_scale = Double::ONE / scale,
         |inputs, scale| inputs.gears[1].tip_scale = Double::ONE / scale,
+        |inputs, scale| inputs.torque = inputs.torque * scale,
         |inputs, scale| inputs.gears[0].relief = inputs.gears[0].relief * scale,
         |inputs, scale| inputs.gears[0].crowning = inputs.gears[0].crowning * scale,
-        |inputs, scale| inputs.torque = inputs.torque * scale,
     ];
+    let here = evaluate(inputs, rule);
     let mut sums = [0.0; NAMES.len()];
-    for change in changes {
+    let [relieved, crowned] = [inputs.gears[0].relief, inputs.gears[0].crowning].map(|amount| amount.high != 0.0);
+    for (change, wanted) in changes.into_iter().zip([true, true, true, true, true, true, relieved, crowned]) {
+        if !wanted {
+            continue;
+        }
         let mut changed = inputs.clone();
         change(&mut changed, scale);
         let values = evaluate(&changed, rule);
-        for (sum, (value, exact)) in sums.iter_mut().zip(values.into_iter().zip(exact)) {
-            if exact.high != 0.0 {
-                *sum += ((value - *exact) / *exact).high.abs() / STEP;
+        for (sum, (value, here)) in sums.iter_mut().zip(values.into_iter().zip(here)) {
+            if here.high != 0.0 {
+                *sum += ((value - here) / here).high.abs() / STEP;
             }
         }
     }

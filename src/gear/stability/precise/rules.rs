@@ -29,7 +29,12 @@ impl Rule {
             let (sine, cosine) = angle(k).sine_cosine();
             (-cosine, if k % 2 == 0 { sine } else { -sine })
         });
-        Self { long: legendre(points), short: legendre(points / 2), chebyshev: chebyshev.collect(), singular: double_exponential() }
+        Self {
+            long: legendre(points),
+            short: legendre(points / 2),
+            chebyshev: chebyshev.collect(),
+            singular: double_exponential(),
+        }
     }
 
     /// Adds the integrals of several functions from `from` to `to`.

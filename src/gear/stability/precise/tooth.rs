@@ -18,7 +18,6 @@ type Moments = [Double; 4];
 /// One gear.
 pub struct Tooth {
     pub base_radius: Double,
-    pub tip_radius: Double,
     pub form_radius: Double,
     pub form_roll: Double,
     pub tip_roll: Double,
@@ -110,9 +109,8 @@ impl Tooth {
             (Double::PI.half() + (gear.shift * tangent).times_power_of_two(2.0)) / gear.teeth + involute(tangent);
         let roll = |radius: Double| ((radius - base_radius) * (radius + base_radius)).sqrt() / base_radius;
 
-        let land = Double::PI.times_power_of_two(0.25)
-            - tangent * gear.dedendum
-            - (Double::ONE - sine) * gear.round / cosine;
+        let land =
+            Double::PI.times_power_of_two(0.25) - tangent * gear.dedendum - (Double::ONE - sine) * gear.round / cosine;
         let mut root = Root {
             reference_radius,
             depth: module * (Double::from(gear.dedendum) - gear.shift - gear.round),
@@ -137,7 +135,6 @@ impl Tooth {
         let half_angle = root.offset / reference_radius;
         Self {
             base_radius,
-            tip_radius,
             form_radius: (form_roll.square() + 1.0).sqrt() * base_radius,
             form_roll,
             tip_roll,
@@ -250,7 +247,9 @@ fn polynomials(theta: Double, h: Double) -> [Double; 4] {
         [-50.952e-5, 185.50e-3, 0.0538e-4, 53.300e-3, 0.2895, 0.9236],
         [-6.2042e-5, 9.0889e-3, -4.0964e-4, 7.8297e-3, -0.1472, 0.6904],
     ];
-    ROWS.map(|[a, b, c, d, e, f]| (theta.square() * f + theta * d + a + h * (theta * c)) / theta.square() + h * (h * b + e))
+    ROWS.map(|[a, b, c, d, e, f]| {
+        (theta.square() * f + theta * d + a + h * (theta * c)) / theta.square() + h * (h * b + e)
+    })
 }
 
 /// Where `function` changes its sign.
