@@ -13,4 +13,5 @@ pub mod modification;
 pub mod problem;
 #[cfg(test)]
 pub(crate) mod random;
+pub mod stability;
 pub mod transmission_error;

@@ -134,6 +134,17 @@ impl<'a> Face<'a> {
         matches!(self.shape, Shape::Sliced(_))
     }
 
+    /// Interferences > 0 at which a stretch begins to touch or has come into contact all along: Φ is not smooth there.
+    #[must_use]
+    pub fn levels(&self) -> Vec<f64> {
+        let Shape::Quadratic(pieces) = &self.shape else { return Vec::new() };
+        let mut levels: Vec<f64> = pieces.iter().flat_map(|piece| [piece.base, piece.base + piece.rise]).collect();
+        levels.retain(|level| *level > 0.0);
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        levels
+    }
+
     /// Φ(w) and dΦ/dw, the share of the face in contact, for w > 0.
     #[must_use]
     #[inline]

@@ -48,7 +48,7 @@ impl Gear {
                 format!("above {} modules, where the tooth vanishes", Plain(least)),
             ));
         }
-        let (_, joint) = Trochoid::generate(specification, base_radius, half_base_angle);
+        let (_, joint) = Trochoid::generate(specification, base_radius);
         let gear = Self {
             specification: *specification,
             reference_radius,

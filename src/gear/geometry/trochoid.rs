@@ -57,7 +57,7 @@ pub(super) fn least_shift_without_undercut(specification: &Specification) -> f64
 
 impl Trochoid {
     /// The root curve of a gear whose rack and circles are known to be possible.
-    pub(super) fn generate(specification: &Specification, base_radius: f64, half_base_angle: f64) -> (Self, Joint) {
+    pub(super) fn generate(specification: &Specification, base_radius: f64) -> (Self, Joint) {
         let module = specification.module;
         let rack = &specification.rack;
         let reference_radius = 0.5 * module * f64::from(specification.teeth);
@@ -79,7 +79,7 @@ impl Trochoid {
                 undercut: false,
             }
         } else {
-            curve.crossing(base_radius, half_base_angle)
+            curve.crossing(base_radius, end)
         };
         curve.joint = joint.normal_angle;
         (curve, joint)
@@ -88,23 +88,36 @@ impl Trochoid {
     /// The undercut joint: the rack's straight flank ends beyond the tangent point, and the root curve comes back
     /// through the involute it should have joined. It starts thicker than the involute by 2 inv α_y at γ = α, and is
     /// thinner at the base circle; its radius falls steadily between.
-    fn crossing(&self, base_radius: f64, half_base_angle: f64) -> Joint {
-        let at = |normal_angle: f64| {
-            let (x, y) = self.point(normal_angle);
-            (libm::hypot(x, y), libm::atan2(x, y))
-        };
-        let roll = |radius: f64| ((radius - base_radius) * (radius + base_radius)).max(0.0).sqrt() / base_radius;
+    ///
+    /// At the threshold of undercut all of this happens next to α and next to the base circle. So everything is a
+    /// function of η = γ − α, and nothing is found as the difference of two large numbers: with t = r sin γ − D the
+    /// distance from the curve's point to the foot of its normal, D = d/sin γ + ρ, the radius is √(r² cos² γ + t²) and
+    /// the half angle (d cot γ + offset)/r − γ + atan(t/(r cos γ)); at η = 0 that is ψ_b − u + atan u with u = `end`/r_b.
+    fn crossing(&self, base_radius: f64, end: f64) -> Joint {
         let start = self.joint;
-        let base = crossing::bracketed(start, FRAC_PI_2, |angle| at(angle).0 - base_radius).unwrap_or(start);
-        let excess = |angle: f64| {
-            let (radius, half_angle) = at(angle);
-            let roll = roll(radius);
-            half_angle - half_base_angle + (roll - libm::atan(roll))
+        let (alpha_sine, alpha_cosine) = libm::sincos(start);
+        let start_roll = end / base_radius;
+        // sin η, t/r_b, r cos γ/r_b and u² = t² + cos² γ/cos² α − 1.
+        let at = |eta: f64| {
+            let (eta_sine, gamma) = (libm::sin(eta), start + eta);
+            let (sine, cosine) = libm::sincos(gamma);
+            let rise = 2.0 * libm::sin(0.5 * eta) * libm::cos(start + 0.5 * eta);
+            let ahead = rise * (self.depth / (sine * alpha_sine) + self.reference_radius) / base_radius;
+            let foot = start_roll + ahead;
+            let square = foot * foot - eta_sine * libm::sin(gamma + start) / (alpha_cosine * alpha_cosine);
+            (eta_sine / sine, foot, cosine / alpha_cosine, square)
+        };
+        let base = crossing::bracketed(0.0, FRAC_PI_2 - start, |eta| at(eta).3).unwrap_or(0.0);
+        let excess = |eta: f64| {
+            let (turn, foot, across, square) = at(eta);
+            let (slope, roll) = (foot / across, square.max(0.0).sqrt());
+            let angles = libm::atan2(slope - roll, 1.0 + slope * roll);
+            roll - start_roll - eta - self.depth * turn / (self.reference_radius * alpha_sine) + angles
         };
         // No sign change only where both differ by rounding, at the very threshold of undercut.
-        let normal_angle = crossing::bracketed(start, base, excess).unwrap_or(base);
-        let radius = at(normal_angle).0.max(base_radius);
-        Joint { radius, roll: roll(radius), normal_angle, undercut: true }
+        let eta = crossing::bracketed(0.0, base, excess).unwrap_or(base);
+        let roll = at(eta).3.max(0.0).sqrt();
+        Joint { radius: base_radius * (1.0 + roll * roll).sqrt(), roll, normal_angle: start + eta, undercut: true }
     }
 
     /// Half thickness x and height y \[m\] at γ.
@@ -173,6 +186,6 @@ impl Gear {
     /// The root curve this gear's rack generates.
     #[must_use]
     pub fn trochoid(&self) -> Trochoid {
-        Trochoid::generate(&self.specification, self.base_radius, self.half_base_angle).0
+        Trochoid::generate(&self.specification, self.base_radius).0
     }
 }

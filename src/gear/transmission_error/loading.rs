@@ -1,12 +1,10 @@
-//! One design under one torque: equilibrium at any position of the mesh cycle, and the walk over all of it.
+//! One design under one torque: equilibrium at any position of the mesh cycle.
 //!
-//! The cycle is cut at the ends of its zones, where a modification starts or ends, where flanks begin to touch at another
-//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
-//! everything is smooth. Must not know: what is done with the values.
+//! Must not know: which positions are looked at, what is done with the values.
 
 use super::across::Sliced;
 use super::cycle::{Elasticity, MeshCycle};
-use super::trace::{NODES, Span, Trace};
+use super::walk::CLOSEST;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
@@ -15,12 +13,6 @@ use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST, PerSpring, Springs};
-use crate::numeric::crossing::crossing;
-
-/// Cuts closer than this share of the base pitch are one.
-const CLOSEST: f64 = 1e-10;
-/// Cuts that one span may be given for pairs that take up or lose load.
-const MOST_CUTS: usize = 24;
 
 /// A design under a torque.
 #[derive(Clone)]
@@ -34,7 +26,9 @@ pub struct Loading<'a> {
     profiles: [Vec<&'a dyn Modification>; 2],
     corners: Option<Corners<'a>>,
     /// Cycle positions at which a profile is not smooth, ascending.
-    breaks: Vec<f64>,
+    pub(super) breaks: Vec<f64>,
+    /// Interferences at which the load of a pair is not smooth, besides 0.
+    pub(super) levels: Vec<f64>,
 }
 
 /// What corner contact adds.
@@ -89,10 +83,14 @@ impl<'a> Loading<'a> {
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
         };
         let profiles = [of(Side::Pinion), of(Side::Gear)];
+        let slices = Sliced::new(cycle, design, &face);
+        // Where slices hold each other, the load of a pair is no function of its interference alone.
+        let levels = if slices.is_some() { Vec::new() } else { face.levels() };
         let mut loading = Self {
+            levels,
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
-            slices: Sliced::new(cycle, design, &face),
+            slices,
             face,
             profiles,
             corners: None,
@@ -174,10 +172,16 @@ impl<'a> Loading<'a> {
         self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
+    /// The same without cuts where a stretch of the face begins to touch or has come into contact all along.
+    #[must_use]
+    pub fn without_levels(&self) -> Self {
+        Self { levels: Vec::new(), ..self.clone() }
+    }
+
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
-        Self { force: 0.0, ..self.clone() }
+        Self { force: 0.0, levels: Vec::new(), ..self.clone() }
     }
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
@@ -347,100 +351,5 @@ impl<'a> Loading<'a> {
             Elasticity::Linear(stiffness) => stiffness.value(s) * interference / self.cycle.face_width,
             Elasticity::Logarithmic { .. } => self.slice(s).load(interference).0,
         }
-    }
-
-    /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
-    pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[State; NODES])) {
-        let closest = CLOSEST * self.cycle.period();
-        for zone in &self.cycle.zones {
-            let mut start = zone.start;
-            let inside = self.breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
-            for end in inside {
-                if end - start <= closest {
-                    continue;
-                }
-                let panels = ((end - start) / longest - 1e-9).ceil().max(1.0);
-                let width = (end - start) / panels;
-                let mut from = start;
-                let mut first = self.state(start, zone.pairs);
-                let mut panel = 1.0;
-                while panel <= panels {
-                    let to = if panel < panels { start + width * panel } else { end };
-                    let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
-                    let mut cuts = MOST_CUTS;
-                    first = self.smooth(&span, first, &mut cuts, &mut visit);
-                    from = to;
-                    panel += 1.0;
-                }
-                start = end;
-            }
-        }
-    }
-
-    /// Visits a span, in parts if the set of loaded pairs changes inside it. Returns the state at its end.
-    ///
-    /// All parts share `cuts`: where gaps are equal but for rounding, the changes that rounding makes have no end.
-    fn smooth(
-        &self,
-        span: &Span,
-        first: State,
-        cuts: &mut usize,
-        visit: &mut impl FnMut(&Span, &[State; NODES]),
-    ) -> State {
-        let rows = &self.cycle.rows;
-        let mut states = [first; NODES];
-        for (node, state) in states.iter_mut().enumerate().skip(1) {
-            *state = self.state(span.position(rows, node), span.pairs);
-        }
-        if *cuts > 0
-            && let Some((position, pair)) = self.change(span, &states)
-        {
-            *cuts -= 1;
-            let before = Span { end: position, touches: [span.touches[0], Some(pair)], ..*span };
-            let after = Span { start: position, touches: [Some(pair), span.touches[1]], ..*span };
-            let middle = self.smooth(&before, first, cuts, visit);
-            return self.smooth(&after, middle, cuts, visit);
-        }
-        visit(span, &states);
-        states[NODES - 1]
-    }
-
-    /// The first change of the set of loaded pairs between the nodes of a span: where, and of which pair.
-    fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, usize)> {
-        let closest = CLOSEST * self.cycle.period();
-        for node in 0..NODES - 1 {
-            for pair in 0..self.cycle.springs(span.pairs) {
-                let (before, after) =
-                    (states[node].balance.interference[pair], states[node + 1].balance.interference[pair]);
-                let ends = [node == 0, node + 2 == NODES];
-                let at_known_end = (0..2).any(|end| ends[end] && span.touches[end] == Some(pair));
-                if (before > 0.0) == (after > 0.0) || at_known_end {
-                    continue;
-                }
-                let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
-                let interference = |position: f64| self.state(position, span.pairs).balance.interference[pair];
-                let at = crossing(interference, (from, before), (to, after), 0.1 * closest);
-                if at - span.start > closest && span.end - at > closest {
-                    return Some((at, pair));
-                }
-            }
-        }
-        None
-    }
-
-    /// The transmission error over the cycle.
-    #[must_use]
-    pub fn trace(&self) -> Trace {
-        let mut trace = Trace { spans: Vec::with_capacity(32) };
-        self.walk(self.span_length(0), |span, states| {
-            trace.spans.push((*span, std::array::from_fn(|node| states[node].transmission_error())));
-        });
-        trace
-    }
-
-    /// The longest span for the wanted number of positions, short enough for `harmonics`.
-    pub(super) fn span_length(&self, harmonics: usize) -> f64 {
-        let spans = (self.cycle.settings.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
-        self.cycle.period() / spans.max(1.0)
     }
 }

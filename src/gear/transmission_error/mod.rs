@@ -14,3 +14,4 @@ pub mod stiffness;
 #[cfg(test)]
 mod tests;
 pub mod trace;
+mod walk;

@@ -6,6 +6,7 @@ pub mod geometry;
 pub mod modification;
 pub mod optimizer;
 pub mod report;
+pub mod stability;
 pub mod ste;
 pub mod stiffness;
 
@@ -19,5 +20,6 @@ pub const KINDS: &[&Kind] = &[
     &optimizer::KIND,
     &ste::KIND,
     &accuracy::KIND,
+    &stability::KIND,
     &report::KIND,
 ];

@@ -1,0 +1,248 @@
+//! The box of cases: a point in it, its axes with their ranges, and the case that a point stands for.
+//!
+//! A point names a pair by what does not depend on its size (bores as parts of the root circle, contact ratio), so that
+//! one coordinate can move from end to end while the rest stay possible. Pairs stand without backlash. Must not know: what
+//! is checked.
+
+use std::f64::consts::PI;
+
+use super::{Case, Model};
+use crate::gear::geometry::involute::{inverse_involute, involute};
+use crate::gear::geometry::{Pair, Rack, Side, Specification};
+use crate::gear::material::Material;
+
+/// A pair under a load. SI; arrays hold pinion and gear.
+#[derive(Clone, Debug)]
+pub struct Point {
+    pub module: f64,
+    pub pressure_angle: f64,
+    pub teeth: [f64; 2],
+    pub shift: [f64; 2],
+    pub rack: Rack,
+    /// How far the tip circle is beyond m(z/2 + h_aP* + x) \[modules\].
+    pub longer: [f64; 2],
+    /// Addendum and dedendum follow from it where it is given.
+    pub contact_ratio: Option<f64>,
+    pub face_width: [f64; 2],
+    /// Bore radius over root radius.
+    pub bore: [f64; 2],
+    pub material: [Material; 2],
+    pub torque: f64,
+    pub relief: f64,
+    pub relief_length: f64,
+    pub crowning: f64,
+}
+
+/// One coordinate.
+pub struct Axis {
+    pub name: &'static str,
+    /// Unit in which its values are shown.
+    pub unit: &'static str,
+    /// SI.
+    pub least: f64,
+    pub most: f64,
+    pub logarithmic: bool,
+    /// The part of the unit interval in which a sample leaves the base pair's value.
+    absent: f64,
+    pub set: fn(&mut Point, f64),
+}
+
+const fn logarithmic(
+    name: &'static str,
+    unit: &'static str,
+    [least, most]: [f64; 2],
+    set: fn(&mut Point, f64),
+) -> Axis {
+    Axis { name, unit, least, most, logarithmic: true, absent: 0.0, set }
+}
+
+const fn linear(name: &'static str, unit: &'static str, [least, most]: [f64; 2], set: fn(&mut Point, f64)) -> Axis {
+    Axis { name, unit, least, most, logarithmic: false, absent: 0.0, set }
+}
+
+const DEGREE: f64 = PI / 180.0;
+
+/// Every axis; a sample sets them in this order.
+pub const AXES: &[Axis] = &[
+    logarithmic("torque", "N m", [1e-12, 1e9], |point, value| point.torque = value),
+    logarithmic("youngs_modulus", "Pa", [1.0, 1e15], |point, value| {
+        for material in &mut point.material {
+            material.youngs_modulus = value;
+        }
+    }),
+    Axis { absent: 0.5, ..logarithmic("stiffness_ratio", "", [1e-12, 1e12], Point::set_stiffness_ratio) },
+    logarithmic("module", "mm", [1e-5, 0.1], Point::set_module),
+    logarithmic("pinion_teeth", "", [5.0, 2000.0], |point, value| point.teeth[0] = value.round()),
+    logarithmic("gear_teeth", "", [5.0, 2000.0], |point, value| point.teeth[1] = value.round()),
+    Axis { absent: 0.4, ..linear("pinion_shift", "", [-1.0, 1.5], |point, value| point.shift[0] = value) },
+    Axis { absent: 0.4, ..linear("gear_shift", "", [-1.0, 1.5], |point, value| point.shift[1] = value) },
+    Axis {
+        absent: 0.5,
+        ..linear("pressure_angle", "deg", [10.0 * DEGREE, 35.0 * DEGREE], |point, value| point.pressure_angle = value)
+    },
+    logarithmic("face_width", "mm", [1e-6, 10.0], |point, value| point.face_width = [value; 2]),
+    Axis { absent: 0.3, ..logarithmic("relief", "um", [1e-12, 3e-3], |point, value| point.relief = value) },
+    logarithmic("relief_length", "mm", [1e-9, 1e-2], |point, value| point.relief_length = value),
+    Axis { absent: 0.3, ..logarithmic("crowning", "um", [1e-12, 3e-3], |point, value| point.crowning = value) },
+    linear("bore", "", [1e-3, 1.0 - 1e-9], |point, value| point.bore = [value; 2]),
+    Axis {
+        absent: 0.6,
+        ..linear("contact_ratio", "", [1.0001, 3.0], |point, value| point.contact_ratio = Some(value))
+    },
+];
+
+/// The axis called `name`.
+#[must_use]
+pub fn axis(name: &str) -> Option<&'static Axis> {
+    AXES.iter().find(|axis| axis.name == name)
+}
+
+/// The point of the whole box at `coordinates` of the unit cube, one per axis.
+#[must_use]
+pub fn sample(base: &Point, coordinates: &[f64]) -> Point {
+    let mut point = base.clone();
+    for (axis, coordinate) in AXES.iter().zip(coordinates) {
+        if *coordinate >= axis.absent {
+            let share = (coordinate - axis.absent) / (1.0 - axis.absent);
+            let value = if axis.logarithmic {
+                axis.least * libm::pow(axis.most / axis.least, share)
+            } else {
+                axis.least + (axis.most - axis.least) * share
+            };
+            (axis.set)(&mut point, value);
+        }
+    }
+    point
+}
+
+impl Point {
+    /// The point a pair stands for, unmodified and under no torque.
+    #[must_use]
+    pub fn of(pair: &Pair) -> Self {
+        let both = |value: fn(&crate::gear::geometry::Gear) -> f64| {
+            [Side::Pinion, Side::Gear].map(|side| value(pair.side(side)))
+        };
+        let specification = &pair.pinion.specification;
+        Self {
+            module: specification.module,
+            pressure_angle: specification.pressure_angle,
+            teeth: both(|gear| f64::from(gear.specification.teeth)),
+            shift: both(|gear| gear.specification.profile_shift),
+            rack: specification.rack,
+            longer: both(|gear| {
+                let Specification { teeth, module, profile_shift, rack, .. } = gear.specification;
+                let longer = gear.tip_radius / module - 0.5 * f64::from(teeth) - rack.addendum - profile_shift;
+                // A tip circle that went through a table in mm comes back with its last digit changed.
+                if longer.abs() < 1e-12 * f64::from(teeth) { 0.0 } else { longer }
+            }),
+            contact_ratio: None,
+            face_width: both(|gear| gear.specification.face_width),
+            bore: both(|gear| gear.specification.bore_radius / gear.root_radius),
+            material: [Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.material),
+            torque: 0.0,
+            relief: 0.0,
+            relief_length: 0.0,
+            crowning: 0.0,
+        }
+    }
+
+    /// E of both gears around what it is, as far as the range of a material goes.
+    fn set_stiffness_ratio(&mut self, ratio: f64) {
+        let mean = (self.material[0].youngs_modulus * self.material[1].youngs_modulus).sqrt();
+        let moduli = [mean * ratio.sqrt(), mean / ratio.sqrt()];
+        let (least, most) = (moduli[0].min(moduli[1]), moduli[0].max(moduli[1]));
+        let factor = if most > 1e15 {
+            1e15 / most
+        } else if least < 1.0 {
+            1.0 / least
+        } else {
+            1.0
+        };
+        for (material, modulus) in self.material.iter_mut().zip(moduli) {
+            material.youngs_modulus = (modulus * factor).clamp(1.0, 1e15);
+        }
+    }
+
+    /// All lengths with it.
+    fn set_module(&mut self, module: f64) {
+        let factor = module / self.module;
+        self.module = module;
+        self.face_width = self.face_width.map(|width| width * factor);
+        self.relief *= factor;
+        self.relief_length *= factor;
+        self.crowning *= factor;
+    }
+
+    /// The case of this point.
+    #[must_use]
+    pub fn case(&self, name: impl Into<String>, axis: &'static str, place: f64, model: &Model) -> Case {
+        let rack = self.rack_for(self.contact_ratio);
+        let gear = |side: usize| {
+            let teeth = self.teeth[side];
+            let root = self.module * (0.5 * teeth - rack.dedendum + self.shift[side]);
+            let tip = self.module * (0.5 * teeth + rack.addendum + self.shift[side] + self.longer[side]);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of teeth
+            let teeth = teeth as u32;
+            Specification {
+                teeth,
+                module: self.module,
+                pressure_angle: self.pressure_angle,
+                profile_shift: self.shift[side],
+                rack,
+                tip_radius: (self.longer[side] != 0.0).then_some(tip),
+                face_width: self.face_width[side],
+                bore_radius: self.bore[side] * root,
+                material: self.material[side],
+            }
+        };
+        Case {
+            name: name.into(),
+            axis,
+            place,
+            gears: [gear(0), gear(1)],
+            torque: self.torque,
+            relief: self.relief,
+            relief_length: self.relief_length,
+            crowning: self.crowning,
+            model: model.clone(),
+        }
+    }
+
+    /// The rack whose addendum gives a contact ratio, with a quarter of a module of clearance; its tip round is cut down
+    /// where it would be more than full.
+    pub(super) fn rack_for(&self, contact_ratio: Option<f64>) -> Rack {
+        let mut rack = self.rack;
+        if let Some(ratio) = contact_ratio {
+            let (mut low, mut high) = (0.02, 3.0);
+            for _ in 0..100 {
+                let middle = 0.5 * (low + high);
+                if self.contact_ratio_with(middle) < ratio { low = middle } else { high = middle }
+            }
+            rack.addendum = 0.5 * (low + high);
+            rack.dedendum = rack.dedendum.max(rack.addendum + 0.25);
+        }
+        let (sine, cosine) = libm::sincos(self.pressure_angle);
+        let full_round = (0.25 * PI * cosine - rack.dedendum * sine) / (1.0 - sine);
+        if full_round > 0.0 {
+            rack.tip_radius = rack.tip_radius.min(full_round);
+        }
+        rack
+    }
+
+    /// ε_α for an addendum, whatever else would forbid it; 0 where there is no working pressure angle.
+    fn contact_ratio_with(&self, addendum: f64) -> f64 {
+        let angle = self.pressure_angle;
+        let teeth = self.teeth[0] + self.teeth[1];
+        let value = involute(angle) + 2.0 * libm::tan(angle) * (self.shift[0] + self.shift[1]) / teeth;
+        if value <= 0.0 {
+            return 0.0;
+        }
+        let cosine = libm::cos(angle);
+        let along = |side: usize| {
+            let (base, tip) = (0.5 * self.teeth[side] * cosine, 0.5 * self.teeth[side] + addendum + self.shift[side]);
+            ((tip - base) * (tip + base)).max(0.0).sqrt()
+        };
+        let tangent = 0.5 * teeth * cosine * libm::tan(inverse_involute(value, angle));
+        (along(0) + along(1) - tangent) / (PI * cosine)
+    }
+}

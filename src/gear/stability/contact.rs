@@ -1,0 +1,212 @@
+//! What an equilibrium must fulfil, recomputed from the tables it was solved from.
+//!
+//! Gaps come from the design, compliances from the tables of the teeth, the passage through a crowned face from its
+//! closed form; the solver's own quick copies are not used. Must not know: how an equilibrium is found.
+
+use super::{Built, Case, Finding, TABLE};
+use crate::gear::compliance::ContactLaw;
+use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::geometry::Side;
+use crate::gear::transmission_error::curve::Wanted;
+use crate::gear::transmission_error::loading::{Loading, State};
+use crate::numeric::complementarity::MOST;
+
+/// Where in a zone it is looked at.
+const SHARES: [f64; 9] = [0.0, 1e-9, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0 - 1e-9, 1.0];
+/// Distance from a zone's end, in base pitches, and how many deflections per base pitch a curve may rise there besides
+/// what reliefs make it rise.
+const NEAR: f64 = 1e-9;
+const STEEPEST: f64 = 1e3;
+/// A few sums and products.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+
+type Matrix = [[f64; MOST]; MOST];
+
+/// The pairs at one position, from the tables.
+struct Pairs {
+    count: usize,
+    /// From the smallest one up.
+    gaps: [f64; MOST],
+    largest_gap: f64,
+    /// Own compliances without a load-dependent part on the diagonal.
+    compliance: Matrix,
+    laws: [Option<Logarithmic>; MOST],
+}
+
+fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
+    let Built { pair, design, compliance, cycle } = built;
+    let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
+    let s = |index: usize| cycle.path_position(position, index);
+    let rolls = |index: usize| [pair.roll(Side::Pinion, s(index)), pair.roll(Side::Gear, s(index))];
+    let mut found =
+        Pairs { count, gaps: [0.0; MOST], largest_gap: 0.0, compliance: [[0.0; MOST]; MOST], laws: [None; MOST] };
+    for j in 0..count {
+        let [pinion, gear] = rolls(j);
+        found.gaps[j] = design.depth(Side::Pinion, pinion) + design.depth(Side::Gear, gear);
+        found.largest_gap = found.largest_gap.max(found.gaps[j]);
+        let teeth = compliance.pinion.total(pinion) + compliance.gear.total(gear);
+        let contact = if compliance.contact == ContactLaw::Linear {
+            flattening::linear(materials) / cycle.face_width
+        } else {
+            0.0
+        };
+        found.compliance[j][j] = teeth + contact;
+        if compliance.contact == ContactLaw::LoadDependent {
+            let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
+            let radius = flattening::combined_radius([s(j), pair.tangent_length - s(j)]);
+            found.laws[j] = Some(Logarithmic::new(materials, radius, depths));
+        }
+        for k in 0..j {
+            let [behind, ahead] = [rolls(k), rolls(j)];
+            let surfaces = [&compliance.pinion.neighbours, &compliance.gear.neighbours].map(|all| all.get(j - k - 1));
+            let pinion = surfaces[0].map_or(0.0, |surface| surface.value(behind[0], ahead[0]));
+            let gear = surfaces[1].map_or(0.0, |surface| surface.value(ahead[1], behind[1]));
+            let cross = if compliance.coupled { pinion + gear } else { 0.0 };
+            (found.compliance[j][k], found.compliance[k][j]) = (cross, cross);
+        }
+    }
+    let smallest = found.gaps[..count].iter().copied().fold(f64::INFINITY, f64::min);
+    found.gaps[..count].iter_mut().for_each(|gap| *gap -= smallest);
+    found
+}
+
+/// Mean and peak-to-peak transmission error, and a finding for each invariant.
+pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> [f64; 2] {
+    let loading = Loading::new(&built.cycle, &built.design, case.torque);
+    let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true });
+    let numbers = points.iter().flat_map(|point| {
+        let pressure = point.pressure.unwrap_or(0.0);
+        let own = [point.transmission_error, point.unloaded_transmission_error, point.secant_stiffness, pressure];
+        own.into_iter().chain([point.tangent_stiffness]).chain(point.loads)
+    });
+    let sums = [
+        summary.mean,
+        summary.peak_to_peak,
+        summary.variance,
+        summary.unloaded_peak_to_peak,
+        summary.loaded_contact_ratio,
+        summary.largest_load_share,
+    ];
+    let strange = numbers.chain(sums).chain(summary.harmonics.clone()).filter(|value| !value.is_finite()).count();
+    findings.push(Finding::new("no NaN, no infinity", strange as f64, 0.0));
+
+    let (mut imbalance, mut negative, mut condition) = (0.0_f64, 0.0_f64, 1.0_f64);
+    let (mut growth, mut softening) = (0.0_f64, 0.0_f64);
+    let mut jump = (0.0_f64, 1.0_f64);
+    let mut residual = Some((0.0_f64, ROUNDING));
+    let ladder = [1.0, 2.0].map(|factor| Loading::new(&built.cycle, &built.design, case.torque * factor));
+    for zone in &built.cycle.zones {
+        for share in SHARES {
+            let position = zone.start + share * (zone.end - zone.start);
+            let state = loading.state(position, zone.pairs);
+            let loads = &state.balance.loads[..zone.pairs];
+            let sum: f64 = loads.iter().sum();
+            imbalance = imbalance.max((sum / loading.force - 1.0).abs());
+            negative = loads.iter().fold(negative, |worst, load| worst.max(-load / loading.force));
+            let pairs = pairs(built, position, zone.pairs);
+            condition = condition.max(pairs.condition(loads, built.cycle.face_width));
+            residual = residual.and_then(|worst| {
+                let (value, limit) = pairs.residual(case, built, &state, loading.force)?;
+                Some(if value * worst.1 >= worst.0 * limit { (value, limit) } else { worst })
+            });
+            let [once, twice] = [&ladder[0], &ladder[1]].map(|load| load.state(position, zone.pairs).balance.approach);
+            growth = growth.max(once / twice);
+            softening = softening.max(twice / (2.0 * once));
+        }
+        for (end, inwards) in [(zone.start, 1.0), (zone.end, -1.0)] {
+            let at = |position: f64| loading.state(position, zone.pairs).transmission_error();
+            let distance = NEAR * built.cycle.period();
+            let (here, near) = (at(end), at(end + inwards * distance));
+            let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
+            let size = here.abs().max(near.abs());
+            // Both flanks of a pair may be relieved there; a shorter relief than the distance is passed over.
+            let limit = NEAR * STEEPEST + ROUNDING + (distance * ramps).min(2.0 * case.relief) / size;
+            let change = (here - near).abs() / size;
+            if change * jump.1 >= jump.0 * limit {
+                jump = (change, limit);
+            }
+        }
+    }
+    findings.push(Finding::new("load balance", imbalance, ROUNDING));
+    findings.push(Finding::new("no negative load", negative, 0.0));
+    findings.push(residual.map_or_else(
+        || Finding::refused("complementarity", "a crowned face under the load-dependent law has no closed form"),
+        |(value, limit)| Finding::new("complementarity", value, limit),
+    ));
+    findings.push(Finding::new("deflection grows with the load", growth, 1.0 - TABLE));
+    findings.push(Finding::new("deflection grows no faster than the load", softening, 1.0 + TABLE));
+    findings.push(Finding::new("continuous at the ends of zones", jump.0, jump.1));
+    findings.push(Finding::new("condition of the compliance matrix", condition, 1.0 / f64::EPSILON.sqrt()));
+    [summary.mean, summary.peak_to_peak]
+}
+
+impl Pairs {
+    /// The largest load that the interferences do not explain, over the force, and what rounding may leave; the
+    /// interference is the difference of approach and gap, so a pair's own limit grows with what is subtracted.
+    fn residual(&self, case: &Case, built: &Built, state: &State, force: f64) -> Option<(f64, f64)> {
+        let crown = case.crown();
+        let width = built.cycle.face_width;
+        let balance = &state.balance;
+        let mut worst = (0.0_f64, ROUNDING);
+        for j in 0..self.count {
+            let others: f64 =
+                (0..self.count).filter(|k| *k != j).map(|k| self.compliance[j][k] * balance.loads[k]).sum();
+            let interference = balance.approach - self.gaps[j] - others;
+            let own = self.compliance[j][j];
+            let (value, stiffness) = if let Some(law) = &self.laws[j] {
+                if crown != 0.0 {
+                    return None;
+                }
+                let load = balance.loads[j] / width;
+                let needed = balance.loads[j] * own + law.approach(load);
+                (((interference.max(0.0) - needed) / own).abs(), 1.0 / own)
+            } else {
+                let w = interference.max(0.0);
+                let share = if w >= crown { 1.0 } else { (w / crown).sqrt() };
+                ((share * (w - crown * share * share / 3.0) / own - balance.loads[j]).abs(), share / own)
+            };
+            let taken = balance.approach + self.largest_gap + others.abs();
+            let limit = ROUNDING + (ROUNDING + TABLE) * (1.0 + stiffness * taken / force);
+            if value / force * worst.1 >= worst.0 * limit {
+                worst = (value / force, limit);
+            }
+        }
+        Some(worst)
+    }
+
+    /// Largest over smallest eigenvalue of the compliance matrix of the loaded pairs, by Jacobi's rotations.
+    fn condition(&self, loads: &[f64], width: f64) -> f64 {
+        let loaded: Vec<usize> = (0..self.count).filter(|j| loads[*j] > 0.0).collect();
+        let n = loaded.len();
+        let mut matrix: Vec<Vec<f64>> =
+            loaded.iter().map(|j| loaded.iter().map(|k| self.compliance[*j][*k]).collect()).collect();
+        for (row, j) in loaded.iter().enumerate() {
+            if let Some(law) = &self.laws[*j] {
+                matrix[row][row] += law.approach(loads[*j] / width) / loads[*j];
+            }
+        }
+        for _ in 0..30 {
+            for p in 0..n {
+                for q in p + 1..n {
+                    if matrix[p][q] == 0.0 {
+                        continue;
+                    }
+                    let theta = 0.5 * libm::atan2(2.0 * matrix[p][q], matrix[q][q] - matrix[p][p]);
+                    let (sine, cosine) = libm::sincos(theta);
+                    for k in 0..n {
+                        let (a, b) = (matrix[k][p], matrix[k][q]);
+                        (matrix[k][p], matrix[k][q]) = (cosine * a - sine * b, sine * a + cosine * b);
+                    }
+                    for k in 0..n {
+                        let (a, b) = (matrix[p][k], matrix[q][k]);
+                        (matrix[p][k], matrix[q][k]) = (cosine * a - sine * b, sine * a + cosine * b);
+                    }
+                }
+            }
+        }
+        let values = (0..n).map(|k| matrix[k][k]);
+        let (least, most) =
+            values.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
+        if least > 0.0 { most / least } else { f64::INFINITY }
+    }
+}

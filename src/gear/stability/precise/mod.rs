@@ -1,0 +1,135 @@
+//! The chain from geometry to transmission error once more, in twice the precision: what the kernels' digits are held to.
+//!
+//! It is compact and slow, and shares no code with the kernels: roots by bisection, integrals by composite Gauss–Legendre
+//! rules of high order, contact by Newton's method on the load of all pairs. It covers gears with the generated root,
+//! the energy method with the fitted gear body, pairs that are added, both contact laws, linear tip relief counted from
+//! the tip, and crowning (its closed form). Inputs are the kernels' own `f64`, taken as exact. Must not know: the kernels.
+
+mod mesh;
+mod rules;
+mod tooth;
+
+use crate::numeric::double_double::Double;
+use mesh::Mesh;
+pub use rules::Rule;
+use tooth::Tooth;
+
+use crate::gear::geometry::Side;
+
+/// One gear as specified.
+#[derive(Clone, Debug)]
+pub struct GearInputs {
+    pub teeth: f64,
+    pub shift: Double,
+    pub addendum: f64,
+    pub dedendum: f64,
+    pub round: f64,
+    /// r_a where it was given.
+    pub tip_radius: Option<Double>,
+    /// Factor on the tip radius: 1, but for finding out how much depends on its last digit.
+    pub tip_scale: Double,
+    pub face_width: f64,
+    pub bore_radius: f64,
+    pub youngs_modulus: f64,
+    pub poisson_ratio: f64,
+    /// Linear tip relief: depth at the tip, and roll length from the tip.
+    pub relief: Double,
+    pub relief_length: f64,
+    pub crowning: Double,
+}
+
+/// A pair under a torque.
+#[derive(Clone, Debug)]
+pub struct Inputs {
+    pub gears: [GearInputs; 2],
+    pub module: Double,
+    pub pressure_angle: Double,
+    pub torque: Double,
+    pub shear_factor: f64,
+    pub load_dependent: bool,
+}
+
+/// What is compared, in the order of [`Quantities`].
+pub const NAMES: [&str; 13] = [
+    "form radius",
+    "form roll angle",
+    "tip roll angle",
+    "tip thickness",
+    "centre distance",
+    "start of contact",
+    "contact ratio",
+    "compliance at the form point",
+    "compliance at the tip",
+    "stiffness, fewest pairs",
+    "stiffness, most pairs",
+    "mean transmission error",
+    "peak-to-peak transmission error",
+];
+
+/// One value per name.
+pub type Quantities<T> = [T; NAMES.len()];
+
+/// How many of the quantities are of geometry alone.
+pub const GEOMETRIC: usize = 7;
+
+/// Everything at once.
+pub fn evaluate(inputs: &Inputs, rule: &Rule) -> Quantities<Double> {
+    let mut teeth = [Side::Pinion, Side::Gear].map(|side| Tooth::new(inputs, side));
+    let mesh = Mesh::new(inputs, &teeth);
+    let pinion = &teeth[0];
+    let geometry = [
+        pinion.form_radius,
+        pinion.form_roll,
+        pinion.tip_roll,
+        pinion.tip_thickness,
+        mesh.centre_distance,
+        mesh.start,
+        mesh.contact_ratio(),
+    ];
+    for tooth in &mut teeth {
+        tooth.tabulate(rule, inputs.shear_factor);
+    }
+    let compliance = [teeth[0].value(teeth[0].form_roll), teeth[0].value(teeth[0].tip_roll)];
+    let stiffness = mesh.stiffness(&teeth);
+    let error = mesh.transmission_error(&teeth, rule);
+    let mut all = [Double::ZERO; NAMES.len()];
+    for (slot, value) in all.iter_mut().zip(geometry.into_iter().chain(compliance).chain(stiffness).chain(error)) {
+        *slot = value;
+    }
+    all
+}
+
+/// Relative changes per relative change of what rounding touches first: pressure angle, profile shifts (as parts of a
+/// module), tip radii, relief, crowning and torque. Their sum is the condition number of each quantity; a coarse rule
+/// will do, since it serves both sides of each difference.
+pub fn conditions(inputs: &Inputs, rule: &Rule) -> Quantities<f64> {
+    const STEP: f64 = 1e-11;
+    let scale = Double::ONE + STEP;
+    let changes: [fn(&mut Inputs, Double); 8] = [
+        |inputs, scale| inputs.pressure_angle = inputs.pressure_angle * scale,
+        |inputs, scale| inputs.gears[0].shift += scale - 1.0,
+        |inputs, scale| inputs.gears[1].shift += scale - 1.0,
+        |inputs, scale| inputs.gears[0].tip_scale = Double::ONE / scale,
+        |inputs, scale| inputs.gears[1].tip_scale = Double::ONE / scale,
+        |inputs, scale| inputs.torque = inputs.torque * scale,
+        |inputs, scale| inputs.gears[0].relief = inputs.gears[0].relief * scale,
+        |inputs, scale| inputs.gears[0].crowning = inputs.gears[0].crowning * scale,
+    ];
+    let here = evaluate(inputs, rule);
+    let mut sums = [0.0; NAMES.len()];
+    let [relieved, crowned] = [inputs.gears[0].relief, inputs.gears[0].crowning].map(|amount| amount.high != 0.0);
+    for (change, wanted) in changes.into_iter().zip([true, true, true, true, true, true, relieved, crowned]) {
+        if !wanted {
+            continue;
+        }
+        let mut changed = inputs.clone();
+        change(&mut changed, scale);
+        let values = evaluate(&changed, rule);
+        for (sum, (value, here)) in sums.iter_mut().zip(values.into_iter().zip(here)) {
+            if here.high != 0.0 {
+                *sum += ((value - here) / here).high.abs() / STEP;
+            }
+        }
+    }
+    sums
+}

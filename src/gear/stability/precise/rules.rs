@@ -1,0 +1,157 @@
+//! Quadrature and interpolation in twice the precision: Gauss–Legendre rules and panels at Chebyshev nodes.
+//!
+//! Sources: Davis and Rabinowitz, Methods of Numerical Integration, 2.7; Berrut and Trefethen, SIAM Review 46 (2004) 501
+//! (barycentric formula);
+//! Takahasi and Mori, Publ. RIMS Kyoto 9 (1974) 721 (double exponential rule). Must not know: what is integrated.
+
+use crate::numeric::double_double::Double;
+
+/// Step of the double exponential rule.
+const STEP: f64 = 0.12;
+/// Steps to either side: to 1e-20 from the ends.
+const STEPS: i32 = 28;
+
+/// Points and weights on −1..1, one for long intervals, one for the short ones between nodes, and Chebyshev nodes.
+pub struct Rule {
+    /// Points and weights on 0..1 for what has a logarithm at the ends.
+    singular: Vec<(Double, Double)>,
+    long: Vec<(Double, Double)>,
+    short: Vec<(Double, Double)>,
+    /// Node and barycentric weight, ascending.
+    chebyshev: Vec<(Double, Double)>,
+}
+
+impl Rule {
+    /// With `points` on a long interval, half as many on a short one, and `nodes` on a panel.
+    pub fn new(points: usize, nodes: usize) -> Self {
+        let angle = |k: usize| Double::PI * (2 * k + 1) as f64 / (2 * nodes) as f64;
+        let chebyshev = (0..nodes).map(|k| {
+            let (sine, cosine) = angle(k).sine_cosine();
+            (-cosine, if k % 2 == 0 { sine } else { -sine })
+        });
+        Self {
+            long: legendre(points),
+            short: legendre(points / 2),
+            chebyshev: chebyshev.collect(),
+            singular: double_exponential(),
+        }
+    }
+
+    /// Adds the integrals of several functions from `from` to `to`.
+    pub fn integrate<const N: usize>(
+        &self,
+        from: Double,
+        to: Double,
+        sums: &mut [Double; N],
+        function: impl Fn(Double) -> [Double; N],
+    ) {
+        accumulate(&self.long, from, to, sums, function);
+    }
+
+    /// The same over a part of a panel.
+    pub fn short<const N: usize>(
+        &self,
+        from: Double,
+        to: Double,
+        sums: &mut [Double; N],
+        function: impl Fn(Double) -> [Double; N],
+    ) {
+        accumulate(&self.short, from, to, sums, function);
+    }
+
+    /// Points and weights on 0..1, of a rule that is exact for high powers of the place, or for its logarithm too.
+    pub fn unit(&self, singular: bool) -> Vec<(Double, Double)> {
+        if singular {
+            return self.singular.clone();
+        }
+        // u²(3 − 2u) and its rate: the 3/2 power of a distance from either end is smooth in u.
+        let graded = self.long.iter().map(|(node, weight)| {
+            let u = (*node + 1.0).half();
+            let share = u.square() * (Double::from(3.0) - u.times_power_of_two(2.0));
+            (share, weight.half() * u * (Double::ONE - u) * 6.0)
+        });
+        graded.collect()
+    }
+}
+
+fn accumulate<const N: usize>(
+    rule: &[(Double, Double)],
+    from: Double,
+    to: Double,
+    sums: &mut [Double; N],
+    function: impl Fn(Double) -> [Double; N],
+) {
+    let (middle, half) = ((from + to).half(), (to - from).half());
+    for (node, weight) in rule {
+        for (sum, value) in sums.iter_mut().zip(function(middle + half * *node)) {
+            *sum += value * (*weight * half);
+        }
+    }
+}
+
+/// 1/(1 + exp(−π sinh t)) in equal steps of t.
+fn double_exponential() -> Vec<(Double, Double)> {
+    let node = |index: i32| {
+        let t = Double::from(STEP) * f64::from(index);
+        let (up, down) = (t.exponential(), (-t).exponential());
+        let decay = (-(Double::PI * (up - down).half())).exponential();
+        let share = Double::ONE / (Double::ONE + decay);
+        (share, share.square() * decay * Double::PI * (up + down).half() * STEP)
+    };
+    (-STEPS..=STEPS).map(node).collect()
+}
+
+/// The zeros of a Legendre polynomial by Newton's method, and 2/((1 − x²) P′²).
+fn legendre(count: usize) -> Vec<(Double, Double)> {
+    let polynomial = |x: Double| {
+        let (mut before, mut value) = (Double::ONE, x);
+        for k in 2..=count {
+            let k = k as f64;
+            (before, value) = (value, (x * value * (2.0 * k - 1.0) - before * (k - 1.0)) / k);
+        }
+        (value, (x * value - before) * count as f64 / (x.square() - 1.0))
+    };
+    let node = |index: usize| {
+        let guess = -libm::cos(std::f64::consts::PI * (index as f64 + 0.75) / (count as f64 + 0.5));
+        let mut x = Double::from(guess);
+        for _ in 0..6 {
+            let (value, rate) = polynomial(x);
+            x -= value / rate;
+        }
+        let rate = polynomial(x).1;
+        (x, Double::from(2.0) / ((Double::ONE - x.square()) * rate.square()))
+    };
+    (0..count).map(node).collect()
+}
+
+/// A function between two ends, known at Chebyshev nodes.
+pub struct Panel {
+    pub upper: Double,
+    points: Vec<(Double, Double, Double)>,
+}
+
+impl Panel {
+    pub fn nodes(from: Double, to: Double, rule: &Rule) -> Vec<Double> {
+        let (middle, half) = ((from + to).half(), (to - from).half());
+        rule.chebyshev.iter().map(|(node, _)| middle + half * *node).collect()
+    }
+
+    pub fn new(to: Double, nodes: Vec<Double>, values: Vec<Double>, rule: &Rule) -> Self {
+        let points = nodes.into_iter().zip(values).zip(&rule.chebyshev);
+        Self { upper: to, points: points.map(|((node, value), (_, weight))| (node, value, *weight)).collect() }
+    }
+
+    pub fn value(&self, x: Double) -> Double {
+        let (mut above, mut below) = (Double::ZERO, Double::ZERO);
+        for (node, value, weight) in &self.points {
+            let distance = x - *node;
+            if distance.high == 0.0 {
+                return *value;
+            }
+            let part = *weight / distance;
+            above += part * *value;
+            below += part;
+        }
+        above / below
+    }
+}
