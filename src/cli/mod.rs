@@ -112,6 +112,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
+        Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {
             show::schema();

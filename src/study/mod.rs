@@ -10,6 +10,7 @@ mod document;
 mod links;
 mod quantity;
 mod read;
+pub mod rexs;
 pub mod schema;
 pub mod settings;
 #[cfg(test)]

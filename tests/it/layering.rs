@@ -84,6 +84,7 @@ const OWNERS: &[(&str, &[&str])] = &[
     ("minijinja", &["report/", "diff/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),
+    ("roxmltree", &["study/"]),
     ("serde_saphyr", &["study/"]),
     ("clap", &["cli/"]),
     ("ctrlc", &["cli/"]),

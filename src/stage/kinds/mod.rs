@@ -5,11 +5,20 @@ pub mod geometry;
 pub mod modification;
 pub mod optimizer;
 pub mod report;
+pub mod root_optimizer;
 pub mod ste;
 pub mod stiffness;
 
 use super::Kind;
 
 /// Every kind, in the order in which `gearstudy kinds` lists them.
-pub const KINDS: &[&Kind] =
-    &[&geometry::KIND, &modification::KIND, &stiffness::KIND, &optimizer::KIND, &ste::KIND, &report::KIND];
+pub const KINDS: &[&Kind] = &[
+    &geometry::KIND,
+    &modification::KIND,
+    &stiffness::KIND,
+    &optimizer::KIND,
+    &root_optimizer::KIND,
+    &ste::KIND,
+    &export::KIND,
+    &report::KIND,
+];
