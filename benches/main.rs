@@ -8,6 +8,7 @@ mod accuracy;
 mod article;
 mod diff;
 mod finite_elements;
+mod geometry;
 mod kernels;
 mod optimize;
 mod program;
@@ -23,6 +24,7 @@ use criterion::Criterion;
 
 fn main() {
     kernels::benches();
+    geometry::benches();
     optimize::benches();
     finite_elements::benches();
     storage::benches();

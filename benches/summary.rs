@@ -21,6 +21,9 @@ const TARGETS: &[(&str, f64, &str)] = &[
         2.0,
         "1,250 coupled curves with corner contact, 24 positions, all threads",
     ),
+    ("profile/whole gear, 17 teeth x 200 points", 100e-6, "exact points of all teeth, one thread"),
+    ("profile/whole gear, 48 teeth x 200 points", 100e-6, "as before"),
+    ("profile/sweep of 10,000 designs", 0.5, "pairs with both profiles and every check, one thread"),
     ("ste/curve uncoupled", 20e-6, "64 positions, crowned, both tips relieved, one thread"),
 ];
 

@@ -24,6 +24,7 @@ pub fn true_to_scale(x: Scale, y: Scale, width: f64) -> (Scale, Scale, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::plot::{Axis, Kind, Plot, Series};
 
     #[test]
     fn a_unit_has_one_length_and_nothing_is_cut_off() {
@@ -38,5 +39,28 @@ mod tests {
             );
             assert!((FLATTEST..=TALLEST).contains(&height));
         }
+    }
+
+    #[test]
+    fn a_square_is_drawn_as_a_square() {
+        let axis = || Axis { label: "x".to_owned(), unit: "mm".to_owned(), is_log: false };
+        let runs = vec![vec![(2.0, 30.0), (12.0, 30.0), (12.0, 40.0)]];
+        let series = vec![Series { label: String::new(), runs }];
+        let plot = Plot {
+            title: "square".to_owned(),
+            kind: Kind::Drawing,
+            x: axis(),
+            y: axis(),
+            series,
+            marks: Vec::new(),
+            categories: Vec::new(),
+        };
+        let svg = plot.svg(true);
+        let path = svg.split(r#"class="series""#).nth(1).and_then(|rest| rest.split(r#"d="M"#).nth(1)).unwrap();
+        let numbers: Vec<f64> =
+            path.split('"').next().unwrap().split(['L', ' ']).map(|number| number.parse().unwrap()).collect();
+        let [x0, y0, x1, y1, x2, y2] = numbers[..] else { panic!("{numbers:?}") };
+        assert!((x1 - x0 - (y1 - y2)).abs() < 0.03 && (y0 - y1).abs() < 0.01 && (x1 - x2).abs() < 0.01, "{numbers:?}");
+        assert!(!svg.contains("<circle") && !svg.contains(r#"class="jump""#), "{svg}");
     }
 }

@@ -200,6 +200,8 @@ impl Stage for Geometry {
             Drawn { side, pair, outline }
         });
         let mut tables = Vec::from(pair::write(pair).map_err(failed)?);
+        let wanted = self.outputs().iter().any(|schema| schema.on_demand && context.demand.table(&schema.name));
+        both.iter().filter(|_| wanted).filter_map(Drawn::interference).for_each(|text| (context.warn)(text));
         let teeth = |drawn: &Drawn| if self.whole { drawn.outline.teeth } else { 1 };
         for schema in self.outputs().into_iter().filter(|schema| schema.on_demand) {
             if !context.demand.table(&schema.name) {

@@ -2,6 +2,7 @@
 //! read, built and run, and gives exactly the tables it declares.
 
 mod members;
+mod profiles;
 mod samples;
 pub mod walk;
 

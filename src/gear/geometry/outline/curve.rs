@@ -133,7 +133,8 @@ impl Curve {
                 // In the frame of the flank's normal, which turns by the roll angle: the point is `along` out on it.
                 let along = base_radius * parameter - at;
                 let speed = libm::hypot(slope, along);
-                let (out, up) = (-slope / speed, along / speed);
+                // On the base circle an unrelieved flank starts with no length, along the radius.
+                let (out, up) = if speed > 0.0 { (-slope / speed, along / speed) } else { (0.0, 1.0) };
                 let turning = along * (bend + along) - slope * (base_radius - 2.0 * slope);
                 Local {
                     position,

@@ -9,11 +9,13 @@ use crate::gear::problem::root_arc::RootArc;
 use crate::table::data::Row;
 use crate::table::schema::{Column, Schema};
 
+const OBJECTIVE: &str = "objective";
+
 type Get = fn(&RootArc) -> f64;
 
 const LENGTHS: &[(&str, &str, Get)] = &[
     ("x_a", "X of A, the point of the flank on the base circle.", |arc| arc.base.a[0]),
-    ("y_a", "Y of A.", |arc| arc.base.a[1]),
+    ("y_a", "Y of the same point.", |arc| arc.base.a[1]),
     ("h", "H = r_b − r_f (17).", |arc| arc.base.base_radius - arc.base.root_radius),
     ("r_c", "Radius of the arc (18).", |arc| arc.article().radius),
     ("x_c", "X of its centre (19).", |arc| arc.article().centre[0]),
@@ -22,7 +24,7 @@ const LENGTHS: &[(&str, &str, Get)] = &[
     }),
     ("y_c_printed", "Y of its centre as equation 20 is printed.", |arc| 2.0 * arc.base.a[1] - arc.article().centre[1]),
     ("gap", "How far the arc's circle passes outside the root circle.", |arc| arc.base.gap(arc.article())),
-    ("objective", "F of equation 28 at this arc.", |arc| arc.objective(arc.article())),
+    (OBJECTIVE, "F of equation 28 at this arc; NaN where x_c is larger than r_f.", |arc| arc.objective(arc.article())),
     ("radius_less_dedendum", "r_c − h_f, which (29) wants not to be negative.", |arc| {
         arc.inequalities_derived(arc.article())[0]
     }),
@@ -57,9 +59,11 @@ pub fn schema() -> Schema {
         Column::float("theta", "deg", "θ, the angle of A from the tooth's centreline (16)."),
         Column::float("theta_printed", "deg", "The same as equation 26 is printed."),
     ];
-    columns.extend(
-        LENGTHS.iter().map(|(name, description, _)| Column::float(name, "mm", description).tolerance(1e-9, 1e-9)),
-    );
+    columns.extend(LENGTHS.iter().map(|(name, description, _)| {
+        let column = Column::float(name, "mm", description).tolerance(1e-9, 1e-9);
+        // F has no value where the centre lies farther across than the root circle reaches.
+        if *name == OBJECTIVE { column.allows_nan() } else { column }
+    }));
     Schema::new(
         "root_arc",
         "The root arc of zhai2020; no row for a gear whose root circle is not inside its base circle.",

@@ -39,8 +39,8 @@ pub fn outline_schema() -> Schema {
             Column::text("curve", "What it lies on: line, arc, trochoid, involute, modified_involute."),
             Column::float("radius", "mm", "Distance from the gear's centre."),
             Column::float("angle", "deg", "Polar angle from the y axis, counterclockwise.").tolerance(1e-9, 1e-9),
-            Column::float("x", "mm", "Across.").tolerance(1e-9, 1e-9),
-            Column::float("y", "mm", "Up.").tolerance(1e-9, 1e-9),
+            Column::float("x", "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
+            Column::float("y", "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
             Column::float("direction", "deg", "Direction of the tangent from the x axis, counterclockwise.")
                 .tolerance(1e-7, 1e-9),
             Column::float("curvature", "1/mm", "Curvature, positive where convex; NaN where it is infinite.")
@@ -119,16 +119,43 @@ impl Drawn<'_> {
         self.outline.junctions().into_iter().enumerate().map(row).collect()
     }
 
+    /// The roll angle to which the mate's tip reaches.
+    fn lowest_roll(&self) -> f64 {
+        let end = match self.side {
+            Side::Pinion => self.pair.start_of_contact,
+            Side::Gear => self.pair.end_of_contact,
+        };
+        self.pair.roll(self.side, end)
+    }
+
+    fn interferes(&self) -> bool {
+        // A rounding's worth of overlap is none.
+        self.lowest_roll() < self.outline.form_roll - 1e-12
+    }
+
+    /// What is to be said of a root that begins too high.
+    #[must_use]
+    pub fn interference(&self) -> Option<String> {
+        let [reached, form] =
+            [self.lowest_roll(), self.outline.form_roll].map(|roll| self.gear().radius_at(roll) * 1e3);
+        let side = self.side.name();
+        self.interferes().then(|| {
+            format!(
+                "{side}: the mate's tip reaches to a radius of {reached:.6} mm, but the flank as drawn begins at {form:.6} mm"
+            )
+        })
+    }
+
     #[must_use]
     pub fn validity_row(&self) -> Row {
         let (gear, pair) = (self.gear(), self.pair);
         let specification = &gear.specification;
         let module = specification.module;
-        let (mate, lowest) = match self.side {
-            Side::Pinion => (&pair.gear, pair.start_of_contact),
-            Side::Gear => (&pair.pinion, pair.end_of_contact),
+        let mate = match self.side {
+            Side::Pinion => &pair.gear,
+            Side::Gear => &pair.pinion,
         };
-        let lowest = pair.roll(self.side, lowest);
+        let lowest = self.lowest_roll();
         let clearance = pair.centre_distance - mate.tip_radius - gear.root_radius;
         let usual = module * (specification.rack.dedendum - specification.rack.addendum);
         let sine = libm::sin(specification.pressure_angle);
@@ -146,8 +173,7 @@ impl Drawn<'_> {
             in_unit(gear.radius_at(self.outline.form_roll), "mm").into(),
             in_unit(gear.radius_at(lowest), "mm").into(),
             in_unit(lowest - self.outline.form_roll, "deg").into(),
-            // A rounding's worth of overlap is none.
-            (lowest < self.outline.form_roll - 1e-12).into(),
+            self.interferes().into(),
             in_unit(libm::hypot(foot[0], foot[1]) - gear.root_radius, "mm").into(),
             in_unit(gear.tip_thickness(), "mm").into(),
             (gear.tip_thickness() / module).into(),

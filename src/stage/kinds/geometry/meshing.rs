@@ -23,7 +23,7 @@ pub fn schema() -> Schema {
         "mesh_drawing",
         "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre is the origin.",
         vec![
-            Column::text("curve", "What it is.").key(),
+            Column::text("curve", "What is drawn: a gear, a line or circles.").key(),
             Column::integer("run", "Counts lines that do not meet, such as the circles of the two gears.").key(),
             Column::integer("point", "Number of the point on it.").key(),
             Column::float("x", "mm", "Across the line of centres.").tolerance(1e-9, 1e-9),

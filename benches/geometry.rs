@@ -1,0 +1,75 @@
+//! Full profiles: the points of one gear, and a sweep of designs with every check that a study makes of them.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group};
+use gearstudy::gear::geometry::outline::sample::Density;
+use gearstudy::gear::geometry::outline::tip::Tip;
+use gearstudy::gear::geometry::outline::{Outline, roots};
+use gearstudy::gear::geometry::{Gear, Pair, Rack, Specification};
+use gearstudy::gear::material::Material;
+
+use crate::brief;
+use crate::support::record;
+
+criterion_group!(name = benches; config = brief(); targets = profiles);
+
+fn specification(teeth: u32, profile_shift: f64, tip_radius: f64) -> Specification {
+    Specification {
+        teeth,
+        module: 3e-3,
+        pressure_angle: 20_f64.to_radians(),
+        profile_shift,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius },
+        tip_radius: None,
+        face_width: 20e-3,
+        bore_radius: 5e-3,
+        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+    }
+}
+
+fn outline(gear: &Gear) -> Option<Outline> {
+    let family = roots::family("trochoid").expect("it is registered");
+    let options = record(family.member.fields, &[]);
+    let toe = (family.build)(&options, gear).ok()?;
+    Outline::new(gear, toe, Tip::Land, None).ok()
+}
+
+/// Numbers of teeth, profile shifts and rack rounds: 25 × 20 × 20, half of which cannot be or cannot run.
+fn sweep() -> usize {
+    let mut smooth = 0;
+    for teeth in 10..35 {
+        for shift in 0..20 {
+            for round in 0..20 {
+                let of = |teeth, shift| specification(teeth, shift, 0.02 * f64::from(round));
+                let shift = 0.05 * f64::from(shift) - 0.3;
+                let Ok(pair) = Pair::new(of(teeth, shift), of(48, 0.0), None) else { continue };
+                let outlines = [&pair.pinion, &pair.gear].map(outline);
+                let valid = outlines
+                    .iter()
+                    .flatten()
+                    .all(|outline| outline.junctions().iter().all(|junction| junction.position_jump() < 1e-12));
+                smooth += usize::from(valid);
+            }
+        }
+    }
+    smooth
+}
+
+fn profiles(criterion: &mut Criterion) {
+    let gear = Gear::new(&specification(17, 0.3, 0.38)).expect("it can be cut");
+    let mut group = criterion.benchmark_group("profile");
+    group.bench_function("whole gear, 17 teeth x 200 points", |bencher| {
+        bencher.iter(|| {
+            outline(black_box(&gear)).map(|outline| outline.whole(Density { points: 200, chord_error: None }))
+        });
+    });
+    let large = Gear::new(&specification(48, 0.0, 0.38)).expect("it can be cut");
+    group.bench_function("whole gear, 48 teeth x 200 points", |bencher| {
+        bencher.iter(|| {
+            outline(black_box(&large)).map(|outline| outline.whole(Density { points: 200, chord_error: None }))
+        });
+    });
+    group.sample_size(10).bench_function("sweep of 10,000 designs", |bencher| bencher.iter(|| black_box(sweep())));
+    group.finish();
+}
