@@ -134,6 +134,13 @@ pub enum Command {
         #[arg(long)]
         dry_run: bool,
     },
+    /// Print the gear pair of a REXS file as a study.
+    Import {
+        file: PathBuf,
+        /// Which cylindrical stage, by its id, where the file has several.
+        #[arg(long, value_name = "ID")]
+        stage: Option<String>,
+    },
     /// List the kinds of stages, or say everything about one.
     Kinds { kind: Option<String> },
     /// Print the JSON schema of a study, for editors.

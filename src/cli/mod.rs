@@ -128,6 +128,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
                 .to_owned(),
         )),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
+        Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {
             show::schema();

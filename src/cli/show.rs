@@ -1,9 +1,9 @@
-//! Commands that only show something: check, status, kinds, schema, table, and writing a study to start from.
+//! Commands that only show something: check, status, kinds, schema, table, import, and writing a study to start from.
 //!
 //! Must not know: execution.
 
-use std::fs::OpenOptions;
-use std::io::Write;
+use std::fs::{File, OpenOptions};
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 use serde_json::json;
@@ -17,7 +17,7 @@ use crate::runner::standing::{StageStanding, Standing, State, standing};
 use crate::stage::{self, kinds::KINDS};
 use crate::store::manifest::{Manifest, TableRecord};
 use crate::store::results::Folder;
-use crate::study::{Study, describe, load, load_text, schema as studies};
+use crate::study::{Study, describe, load, load_text, rexs, schema as studies};
 use crate::table::data::Table;
 
 /// Where `status` looks when no study is named.
@@ -39,6 +39,18 @@ pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
     opened.write_all(text.as_bytes()).map_err(cannot)?;
     out(&format!("wrote {0}; next: gearstudy run {0}\n", file.display()));
+    Ok(())
+}
+
+/// Prints the pair of a REXS file as a study.
+pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
+    let cannot = |error: std::io::Error| Ending::Usage(format!("cannot read {}: {error}", file.display()));
+    let refused = |problem: String| Ending::Usage(format!("{}: {problem}", file.display()));
+    let mut bytes = Vec::new();
+    // No more than one byte too many, whatever the file says of its size.
+    File::open(file).map_err(cannot)?.take(rexs::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
+    let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8".to_owned()))?;
+    out(&rexs::geometry(&text, stage).map_err(|error| refused(error.to_string()))?);
     Ok(())
 }
 

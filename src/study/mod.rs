@@ -11,6 +11,7 @@ mod links;
 mod overrides;
 mod quantity;
 mod read;
+pub mod rexs;
 pub mod schema;
 pub mod settings;
 #[cfg(test)]

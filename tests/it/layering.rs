@@ -86,6 +86,7 @@ const OWNERS: &[(&str, &[&str])] = &[
     ("minijinja", &["report/", "diff/"]),
     ("parquet", &["store/"]),
     ("hdf5_metno", &["store/"]),
+    ("roxmltree", &["study/"]),
     ("serde_saphyr", &["study/"]),
     ("clap", &["cli/"]),
     ("polars", &["query/frame.rs"]),

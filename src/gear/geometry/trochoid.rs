@@ -44,7 +44,7 @@ pub(super) fn half_tip_land(specification: &Specification) -> f64 {
 }
 
 /// ρ_fP at which the tip land vanishes \[modules\].
-pub(super) fn full_round(specification: &Specification) -> f64 {
+pub(in crate::gear) fn full_round(specification: &Specification) -> f64 {
     let (sine, cosine) = libm::sincos(specification.pressure_angle);
     (0.25 * PI * cosine - specification.rack.dedendum * sine) / (1.0 - sine)
 }

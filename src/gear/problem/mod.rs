@@ -1,21 +1,21 @@
-//! Small design problems on one gear in closed form: variables in a box, an objective, constraints; and their registry.
+//! Small design problems on one gear of a pair: variables in a box, an objective, constraints; and their registry.
 //!
 //! An optimiser needs nothing else of them. Values in SI. Must not know: how anything is searched, tables.
 
+pub mod fillet;
 pub mod root_arc;
 
-use super::geometry::Gear;
 use super::geometry::error::GeometryError;
+use super::geometry::{Pair, Side};
 use crate::base::parameter::Member;
 use crate::base::record::Record;
 use crate::base::units::Dimension;
 
-/// One value that is free.
+/// A length that is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variable {
     pub name: &'static str,
-    pub dimension: Dimension,
-    /// SI.
+    /// \[m\].
     pub least: f64,
     pub most: f64,
 }
@@ -25,24 +25,13 @@ pub struct Variable {
 pub struct Worth {
     /// To be made small.
     pub objective: f64,
-    /// Each must not be negative.
+    /// Lengths \[m\]; each must not be negative.
     pub constraints: Vec<f64>,
-}
-
-impl Worth {
-    /// The objective where every constraint holds, +∞ elsewhere: what a method that knows no constraints is given.
-    #[must_use]
-    pub fn admissible(&self) -> f64 {
-        if self.constraints.iter().all(|value| *value >= 0.0) { self.objective } else { f64::INFINITY }
-    }
 }
 
 /// A problem with everything but its variables fixed.
 pub trait Problem: Send + Sync {
     fn variables(&self) -> Vec<Variable>;
-
-    /// The dimension of the objective.
-    fn dimension(&self) -> Dimension;
 
     /// What the constraints are called, in their order.
     fn constraints(&self) -> &'static [&'static str];
@@ -50,17 +39,25 @@ pub trait Problem: Send + Sync {
     fn worth(&self, point: &[f64]) -> Worth;
 }
 
-/// Sets a problem up for a gear, or says why there is none.
-pub type Build = fn(&Record, &Gear) -> Result<Box<dyn Problem>, GeometryError>;
+/// Sets a problem up for a gear of a pair, or says why there is none.
+pub type Build = fn(&Record, &Pair, Side) -> Result<Box<dyn Problem>, GeometryError>;
 
 /// A problem as registered.
 pub struct Family {
     pub member: Member,
+    /// The dimension of the objective.
+    pub dimension: Dimension,
     pub build: Build,
 }
 
 /// Every problem, in the order in which they are listed to the user.
-pub const FAMILIES: &[&Family] = &[&root_arc::FAMILY];
+pub const FAMILIES: &[&Family] = &[&root_arc::FAMILY, &fillet::FAMILY];
+
+/// The problem called `name`.
+#[must_use]
+pub fn family(name: &str) -> Option<&'static Family> {
+    FAMILIES.iter().copied().find(|family| family.member.name == name)
+}
 
 /// The problems as a user may write them, for [`crate::base::parameter::Shape::Member`].
 #[must_use]

@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 
 use super::{Family, Problem, Variable, Worth};
 use crate::base::parameter::{Choice, Field, Member};
-use crate::base::units::{Dimension, LENGTH};
+use crate::base::units::LENGTH;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::involute::involute;
@@ -20,8 +20,9 @@ use crate::gear::geometry::outline::roots::optimised_arc;
 
 pub const FAMILY: Family = Family {
     member: Member { name: "root_arc", summary: "The root arc of zhai2020, equations 26 to 30.", fields: FIELDS },
-    build: |record, gear| {
-        let arc = RootArc::new(gear)?;
+    dimension: LENGTH,
+    build: |record, pair, side| {
+        let arc = RootArc::new(pair.side(side))?;
         Ok(match record.choice("formulas") {
             "printed" => Box::new(Printed(arc)),
             _ => Box::new(Corrected(arc)),
@@ -119,14 +120,10 @@ struct Printed(RootArc);
 
 impl Problem for Printed {
     fn variables(&self) -> Vec<Variable> {
-        let variable = |name, most| Variable { name, dimension: LENGTH, least: 0.0, most };
+        let variable = |name, most| Variable { name, least: 0.0, most };
         // The tooth and its space; two dedenda.
         let width = self.0.base.base_radius * libm::sin((2.0 * self.0.base.half_pitch).min(0.5 * PI));
         vec![variable("x_c", width), variable("r_c", 2.0 * self.0.dedendum)]
-    }
-
-    fn dimension(&self) -> Dimension {
-        LENGTH
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -145,11 +142,7 @@ impl Problem for Corrected {
     fn variables(&self) -> Vec<Variable> {
         let base = &self.0.base;
         let most = 2.0 * base.touching_radius().max(base.middle_radius());
-        vec![Variable { name: "r_c", dimension: LENGTH, least: 0.0, most }]
-    }
-
-    fn dimension(&self) -> Dimension {
-        LENGTH
+        vec![Variable { name: "r_c", least: 0.0, most }]
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -168,11 +161,11 @@ mod tests {
     use super::*;
     use crate::base::error::Place;
     use crate::base::record::{Entry, Record, Value};
-    use crate::gear::geometry::{Rack, Specification};
+    use crate::gear::geometry::{Pair, Rack, Side, Specification};
     use crate::gear::material::Material;
 
-    fn gear(teeth: u32) -> Gear {
-        Gear::new(&Specification {
+    fn specification(teeth: u32) -> Specification {
+        Specification {
             teeth,
             module: 1.5e-3,
             pressure_angle: 20_f64.to_radians(),
@@ -182,14 +175,23 @@ mod tests {
             face_width: 0.01,
             bore_radius: 2e-3,
             material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
-        })
-        .unwrap()
+        }
+    }
+
+    fn gear(teeth: u32) -> Gear {
+        Gear::new(&specification(teeth)).unwrap()
+    }
+
+    /// The objective where every constraint holds, +∞ elsewhere.
+    fn admissible(worth: &Worth) -> f64 {
+        if worth.constraints.iter().all(|value| *value >= 0.0) { worth.objective } else { f64::INFINITY }
     }
 
     fn problem(teeth: u32, formulas: &'static str) -> Box<dyn Problem> {
         let place = Place::default();
         let fields = vec![("formulas", Entry { value: Value::Choice(formulas), place })];
-        (FAMILY.build)(&Record { fields, place }, &gear(teeth)).unwrap()
+        let pair = Pair::new(specification(teeth), specification(teeth), None).unwrap();
+        (FAMILY.build)(&Record { fields, place }, &pair, Side::Pinion).unwrap()
     }
 
     /// Tier: published value; X of equation 31 is the arc of equations 17 to 20, but its F is not the printed one, and it
@@ -218,7 +220,7 @@ mod tests {
             for i in 0..=200 {
                 for k in 0..=50 {
                     let point = [x.most * f64::from(i) / 200.0, radius.most * f64::from(k) / 50.0];
-                    assert!(problem.worth(&point).admissible().is_infinite(), "{teeth}: {point:?}");
+                    assert!(admissible(&problem.worth(&point)).is_infinite(), "{teeth}: {point:?}");
                 }
             }
         }
@@ -231,7 +233,7 @@ mod tests {
             let problem = problem(teeth, "derived");
             let [radius] = problem.variables()[..] else { panic!("one variable") };
             let point = |k: u32| radius.most * f64::from(k) / 200_000.0;
-            let worth = |k: &u32| problem.worth(&[point(*k)]).admissible();
+            let worth = |k: &u32| admissible(&problem.worth(&[point(*k)]));
             let best = (0..=200_000).min_by(|a, b| worth(a).total_cmp(&worth(b))).unwrap();
             let arc = RootArc::new(&gear(teeth)).unwrap();
             let optimum = arc.optimum();

@@ -6,6 +6,7 @@ pub mod geometry;
 pub mod modification;
 pub mod optimizer;
 pub mod report;
+pub mod root_optimizer;
 pub mod stability;
 pub mod ste;
 pub mod stiffness;
@@ -18,8 +19,10 @@ pub const KINDS: &[&Kind] = &[
     &modification::KIND,
     &stiffness::KIND,
     &optimizer::KIND,
+    &root_optimizer::KIND,
     &ste::KIND,
     &accuracy::KIND,
     &stability::KIND,
+    &export::KIND,
     &report::KIND,
 ];

@@ -5,8 +5,9 @@ use std::collections::BTreeSet;
 
 use gearstudy::gear::compliance::METHODS;
 use gearstudy::gear::modification::{FAMILIES, members};
+use gearstudy::gear::problem;
 use gearstudy::optimize;
-use gearstudy::table::data::Table;
+use gearstudy::table::data::{Data, Table};
 
 use super::is_name;
 use super::walk::{demand, load, walk};
@@ -194,6 +195,7 @@ fn every_optimiser_finds_something_better_than_nothing() {
         ("genetic", "{ population: 12, generations: 6 }"),
         ("differential_evolution", "{ population: 8, generations: 8, polish: nelder_mead }"),
         ("nelder_mead", "{ evaluations: 80 }"),
+        ("powell", "{ evaluations: 80 }"),
         ("grid", "{ levels: 6 }"),
         ("latin_hypercube", "{ points: 40 }"),
         ("sobol", "{ points: 32 }"),
@@ -226,6 +228,46 @@ fn every_optimiser_finds_something_better_than_nothing() {
         let (found, plain) = (summary.floats("variance")[row(name)], summary.floats("variance")[row("unmodified")]);
         assert!(found < 0.6 * plain, "{name}: {found} {plain}");
     }
+}
+
+/// Within its bounds, and with every constraint kept, or with a warning that none is.
+#[test]
+fn every_design_problem_runs_and_says_what_it_keeps() {
+    let problems = [
+        ("root_arc", "{ formulas: derived }", "nelder_mead", true),
+        ("root_arc", "{ formulas: derived }", "powell", true),
+        ("root_arc", "{ formulas: printed }", "powell", false),
+        ("fillet", "{ root: rack, minimize: compliance, elements_across: 6 }", "grid: { levels: 3 }", true),
+        ("fillet", "{ root: arc, load: tip, plane: stress, elements_across: 6 }", "powell: { tolerance: 1e-2 }", true),
+    ];
+    let used: BTreeSet<_> = problems.iter().map(|(name, ..)| *name).collect();
+    let known: BTreeSet<_> = problem::members().iter().map(|member| member.name).collect();
+    assert_eq!(known, used, "a problem without a run here, or the reverse");
+    let mut stages = String::new();
+    for (at, (name, fields, method, _)) in problems.iter().enumerate() {
+        stages += &format!(
+            "  s{at}: {{ kind: root_optimizer, pair: pair, problem: {{ {name}: {fields} }}, method: {{ {method} }} }}\n"
+        );
+    }
+    let stages = stages.replace("{ nelder_mead }", "nelder_mead").replace("{ powell }", "powell");
+    let ran = walk(&load(&study(&stages)));
+    for (at, (name, fields, _, keeps)) in problems.iter().enumerate() {
+        let stage = &ran[&format!("s{at}")];
+        let table = |name: &str| stage.tables.iter().find(|found| found.name() == name).unwrap();
+        let variables = table("variables");
+        for row in 0..variables.rows() {
+            let value = |column: &str| variables.floats(column)[row];
+            assert!((value("least")..=value("most")).contains(&value("value")), "{name} {fields}");
+        }
+        let Data::Flag(kept) = table("constraints").column("kept").unwrap() else { panic!("no flags") };
+        assert_eq!(kept.iter().all(|kept| *kept), *keeps, "{name} {fields}");
+        assert_eq!(table("best").floats("violation")[0] > 0.0, !keeps, "{name} {fields}");
+        assert_eq!(stage.warnings.is_empty(), *keeps, "{name} {fields}: {:?}", stage.warnings);
+        assert!(table("evaluations").rows() >= table("best").integers("evaluations")[0] as usize);
+    }
+    // Two methods, and the closed form of the article's problem as corrected.
+    let radius = |stage: &str| ran[stage].tables[1].floats("value")[0];
+    assert!((radius("s0") - radius("s1")).abs() < 1e-5, "{} {}", radius("s0"), radius("s1"));
 }
 
 /// A method that meshes the teeth says with what, knows the stress at the roots, and claims nothing to be left out; the
