@@ -199,7 +199,7 @@ impl Gear {
                 "the cylindrical_gear {id} has {teeth} teeth; only whole external gears can be read"
             ));
         }
-        if !(module > 0.0) {
+        if module <= 0.0 {
             return refuse(format!("the cylindrical_gear {id} has a module of {module} mm"));
         }
         let helix = gear.number("helix_angle_reference_diameter", DEGREES)?.unwrap_or(0.0);

@@ -36,7 +36,8 @@ fn file() -> String {
         )
     };
     let relation = |kind: &str, refs: &[(&str, u32)]| {
-        let refs: String = refs.iter().map(|(role, id)| format!(r#"<ref id="{id}" role="{role}"/>"#)).collect();
+        let refs =
+            refs.iter().map(|(role, id)| format!(r#"<ref id="{id}" role="{role}"/>"#)).collect::<Vec<_>>().concat();
         format!(
             r#"    <relation id="{}" type="{kind}">{refs}</relation>
 "#,

@@ -104,8 +104,8 @@ fn contours_schema() -> Schema {
 
 impl Export {
     fn files_schema(&self) -> Schema {
-        let name = |gear: &&str| self.formats.iter().map(|format| format!("{gear}.{format}")).collect::<Vec<_>>();
-        let files = self.gears.iter().flat_map(|gear| name(&gear)).collect();
+        let names = |gear: &&str| self.formats.iter().map(|format| format!("{gear}.{format}")).collect::<Vec<_>>();
+        let files = self.gears.iter().flat_map(names).collect();
         Schema::of_files("files", "The files, line by line; each also lies beside the tables.", files)
     }
 }

@@ -141,10 +141,11 @@ impl Contour {
         let away = 1.0 / first.curvature;
         let centre = [first.at[0] - away * sine, first.at[1] + away * cosine];
         let radius = away.abs();
-        if points.iter().any(|point| (distance(centre, point.at) - radius).abs() > 1e-9 * (1.0 + radius)) {
+        let off = |point: &&Point| (distance(centre, point.at) - radius).abs() > 1e-9 * (1.0 + radius);
+        if let Some(point) = points.iter().find(off) {
             return Err(Failure::new(format!(
                 "point {} of tooth {} of the {} lies on no arc although it should",
-                first.number, first.tooth, self.gear
+                point.number, point.tooth, self.gear
             )));
         }
         // From point to point, so that no arc is too long to be told from its complement.

@@ -5,6 +5,8 @@
 //! the crate `dxf` 0.6 brings 38 others for it, and writes times and random identifiers, so the same contour would not be
 //! the same bytes. Must not know: how a contour comes about.
 
+use std::fmt::Display;
+
 use super::contour::{Contour, Piece};
 
 const PROFILE: &str = "profile";
@@ -17,6 +19,9 @@ const ROOT_DICTIONARY: &str = "C";
 const GROUPS: &str = "D";
 const FIRST: u32 = 0x30;
 
+/// A record of a table: its handle, if others name it, and its groups of code and value.
+type Record<'a> = (Option<&'a str>, &'a [(u16, &'a str)]);
+
 /// Groups of code and value, each on a line of its own.
 struct Groups {
     lines: Vec<String>,
@@ -24,9 +29,10 @@ struct Groups {
 }
 
 impl Groups {
-    fn put(&mut self, code: u16, value: impl ToString) {
+    #[allow(clippy::needless_pass_by_value)] // numbers and words as they come
+    fn put(&mut self, code: u16, value: impl Display) {
         self.lines.push(code.to_string());
-        self.lines.push(value.to_string());
+        self.lines.push(format!("{value}"));
     }
 
     fn all(&mut self, groups: &[(u16, &str)]) {
@@ -53,7 +59,7 @@ impl Groups {
     }
 
     /// A table and its records, each with a handle (given or new), classes and groups.
-    fn table(&mut self, name: &str, records: &[(Option<&str>, &[(u16, &str)])], class: &str) {
+    fn table(&mut self, name: &str, records: &[Record], class: &str) {
         let own = self.fresh();
         self.all(&[(0, "TABLE"), (2, name), (5, &own), (330, "0"), (100, "AcDbSymbolTable")]);
         self.put(70, records.len());
@@ -162,7 +168,7 @@ fn tables(body: &mut Groups) {
         body.table("UCS", &[], "");
         body.table("APPID", &[(None, &[(2, "ACAD"), (70, "0")])], "AcDbRegAppTableRecord");
         body.table("DIMSTYLE", &[(None, &[(2, "STANDARD"), (70, "0")])], "AcDbDimStyleTableRecord");
-        let records: [(Option<&str>, &[(u16, &str)]); 2] =
+        let records: [Record; 2] =
             [(Some(MODEL_RECORD), &[(2, "*Model_Space")]), (Some(PAPER_RECORD), &[(2, "*Paper_Space")])];
         body.table("BLOCK_RECORD", &records, "AcDbBlockTableRecord");
     });
