@@ -87,7 +87,8 @@ impl Gear {
             .into());
         }
         let least = LEAST_BORE * self.root_radius;
-        if !(bore_radius >= least && bore_radius < self.root_radius) {
+        // The bound as a message shows it must pass: it is rounded.
+        if !(bore_radius >= least * (1.0 - 1e-9) && bore_radius < self.root_radius) {
             let [bore, least, root] = [bore_radius, least, self.root_radius].map(Millimetres);
             return Err(Problem::Bore { bore, least, root }.into());
         }

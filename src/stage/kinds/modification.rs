@@ -48,6 +48,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     for (name, entry) in record.map("designs") {
         designs.push(NamedDesign { name: name.clone(), elements: elements(entry)? });
     }
+    if designs.is_empty() {
+        return Err(Diagnostic::new("no designs are given")
+            .at(record.place_of("designs"))
+            .help("an empty list is the unmodified pair: `designs: { unmodified: [] }`"));
+    }
     Ok(Box::new(Modification { pair: record.reference("pair").to_owned(), designs }))
 }
 

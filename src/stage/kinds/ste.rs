@@ -82,6 +82,9 @@ const FIELDS: &[Field] = &[
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
 const LARGE_APPROACH: f64 = 0.5;
 
+/// An estimated error of the peak-to-peak that is told although nobody asked for an accuracy.
+const POOR: f64 = 0.01;
+
 struct Ste {
     stiffness: String,
     designs: Vec<String>,
@@ -343,11 +346,16 @@ impl Stage for Ste {
                     module * 1e3,
                 ));
             }
-            if let Some(accuracy) = self.accuracy.filter(|accuracy| answer.error > *accuracy) {
-                let (name, reached) = (&designs[design].1, answer.error);
-                (context.warn)(format!(
+            let (name, reached) = (&designs[design].1, answer.error);
+            match self.accuracy {
+                Some(accuracy) if reached > accuracy => (context.warn)(format!(
                     "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
-                ));
+                )),
+                None if reached > POOR => (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e} only; take more \
+                     `slices` or `positions`, or ask for an `accuracy`"
+                )),
+                _ => (),
             }
         }
         let keys: Vec<(&str, f64)> =

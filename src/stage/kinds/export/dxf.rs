@@ -2,8 +2,7 @@
 //! `profile`, the bore as CIRCLE on the layer `bore`.
 //!
 //! Source: Autodesk, DXF Reference (2000). The version is the first that knows LWPOLYLINE and `$INSUNITS`. Written by hand:
-//! the crate `dxf` 0.6 brings 38 others for it, and writes times and random identifiers, so the same contour would not be
-//! the same bytes. Must not know: how a contour comes about.
+//! the crate `dxf` 0.6 brings 38 others for it. Must not know: how a contour comes about.
 
 use std::fmt::Display;
 
