@@ -7,8 +7,9 @@
 
 use super::cycle::Settings;
 
-/// The estimate over the largest of the changes.
+/// The estimate over the largest of the changes, from coarser samplings and from a finer one, which is alone.
 const SAFETY: f64 = 1.5;
+const SAFETY_OF_FINER: f64 = 4.0;
 /// By how much a halving is trusted to change the error.
 const FALL: f64 = 4.0;
 /// Coarser samplings that are looked at: slices change a number by chance, positions hardly at all.
@@ -74,7 +75,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
     fn by_positions(&mut self, settings: Settings) -> f64 {
         let with = |positions| Settings { positions, ..settings };
         if self.against == Against::Finer {
-            return SAFETY * self.change(settings, with(4 * settings.positions));
+            return SAFETY_OF_FINER * self.change(settings, with(4 * settings.positions.max(LEAST_POSITIONS)));
         }
         if settings.positions < LEAST_POSITIONS {
             return SAFETY * self.change(settings, with(2 * LEAST_POSITIONS));
@@ -91,7 +92,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         let settings = Settings { positions: settings.positions.min(LEAST_POSITIONS), ..settings };
         let with = |slices| Settings { slices, ..settings };
         if self.against == Against::Finer {
-            return SAFETY * self.change(settings, with(4 * settings.slices - 3));
+            return SAFETY_OF_FINER * self.change(settings, with(4 * settings.slices - 3));
         }
         if settings.slices < 5 {
             return SAFETY * self.change(settings, with(LEAST_SLICES));
