@@ -47,18 +47,19 @@ unsafe impl GlobalAlloc for Allocator {
     }
 }
 
+/// Counting ends also where `work` panics.
+struct Counting;
+impl Drop for Counting {
+    fn drop(&mut self) {
+        COUNTS.store(false, Ordering::Relaxed);
+    }
+}
+
 /// What `work` gives, and the most bytes that were held while it ran over those held before; none where the program does
 /// not count, or counts for somebody else.
 pub fn most_during<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
     if COUNTS.swap(true, Ordering::Relaxed) {
         return (work(), None);
-    }
-    /// Counting ends also where `work` panics.
-    struct Counting;
-    impl Drop for Counting {
-        fn drop(&mut self) {
-            COUNTS.store(false, Ordering::Relaxed);
-        }
     }
     HELD.store(0, Ordering::Relaxed);
     MOST.store(0, Ordering::Relaxed);

@@ -204,7 +204,7 @@ fn mistakes_in_overrides_are_found_where_they_stand() {
     assert_eq!(with("ste", fine, "{ positions: 64 }", "[{ positions: 8 }]"), "");
     let line = BASE.lines().count();
     for (found, place, says) in [
-        (with("ste", fine, "{}", "[{ positons: 8 }]"), format!("{}:21", line + 6), "did you mean `positions`?"),
+        (with("ste", fine, "{}", "[{ positons: 8 }]"), format!("{}:22", line + 6), "did you mean `positions`?"),
         (with("ste", fine, "{ positions: 4 }", "[{}]"), format!("{}:29", line + 5), "between 8 and 100000"),
         (
             with("ste", fine, "{ kind: report }", "[{}]"),
@@ -222,7 +222,7 @@ fn mistakes_in_overrides_are_found_where_they_stand() {
         (with("ste", "[sumary.mean]", "{}", "[{}]"), format!("{}:18", line + 4), "did you mean `summary`?"),
         (with("ste", "[summary.design]", "{}", "[{}]"), format!("{}:18", line + 4), "holds texts, not numbers"),
         (with("ste", "[mean]", "{}", "[{}]"), format!("{}:18", line + 4), "write `table.column`"),
-        (with("ste", fine, "{}", "[]"), format!("{}:19", line + 6), "the ladders are empty"),
+        (with("ste", fine, "{}", "[]"), format!("{}:14", line + 6), "the ladders are empty"),
         (with("ste", fine, "64", "[{}]"), format!("{}:16", line + 5), "a mapping from fields of the stage in `of`"),
     ] {
         assert!(found.contains(&place) && found.contains(says), "{place} {says}\n{found}");
@@ -300,7 +300,7 @@ fn a_wanted_accuracy_is_met_by_searches_curves_and_stiffness() {
         (0..fine.rows()).find(|&row| fine.texts("design")[row] == "optimum" && fine.floats("torque")[row] == 150.0);
     let truth = fine.floats("peak_to_peak")[optimum.unwrap()];
     let error = (best.floats("objective")[0] / truth - 1.0).abs();
-    assert!(error <= 2e-4 && error > 1e-9, "{error}");
+    assert!(error <= estimate, "{error}");
     for row in 0..wish.rows() {
         let error = (wish.floats("peak_to_peak")[row] / fine.floats("peak_to_peak")[row] - 1.0).abs();
         let (estimate, slices) = (wish.floats("error_estimate")[row], wish.integers("slices")[row]);

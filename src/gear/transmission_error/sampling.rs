@@ -8,8 +8,9 @@
 use super::cycle::Settings;
 use crate::gear::contact::{MOST_COUPLED_SLICES, SliceCoupling};
 
-/// The estimate over the largest of the changes.
+/// The estimate over the largest of the changes, from coarser samplings and from a finer one, which is alone.
 const SAFETY: f64 = 1.5;
+const SAFETY_OF_FINER: f64 = 4.0;
 /// By how much a halving is trusted to change the error.
 const FALL: f64 = 4.0;
 /// Coarser samplings that are looked at: slices change a number by chance, positions hardly at all.
@@ -75,7 +76,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
     fn by_positions(&mut self, settings: Settings) -> f64 {
         let with = |positions| Settings { positions, ..settings };
         if self.against == Against::Finer {
-            return SAFETY * self.change(settings, with(4 * settings.positions));
+            return SAFETY_OF_FINER * self.change(settings, with(4 * settings.positions.max(LEAST_POSITIONS)));
         }
         if settings.positions < LEAST_POSITIONS {
             return SAFETY * self.change(settings, with(2 * LEAST_POSITIONS));
@@ -94,7 +95,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         let finer = 4 * settings.slices - 3;
         let allowed = settings.slice_coupling == SliceCoupling::None || finer <= MOST_COUPLED_SLICES;
         if self.against == Against::Finer && allowed {
-            return SAFETY * self.change(settings, with(finer));
+            return SAFETY_OF_FINER * self.change(settings, with(finer));
         }
         if settings.slices < 5 {
             return SAFETY * self.change(settings, with(LEAST_SLICES));

@@ -56,7 +56,8 @@ const FIELDS: &[Field] = &[
         "A column of its tables that counts its work; of several rows the sum counts.",
     )
     .optional(),
-    Field::integer("repeats", 1, 1000, "How often each run is repeated; the median time counts.").default("3"),
+    Field::integer("repeats", 1, 1000, "How often each run of a ladder is repeated; the median time counts.")
+        .default("3"),
     Field::integer("seeds", 1, 1000, "With how many seeds a stage that draws random numbers is run.").default("1"),
     Field::new(
         "wanted",
@@ -165,18 +166,21 @@ impl Stage for Accuracy {
         let variants = self.variants();
         let ports = variant::ports(&variants);
         let demand = self.demand();
-        let total = variants.iter().map(|variant| self.plan.runs(variant.stage.as_ref())).sum::<usize>() as f64;
+        // The reference is there to be compared with: one run, and one seed, will do.
+        let once = Plan { repeats: 1, seeds: 1 };
+        let plan = |index: usize| if index == 0 { &once } else { &self.plan };
+        let runs = |(index, variant): (usize, &&Variant)| plan(index).runs(variant.stage.as_ref());
+        let total = variants.iter().enumerate().map(runs).sum::<usize>() as f64;
         let mut done = 0;
         let mut trials: Vec<Trial> = Vec::new();
         for (index, variant) in variants.iter().enumerate() {
             let inputs = variant::inputs(&ports, index, inputs);
-            let reached = done as f64 / total;
-            let share = self.plan.runs(variant.stage.as_ref()) as f64 / total;
+            let (reached, share) = (done as f64 / total, runs((index, variant)) as f64 / total);
             let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
             let inner = Context { demand: &demand, progress: &progress, ..*context };
             let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
-            trials.push(trial::run(variant, &self.plan, asked, &inner, &inputs)?);
-            done += self.plan.runs(variant.stage.as_ref());
+            trials.push(trial::run(variant, plan(index), asked, &inner, &inputs)?);
+            done += runs((index, variant));
         }
         tables::tables(self, &trials, context.demand).map_err(Failure::new)
     }

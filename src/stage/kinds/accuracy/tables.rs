@@ -137,7 +137,7 @@ pub fn tables(stage: &Accuracy, trials: &[Trial], demand: &Demand) -> Result<Vec
         for (step, (variant, trial)) in ladder.steps.iter().zip(&mut trials).enumerate() {
             let refined = step.checked_sub(1).and_then(|coarser| variant.refined(&ladder.steps[coarser]));
             let mut errors = Vec::new();
-            for index in 0..stage.quantities.len() {
+            for (index, unit) in units.iter().enumerate() {
                 let distance = median(trial, index, reference).map_err(|problem| {
                     format!("{}, `{}`, {}: {problem}", variant.label, variant.written, stage.quantities[index].name)
                 })?;
@@ -151,7 +151,7 @@ pub fn tables(stage: &Accuracy, trials: &[Trial], demand: &Demand) -> Result<Vec
                 errors.push(relative);
                 rungs.push(Rung { ladder, step, quantity: index, distance, order, trial });
                 if trial.values.len() > 1 {
-                    spread.push([key(stage, ladder, step, index), spread_row(trial, index, &units[index])?].concat());
+                    spread.push([key(stage, ladder, step, index), spread_row(trial, index, unit)?].concat());
                 }
             }
             before = errors;
@@ -200,7 +200,7 @@ fn key(stage: &Accuracy, ladder: &Ladder, step: usize, quantity: usize) -> Row {
     ]
 }
 
-/// The distance of the seed in the middle; the reference is that of the first seed.
+/// The distance of the seed in the middle.
 fn median(trial: &Trial, quantity: usize, reference: &Trial) -> Result<Distance, String> {
     let converged = &reference.values[0][quantity];
     let one = |values: &Vec<Vec<quantity::Value>>| quantity::distance(&values[quantity], converged);

@@ -1,5 +1,7 @@
 //! What the comparison says, held to hand-made values.
 
+#![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
+
 use super::quantity::{Value, distance};
 use super::trial::quantile;
 use super::variant::{Variant, inputs, ports};
