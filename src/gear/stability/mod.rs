@@ -117,8 +117,9 @@ pub struct Report {
     pub digits: Vec<DigitsLost>,
 }
 
-/// Digits that may be lost on top of what the condition number takes: what a few thousand roundings in a row can do.
-pub const MOST_LOST: f64 = 4.0;
+/// Digits that may be lost on top of what the condition number takes: log10 of 2¹⁵ roundings that all go one way, more
+/// than any number of the chain has behind it.
+pub const MOST_LOST: f64 = 4.5;
 /// How far quick copies of functions of the path are from them, relative: their series end at 1e-14.
 const TABLE: f64 = 1e-13;
 
@@ -143,7 +144,10 @@ impl Case {
     }
 
     /// Modifications of both gears alike.
-    pub(crate) fn design(&self, pair: &Pair) -> Result<Design, String> {
+    ///
+    /// # Errors
+    /// When one does not fit the pair.
+    pub fn design(&self, pair: &Pair) -> Result<Design, String> {
         let mut design = Design::default();
         let parts: [(&str, &[(&'static str, Value)]); 2] = [
             (

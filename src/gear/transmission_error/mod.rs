@@ -4,6 +4,7 @@
 //! lags. [`cycle::MeshCycle`] holds what no modification changes, [`loading::Loading`] one design under one torque;
 //! curves, summaries and objectives come from it. Must not know: how compliances or modifications come about.
 
+mod change;
 pub mod curve;
 pub mod cycle;
 pub mod loading;
