@@ -22,7 +22,7 @@ pub fn model(name: &str, given: &[(&str, Value)], contact: ContactLaw, coupled: 
         method,
         options: record(method.member.fields, given),
         assumptions: Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None },
-        settings: Settings::default(),
+        settings: Settings { positions: 512, ..Settings::default() },
     }
 }
 
@@ -69,7 +69,11 @@ fn points() -> impl Strategy<Value = Point> {
 
 fn broken(case: &Case, report: &Report) -> Vec<String> {
     let failing = report.findings.iter().filter(|finding| finding.verdict == Verdict::Broken);
-    failing.map(|finding| format!("{}: {} is {:e}, limit {:e}", case.name, finding.invariant, finding.value, finding.limit)).collect()
+    failing
+        .map(|finding| {
+            format!("{}: {} is {:e}, limit {:e}", case.name, finding.invariant, finding.value, finding.limit)
+        })
+        .collect()
 }
 
 /// Runs `cases` random points, of which a good part must be possible.

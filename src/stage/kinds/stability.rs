@@ -118,7 +118,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         coupled: record.choice("coupling") == "body",
         torque: None,
     };
-    let positions = usize::try_from(record.integer("positions")).unwrap_or(64);
+    let positions = usize::try_from(record.integer("positions")).unwrap_or(512);
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
     let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));

@@ -69,7 +69,8 @@ fn case(number: u64) -> Case {
     let coordinates: Vec<f64> = AXES
         .iter()
         .map(|axis| {
-            let shape = ["pinion_teeth", "gear_teeth", "pinion_shift", "gear_shift", "pressure_angle"].contains(&axis.name);
+            let shape =
+                ["pinion_teeth", "gear_teeth", "pinion_shift", "gear_shift", "pressure_angle"].contains(&axis.name);
             let value = uniform(&mut generator);
             if tame && shape { 0.35 * value } else { value }
         })
@@ -128,7 +129,10 @@ fn run(case: &Case, corner_contact: CornerContact) {
 fn follow(pair: &Pair, cycle: &MeshCycle, design: &Design, torque: f64) {
     let loading = Loading::new(cycle, design, torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 4, pressure: true });
-    assert!(summary.mean.is_finite() && summary.peak_to_peak.is_finite() && summary.variance.is_finite(), "{summary:?}");
+    assert!(
+        summary.mean.is_finite() && summary.peak_to_peak.is_finite() && summary.variance.is_finite(),
+        "{summary:?}"
+    );
     for point in &points {
         let sum: f64 = point.loads.iter().sum();
         assert!(point.loads.iter().all(|load| *load >= 0.0), "{point:?}");

@@ -11,12 +11,59 @@ use super::drive;
 use crate::registry;
 
 const WORDS: [&str; 36] = [
-    "", " ", "  ", "\n", "\t", ":", ": ", "-", "- ", "{", "}", "[", "]", ",", "&a ", "*a", "<<: ", "|", ">", "'", "\"", "#", "~",
-    "null", "true", ".nan", ".inf", "1e999", "-1e-999", "0x10", "mm", "um", "µm", "N m", "kind: ste", "\u{feff}",
+    "",
+    " ",
+    "  ",
+    "\n",
+    "\t",
+    ":",
+    ": ",
+    "-",
+    "- ",
+    "{",
+    "}",
+    "[",
+    "]",
+    ",",
+    "&a ",
+    "*a",
+    "<<: ",
+    "|",
+    ">",
+    "'",
+    "\"",
+    "#",
+    "~",
+    "null",
+    "true",
+    ".nan",
+    ".inf",
+    "1e999",
+    "-1e-999",
+    "0x10",
+    "mm",
+    "um",
+    "µm",
+    "N m",
+    "kind: ste",
+    "\u{feff}",
 ];
 
 const NUMBERS: [&str; 14] = [
-    "0", "-1", "1e308", "1e-308", "999999999999999999999", "0.0000000001", ".5", "5.", "1_000", "٣", "1e", "--2", "1/2", "017",
+    "0",
+    "-1",
+    "1e308",
+    "1e-308",
+    "999999999999999999999",
+    "0.0000000001",
+    ".5",
+    "5.",
+    "1_000",
+    "٣",
+    "1e",
+    "--2",
+    "1/2",
+    "017",
 ];
 
 /// The studies of this repository, the examples, and what was refused before.
@@ -52,8 +99,11 @@ fn changed(text: &str, number: u64) -> String {
             2 => text.replace_range(at..end, ""),
             3 => {
                 // The next number becomes another one.
-                let Some(start) = text[at..].find(|c: char| c.is_ascii_digit()).map(|found| at + found) else { continue };
-                let length = text[start..].find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len() - start);
+                let Some(start) = text[at..].find(|c: char| c.is_ascii_digit()).map(|found| at + found) else {
+                    continue;
+                };
+                let length =
+                    text[start..].find(|c: char| !c.is_ascii_digit() && c != '.').unwrap_or(text.len() - start);
                 text.replace_range(start..start + length, NUMBERS[below(&mut generator, NUMBERS.len())]);
             }
             kind => {
