@@ -20,6 +20,9 @@ const STEEPEST: f64 = 1e3;
 /// A few sums and products.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
+/// The invariant whose value is the condition number of the compliance matrix.
+const CONDITION: &str = "condition of the compliance matrix";
+
 type Matrix = [[f64; MOST]; MOST];
 
 /// The pairs at one position, from the tables.
@@ -136,8 +139,13 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     findings.push(Finding::new("deflection grows with the load", growth, 1.0 - TABLE));
     findings.push(Finding::new("deflection grows no faster than the load", softening, 1.0 + TABLE));
     findings.push(Finding::new("continuous at the ends of zones", jump.0, jump.1));
-    findings.push(Finding::new("condition of the compliance matrix", condition, 1.0 / f64::EPSILON.sqrt()));
+    findings.push(Finding::new(CONDITION, condition, 1.0 / f64::EPSILON.sqrt()));
     [summary.mean, summary.peak_to_peak]
+}
+
+/// The condition number that [`check`] found.
+pub(super) fn condition_found(findings: &[Finding]) -> f64 {
+    findings.iter().find(|finding| finding.invariant == CONDITION).map_or(1.0, |finding| finding.value)
 }
 
 impl Pairs {

@@ -117,8 +117,13 @@ pub struct Report {
     pub digits: Vec<DigitsLost>,
 }
 
-/// Digits that may be lost on top of what the condition number takes: what a few thousand roundings in a row can do.
-pub const MOST_LOST: f64 = 4.0;
+/// Digits that may be lost on top of what the condition number takes: log10 of 2¹⁵ roundings that all go one way, more
+/// than any number of the chain has behind it.
+pub const MOST_LOST: f64 = 4.5;
+/// Roundings in a path position.
+const ROUNDINGS: f64 = 4.0;
+/// Of the base pitch.
+const SHORTEST_RELIEF: f64 = 1e-9;
 /// How far quick copies of functions of the path are from them, relative: their series end at 1e-14.
 const TABLE: f64 = 1e-13;
 
@@ -143,7 +148,10 @@ impl Case {
     }
 
     /// Modifications of both gears alike.
-    pub(crate) fn design(&self, pair: &Pair) -> Result<Design, String> {
+    ///
+    /// # Errors
+    /// When one does not fit the pair.
+    pub fn design(&self, pair: &Pair) -> Result<Design, String> {
         let mut design = Design::default();
         let parts: [(&str, &[(&'static str, Value)]); 2] = [
             (
@@ -206,6 +214,10 @@ impl Case {
     }
 
     pub(crate) fn inputs(&self) -> precise::Inputs {
+        // As a definition, a relief shorter than this takes nothing away.
+        let specification = &self.gears[0];
+        let base_pitch = std::f64::consts::PI * specification.module * libm::cos(specification.pressure_angle);
+        let relief = if self.relief_length > SHORTEST_RELIEF * base_pitch { self.relief } else { 0.0 };
         let of = |gear: &Specification| precise::GearInputs {
             teeth: f64::from(gear.teeth),
             shift: gear.profile_shift.into(),
@@ -218,8 +230,8 @@ impl Case {
             bore_radius: gear.bore_radius,
             youngs_modulus: gear.material.youngs_modulus,
             poisson_ratio: gear.material.poisson_ratio,
-            relief: self.relief.into(),
-            relief_length: self.relief_length,
+            relief: relief.into(),
+            relief_length: self.relief_length.into(),
             crowning: self.crowning.into(),
         };
         let energy = self.model.method.member.name == "energy";
@@ -266,9 +278,16 @@ pub fn check(case: &Case, rules: &Rules) -> Report {
     let values = contact::check(case, &built, &mut report.findings);
     let inputs = case.inputs();
     let exact = precise::evaluate(&inputs, &rules.fine);
-    let conditions = precise::conditions(&inputs, &rules.coarse);
+    let mut conditions = precise::conditions(&inputs, &rules.coarse);
+    // An extremum where a relief starts lies as far off as a path position is rounded, times the slope of the relief.
+    if case.relief > 0.0 && case.relief_length > 0.0 {
+        let rise = ROUNDINGS * built.pair.tangent_length * case.relief / case.relief_length;
+        conditions[precise::NAMES.len() - 1] += rise / values[1] / libm::pow(10.0, MOST_LOST);
+    }
     digits::check(case, &built, values, (&exact, &conditions), &mut report);
     let [.., mean, peak_to_peak] = conditions;
-    symmetry::check(case, values, [mean, peak_to_peak], &mut report.findings);
+    // Where bodies couple, teeth that all turn with one bore make the matrix worse than the pair without it is.
+    let matrix = if case.model.assumptions.coupled { contact::condition_found(&report.findings) } else { 1.0 };
+    symmetry::check(case, values, [mean, peak_to_peak].map(|condition| condition.max(matrix)), &mut report.findings);
     report
 }

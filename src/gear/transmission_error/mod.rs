@@ -5,6 +5,7 @@
 //! curves, summaries and objectives come from it. Must not know: how compliances or modifications come about.
 
 mod across;
+mod change;
 pub mod curve;
 pub mod cycle;
 pub mod loading;

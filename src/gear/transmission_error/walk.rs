@@ -6,12 +6,9 @@
 
 use super::loading::{Loading, State};
 use super::trace::{NODES, Span, Trace};
-use crate::numeric::crossing::crossing;
 
 /// Cuts closer than this share of the base pitch are one.
 pub(super) const CLOSEST: f64 = 1e-10;
-/// The same where a pair takes up or loses load: a deep relief takes it away next to where it starts.
-const CLOSEST_CHANGE: f64 = 1e-14;
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
 
@@ -68,34 +65,10 @@ impl Loading<'_> {
             let middle = self.smooth(&before, first, cuts, visit);
             return self.smooth(&after, middle, cuts, visit);
         }
+        let last = states[NODES - 1];
+        self.settle(span, &mut states);
         visit(span, &states);
-        states[NODES - 1]
-    }
-
-    /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
-    /// interference passes: where, and for a first or last touch of which pair.
-    fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, Option<usize>)> {
-        let closest = CLOSEST_CHANGE * self.cycle.period();
-        for node in 0..NODES - 1 {
-            let ends = [node == 0, node + 2 == NODES];
-            for pair in 0..self.cycle.springs(span.pairs) {
-                let known = (0..2).any(|end| ends[end] && span.touches[end] == Some(pair));
-                let touch = if known { None } else { Some((0.0, Some(pair))) };
-                for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                    let [before, after] = [node, node + 1].map(|node| states[node].balance.interference[pair] - level);
-                    if (before > 0.0) == (after > 0.0) {
-                        continue;
-                    }
-                    let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
-                    let above = |position: f64| self.state(position, span.pairs).balance.interference[pair] - level;
-                    let at = crossing(above, (from, before), (to, after), 0.1 * closest);
-                    if at - span.start > closest && span.end - at > closest {
-                        return Some((at, touch));
-                    }
-                }
-            }
-        }
-        None
+        last
     }
 
     /// The transmission error over the cycle.

@@ -52,6 +52,13 @@ const FIELDS: &[Field] = &[
     Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("none"),
+    Field::integer(
+        "positions",
+        8,
+        100_000,
+        "Positions per base pitch; zone ends, relief starts and touches come on top.",
+    )
+    .default("64"),
     Field::group("axes", VALUES, "Values of one parameter at a time.").default("{}"),
     Field::new("traps", Shape::Flag, "Whether the named traps are checked.").default("true"),
     Field::integer("samples", 0, 100_000, "Points of a Latin hypercube over the whole box of the axes.").default("0"),
@@ -112,13 +119,19 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         torque: None,
         accuracy: None,
     };
+    let positions = usize::try_from(record.integer("positions")).unwrap_or(512);
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
     let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));
     Ok(Box::new(Stability {
         pair: record.reference("pair").to_owned(),
         load: ["torque", "relief", "relief_length", "crowning"].map(|field| record.quantity(field)),
-        model: Model { method, options: options.clone(), assumptions, settings: Settings::default() },
+        model: Model {
+            method,
+            options: options.clone(),
+            assumptions,
+            settings: Settings { positions, ..Settings::default() },
+        },
         axes: axes.collect(),
         traps: record.flag("traps"),
         samples: usize::try_from(record.integer("samples")).unwrap_or(0),

@@ -179,10 +179,10 @@ impl<'a> Mesh<'a> {
     fn gap(&self, s: Double) -> Double {
         let ramp = |gear: &GearInputs, from_tip: Double| {
             let length = gear.relief_length;
-            if gear.relief.high == 0.0 || from_tip.high >= length {
+            if gear.relief.high == 0.0 || from_tip >= length {
                 Double::ZERO
             } else {
-                gear.relief * (Double::from(length) - from_tip) / length
+                gear.relief * (length - from_tip) / length
             }
         };
         ramp(&self.inputs.gears[0], self.end - s) + ramp(&self.inputs.gears[1], s - self.start)

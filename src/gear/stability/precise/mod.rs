@@ -34,7 +34,7 @@ pub struct GearInputs {
     pub poisson_ratio: f64,
     /// Linear tip relief: depth at the tip, and roll length from the tip.
     pub relief: Double,
-    pub relief_length: f64,
+    pub relief_length: Double,
     pub crowning: Double,
 }
 
@@ -47,6 +47,13 @@ pub struct Inputs {
     pub torque: Double,
     pub shear_factor: f64,
     pub load_dependent: bool,
+}
+
+impl Inputs {
+    fn shift_relief(&mut self, gear: usize, share: Double) {
+        let diameter = self.module * self.gears[gear].teeth;
+        self.gears[gear].relief_length += diameter * share;
+    }
 }
 
 /// What is compared, in the order of [`Quantities`].
@@ -100,12 +107,13 @@ pub fn evaluate(inputs: &Inputs, rule: &Rule) -> Quantities<Double> {
 }
 
 /// Relative changes per relative change of what rounding touches first: pressure angle, profile shifts (as parts of a
-/// module), tip radii, relief, crowning and torque. Their sum is the condition number of each quantity; a coarse rule
+/// module), tip radii, relief, where it starts (as a part of the reference diameter, which is the size of the path
+/// positions), crowning and torque. Their sum is the condition number of each quantity; a coarse rule
 /// will do, since it serves both sides of each difference.
 pub fn conditions(inputs: &Inputs, rule: &Rule) -> Quantities<f64> {
-    const STEP: f64 = 1e-11;
+    const STEP: f64 = 1e-14;
     let scale = Double::ONE + STEP;
-    let changes: [fn(&mut Inputs, Double); 8] = [
+    let changes: [fn(&mut Inputs, Double); 10] = [
         |inputs, scale| inputs.pressure_angle = inputs.pressure_angle * scale,
         |inputs, scale| inputs.gears[0].shift += scale - 1.0,
         |inputs, scale| inputs.gears[1].shift += scale - 1.0,
@@ -113,12 +121,16 @@ pub fn conditions(inputs: &Inputs, rule: &Rule) -> Quantities<f64> {
         |inputs, scale| inputs.gears[1].tip_scale = Double::ONE / scale,
         |inputs, scale| inputs.torque = inputs.torque * scale,
         |inputs, scale| inputs.gears[0].relief = inputs.gears[0].relief * scale,
+        |inputs, scale| inputs.shift_relief(0, scale - 1.0),
+        |inputs, scale| inputs.shift_relief(1, scale - 1.0),
         |inputs, scale| inputs.gears[0].crowning = inputs.gears[0].crowning * scale,
     ];
     let here = evaluate(inputs, rule);
     let mut sums = [0.0; NAMES.len()];
     let [relieved, crowned] = [inputs.gears[0].relief, inputs.gears[0].crowning].map(|amount| amount.high != 0.0);
-    for (change, wanted) in changes.into_iter().zip([true, true, true, true, true, true, relieved, crowned]) {
+    for (change, wanted) in
+        changes.into_iter().zip([true, true, true, true, true, true, relieved, relieved, relieved, crowned])
+    {
         if !wanted {
             continue;
         }

@@ -7,9 +7,9 @@
 use crate::numeric::double_double::Double;
 
 /// Step of the double exponential rule.
-const STEP: f64 = 0.12;
+const STEP: f64 = 0.06;
 /// Steps to either side: to 1e-20 from the ends.
-const STEPS: i32 = 28;
+const STEPS: i32 = 56;
 
 /// Points and weights on −1..1, one for long intervals, one for the short ones between nodes, and Chebyshev nodes.
 pub struct Rule {
