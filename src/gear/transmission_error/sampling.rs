@@ -9,7 +9,7 @@ use super::cycle::Settings;
 use crate::gear::contact::{MOST_COUPLED_SLICES, SliceCoupling};
 
 /// The estimate over the largest of the changes, from coarser samplings and from a finer one, which is alone.
-const SAFETY: f64 = 1.5;
+const SAFETY: f64 = 2.5;
 const SAFETY_OF_FINER: f64 = 4.0;
 /// By how much a halving is trusted to change the error.
 const FALL: f64 = 4.0;
@@ -75,11 +75,8 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
 
     fn by_positions(&mut self, settings: Settings) -> f64 {
         let with = |positions| Settings { positions, ..settings };
-        if self.against == Against::Finer {
+        if self.against == Against::Finer || settings.positions < LEAST_POSITIONS {
             return SAFETY_OF_FINER * self.change(settings, with(4 * settings.positions.max(LEAST_POSITIONS)));
-        }
-        if settings.positions < LEAST_POSITIONS {
-            return SAFETY * self.change(settings, with(2 * LEAST_POSITIONS));
         }
         let coarser = halves(settings.positions, HALVINGS_OF_POSITIONS, LEAST_POSITIONS / 2);
         self.by_halving(settings, coarser.map(with))
@@ -92,13 +89,11 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         // What slices change hardly depends on the positions.
         let settings = Settings { positions: settings.positions.min(LEAST_POSITIONS), ..settings };
         let with = |slices| Settings { slices, ..settings };
-        let finer = 4 * settings.slices - 3;
+        // Too few to be halved.
+        let finer = 4 * settings.slices.max(3) - 3;
         let allowed = settings.slice_coupling == SliceCoupling::None || finer <= MOST_COUPLED_SLICES;
-        if self.against == Against::Finer && allowed {
+        if allowed && (self.against == Against::Finer || settings.slices < LEAST_SLICES) {
             return SAFETY_OF_FINER * self.change(settings, with(finer));
-        }
-        if settings.slices < 5 {
-            return SAFETY * self.change(settings, with(LEAST_SLICES));
         }
         let coarser = halves(settings.slices, HALVINGS_OF_SLICES, 3);
         self.by_halving(settings, coarser.map(with))

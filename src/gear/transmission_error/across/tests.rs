@@ -46,8 +46,9 @@ fn crowned(pair: &Pair, crown: f64, slope: f64) -> Design {
     design(pair, &parts).unwrap()
 }
 
+/// Without cuts where the face begins to touch: coupled slices have none, and both are to be sampled alike.
 fn summary(cycle: &MeshCycle, design: &Design, torque: f64) -> Summary {
-    Loading::new(cycle, design, torque).summary(Wanted { harmonics: 3, pressure: true })
+    Loading::new(cycle, design, torque).without_levels().summary(Wanted { harmonics: 3, pressure: true })
 }
 
 #[track_caller]
@@ -197,7 +198,7 @@ fn loads_balance_and_slices_fulfil_complementarity() {
 #[test]
 fn a_crowned_pair_agrees_with_cosines_and_relaxation() {
     crowned_pair(1e-6, [1e-8, 1e-8]);
-    crowned_pair(12e-6, [6e-4, 2e-3]);
+    crowned_pair(12e-6, [1e-3, 2e-3]);
 }
 
 fn crowned_pair(crown: f64, accuracy: [f64; 2]) {

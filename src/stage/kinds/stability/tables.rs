@@ -13,7 +13,7 @@ pub fn schemas() -> Vec<Schema> {
     let case = || Column::text("case", "Name of the case: an axis with its value, a trap, or a sample.").key();
     let axis = || Column::text("axis", "The axis the case lies on; `trap` and `sample` for those that lie on none.");
     // What differs in the last bits of a computation is itself made of rounding.
-    let rounding = |column: Column| column.tolerance(1.0, 0.5);
+    let rounding = |column: Column| column.tolerance(1.0, 0.09);
     vec![
         Schema::new(
             "checks",
