@@ -53,7 +53,7 @@ pub fn schemas() -> Vec<Schema> {
             "How many rows of `checks` hold, by axis.",
             vec![
                 Column::text("axis", "The axis; `trap` and `sample` for those that lie on none.").key(),
-                Column::integer("cases", "Cases."),
+                Column::integer("cases", "Cases that lie on it."),
                 Column::integer("computed", "Cases that could be computed at all."),
                 Column::integer("holds", "Rows that hold."),
                 Column::integer("broken", "Rows that do not."),
