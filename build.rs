@@ -1,7 +1,7 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another. The compiler's version and the digest of `Cargo.lock` go into the program for
+//! stage does not recompute another, a changed test nothing. The compiler's version and the digest of `Cargo.lock` go into the program for
 //! the manifest.
 
 use std::collections::BTreeMap;
@@ -88,6 +88,10 @@ fn collect(folder: &Path, into: &mut Vec<PathBuf>) -> io::Result<()> {
     entries.sort_by_key(fs::DirEntry::path);
     for entry in entries {
         let path = entry.path();
+        // No result depends on a test.
+        if path.file_stem().is_some_and(|name| name == "tests") {
+            continue;
+        }
         if path.is_dir() {
             collect(&path, into)?;
         } else if path.extension().is_some_and(|extension| extension == "rs") {
