@@ -201,14 +201,13 @@ impl Pairs {
                     }
                     let theta = 0.5 * libm::atan2(2.0 * matrix[p][q], matrix[q][q] - matrix[p][p]);
                     let (sine, cosine) = libm::sincos(theta);
-                    for k in 0..n {
-                        let (a, b) = (matrix[k][p], matrix[k][q]);
-                        (matrix[k][p], matrix[k][q]) = (cosine * a - sine * b, sine * a + cosine * b);
+                    let turn = |a: &mut f64, b: &mut f64| (*a, *b) = (cosine * *a - sine * *b, sine * *a + cosine * *b);
+                    for row in &mut matrix {
+                        let (before, after) = row.split_at_mut(q);
+                        turn(&mut before[p], &mut after[0]);
                     }
-                    for k in 0..n {
-                        let (a, b) = (matrix[p][k], matrix[q][k]);
-                        (matrix[p][k], matrix[q][k]) = (cosine * a - sine * b, sine * a + cosine * b);
-                    }
+                    let (before, after) = matrix.split_at_mut(q);
+                    before[p].iter_mut().zip(&mut after[0]).for_each(|(a, b)| turn(a, b));
                 }
             }
         }

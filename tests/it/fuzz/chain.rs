@@ -47,7 +47,7 @@ fn pick<T: Copy>(generator: &mut impl Rng, values: &[T]) -> T {
 
 fn any_model(number: u64, generator: &mut impl Rng) -> Model {
     let contact = pick(generator, &[ContactLaw::Linear, ContactLaw::LoadDependent]);
-    let coupled = generator.next_u64() % 2 == 0;
+    let coupled = generator.next_u64().is_multiple_of(2);
     let mut found = match number % 8 {
         0 => model("weber_banaschek", &[], contact, coupled),
         1 => model("iso6336", &[], ContactLaw::Linear, coupled),
@@ -65,7 +65,7 @@ fn any_model(number: u64, generator: &mut impl Rng) -> Model {
 fn case(number: u64) -> Case {
     let mut generator = Seed::of_stage(1, "chain").generator(number);
     let model = any_model(number, &mut generator);
-    let tame = generator.next_u64() % 4 != 0;
+    let tame = !generator.next_u64().is_multiple_of(4);
     let coordinates: Vec<f64> = AXES
         .iter()
         .map(|axis| {

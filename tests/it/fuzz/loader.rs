@@ -79,7 +79,9 @@ fn texts() -> Vec<String> {
     let mut texts: Vec<String> = paths.iter().filter_map(|path| fs::read_to_string(path).ok()).collect();
     texts.push(registry::examples());
     // A page of text is enough to go wrong in, and quick to read.
-    texts.iter_mut().for_each(|text| text.truncate(text.floor_char_boundary(12_000)));
+    for text in &mut texts {
+        text.truncate(text.floor_char_boundary(12_000));
+    }
     texts
 }
 

@@ -22,10 +22,10 @@ const NAMES: [&str; 7] = ["F", "k1", "k2", "published", "b", "angle", "list"];
 
 /// Three rows: `list` is 1, 2 and 4 mm, all else the same in each.
 const IN_ROW_ONE: Names =
-    Names { value: &|name, row| if name == "list" { listed(row) } else { given(name) }, row: 0, rows: 3 };
+    Names { value: &|name, row| if name == "list" { Some(listed(row)) } else { given(name) }, row: 0, rows: 3 };
 
-fn listed(row: usize) -> Option<Number> {
-    Some(Number { si: [1e-3, 2e-3, 4e-3][row], dimension: LENGTH })
+fn listed(row: usize) -> Number {
+    Number { si: [1e-3, 2e-3, 4e-3][row], dimension: LENGTH }
 }
 
 fn value(text: &str) -> Result<Outcome, String> {
