@@ -3,6 +3,7 @@
 //! Must not know: how the file is written.
 
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 use super::arguments::Places;
@@ -35,6 +36,7 @@ pub(super) fn archive(
     quiet: bool,
 ) -> Result<(), Ending> {
     let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.name));
+    refuse_to_lose(output, study, places).map_err(usage)?;
     let license = about.license.map(spdx).transpose().map_err(Ending::Usage)?;
     let authors: Vec<Author> =
         about.authors.iter().map(|text| author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
@@ -71,6 +73,32 @@ pub(super) fn archive(
         out(&format!("{}: {} files, {size} kB; {}\n", study.name, entries.len(), output.display()));
     }
     Ok(())
+}
+
+/// An archive replaces an archive of before and nothing else: neither the study, nor its results, nor what is no zip.
+fn refuse_to_lose(output: &Path, study: &Study, places: &Places) -> Result<(), String> {
+    let refused = |why: &str| Err(format!("{} is {why}; name another file with -o", output.display()));
+    let full = |path: &Path| fs::canonicalize(path).ok();
+    let folder = output.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    if let (Some(folder), Some(results)) = (full(folder), full(&places.results))
+        && folder.starts_with(&results)
+    {
+        return refused("inside the results");
+    }
+    if full(output).is_some_and(|path| full(&study.path) == Some(path)) {
+        return refused("the study itself");
+    }
+    match fs::metadata(output) {
+        Err(_) => Ok(()),
+        Ok(facts) if facts.is_file() && (facts.len() == 0 || is_archive(output).unwrap_or(false)) => Ok(()),
+        Ok(_) => refused("there already and no archive"),
+    }
+}
+
+fn is_archive(path: &Path) -> std::io::Result<bool> {
+    let mut start = [0; 4];
+    fs::File::open(path)?.read_exact(&mut start)?;
+    Ok(start == *b"PK\x03\x04")
 }
 
 /// The files of the last run, by their names in the archive.

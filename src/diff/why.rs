@@ -43,8 +43,8 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
     }
     for port in differing(&first.inputs, &second.inputs) {
         let there = |key: &KeyRecord| key.inputs.iter().any(|(name, _)| *name == port);
-        let absent = |key: &KeyRecord| (!there(key)).then(|| "none".to_owned());
-        why.push(Reason { part: Part::Input, before: absent(first), after: absent(second), what: port });
+        let only = |one, other| (there(one) && !there(other)).then(|| "read".to_owned());
+        why.push(Reason { part: Part::Input, before: only(first, second), after: only(second, first), what: port });
     }
     if first.seed != second.seed {
         let seed = |key: &KeyRecord, run: &Manifest| {

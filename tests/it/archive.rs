@@ -47,6 +47,21 @@ fn moved(table: &Table, column: &str, row: usize, by: f64) -> Table {
     Table::from_columns(table.schema().clone(), columns).unwrap()
 }
 
+/// An archive is written over an archive, and over nothing that would be lost.
+#[test]
+fn an_archive_takes_the_place_of_no_other_file() {
+    let desk = archived("quick.yaml", &[]);
+    fs::write(desk.path("notes.txt"), "kept").unwrap();
+    fs::write(desk.path("empty"), "").unwrap();
+    for name in ["quick.yaml", "notes.txt", "results/quick/manifest.json", "results/new.zip"] {
+        let before = fs::read(desk.path(name)).ok();
+        let (_, message) = desk.run(&["archive", "quick.yaml", "-o", name], 1);
+        assert!(message.contains(name) && message.contains("name another file"), "{message}");
+        assert!(fs::read(desk.path(name)).ok() == before, "{name} was touched");
+    }
+    desk.run(&["archive", "quick.yaml", "-o", "empty"], 0);
+}
+
 #[test]
 fn an_archive_is_the_same_bytes_again_and_verifies_as_identical() {
     let desk = archived("quick.yaml", &["--want", "stiffness.iso6336,ste.summary.largest_pressure"]);

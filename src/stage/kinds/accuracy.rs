@@ -177,7 +177,9 @@ impl Stage for Accuracy {
             let inputs = variant::inputs(&ports, index, inputs);
             let (reached, share) = (done as f64 / total, runs((index, variant)) as f64 / total);
             let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
-            let inner = Context { demand: &demand, progress: &progress, ..*context };
+            // What a coarse setting warns of is in the ladder's own columns.
+            let warn: &(dyn Fn(String) + Sync) = if index == 0 { context.warn } else { &|_| () };
+            let inner = Context { demand: &demand, progress: &progress, warn, ..*context };
             let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
             trials.push(trial::run(variant, plan(index), asked, &inner, &inputs)?);
             done += runs((index, variant));

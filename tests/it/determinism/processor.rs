@@ -47,6 +47,11 @@ fn the_article_harris_map_has_the_same_contents_on_a_lesser_processor() {
     the_same_everywhere("harris_map");
 }
 
+#[test]
+fn the_article_zhai2020_has_the_same_contents_on_a_lesser_processor() {
+    the_same_everywhere("zhai2020");
+}
+
 /// Its finite elements are factorised by a library that the mask does not reach: the same processor to it, the same bits.
 #[test]
 fn the_article_mei2016_has_the_same_contents_with_any_number_of_threads() {

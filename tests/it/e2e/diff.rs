@@ -73,12 +73,25 @@ fn every_change_has_its_reason_and_its_numbers() {
     edit(&desk, "seed: 1", "seed: 2");
     edit(&desk, "count: 5", "count: 9");
     edit(&desk, "best <= short &&", "best > short &&");
+    edit(
+        &desk,
+        "table: stiffness.curve\n        x: cycle_position\n        y: stiffness\n        segments: pairs",
+        "table: optimum.history\n        x: generation\n        y: best",
+    );
     desk.run(&["run", "--quiet", "quick.yaml"], 0);
     let diff = json(&desk, &[], 4);
     assert_eq!(why(&diff, "pair"), ["config pinion.face_width"]);
     let field = &stage(&diff, "pair")["why"][0];
     assert_eq!((&field["before"], &field["after"]), (&"20 mm".into(), &"22 mm".into()));
     assert_eq!(why(&diff, "stiffness"), ["input pair"]);
+    // The report no longer reads the stiffness, but the search.
+    let reads = |port: &str| {
+        let reasons = stage(&diff, "report")["why"].as_array().unwrap();
+        let found = reasons.iter().find(|why| why["what"] == port).unwrap();
+        (found["before"].clone(), found["after"].clone())
+    };
+    assert_eq!(reads("stiffness"), ("read".into(), Value::Null));
+    assert_eq!(reads("optimum"), (Value::Null, "read".into()));
     assert_eq!(
         (stage(&diff, "designs")["state"].as_str(), why(&diff, "designs")),
         (Some("same"), vec!["input pair".into()])
