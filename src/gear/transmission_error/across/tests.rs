@@ -81,7 +81,9 @@ fn an_even_load_is_that_of_independent_slices() {
                 let (plate, none) = (summary(&plate, &design, torque), summary(&none, &design, torque));
                 close(plate.peak_to_peak, none.peak_to_peak, 1e-9);
                 close(plate.mean, none.mean, 1e-12);
-                close(plate.largest_pressure.unwrap().value, none.largest_pressure.unwrap().value, 1e-7);
+                // 1e-6 N m deflects by 1e-13 m, of which the rounding of a relief of 8 µm is 1e-8.
+                let rounding = if torque < 1e-3 { 1e-7 } else { 1e-8 };
+                close(plate.largest_pressure.unwrap().value, none.largest_pressure.unwrap().value, rounding);
                 close(plate.loaded_contact_ratio, none.loaded_contact_ratio, 1e-9);
             }
         }
