@@ -1,4 +1,5 @@
-//! What every other layer stands on: errors with a place, units, declared parameters, canonical digests, seeds.
+//! What every other layer stands on: errors with a place, units, declared parameters, canonical digests, seeds,
+//! counts of work.
 //!
 //! Must not know: gears, graphs, files, YAML.
 
@@ -9,3 +10,4 @@ pub mod parameter;
 pub mod record;
 pub mod seed;
 pub mod units;
+pub mod work;

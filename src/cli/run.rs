@@ -18,7 +18,7 @@ use crate::runner::execute::{self, RunError};
 use crate::runner::options::{Force, Options, Wanted};
 use crate::runner::outcome::Outcome;
 use crate::runner::plan::{self, Action, Plan};
-use crate::stage::Want;
+use crate::stage::{Omission, Want, omission};
 use crate::store::cache::{Cache, Remove};
 use crate::store::error::StoreError;
 use crate::store::results::{Changes, Folder};
@@ -188,8 +188,11 @@ fn plan_text(study: &Study, plan: &Plan) -> String {
         }
         text += format!("  {:width$}  {action}", stage.name).trim_end();
         text += "\n";
-        for omission in &stage.left_out {
-            text += &format!("  {:width$}    left out: {}: {}\n", "", omission.what, omission.why);
+        for omission in omission::together(&stage.left_out) {
+            let saved = omission
+                .seconds(&stage.work, stage.seconds)
+                .map_or_else(String::new, |seconds| format!("; saves about {}", duration(seconds)));
+            text += &format!("  {:width$}    left out: {}: {}{saved}\n", "", omission.what, omission.why);
         }
     }
     text
@@ -200,11 +203,14 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
         .stages
         .iter()
         .map(|stage| {
-            let left_out: Vec<_> =
-                stage.left_out.iter().map(|omission| json!({ "what": omission.what, "why": omission.why })).collect();
+            let omission = |omission: &Omission| {
+                let saved = omission.seconds(&stage.work, stage.seconds);
+                json!({ "what": omission.what, "why": omission.why, "saved_seconds": saved })
+            };
+            let left_out: Vec<_> = stage.left_out.iter().map(omission).collect();
             json!({
                 "name": stage.name, "kind": stage.kind, "action": stage.action.phrase(),
-                "chunks": stage.chunks, "missing_chunks": stage.missing, "left_out": left_out,
+                "chunks": stage.chunks, "missing_chunks": stage.missing, "work": stage.work.named(), "left_out": left_out,
             })
         })
         .collect();

@@ -25,8 +25,8 @@ pub struct Balance {
     pub slope: f64,
 }
 
-/// Equilibrium. `total` > 0, the smallest gap is 0; `coupling` is symmetric, by rows, its diagonal is not read: what a
-/// spring's own load does to it is in its response. Together they must be positive definite. `above` is where the search
+/// Equilibrium. `total` > 0, the smallest gap is 0; `coupling` is symmetric, by rows; its diagonal is what a spring's
+/// own load does to it beyond its response. Together they must be positive definite. `above` is where the search
 /// starts: an approach at which the springs carry `total` or more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, above: f64) -> Balance {
     newton(springs, gaps, coupling, total, above).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
@@ -36,7 +36,7 @@ fn row(coupling: &[f64], spring: usize, count: usize) -> &[f64] {
     &coupling[spring * count..(spring + 1) * count]
 }
 
-/// What loads do to each spring, but for their own.
+/// What loads do to each spring, beyond its response to its own.
 fn deflections(coupling: &[f64], loads: &[f64], into: &mut [f64]) {
     let count = loads.len();
     into.fill(0.0);
@@ -44,7 +44,6 @@ fn deflections(coupling: &[f64], loads: &[f64], into: &mut [f64]) {
         for (deflection, influence) in into.iter_mut().zip(row(coupling, spring, count)) {
             *deflection += influence * load;
         }
-        into[spring] -= coupling[spring * count + spring] * load;
     }
 }
 
@@ -127,7 +126,7 @@ impl Factor {
             for (entry, &other) in entries.iter_mut().zip(&self.loaded[column..]) {
                 *entry = influences[other];
             }
-            entries[0] = 1.0 / rises[spring];
+            entries[0] += 1.0 / rises[spring];
             for earlier in before.chunks_exact(size) {
                 let factor = earlier[column];
                 for (entry, other) in entries.iter_mut().zip(&earlier[column..]) {
@@ -176,7 +175,7 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, a
             for (spring, gap) in gaps.iter().enumerate() {
                 let influences = row(coupling, spring, count);
                 let all: f64 = influences.iter().zip(&found.loads).map(|(influence, load)| influence * load).sum();
-                let w = approach - gap - (all - influences[spring] * found.loads[spring]);
+                let w = approach - gap - all;
                 let load = if w > 0.0 { springs.response(spring, w).0 } else { 0.0 };
                 change = change.max((load - found.loads[spring]).abs());
                 (found.interference[spring], found.loads[spring]) = (w, load);
@@ -232,7 +231,8 @@ mod tests {
             let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST + m] * roots[k * MOST + m]).sum::<f64>();
             let mut gaps = openings[..count].to_vec();
             gaps[closed % count] = 0.0;
-            let coupling: Vec<f64> = (0..count * count).map(|at| entry(at / count, at % count)).collect();
+            let off = |i: usize, k: usize| if i == k { 0.0 } else { entry(i, k) };
+            let coupling: Vec<f64> = (0..count * count).map(|at| off(at / count, at % count)).collect();
             let mut few = [[0.0; MOST]; MOST];
             for at in 0..count * count {
                 few[at / count][at % count] = coupling[at];

@@ -11,7 +11,7 @@ use super::choice::{self, Choice};
 use super::figure::Figure;
 use super::{ReportError, flags, integers, plot, texts, verdict};
 use crate::base::number::{significant, unit_symbol, with_unit};
-use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
 use crate::table::data::{Data, Table};
 
 /// Rows of a table shown on the page.
@@ -79,12 +79,14 @@ struct Remark {
     stage: String,
     what: String,
     why: String,
+    saved: String,
 }
 
 #[derive(Serialize)]
 struct StageView<'a> {
     record: &'a StageRecord,
     seconds: String,
+    work: String,
     rows: usize,
     key: String,
 }
@@ -122,15 +124,19 @@ pub fn html(
     let counts = counts(parts)?;
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
-    let remarks = |pick: fn(&StageRecord) -> Vec<(String, String)>| -> Vec<Remark> {
+    let remarks = |pick: fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
-            pick(stage).into_iter().map(move |(what, why)| Remark { stage: name.clone(), what, why })
+            pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
         };
         manifest.stages.iter().flat_map(of).collect()
     };
-    let left_out = remarks(|stage| stage.left_out.iter().map(|left| (left.what.clone(), left.why.clone())).collect());
-    let warnings = remarks(|stage| stage.warnings.iter().map(|warning| (warning.clone(), String::new())).collect());
+    let left_out = remarks(|stage| {
+        let saved = |left: &OmissionRecord| left.saved_seconds.map_or_else(String::new, seconds);
+        stage.left_out.iter().map(|left| (left.what.clone(), left.why.clone(), saved(left))).collect()
+    });
+    let warnings =
+        remarks(|stage| stage.warnings.iter().map(|warning| (warning.clone(), String::new(), String::new())).collect());
     let failures: Vec<&StageRecord> =
         manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
     let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
@@ -198,7 +204,9 @@ fn stage_view(record: &StageRecord) -> StageView<'_> {
         [first, rest @ ..] => format!("{} and {} more", short(&first.key), rest.len()),
     };
     let rows = record.tables.iter().map(|table| table.rows).sum();
-    StageView { record, seconds: seconds(record.seconds), rows, key }
+    let work = record.work.iter().map(|(counter, count)| format!("{count} {}", counter.replace('_', " ")));
+    let work = work.collect::<Vec<_>>().join(", ");
+    StageView { record, seconds: seconds(record.seconds), work, rows, key }
 }
 
 fn table_view<'a>(record: &'a TableRecord, tables: &dyn Fn(&str) -> Option<Table>) -> TableView<'a> {

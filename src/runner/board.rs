@@ -18,8 +18,9 @@ use super::options::Options;
 use super::outcome::Fault;
 use crate::base::digest::Digest;
 use crate::base::error::Diagnostic;
+use crate::base::work::Work;
 use crate::store::cache::{Cache, Lookup};
-use crate::store::entry::{Entry, StoredTable};
+use crate::store::entry::{Entry, OfRun, StoredTable};
 use crate::store::journal::{Journal, JournalStage};
 use crate::study::Study;
 use crate::table::data::Table;
@@ -350,6 +351,16 @@ impl Progress {
     /// Seconds of computing, whenever that was.
     #[must_use]
     pub fn seconds(&self) -> f64 {
-        self.known.iter().filter_map(|known| known.entry.as_ref()).map(|entry| entry.seconds).sum()
+        self.of_runs().map(|of_run| of_run.seconds).sum()
+    }
+
+    /// The work that was counted, of all parts that are known.
+    pub fn work(&self) -> Work {
+        self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work)))
+    }
+
+    /// What is told of the parts that are known.
+    pub fn of_runs(&self) -> impl Iterator<Item = &OfRun> {
+        self.known.iter().filter_map(|known| Some(&known.entry.as_ref()?.of_run))
     }
 }

@@ -11,7 +11,7 @@ use petgraph::visit::DfsPostOrder;
 
 use super::options::Wanted;
 use crate::base::error::{Diagnostic, suggest};
-use crate::stage::{Demand, Omission, Port, Want};
+use crate::stage::{Demand, Omission, Port, Stage, Want};
 use crate::study::{Node, Study};
 use crate::table::schema::Schema;
 
@@ -108,18 +108,20 @@ impl Graph {
 
     /// Tables and columns on demand of a node that nobody asks for.
     #[must_use]
-    pub fn unasked(&self, node: usize) -> Vec<Omission> {
+    pub fn unasked(&self, node: usize, stage: &dyn Stage) -> Vec<Omission> {
         let demand = &self.demands[node];
         let why = "no stage reads it and nobody asked for it";
         let mut omissions = Vec::new();
         for schema in &self.outputs[node] {
             if !demand.table(&schema.name) {
-                omissions.push(Omission::new(format!("table `{}`", schema.name), why));
+                let omission = Omission::new(format!("table `{}`", schema.name), why);
+                omissions.push(omission.saving(stage.saved(demand, &schema.name, None)));
                 continue;
             }
             let columns = schema.columns.iter();
             for column in columns.filter(|column| column.on_demand && !demand.column(&schema.name, &column.name)) {
-                omissions.push(Omission::new(format!("column `{}.{}`", schema.name, column.name), why));
+                let omission = Omission::new(format!("column `{}.{}`", schema.name, column.name), why);
+                omissions.push(omission.saving(stage.saved(demand, &schema.name, Some(&column.name))));
             }
         }
         omissions

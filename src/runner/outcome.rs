@@ -6,6 +6,7 @@ use super::board::{Board, State};
 use super::key::phrase;
 use super::plan::left_out;
 use crate::base::digest::Digest;
+use crate::base::work::Work;
 use crate::stage::Omission;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
@@ -67,6 +68,8 @@ pub struct StageOutcome {
     pub ran: usize,
     /// Seconds of computing, whenever that was.
     pub seconds: f64,
+    /// Work that was counted then.
+    pub work: Work,
     pub warnings: Vec<String>,
     pub left_out: Vec<Omission>,
     pub keys: Vec<KeyRecord>,
@@ -84,8 +87,7 @@ impl Outcome {
         let stages = board.graph.order.iter().map(|&node| {
             let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
             let fault = progress.fault.as_ref().map(|(_, fault)| fault.clone());
-            let entries = progress.known.iter().filter_map(|known| known.entry.as_ref());
-            let mut warnings: Vec<String> = entries.flat_map(|entry| entry.warnings.iter().cloned()).collect();
+            let mut warnings: Vec<String> = progress.of_runs().flat_map(|run| run.warnings.iter().cloned()).collect();
             warnings.sort();
             warnings.dedup();
             let schema = |name: &str| board.graph.outputs[node].iter().find(|schema| schema.name == name).cloned();
@@ -108,6 +110,7 @@ impl Outcome {
                 chunks: progress.parts.len(),
                 ran: progress.ran,
                 seconds: progress.seconds(),
+                work: progress.work(),
                 warnings,
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
@@ -193,7 +196,11 @@ impl StageOutcome {
             State::Failed => "failed",
             _ => "skipped",
         };
-        let omission = |omission: &Omission| OmissionRecord { what: omission.what.clone(), why: omission.why.clone() };
+        let omission = |omission: &Omission| OmissionRecord {
+            what: omission.what.clone(),
+            why: omission.why.clone(),
+            saved_seconds: omission.seconds(&self.work, self.seconds),
+        };
         StageRecord {
             name: self.name.clone(),
             kind: self.kind.to_owned(),
@@ -203,6 +210,7 @@ impl StageOutcome {
             status: status.to_owned(),
             why: self.why.clone(),
             seconds: self.seconds,
+            work: self.work.named(),
             warnings: self.warnings.clone(),
             left_out: self.left_out.iter().map(omission).collect(),
             tables: self.tables.iter().map(|(schema, table)| TableRecord::new(&self.name, schema, table)).collect(),

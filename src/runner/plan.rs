@@ -8,6 +8,7 @@ use super::events::Silent;
 use super::key::{Why, phrase};
 use super::options::Options;
 use crate::base::error::Diagnostic;
+use crate::base::work::Work;
 use crate::stage::Omission;
 use crate::store::cache::Cache;
 use crate::study::Study;
@@ -28,6 +29,8 @@ pub struct Planned {
     pub missing: usize,
     /// What it does not compute, and why.
     pub left_out: Vec<Omission>,
+    /// Work that was counted in what is known.
+    pub work: Work,
     /// What it took when it was computed; 0 when it was not.
     pub seconds: f64,
 }
@@ -99,6 +102,7 @@ pub fn of(board: &Board) -> Plan {
             missing: progress.missing.len(),
             left_out: left_out(board, node),
             seconds: progress.seconds(),
+            work: progress.work(),
         }
     });
     Plan { stages: stages.collect() }
@@ -106,7 +110,8 @@ pub fn of(board: &Board) -> Plan {
 
 /// What a stage itself leaves out, and what nobody asks it for.
 pub fn left_out(board: &Board, node: usize) -> Vec<Omission> {
-    let mut omissions = board.study.nodes[node].stage.left_out(&board.graph.demands[node]);
-    omissions.extend(board.graph.unasked(node));
+    let stage = &board.study.nodes[node].stage;
+    let mut omissions = stage.left_out(&board.graph.demands[node]);
+    omissions.extend(board.graph.unasked(node, stage.as_ref()));
     omissions
 }

@@ -16,8 +16,9 @@ use super::outcome::{Fault, together};
 use crate::base::error::Failure;
 use crate::base::record::Record;
 use crate::base::seed::Seed;
+use crate::base::work::Tally;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
-use crate::store::entry::part;
+use crate::store::entry::{OfRun, part};
 use crate::store::error::StoreError;
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
@@ -121,6 +122,7 @@ impl Run<'_> {
         let inputs = Inputs { ports: ports.collect() };
         let name = of_study.name.as_str();
         let warnings = Mutex::new(Vec::new());
+        let work = Tally::default();
         let context = Context {
             seed: if of_study.stage.uses_seed() { Seed::of_stage(study.seed, name) } else { Seed::of_stage(0, "") },
             demand: &demand,
@@ -132,6 +134,7 @@ impl Run<'_> {
                 self.observer.event(&Event::Warned { stage: name, message: &message });
                 warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message);
             },
+            work: &work,
         };
         let began = Instant::now();
         let result = catch_unwind(AssertUnwindSafe(|| match &part.axis {
@@ -155,7 +158,8 @@ impl Run<'_> {
         let mut warnings = warnings.into_inner().unwrap_or_else(PoisonError::into_inner);
         warnings.sort();
         warnings.dedup();
-        let entry = self.cache.put(part.key, &tables.iter().collect::<Vec<_>>(), seconds, warnings)?;
+        let of_run = OfRun { seconds, work: work.total().named(), warnings };
+        let entry = self.cache.put(part.key, &tables.iter().collect::<Vec<_>>(), of_run)?;
         Ok(Known { entry: Some(entry), tables: tables.into_iter().map(Arc::new).collect() })
     }
 }

@@ -7,6 +7,7 @@ pub mod compliance;
 pub mod designs;
 pub mod kinds;
 pub mod memory;
+pub mod omission;
 pub mod pair;
 
 use std::collections::BTreeMap;
@@ -16,8 +17,11 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::Field;
 use crate::base::record::Record;
 use crate::base::seed::Seed;
+use crate::base::work::Tally;
 use crate::table::data::Table;
 use crate::table::schema::Schema;
+
+pub use self::omission::{Omission, Saved};
 
 /// A kind of stage as registered.
 pub struct Kind {
@@ -55,6 +59,11 @@ pub trait Stage: Send + Sync {
     /// What it does not compute for this demand, and why.
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         Vec::new()
+    }
+
+    /// What a table or column on demand would take that nobody asks for.
+    fn saved(&self, _demand: &Demand, _table: &str, _column: Option<&str>) -> Option<Saved> {
+        None
     }
 
     /// Computes the demanded tables.
@@ -127,20 +136,6 @@ impl Demand {
     }
 }
 
-/// Something that was not computed, and why.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Omission {
-    pub what: String,
-    pub why: String,
-}
-
-impl Omission {
-    #[must_use]
-    pub fn new(what: impl Into<String>, why: impl Into<String>) -> Self {
-        Self { what: what.into(), why: why.into() }
-    }
-}
-
 /// What a stage is given besides its inputs.
 pub struct Context<'a> {
     pub seed: Seed,
@@ -150,6 +145,8 @@ pub struct Context<'a> {
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with something the user should know about the result (a formula outside its range, say).
     pub warn: &'a (dyn Fn(String) + Sync),
+    /// Where the work that is done is counted.
+    pub work: &'a Tally,
 }
 
 impl Context<'_> {

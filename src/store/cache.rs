@@ -13,7 +13,7 @@ use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::entry::{self, Entry, StoredTable};
+use super::entry::{self, Entry, OfRun, StoredTable};
 use super::error::StoreError;
 use super::file::{self, Durability, TEMPORARY};
 use super::journal::Journal;
@@ -106,14 +106,8 @@ impl Cache {
     ///
     /// # Errors
     /// [`StoreError::NotDeterministic`] when there are other tables under this key already; when it cannot be written.
-    pub fn put(
-        &self,
-        key: Digest,
-        tables: &[&Table],
-        seconds: f64,
-        warnings: Vec<String>,
-    ) -> Result<Entry, StoreError> {
-        let (entry, bytes) = Entry::encode(key, tables, seconds, warnings)?;
+    pub fn put(&self, key: Digest, tables: &[&Table], of_run: OfRun) -> Result<Entry, StoreError> {
+        let (entry, bytes) = Entry::encode(key, tables, of_run)?;
         self.keep(&entry, &bytes)?;
         Ok(entry)
     }
@@ -123,7 +117,7 @@ impl Cache {
     /// # Errors
     /// As [`Cache::put`].
     pub fn put_whole(&self, key: Digest, tables: Vec<StoredTable>) -> Result<Entry, StoreError> {
-        let entry = Entry { key, tables, seconds: 0.0, warnings: Vec::new() };
+        let entry = Entry { key, tables, of_run: OfRun::default() };
         self.keep(&entry, &entry.file(&[])?)?;
         Ok(entry)
     }
@@ -309,7 +303,9 @@ mod tests {
         let mut schema = second.schema().clone();
         schema.name = "empty".to_owned();
         let second = Table::from_rows(schema, vec![]).unwrap();
-        cache.put(key("a"), &[&everything(20), &second], 1.5, vec!["warned".to_owned()]).unwrap();
+        let work = [("contact_solves".to_owned(), 7)].into();
+        let of_run = OfRun { seconds: 1.5, work, warnings: vec!["warned".to_owned()] };
+        cache.put(key("a"), &[&everything(20), &second], of_run).unwrap();
         cache
     }
 
@@ -319,7 +315,8 @@ mod tests {
         let root = folder.path().join("deep/cache");
         let cache = filled(&root);
         let Lookup::Found(entry) = cache.look_up(key("a")) else { panic!() };
-        assert_eq!((entry.seconds, entry.warnings[0].as_str()), (1.5, "warned"));
+        let of_run = entry.of_run;
+        assert_eq!((of_run.seconds, of_run.work["contact_solves"], of_run.warnings[0].as_str()), (1.5, 7, "warned"));
         assert_eq!(entry.tables[0].content, everything(20).content_hash());
         assert_identical(&cache.table(key("a"), "curve").unwrap(), &everything(20));
         assert_eq!(cache.table(key("a"), "empty").unwrap().rows(), 0);
@@ -362,18 +359,18 @@ mod tests {
     fn two_contents_for_one_key_are_refused_and_the_first_stays() {
         let folder = tempfile::tempdir().unwrap();
         let cache = filled(folder.path());
-        let error = cache.put(key("a"), &[&everything(21)], 1.0, vec![]).unwrap_err().to_string();
+        let error = cache.put(key("a"), &[&everything(21)], OfRun::default()).unwrap_err().to_string();
         assert!(error.contains("not deterministic") && error.contains("`curve`"), "{error}");
         assert_eq!(cache.table(key("a"), "curve").unwrap().rows(), 20);
-        cache.put(key("b"), &[&everything(3)], 1.0, vec![]).unwrap();
-        cache.put(key("b"), &[&everything(3)], 2.0, vec![]).unwrap();
+        cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
+        cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
     }
 
     #[test]
     fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
         let folder = tempfile::tempdir().unwrap();
         let cache = filled(folder.path());
-        cache.put(key("b"), &[&everything(3)], 1.0, vec![]).unwrap();
+        cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
         let record = KeyRecord { key: key("a").to_string(), ..KeyRecord::default() };
         let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
         cache.put_journal("study", &Journal { stages: vec![stage.clone()] }).unwrap();

@@ -11,6 +11,7 @@
 //! A plan reads the header only; the file's size shows a cut, and the digest of each table is checked when it is read.
 //! Must not know: what a key is made of.
 
+use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
@@ -35,8 +36,17 @@ pub struct Entry {
     #[serde(with = "hexadecimal")]
     pub key: Digest,
     pub tables: Vec<StoredTable>,
-    /// Seconds of computing.
+    #[serde(flatten)]
+    pub of_run: OfRun,
+}
+
+/// What is told of the computing besides its tables.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct OfRun {
     pub seconds: f64,
+    /// Work that was counted, by name; none in entries of earlier versions.
+    #[serde(default)]
+    pub work: BTreeMap<String, u64>,
     pub warnings: Vec<String>,
 }
 
@@ -117,12 +127,7 @@ impl Entry {
     ///
     /// # Errors
     /// When a table cannot be written as Parquet.
-    pub fn encode(
-        key: Digest,
-        tables: &[&Table],
-        seconds: f64,
-        warnings: Vec<String>,
-    ) -> Result<(Self, Vec<u8>), StoreError> {
+    pub fn encode(key: Digest, tables: &[&Table], of_run: OfRun) -> Result<(Self, Vec<u8>), StoreError> {
         let mut stored = Vec::new();
         let mut bodies = Vec::new();
         for table in tables {
@@ -132,7 +137,7 @@ impl Entry {
             stored.push(StoredTable { body: Some(Body { bytes: body.len() as u64, digest }), ..described });
             bodies.extend(body);
         }
-        let entry = Self { key, tables: stored, seconds, warnings };
+        let entry = Self { key, tables: stored, of_run };
         let file = entry.file(&bodies)?;
         Ok((entry, file))
     }

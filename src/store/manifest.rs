@@ -2,6 +2,8 @@
 //!
 //! Must not know: how any of it was computed. Field names are read by other programs: additions only.
 
+use std::collections::BTreeMap;
+
 use serde::{Deserialize, Serialize};
 
 use super::entry::{StoredColumn, StoredTable};
@@ -89,6 +91,9 @@ pub struct StageRecord {
     pub why: String,
     /// Seconds of computing, when it was computed (kept from then on a hit).
     pub seconds: f64,
+    /// Work that was counted then, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub work: BTreeMap<String, u64>,
     pub warnings: Vec<String>,
     pub left_out: Vec<OmissionRecord>,
     pub tables: Vec<TableRecord>,
@@ -115,10 +120,13 @@ pub struct KeyRecord {
     pub inputs: Vec<(String, String)>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq, Eq)]
+#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub struct OmissionRecord {
     pub what: String,
     pub why: String,
+    /// About what it would have taken, where that is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub saved_seconds: Option<f64>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]

@@ -309,6 +309,7 @@ fn essence(manifest: &Manifest) -> Manifest {
     essence.files.clear();
     for stage in &mut essence.stages {
         stage.seconds = 0.0;
+        stage.left_out.iter_mut().for_each(|left_out| left_out.saved_seconds = None);
         if complete(stage) {
             stage.status.clear();
             stage.why.clear();

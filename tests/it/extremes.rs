@@ -8,6 +8,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use gearstudy::base::seed::Seed;
+use gearstudy::base::work::Tally;
 use gearstudy::stage::{Context, Inputs};
 use serde_json::Value;
 
@@ -78,6 +79,7 @@ stages:
             stop: &stop,
             progress: &|_| {},
             warn: &|text| warnings.lock().unwrap().push(text),
+            work: &Tally::default(),
         };
         stage.run(&context, &inputs).err().map_or_else(|| panic!("nothing failed"), |failure| failure.to_string())
     }

@@ -5,6 +5,7 @@ use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
 use gearstudy::base::seed::Seed;
+use gearstudy::base::work::Tally;
 use gearstudy::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearstudy::gear::transmission_error::loading::Loading;
@@ -184,8 +185,14 @@ fn harris_relations_hold_through_the_stage() {
     inputs.ports.insert("stiffness".to_owned(), written.iter().collect());
     inputs.ports.insert("designs_1".to_owned(), ran["designs"].tables.iter().collect());
     let (demand, stop) = (demand(stage.as_ref(), false), AtomicBool::new(false));
-    let context =
-        Context { seed: Seed::of_stage(1, "ste"), demand: &demand, stop: &stop, progress: &|_| (), warn: &|_| () };
+    let context = Context {
+        seed: Seed::of_stage(1, "ste"),
+        demand: &demand,
+        stop: &stop,
+        progress: &|_| (),
+        warn: &|_| (),
+        work: &Tally::default(),
+    };
     let tables = stage.run(&context, &inputs).unwrap();
     let summary = tables.iter().find(|table| table.name() == "summary").unwrap();
     let mut seen = 0;

@@ -8,9 +8,10 @@
 
 use super::ring::{self, Ring};
 use super::sainsot::Body;
-use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
+use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, of_both};
 use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
+use crate::base::work::{Counter, Work};
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
@@ -69,9 +70,9 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         Some(accuracy) => ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, least, most),
         None => options.integer("harmonics") as f64,
     };
-    let mut error_estimate = ROUNDING;
-    let mut side = |side| {
-        let (compliance, warning) = tabulate_side(options, pair, side, assumptions, harmonics)?;
+    let (mut error_estimate, mut evaluations) = (ROUNDING, 0);
+    let side = |side| {
+        let (compliance, warning) = tabulate_side(options, pair, side, assumptions, harmonics, &mut evaluations)?;
         warnings.extend(warning);
         if uses_ring {
             let ends = [compliance.body.lower(), compliance.body.upper()];
@@ -81,10 +82,11 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         }
         Ok::<_, ComplianceError>(compliance)
     };
-    let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+    let [pinion, gear] = of_both(pair, side)?;
     let Assumptions { contact, coupled, .. } = assumptions;
     let compliance = PairCompliance { pinion, gear, contact, coupled };
-    Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new() })
+    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new(), work })
 }
 
 /// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.
@@ -198,6 +200,7 @@ fn tabulate_side(
     side: Side,
     assumptions: Assumptions,
     harmonics: f64,
+    evaluations: &mut usize,
 ) -> Result<(ToothCompliance, Option<String>), ComplianceError> {
     let gear = pair.side(side);
     let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
@@ -240,6 +243,7 @@ fn tabulate_side(
     };
 
     let series = Series::converged(lower, upper, |roll| {
+        *evaluations += 1;
         let parts = beam.parts(roll);
         [parts.bending, parts.shear, parts.axial, body_at(roll), parts.contact_depth]
     });

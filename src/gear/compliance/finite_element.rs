@@ -9,10 +9,12 @@
 mod tests;
 
 use super::{
-    Assumptions, ComplianceError, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance, neighbours,
+    Assumptions, ComplianceError, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance,
+    neighbours, of_both,
 };
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
+use crate::base::work::{Counter, Work};
 use crate::gear::finite_elements::element::{PLANES, Plane};
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
@@ -57,34 +59,41 @@ pub const METHOD: Method = Method {
 };
 
 fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let mut meshes: Vec<MeshFacts> = Vec::new();
-    let mut side = |side| {
+    let mut work = Work::NONE;
+    let side = |side| {
         let task = Task::new(options, pair, side, assumptions)?;
-        let (solution, facts) = task.solve()?;
-        meshes.push(facts);
-        task.tables(&solution)
+        let (solution, facts) = task.solve(&mut work)?;
+        Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
     };
-    let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+    let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
+    let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
     let Assumptions { contact, coupled, .. } = assumptions;
     let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
     let compliance = PairCompliance { pinion, gear, contact, coupled };
-    Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes })
+    Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
 }
 
-fn root_stress(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Vec<RootStress>, ComplianceError> {
-    let mut rows = Vec::new();
-    for side in [Side::Pinion, Side::Gear] {
+fn root_stress(
+    options: &Record,
+    pair: &Pair,
+    assumptions: Assumptions,
+) -> Result<(Vec<RootStress>, Work), ComplianceError> {
+    let mut work = Work::NONE;
+    let side = |side| {
         let task = Task::new(options, pair, side, assumptions)?;
-        let across = if task.accuracy.is_some() { task.solve()?.1.elements_across } else { task.across };
+        let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
         let module = task.gear.specification.module;
+        work = work.and(&Work::of(Counter::MeshFactorisations, 1));
         let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
-        for (&roll, points) in task.rolls.iter().zip(found) {
-            if let Some((stress, radius)) = root_stress::largest(&points) {
-                rows.push(RootStress { side, roll, stress: stress / module, radius: radius * module });
-            }
-        }
-    }
-    Ok(rows)
+        let row = |(&roll, points): (&f64, &Vec<_>)| {
+            let (stress, radius) = root_stress::largest(points)?;
+            Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
+        };
+        Ok::<_, ComplianceError>(task.rolls.iter().zip(&found).filter_map(row).collect::<Vec<_>>())
+    };
+    let [mut rows, of_gear] = of_both(pair, side)?;
+    rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
+    Ok((rows, work))
 }
 
 /// One gear, and how it is to be solved.
@@ -131,8 +140,10 @@ impl<'a> Task<'a> {
             .map_err(|error| self.failed(across, error))
     }
 
-    fn at(&self, across: usize) -> Result<(Influences, MeshFacts), ComplianceError> {
+    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
         let model = self.model(across)?;
+        let done = Work::of(Counter::MeshFactorisations, 1).with(Counter::ComplianceEvaluations, self.rolls.len());
+        *work = work.and(&done);
         let found = model.influences(&self.rolls, self.neighbours).map_err(|error| self.failed(across, error))?;
         let facts = MeshFacts {
             side: self.side,
@@ -145,12 +156,12 @@ impl<'a> Task<'a> {
     }
 
     /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
-    fn solve(&self) -> Result<(Influences, MeshFacts), ComplianceError> {
+    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
         let mut across = self.across;
         loop {
             let coarse = even(across / 2).max(LEAST);
-            let (found, mut facts) = self.at(across)?;
-            let change = difference(&found, &self.at(coarse)?.0);
+            let (found, mut facts) = self.at(across, work)?;
+            let change = difference(&found, &self.at(coarse, work)?.0);
             facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
             let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
             if facts.error_estimate <= accuracy || across >= MOST {

@@ -11,6 +11,7 @@
 use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
+use crate::base::work::{Counter, Work};
 use crate::gear::geometry::{Pair, Side, Specification};
 use crate::numeric::chebyshev::Series;
 
@@ -134,10 +135,12 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
     let top = single * pair.contact_width();
     let fall = 3.0 * (1.0 - mesh / (single * pair.contact_ratio));
     let (start, end) = (pair.start_of_contact, pair.end_of_contact);
-    let tooth = |side: Side| {
+    let mut evaluations = 0;
+    let mut tooth = |side: Side| {
         let rolls = [pair.roll(side, start), pair.roll(side, end)];
         let (lower, upper) = (rolls[0].min(rolls[1]), rolls[0].max(rolls[1]));
         let half = |roll: f64| {
+            evaluations += 1;
             let along = (2.0 * pair.path_position(side, roll) - start - end) / (end - start);
             [0.5 / (top * (1.0 - fall * along * along))]
         };
@@ -160,7 +163,8 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         coupled: false,
     };
     let warnings = warnings(&inputs, pair, assumptions.torque);
-    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new() })
+    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
 }
 
 /// A sentence for each range of the standard that the pair is outside of.

@@ -19,6 +19,7 @@ use super::geometry::root::RootShape;
 use super::geometry::{Pair, Side};
 use crate::base::parameter::{Choice, Member};
 use crate::base::record::Record;
+use crate::base::work::Work;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
@@ -41,8 +42,8 @@ pub struct Method {
     pub root_stress: Option<RootStresses>,
 }
 
-/// The largest stress at the root of both gears' teeth, for loads along the flank.
-pub type RootStresses = fn(&Record, &Pair, Assumptions) -> Result<Vec<RootStress>, ComplianceError>;
+/// The largest stress at the root of both gears' teeth, for loads along the flank, and what it took.
+pub type RootStresses = fn(&Record, &Pair, Assumptions) -> Result<(Vec<RootStress>, Work), ComplianceError>;
 
 /// What every method is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,6 +70,8 @@ pub struct Tabulated {
     pub error_estimate: f64,
     /// One per gear, for methods that mesh the teeth.
     pub meshes: Vec<MeshFacts>,
+    /// What it took.
+    pub work: Work,
 }
 
 /// The mesh a gear's compliance was found with.
@@ -104,6 +107,16 @@ pub const ROUNDING: f64 = 1e-12;
 #[must_use]
 pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|method| method.member.name == name)
+}
+
+/// What `tooth` gives for both gears; for gears that are alike it is asked once.
+///
+/// # Errors
+/// Those of `tooth`.
+pub fn of_both<T: Clone, E>(pair: &Pair, mut tooth: impl FnMut(Side) -> Result<T, E>) -> Result<[T; 2], E> {
+    let pinion = tooth(Side::Pinion)?;
+    let gear = if pair.pinion == pair.gear { pinion.clone() } else { tooth(Side::Gear)? };
+    Ok([pinion, gear])
 }
 
 /// The methods as a study names them.

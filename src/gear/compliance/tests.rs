@@ -9,6 +9,7 @@ use super::sainsot::Body;
 use super::{Assumptions, ComplianceError, ContactLaw, Tabulated, ToothCompliance, members, method};
 use crate::base::error::Place;
 use crate::base::record::{Entry, Record, Value};
+use crate::base::work::Counter;
 use crate::gear::contact::flattening;
 use crate::gear::fixtures::STEEL;
 use crate::gear::geometry::root::RootShape;
@@ -415,5 +416,26 @@ fn names_and_choices_agree() {
                 assert!(choices.iter().any(|choice| choice.name == text), "{}: {text}", field.name);
             }
         }
+    }
+}
+
+/// Of gears that are alike one tooth serves for both, by every method that knows single teeth.
+#[test]
+fn gears_that_are_alike_take_half_of_the_evaluations() {
+    let alike = |teeth: [u32; 2]| {
+        let [pinion, _] = specifications(3e-3, 3.0);
+        let [pinion, gear] = teeth.map(|teeth| Specification { teeth, ..pinion });
+        Pair::new(pinion, gear, None).unwrap()
+    };
+    for name in ["energy", "weber_banaschek"] {
+        let found = |pair: &Pair| (method(name).unwrap().tabulate)(&options("sainsot"), pair, SUMMED).unwrap();
+        let evaluations = |tabulated: &Tabulated| tabulated.work.count(Counter::ComplianceEvaluations);
+        let (one, two) = (found(&alike([25, 25])), found(&alike([24, 25])));
+        // 24 teeth take as many nodes as 25, and as many again.
+        assert!(evaluations(&one) > 0, "{name}");
+        assert_eq!(2 * evaluations(&one), evaluations(&two), "{name}");
+        assert_eq!(one.compliance.gear, two.compliance.gear, "{name}");
+        assert_eq!(one.compliance.pinion, one.compliance.gear, "{name}");
+        assert_eq!(one.work.count(Counter::MeshFactorisations), 0, "{name}");
     }
 }

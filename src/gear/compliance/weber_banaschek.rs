@@ -22,9 +22,10 @@ mod tests;
 use std::f64::consts::PI;
 
 use super::energy::Beam;
-use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
+use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, of_both};
 use crate::base::parameter::Member;
 use crate::base::record::Record;
+use crate::base::work::{Counter, Work};
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
@@ -49,11 +50,12 @@ pub const METHOD: Method = Method {
 
 fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let mut warnings = Vec::new();
-    let mut side = |side| tabulate_side(pair, side, assumptions, &mut warnings);
-    let (pinion, gear) = (side(Side::Pinion)?, side(Side::Gear)?);
+    let mut evaluations = 0;
+    let [pinion, gear] = of_both(pair, |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations))?;
     let Assumptions { contact, coupled, .. } = assumptions;
     let compliance = PairCompliance { pinion, gear, contact, coupled };
-    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new() })
+    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
 }
 
 fn tabulate_side(
@@ -61,6 +63,7 @@ fn tabulate_side(
     side: Side,
     assumptions: Assumptions,
     warnings: &mut Vec<String>,
+    evaluations: &mut usize,
 ) -> Result<ToothCompliance, ComplianceError> {
     let gear = pair.side(side);
     let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
@@ -72,6 +75,7 @@ fn tabulate_side(
     let strain = plane_strain(gear);
     let body = Body::new(gear, &root);
     let series = Series::converged(lower, upper, |roll| {
+        *evaluations += 1;
         let parts = beam.parts_below(crossing_roll(gear, roll), roll);
         [strain * parts.bending, parts.shear, strain * parts.axial, body.compliance(gear, roll), parts.contact_depth]
     });

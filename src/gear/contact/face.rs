@@ -3,7 +3,7 @@
 //! A tooth pair is a row of independent slices: under the interference w its load is its stiffness times
 //! Φ(w) = 1/b ∫ max(0, w − h(z)) dz, where h is the deviation of both flanks above its smallest value. Where h is
 //! piecewise quadratic Φ has a closed form (for crowning alone w t − C_β t³/3 with t = min(1, √(w/C_β))); other shapes
-//! are cut into slices. Lengths in m. Must not know: stiffness, profile.
+//! are cut into slices. Where h(−z) = h(z), half of the face is looked at. Lengths in m. Must not know: stiffness, profile.
 
 use crate::gear::modification::Design;
 use crate::numeric::lobatto::Rule;
@@ -58,6 +58,8 @@ impl<'a> Face<'a> {
             return Self { offset: 0.0, mean: 0.0, shape: Shape::Flat, rule };
         }
         let mut cuts = vec![from, to];
+        #[allow(clippy::float_cmp)] // the middle of the face is 0 only where it was put there
+        let even = from == -to && design.lead_is_even();
         for z in parts().flat_map(|part| part.lead_breaks()).flatten() {
             if z > from && z < to {
                 cuts.push(z);
@@ -73,14 +75,22 @@ impl<'a> Face<'a> {
         let stretches = || cuts.windows(2).map(|cut| (cut[0], cut[1]));
         let polynomials: Option<Vec<_>> = stretches().map(|(from, to)| quadratic(0.5 * (from + to))).collect();
         match polynomials {
-            Some(polynomials) => Self::quadratic(stretches().zip(polynomials), width, rule),
-            None => Self::sliced(stretches(), width, rule, |z| design.lead(z)),
+            Some(polynomials) => Self::quadratic(stretches().zip(polynomials), width, rule, even),
+            None => Self::sliced(stretches(), width, rule, even, |z| design.lead(z)),
         }
     }
 
-    fn quadratic(stretches: impl Iterator<Item = ((f64, f64), [f64; 3])>, width: f64, rule: &'a Rule) -> Self {
+    fn quadratic(
+        stretches: impl Iterator<Item = ((f64, f64), [f64; 3])>,
+        width: f64,
+        rule: &'a Rule,
+        even: bool,
+    ) -> Self {
         let mut pieces = Vec::with_capacity(4);
-        for ((from, to), polynomial) in stretches {
+        // Half of an even face stands for both.
+        let width = if even { 0.5 * width } else { width };
+        for ((from, to), polynomial) in stretches.filter(|((from, _), _)| !even || *from < 0.0) {
+            let to = if even { to.min(0.0) } else { to };
             let vertex = -0.5 * polynomial[1] / polynomial[2];
             if vertex > from && vertex < to {
                 pieces.push(Piece::new(polynomial, from, vertex, width));
@@ -90,30 +100,32 @@ impl<'a> Face<'a> {
             }
         }
         let offset = pieces.iter().map(|piece| piece.base).fold(f64::INFINITY, f64::min);
-        let mut merged: Vec<Piece> = Vec::with_capacity(pieces.len());
-        for mut piece in pieces {
+        for piece in &mut pieces {
             piece.base -= offset;
-            match merged.iter_mut().find(|other| Piece { weight: piece.weight, ..**other } == piece) {
-                Some(twin) => twin.weight += piece.weight,
-                None => merged.push(piece),
-            }
         }
-        let mean = merged.iter().map(Piece::mean).sum();
-        Self { offset, mean, shape: Shape::Quadratic(merged), rule }
+        let mean = pieces.iter().map(Piece::mean).sum();
+        Self { offset, mean, shape: Shape::Quadratic(pieces), rule }
     }
 
     fn sliced(
         stretches: impl Iterator<Item = (f64, f64)>,
         width: f64,
         rule: &'a Rule,
+        even: bool,
         lead: impl Fn(f64) -> f64,
     ) -> Self {
-        let mut found = Vec::new();
-        for (from, to) in stretches {
-            for (node, weight) in rule.nodes.iter().zip(&rule.weights) {
-                found.push((weight * (to - from) / width, lead(from + (to - from) * node)));
-            }
-        }
+        let place = |(from, to): (f64, f64)| {
+            rule.nodes
+                .iter()
+                .zip(&rule.weights)
+                .map(move |(node, weight)| (weight * (to - from), from + (to - from) * node))
+        };
+        let places: Vec<(f64, f64)> = stretches.flat_map(place).collect();
+        // Of an even face the first half stands for both, and an odd place in the middle for itself.
+        let kept = if even { places.len().div_ceil(2) } else { places.len() };
+        let share = |index: usize| if index == places.len() - 1 - index || !even { 1.0 } else { 2.0 };
+        let slice = |(index, (length, z)): (usize, &(f64, f64))| (share(index) * length / width, lead(*z));
+        let mut found: Vec<(f64, f64)> = places[..kept].iter().enumerate().map(slice).collect();
         let offset = found.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
         for slice in &mut found {
             slice.1 -= offset;
@@ -132,6 +144,22 @@ impl<'a> Face<'a> {
     #[must_use]
     pub fn is_sliced(&self) -> bool {
         matches!(self.shape, Shape::Sliced(_))
+    }
+
+    /// How many slices a width mean is summed over.
+    #[must_use]
+    pub fn slices(&self) -> usize {
+        match &self.shape {
+            Shape::Flat => 1,
+            Shape::Quadratic(pieces) => pieces.len() * self.rule.nodes.len(),
+            Shape::Sliced(slices) => slices.len(),
+        }
+    }
+
+    /// How many slices [`Face::passed`] is summed over: 1 where it has a closed form.
+    #[must_use]
+    pub fn slices_passed(&self) -> usize {
+        if self.is_sliced() { self.slices() } else { 1 }
     }
 
     /// Interferences > 0 at which a stretch begins to touch or has come into contact all along: Φ is not smooth there.

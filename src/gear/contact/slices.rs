@@ -21,21 +21,22 @@ pub struct Slices<'a> {
     pub slices: Vec<Slice>,
     /// The deviations within each slice, the same for all pairs.
     pub faces: &'a [Face<'a>],
-    /// Width of a slice \[m\].
-    pub width: f64,
+    /// Width of each of these slices \[m\]; of two where one stands for both.
+    pub widths: &'a [f64],
 }
 
 impl Springs for Slices<'_> {
     fn response(&self, spring: usize, interference: f64) -> (f64, f64) {
-        let face = &self.faces[spring % self.faces.len()];
+        let slice = spring % self.faces.len();
+        let (face, width) = (&self.faces[slice], self.widths[slice]);
         match &self.slices[spring] {
             Slice::Linear(stiffness) => {
                 let (passed, share) = face.passed(interference);
                 (stiffness * passed, stiffness * share)
             }
-            Slice::Logarithmic(slice) => {
-                let (load, slope) = face.summed(interference, |depth| slice.load(depth));
-                (self.width * load, self.width * slope)
+            Slice::Logarithmic(law) => {
+                let (load, slope) = face.summed(interference, |depth| law.load(depth));
+                (width * load, width * slope)
             }
         }
     }

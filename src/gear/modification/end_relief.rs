@@ -117,6 +117,10 @@ impl Modification for EndRelief {
         self.amount != 0.0 && self.length != 0.0
     }
 
+    fn lead_is_even(&self) -> bool {
+        self.first == self.second || !self.varies_along_face()
+    }
+
     fn resolved(&self) -> Vec<(&'static str, f64)> {
         vec![("amount", self.amount), ("length", self.length)]
     }

@@ -41,6 +41,10 @@ impl Modification for LeadCrowning {
         self.amount != 0.0
     }
 
+    fn lead_is_even(&self) -> bool {
+        true
+    }
+
     fn resolved(&self) -> Vec<(&'static str, f64)> {
         vec![("amount", self.amount), ("face_width", self.face_width)]
     }

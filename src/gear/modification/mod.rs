@@ -95,6 +95,11 @@ pub trait Modification: Debug + Send + Sync {
         false
     }
 
+    /// Whether the lead at −z is that at z.
+    fn lead_is_even(&self) -> bool {
+        !self.varies_along_face()
+    }
+
     /// Names and values (SI) of what was given and of what follows from it.
     fn resolved(&self) -> Vec<(&'static str, f64)>;
 }
@@ -120,6 +125,12 @@ impl Design {
             Side::Pinion => &self.pinion,
             Side::Gear => &self.gear,
         }
+    }
+
+    /// Whether what both gears lose across the face is the same on either side of its middle.
+    #[must_use]
+    pub fn lead_is_even(&self) -> bool {
+        self.pinion.iter().chain(&self.gear).all(|part| part.modification.lead_is_even())
     }
 
     /// Adds a modification, as `family: { fields }` states it, to the gears that its field `gear` names.

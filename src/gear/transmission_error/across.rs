@@ -4,7 +4,7 @@
 //! bodies. Each spreads a load along the face by its own length. What neighbouring teeth do to each other goes through
 //! the bodies, so it spreads as the wind-up does; since that is the longest length, the matrix of all slices of all pairs
 //! is positive definite where the one of whole pairs is. A load that is spread evenly gives what it gives without
-//! coupling. Must not know: how lengths are found.
+//! coupling. On a face that is the same on either side of its middle, two slices that mirror each other are one. Must not know: how lengths are found.
 
 use super::cycle::{Elasticity, MeshCycle};
 use super::path::Path;
@@ -94,6 +94,10 @@ pub(super) struct Sliced<'a> {
     faces: Vec<Face<'a>>,
     /// The smallest deviation of each slice, above that of the whole face.
     lows: Vec<f64>,
+    /// How many slices of the face each stands for: itself, or itself and its mirror image.
+    stands_for: Vec<f64>,
+    /// Slices of the whole face.
+    whole: usize,
     /// Influences of the wind-up.
     body: Vec<f64>,
 }
@@ -103,13 +107,21 @@ impl<'a> Sliced<'a> {
     pub(super) fn new(cycle: &'a MeshCycle, design: &Design, whole: &Face) -> Option<Self> {
         let across = cycle.across.as_ref().filter(|_| !whole.is_flat())?;
         let count = cycle.settings.slices.max(1);
+        let kept = if design.lead_is_even() { count.div_ceil(2) } else { count };
+        let stands_for = |slice: usize| if kept == count || slice == count - 1 - slice { 1.0 } else { 2.0 };
         let place = |index: usize| cycle.face_width * (index as f64 / count as f64 - 0.5);
         let strip = |slice: usize| Face::between(design, [place(slice), place(slice + 1)], &across.rule);
-        let faces: Vec<Face> = (0..count).map(strip).collect();
+        let faces: Vec<Face> = (0..kept).map(strip).collect();
         let lows = faces.iter().map(|face| (face.offset - whole.offset).max(0.0)).collect();
+        let stands_for = (0..kept).map(stands_for).collect();
         let mut body = vec![0.0; count * count];
         add_influences(across.reach, 1.0, count, count, &mut body);
-        Some(Self { across, faces, lows, body })
+        Some(Self { across, faces, lows, stands_for, whole: count, body })
+    }
+
+    /// How many slices are looked at.
+    pub(super) fn count(&self) -> usize {
+        self.faces.len()
     }
 
     /// Equilibrium of the pairs `springs` at `positions` behind `gaps`, and the largest load per width of each, as a mean
@@ -132,7 +144,9 @@ impl<'a> Sliced<'a> {
             let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             balance.loads[pair] = loads.iter().sum();
             balance.interference[pair] = largest(interference);
-            peaks[pair] = largest(loads) * count as f64 / cycle.face_width;
+            let of_slice = |(load, stands_for): (&f64, &f64)| load / stands_for;
+            let largest = loads.iter().zip(&self.stands_for).map(of_slice).fold(f64::NEG_INFINITY, f64::max);
+            peaks[pair] = largest * self.whole as f64 / cycle.face_width;
         }
         (balance, peaks)
     }
@@ -147,18 +161,19 @@ impl<'a> Sliced<'a> {
         [force, above]: [f64; 2],
     ) -> (many_springs::Balance, f64) {
         let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
-        let width = cycle.face_width / count as f64;
-        let matrix = self.matrix(cycle, springs, positions);
+        let width = cycle.face_width / self.whole as f64;
+        let widths: Vec<f64> = self.stands_for.iter().map(|stands_for| stands_for * width).collect();
+        let (matrix, own) = self.matrix(cycle, springs, positions);
         let mut slices = Vec::with_capacity(size);
-        for (pair, &s) in positions.iter().enumerate() {
-            let own = (pair * count..(pair + 1) * count).map(|slice| matrix[slice * (size + 1)]);
+        for (&s, own) in positions.iter().zip(own.chunks(count)) {
+            let own = own.iter().zip(&widths);
             match &cycle.elasticity {
                 Elasticity::Linear(_) => {
-                    slices.extend(own.map(|own| Slice::Linear(1.0 / (own + self.across.contact / width))));
+                    slices.extend(own.map(|(own, width)| Slice::Linear(1.0 / (own + self.across.contact / width))));
                 }
                 Elasticity::Logarithmic { constant, rate, .. } => {
                     let law = Logarithmic { constant: constant.value(s), rate: *rate };
-                    slices.extend(own.map(|own| Slice::Logarithmic(law.in_series(own * width))));
+                    slices.extend(own.map(|(own, width)| Slice::Logarithmic(law.in_series(own * width))));
                 }
             }
         }
@@ -166,36 +181,51 @@ impl<'a> Sliced<'a> {
         let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
         let smallest = behind().fold(f64::INFINITY, f64::min);
         let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
-        let slices = Slices { slices, faces: &self.faces, width };
+        let slices = Slices { slices, faces: &self.faces, widths: &widths };
         (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
     }
 
-    /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows.
-    fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> Vec<f64> {
+    /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
+    /// slice by its own load, which is not in it.
+    fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (across, count) = (self.across, self.faces.len());
         let size = positions.len() * count;
-        let mut matrix = vec![0.0; size * size];
+        let (mut matrix, mut own) = (vec![0.0; size * size], Vec::with_capacity(size));
+        let mut block = vec![0.0; self.body.len()];
         for (pair, &s) in positions.iter().enumerate() {
-            let block = |row: usize, column: usize| (row * size + column) * count;
-            let own = &mut matrix[block(pair, pair)..];
+            block.fill(0.0);
             for (compliance, length) in across.teeth.iter().zip(&across.lengths) {
-                add_influences(length.value(s), compliance.value(s), count, size, own);
+                add_influences(length.value(s), compliance.value(s), self.whole, self.whole, &mut block);
             }
-            self.add_body(across.wind_up, size, own);
+            for (entry, influence) in block.iter_mut().zip(&self.body) {
+                *entry += across.wind_up * influence;
+            }
+            for (slice, stands_for) in self.stands_for.iter().enumerate() {
+                let at = slice * (self.whole + 1);
+                own.push(block[at] / stands_for);
+                block[at] = 0.0;
+            }
+            self.put(&block, 1.0, &mut matrix, [pair, pair], size);
             for ahead in pair + 1..positions.len() {
                 let influence = cycle.coupling(s, springs[ahead] - springs[pair]);
-                for (row, column) in [(pair, ahead), (ahead, pair)] {
-                    self.add_body(influence, size, &mut matrix[block(row, column)..]);
+                for place in [[pair, ahead], [ahead, pair]] {
+                    self.put(&self.body, influence, &mut matrix, place, size);
                 }
             }
         }
-        matrix
+        (matrix, own)
     }
 
-    fn add_body(&self, scale: f64, stride: usize, matrix: &mut [f64]) {
-        for (row, influences) in matrix.chunks_mut(stride).zip(self.body.chunks(self.faces.len())) {
-            for (entry, influence) in row.iter_mut().zip(influences) {
-                *entry += scale * influence;
+    /// Puts influences between all slices of two pairs, given by their places, into the matrix of those that are looked at:
+    /// what a load that is shared with the mirror image does to either of the two.
+    fn put(&self, block: &[f64], scale: f64, matrix: &mut [f64], [by, on]: [usize; 2], size: usize) {
+        let count = self.faces.len();
+        for (slice, influences) in block.chunks(self.whole).take(count).enumerate() {
+            let start = (by * count + slice) * size + on * count;
+            let mirrored = influences.iter().rev();
+            let entries = matrix[start..start + count].iter_mut().zip(&self.stands_for);
+            for ((entry, stands_for), (near, far)) in entries.zip(influences.iter().zip(mirrored)) {
+                *entry = scale * if *stands_for > 1.0 { 0.5 * (near + far) } else { *near };
             }
         }
     }

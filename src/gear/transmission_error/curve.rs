@@ -190,6 +190,7 @@ impl Loading<'_> {
     /// The largest Hertzian pressure of any pair, with the flanks' curvature where it touches: ρ1 = s, ρ2 = L − s on the
     /// line of action. At a tip corner it is that of the flank there: the corner's own radius is not known.
     fn pressure(&self, position: f64, pairs: usize, state: &State) -> f64 {
+        self.count.pressure();
         let cycle = self.cycle;
         (0..cycle.springs(pairs))
             .filter(|spring| state.balance.loads[*spring] > 0.0)

@@ -6,10 +6,13 @@
 //! the springs are the pairs of a window of whole base pitches, as many at every position, from one base pitch before A to
 //! at least one after E; zones then only count the pairs inside the path of contact. Must not know: modification, load.
 
+use std::sync::Arc;
+
 use super::across::Across;
 use super::path::Path;
 use super::trace::Rows;
 use crate::base::error::Failure;
+use crate::base::work::{Tally, Work};
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::contact::{CornerContact, SliceCoupling};
@@ -70,6 +73,8 @@ pub struct MeshCycle {
     coupling: Vec<Graded>,
     pub(super) rows: Rows,
     pub(super) slices: Rule,
+    /// Counted by every loading of this cycle and of those sampled otherwise.
+    pub(super) work: Arc<Tally>,
 }
 
 /// Against the path position.
@@ -154,7 +159,8 @@ impl MeshCycle {
         let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
         let springs = exact.then_some(springs);
         let pair = pair.clone();
-        Ok(Self { pair, settings, springs, face_width, zones, path, elasticity, across, coupling, rows, slices })
+        let work = Arc::default();
+        Ok(Self { pair, settings, springs, face_width, zones, path, elasticity, across, coupling, rows, slices, work })
     }
 
     /// The same cycle with the same corner contact and coupling of slices, sampled otherwise.
@@ -166,6 +172,12 @@ impl MeshCycle {
         let same = settings.slices == self.settings.slices;
         let slices = if same { self.slices.clone() } else { Rule::new(settings.slices) };
         Self { settings, slices, ..self.clone() }
+    }
+
+    /// What was computed on this cycle so far, however sampled.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work.total()
     }
 
     /// p_b \[m\].

@@ -3,6 +3,7 @@
 //! Must not know: which positions are looked at, what is done with the values.
 
 use super::across::Sliced;
+use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
 use super::walk::CLOSEST;
 use crate::gear::contact::CornerContact;
@@ -29,6 +30,7 @@ pub struct Loading<'a> {
     pub(super) breaks: Vec<f64>,
     /// Interferences at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
+    pub(super) count: Count<'a>,
 }
 
 /// What corner contact adds.
@@ -86,7 +88,13 @@ impl<'a> Loading<'a> {
         let slices = Sliced::new(cycle, design, &face);
         // Where slices hold each other, the load of a pair is no function of its interference alone.
         let levels = if slices.is_some() { Vec::new() } else { face.levels() };
+        let uncoupled = match cycle.elasticity {
+            Elasticity::Linear(_) => face.slices_passed(),
+            Elasticity::Logarithmic { .. } => face.slices(),
+        };
+        let count = Count::new(&cycle.work, slices.as_ref().map_or(uncoupled, Sliced::count));
         let mut loading = Self {
+            count,
             levels,
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
@@ -276,6 +284,7 @@ impl<'a> Loading<'a> {
     }
 
     fn loaded(&self, springs: &[usize], positions: &[f64], gaps: &[f64]) -> (Balance, Option<PerSpring>) {
+        self.count.solve();
         if let Some(slices) = &self.slices {
             let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
             let above = self.alone(positions[nearest]);

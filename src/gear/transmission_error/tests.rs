@@ -5,6 +5,7 @@
 mod accuracy;
 mod corner;
 mod extremes;
+mod work;
 
 use super::curve::Wanted;
 use super::cycle::{MeshCycle, Settings};

@@ -394,8 +394,7 @@ impl Stage for Optimizer {
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let none = self.settings.corner_contact == CornerContact::None;
-        let omission = Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only");
-        none.then_some(omission).into_iter().collect()
+        none.then(Omission::corner_contact).into_iter().collect()
     }
 
     fn uses_seed(&self) -> bool {
@@ -429,6 +428,7 @@ impl Stage for Optimizer {
             let table = Table::from_rows(self.evaluations_schema(), rows);
             tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
         }
+        context.work.add(&base.work());
         Ok(tables)
     }
 }

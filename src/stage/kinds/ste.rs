@@ -12,13 +12,14 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
+use crate::base::work::Counter;
 use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, designs, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, compliance, designs, pair};
 use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -84,6 +85,11 @@ const LARGE_APPROACH: f64 = 0.5;
 
 /// An estimated error of the peak-to-peak that is told although nobody asked for an accuracy.
 const POOR: f64 = 0.01;
+
+/// Time of a solve that a slice adds, over that of a solve without slices.
+const PER_SLICE: f64 = 0.1;
+/// Solves that a curve takes for each of its positions, with its extrema and first touches.
+const SOLVES_PER_POSITION: f64 = 2.0;
 
 struct Ste {
     stiffness: String,
@@ -280,15 +286,34 @@ impl Stage for Ste {
             }
             SliceCoupling::Plate => "one does for designs that do not vary across the face",
         };
-        let mut omissions = vec![Omission::new("slices across the face", slices)];
+        let sliced = Saved::For {
+            done: Counter::ContactSolves,
+            saved: Counter::ContactSolves,
+            times: PER_SLICE * self.settings.slices as f64,
+        };
+        let mut omissions = vec![Omission::new("slices across the face", slices).saving(Some(sliced))];
         if self.settings.corner_contact == CornerContact::None {
-            omissions
-                .push(Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only"));
+            omissions.push(Omission::corner_contact());
         }
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }
         omissions
+    }
+
+    fn saved(&self, demand: &Demand, table: &str, column: Option<&str>) -> Option<Saved> {
+        let for_each_solve = |saved, times| Some(Saved::For { done: Counter::ContactSolves, saved, times });
+        match (table, column) {
+            // Either column takes all pressures.
+            ("summary", Some("largest_pressure")) if !demand.column("curve", "pressure") => {
+                for_each_solve(Counter::ContactPressures, 1.0)
+            }
+            ("samples", None) if !demand.table("sample_summary") => {
+                let curve = SOLVES_PER_POSITION * self.settings.positions as f64;
+                for_each_solve(Counter::ContactSolves, self.samples as f64 / curve)
+            }
+            _ => None,
+        }
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
@@ -383,6 +408,7 @@ impl Stage for Ste {
                 }
             }
         }
+        context.work.add(&base.work());
         Ok(tables)
     }
 }

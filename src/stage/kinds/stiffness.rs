@@ -8,6 +8,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
 use crate::base::units::{RATIO, TORQUE, in_unit};
+use crate::base::work::Counter;
 use crate::gear::compliance::iso6336;
 use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use crate::gear::geometry::Pair;
@@ -15,7 +16,7 @@ use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::stiffness::stiffness;
 use crate::stage::compliance as codec;
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -66,6 +67,9 @@ const COUPLINGS: &[Choice] = &[
     Choice { name: "none", summary: "pair stiffnesses are summed" },
     Choice { name: "body", summary: "a load on one tooth moves its neighbours" },
 ];
+
+/// What finite elements take without a wanted accuracy: for either gear the mesh, and one half as fine for its error.
+const USUAL_FACTORISATIONS: f64 = 4.0;
 
 /// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
 const ANY_TORQUE: f64 = 1.0;
@@ -281,7 +285,8 @@ impl Stage for Stiffness {
         let mut omissions = Vec::new();
         if self.method.root_stress.is_none() {
             let reason = format!("method `{}` needs none", self.method.member.name);
-            omissions.push(Omission::new("finite-element mesh and factorisation", reason));
+            let saved = Some(Saved::Fixed(Counter::MeshFactorisations, USUAL_FACTORISATIONS));
+            omissions.push(Omission::new("finite-element mesh and factorisation", reason).saving(saved));
         }
         if self.method.whole_pair {
             let why = format!("method `{}` gives the stiffness of a pair as a whole", self.method.member.name);
@@ -294,13 +299,18 @@ impl Stage for Stiffness {
         omissions
     }
 
+    fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
+        (table == "root_stress").then_some(Saved::Fixed(Counter::MeshFactorisations, 2.0))
+    }
+
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings, error_estimate, meshes } =
+        let Tabulated { compliance, warnings, error_estimate, meshes, work } =
             (self.method.tabulate)(&self.options, &pair, self.assumptions)
                 .map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
+        context.work.add(&work);
         for warning in warnings {
             (context.warn)(warning);
         }
@@ -319,6 +329,7 @@ impl Stage for Stiffness {
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
         let (points, summary) = stiffness(&cycle, self.torque);
+        context.work.add(&cycle.work());
         let rows = points.iter().enumerate().map(|(index, point)| -> Row {
             vec![
                 (index + 1).into(),
@@ -347,8 +358,9 @@ impl Stage for Stiffness {
             tables.push(iso_table(&pair, &self.options).map_err(failed)?);
         }
         if let Some(root_stress) = self.method.root_stress.filter(|_| context.demand.table("root_stress")) {
-            let found =
+            let (found, work) =
                 root_stress(&self.options, &pair, self.assumptions).map_err(|error| Failure::new(error.to_string()))?;
+            context.work.add(&work);
             tables.push(root_stress_table(&found).map_err(failed)?);
         }
         Ok(tables)

@@ -26,6 +26,7 @@ fn manifest(tables: &[(&str, Table)]) -> Manifest {
         status: "ran".to_owned(),
         why: "never ran".to_owned(),
         seconds: 0.1,
+        work: std::collections::BTreeMap::new(),
         warnings: vec![],
         left_out: vec![],
         tables: tables

@@ -7,6 +7,7 @@ mod places;
 mod python;
 mod readme;
 mod stubborn;
+mod work;
 
 use std::fs;
 

@@ -7,6 +7,7 @@ use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use gearstudy::base::seed::Seed;
+use gearstudy::base::work::Tally;
 use gearstudy::stage::{Context, Demand, Inputs, Stage};
 use gearstudy::study::{self, Study};
 use gearstudy::table::data::Table;
@@ -81,6 +82,7 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bo
         stop: &stop,
         progress: &progress,
         warn: &|text| warnings.lock().unwrap().push(text),
+        work: &Tally::default(),
     };
     let tables = stage.run(&context, inputs).unwrap_or_else(|failure| panic!("`{name}`: {failure}"));
     let wanted: Vec<_> = stage.outputs().into_iter().filter(|schema| demand.table(&schema.name)).collect();

@@ -161,7 +161,12 @@ fn hostile_text_stays_text() {
     manifest.machine.processor = HOSTILE.to_owned();
     manifest.stages[0].warnings.push(HOSTILE.to_owned());
     manifest.stages[0].why = HOSTILE.to_owned();
-    manifest.stages[0].left_out.push(OmissionRecord { what: HOSTILE.to_owned(), why: HOSTILE.to_owned() });
+    manifest.stages[0].left_out.push(OmissionRecord {
+        what: HOSTILE.to_owned(),
+        why: HOSTILE.to_owned(),
+        saved_seconds: Some(1e-3),
+    });
+    manifest.stages[0].work.insert(HOSTILE.to_owned(), 1);
     manifest.stages[3].tables[0].description = HOSTILE.to_owned();
     manifest.stages[3].tables[0].columns[0].description = HOSTILE.to_owned();
     let Rendered { html, figures } = render(&manifest, &tables);

@@ -3,6 +3,7 @@
 use super::super::{Assumptions, ComplianceError, ContactLaw, Tabulated, method};
 use crate::base::error::Place;
 use crate::base::record::{Entry, Record, Value};
+use crate::base::work::Counter;
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
@@ -177,7 +178,8 @@ fn what_cannot_be_solved_is_refused() {
 #[test]
 fn root_stress_is_where_and_as_large_as_it_should_be() {
     let pair = pair([17, 48], 2.0);
-    let found = super::root_stress(&options("strain", 16), &pair, COUPLED).unwrap();
+    let (found, work) = super::root_stress(&options("strain", 16), &pair, COUPLED).unwrap();
+    assert_eq!(work.count(Counter::MeshFactorisations), 2);
     assert_eq!(found.len(), 2 * super::ROLLS);
     for row in &found {
         let gear = pair.side(row.side);
@@ -189,4 +191,21 @@ fn root_stress_is_where_and_as_large_as_it_should_be() {
     for pair in found[..super::ROLLS].windows(2).skip(6) {
         assert!(pair[1].stress > pair[0].stress, "{pair:?}");
     }
+}
+
+/// Gears that are alike are meshed once, and the tables of either are those of its own.
+#[test]
+fn gears_that_are_alike_are_meshed_once() {
+    let counts = |pair: &Pair| {
+        let found = finite_element(pair, 6, Assumptions { coupled: false, ..COUPLED }).unwrap();
+        let counters = [Counter::MeshFactorisations, Counter::ComplianceEvaluations];
+        (counters.map(|counter| found.work.count(counter)), found)
+    };
+    let (alike, of_alike) = counts(&pair([21, 21], 1.4));
+    let (unlike, of_unlike) = counts(&pair([33, 21], 1.4));
+    assert_eq!(unlike, [4, 4 * super::ROLLS as u64]);
+    assert_eq!(alike.map(|count| 2 * count), unlike);
+    assert_eq!(of_alike.compliance.gear, of_unlike.compliance.gear);
+    assert_eq!(of_alike.compliance.pinion, of_alike.compliance.gear);
+    assert_eq!(of_alike.meshes[1], of_unlike.meshes[1]);
 }

@@ -6,6 +6,7 @@ use super::*;
 use crate::base::error::Place;
 use crate::base::record::{Entry as Item, Value};
 use crate::base::seed::Seed;
+use crate::base::work::Tally;
 use crate::stage::Demand;
 use crate::table::data::Cell;
 
@@ -62,8 +63,14 @@ fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String>
     let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
     let tables = stage.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
     let (demand, stop) = (Demand { tables }, AtomicBool::new(false));
-    let context =
-        Context { seed: Seed::of_stage(1, "report"), demand: &demand, stop: &stop, progress: &|_| (), warn: &|_| () };
+    let context = Context {
+        seed: Seed::of_stage(1, "report"),
+        demand: &demand,
+        stop: &stop,
+        progress: &|_| (),
+        warn: &|_| (),
+        work: &Tally::default(),
+    };
     let summary = summary();
     let inputs = Inputs { ports: [("ste".to_owned(), vec![&summary])].into() };
     stage.run(&context, &inputs).map_err(|failure| failure.to_string())
