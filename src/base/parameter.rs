@@ -92,6 +92,35 @@ pub struct Field {
     pub summary: &'static str,
 }
 
+/// How many fields are in several tables together.
+#[must_use]
+pub const fn count(tables: &[&[Field]]) -> usize {
+    let (mut table, mut fields) = (0, 0);
+    while table < tables.len() {
+        fields += tables[table].len();
+        table += 1;
+    }
+    fields
+}
+
+/// Several tables of fields as one, for fields that several kinds have in common; `N` is their [`count`].
+#[must_use]
+pub const fn joined<const N: usize>(tables: &[&[Field]]) -> [Field; N] {
+    let mut all = [Field::new("", Shape::Flag, ""); N];
+    let (mut table, mut at) = (0, 0);
+    while table < tables.len() {
+        let mut field = 0;
+        while field < tables[table].len() {
+            all[at] = tables[table][field];
+            at += 1;
+            field += 1;
+        }
+        table += 1;
+    }
+    assert!(at == N, "as many fields as are counted");
+    all
+}
+
 impl Field {
     #[must_use]
     pub const fn new(name: &'static str, shape: Shape, summary: &'static str) -> Self {

@@ -5,7 +5,8 @@
 //! population is a Latin hypercube. Must not know: what the variables mean.
 
 use super::latin_hypercube;
-use super::nelder_mead::{Limits, NelderMead};
+use super::local::Limits;
+use super::nelder_mead::NelderMead;
 use super::random::{below, chance};
 use super::search::Reason;
 use super::{Method, Strategy, count};

@@ -8,11 +8,11 @@
 //!
 //! Must not know: randomness, but for a random start.
 
-use super::random::uniform;
+use super::local::{self, Limits, Local, clip};
 use super::search::Reason;
-use super::{Local, Method, Strategy, count};
+use super::{Method, Strategy};
 use crate::base::error::Diagnostic;
-use crate::base::parameter::{Choice, Field, Member};
+use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 
@@ -26,46 +26,16 @@ pub const METHOD: Method = Method {
 };
 
 const FIELDS: &[Field] = &[
-    Field::choice("start", STARTS, "where it starts").default("centre"),
+    local::START,
     Field::number("edge", 1e-6, 1.0, "edge of the first simplex, as a share of each range").default("0.1"),
-    Field::number("tolerance", 1e-14, 0.1, "the simplex's extent, as a share of each range, at which it has converged")
-        .default("1e-8"),
-    Field::integer("restarts", 0, 1000, "most restarts around the best point").default("3"),
-    Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000"),
-];
-
-const STARTS: &[Choice] = &[
-    Choice { name: "centre", summary: "the middle of every range" },
-    Choice { name: "random", summary: "a random point, from the seed" },
+    local::tolerance(1e-14, "the simplex's extent, as a share of each range, at which it has converged"),
+    local::restarts("most restarts around the best point"),
+    local::EVALUATIONS,
 ];
 
 fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let mut generator = seed.generator(0);
-    let start = match record.choice("start") {
-        "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
-        _ => vec![0.5; dimension],
-    };
-    let limits = Limits {
-        tolerance: record.number("tolerance"),
-        restarts: count(record, "restarts"),
-        evaluations: count(record, "evaluations"),
-    };
-    if limits.evaluations <= dimension {
-        let message = format!("{} evaluations are too few for a simplex in {dimension} variables", limits.evaluations);
-        return Err(Diagnostic::new(message)
-            .at(record.place_of("evaluations"))
-            .help(format!("give at least {}", dimension + 1)));
-    }
+    let (start, limits) = local::read(record, dimension, seed, (dimension + 1, "a simplex in"))?;
     Ok(Box::new(NelderMead::new(start, None, record.number("edge"), limits)))
-}
-
-/// When to stop.
-#[derive(Clone, Copy, Debug)]
-pub struct Limits {
-    /// Extent of the simplex, in the maximum norm.
-    pub tolerance: f64,
-    pub restarts: usize,
-    pub evaluations: usize,
 }
 
 #[derive(Clone, Debug)]
@@ -226,10 +196,6 @@ impl NelderMead {
             self.propose(Step::Contract { limit }, vec![inside]);
         }
     }
-}
-
-fn clip(coordinate: f64) -> f64 {
-    coordinate.clamp(0.0, 1.0)
 }
 
 impl Strategy for NelderMead {

@@ -8,12 +8,11 @@
 //! nothing. Lengths are shares of each variable's range. Must not know: randomness, but for a random start.
 
 use super::line::Line;
-use super::nelder_mead::Limits;
-use super::random::uniform;
+use super::local::{self, Limits, Local, clip};
 use super::search::Reason;
-use super::{Local, Method, Strategy, count};
+use super::{Method, Strategy};
 use crate::base::error::Diagnostic;
-use crate::base::parameter::{Choice, Field, Member};
+use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 
@@ -27,38 +26,16 @@ pub const METHOD: Method = Method {
 };
 
 const FIELDS: &[Field] = &[
-    Field::choice("start", STARTS, "where it starts").default("centre"),
+    local::START,
     Field::number("step", 1e-6, 1.0, "first step along each axis, as a share of each range").default("0.1"),
-    Field::number("tolerance", 1e-12, 0.1, "a cycle's way, as a share of each range, at which it has converged")
-        .default("1e-8"),
-    Field::integer("restarts", 0, 1000, "most restarts along the axes, around the best point").default("3"),
-    Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000"),
-];
-
-const STARTS: &[Choice] = &[
-    Choice { name: "centre", summary: "the middle of every range" },
-    Choice { name: "random", summary: "a random point, from the seed" },
+    local::tolerance(1e-12, "a cycle's way, as a share of each range, at which it has converged"),
+    local::restarts("most restarts along the axes, around the best point"),
+    local::EVALUATIONS,
 ];
 
 fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let mut generator = seed.generator(0);
-    let start = match record.choice("start") {
-        "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
-        _ => vec![0.5; dimension],
-    };
-    let limits = Limits {
-        tolerance: record.number("tolerance"),
-        restarts: count(record, "restarts"),
-        evaluations: count(record, "evaluations"),
-    };
-    // One line along each axis.
-    if limits.evaluations <= 2 * dimension {
-        let message =
-            format!("{} evaluations are too few for a line along each of {dimension} variables", limits.evaluations);
-        return Err(Diagnostic::new(message)
-            .at(record.place_of("evaluations"))
-            .help(format!("give at least {}", 2 * dimension + 1)));
-    }
+    let least = (2 * dimension + 1, "a line along each of");
+    let (start, limits) = local::read(record, dimension, seed, least)?;
     Ok(Box::new(Powell::new(start, record.number("step"), limits)))
 }
 
@@ -259,10 +236,6 @@ fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
 
 fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
     at.iter().zip(along).map(|(at, along)| clip(at + place * along)).collect()
-}
-
-fn clip(coordinate: f64) -> f64 {
-    coordinate.clamp(0.0, 1.0)
 }
 
 impl Strategy for Powell {

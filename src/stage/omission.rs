@@ -29,17 +29,6 @@ impl Omission {
         Self { what: what.into(), why: why.into(), saved: None }
     }
 
-    /// What stages leave out whose flanks touch on the line of action only.
-    #[must_use]
-    pub fn corner_contact() -> Self {
-        let saved = Saved::For {
-            done: Counter::ContactSolves,
-            saved: Counter::ContactSolves,
-            times: SOLVES_WITH_CORNERS - 1.0,
-        };
-        Self::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only").saving(Some(saved))
-    }
-
     #[must_use]
     pub fn saving(self, saved: Option<Saved>) -> Self {
         Self { saved, ..self }
@@ -81,8 +70,6 @@ const UNITS: [(Counter, f64); 5] = [
     (Counter::ContactPressures, 3e-8),
     (Counter::Outlines, 3e-5),
 ];
-/// Time of a solve with corner contact over that of one without.
-const SOLVES_WITH_CORNERS: f64 = 3.0;
 /// Seconds of counted work below which the measured time is that of other things.
 const LEAST: f64 = 1e-4;
 /// By how much a machine may be faster or slower.

@@ -7,10 +7,9 @@ mod sampling;
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::parameter::{Choice, Field, Shape, count, joined};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
-use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::template::{Template, Variable};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -19,7 +18,7 @@ use crate::optimize::bounds::Bounds;
 use crate::optimize::search::{Optimizer as Search, Reason};
 use crate::optimize::{self};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, compliance, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, common};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -41,29 +40,20 @@ design:
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("stiffness", &["stiffness"], "The pair's compliances."),
+const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+
+const PARTS: &[&[Field]] = &[SEARCH, common::CONTACT];
+
+const SEARCH: &[Field] = &[
+    common::STIFFNESS,
     Field::new("method", Shape::Member(optimize::members), "How to search.").default("differential_evolution"),
     Field::choice("minimize", OBJECTIVES, "What is to be small.").default("peak_to_peak"),
     Field::group("at", AT, "The loads it is to be small at."),
     Field::new("design", designs::ELEMENTS, "The modifications; a value given as [least, most] is a variable.")
         .chooses(),
     Field::new("name", Shape::Text, "Name of the design that is found.").default("optimum"),
-    Field::integer(
-        "positions",
-        8,
-        10_000,
-        "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
-    )
-    .default("64"),
-    Field::integer(
-        "slices",
-        1,
-        10_000,
-        "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
-         whole face, 200 at most.",
-    )
-    .default("17"),
+    common::positions(10_000),
+    common::SLICES,
     Field::quantity(
         "accuracy",
         RATIO,
@@ -72,10 +62,6 @@ const FIELDS: &[Field] = &[
         "Wanted relative accuracy of the objective at the design that is found; sets positions and slices.",
     )
     .optional(),
-    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
-        .default("none"),
-    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.")
-        .default("none"),
 ];
 
 const AT: &[Field] = &[
@@ -132,15 +118,6 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         Value::Member(family, record) => Some(Element { family, record: record.clone() }),
         _ => None,
     };
-    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
-    let slice_coupling = SliceCoupling::named(record.choice("slice_coupling"));
-    let slices = whole("slices");
-    if slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
-        return Err(Diagnostic::new(format!(
-            "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
-        ))
-        .at(record.place_of("slices")));
-    }
     let name = record.text("name");
     if name.is_empty() || name.chars().count() > 64 || !name.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) {
         return Err(Diagnostic::new(format!("`{}` cannot be the name of a design", name.escape_debug()))
@@ -156,12 +133,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         elements: items.iter().filter_map(|item| element(&item.value)).collect(),
         template,
         name: name.to_owned(),
-        settings: Settings {
-            positions: whole("positions"),
-            slices,
-            corner_contact: CornerContact::named(record.choice("corner_contact")),
-            slice_coupling,
-        },
+        settings: common::settings(record)?,
         accuracy: record.maybe_quantity("accuracy"),
     };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
@@ -376,10 +348,7 @@ impl Optimizer {
 
 impl Stage for Optimizer {
     fn inputs(&self) -> Vec<Port> {
-        vec![
-            Port::tables("pair", &self.stiffness, &["gears", "pair"]).through("pair"),
-            Port::tables("stiffness", &self.stiffness, &["compliance", "neighbours", "model"]),
-        ]
+        common::mesh_cycle_ports(&self.stiffness)
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -393,8 +362,7 @@ impl Stage for Optimizer {
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        let none = self.settings.corner_contact == CornerContact::None;
-        none.then(Omission::corner_contact).into_iter().collect()
+        common::corner_contact_left_out(self.settings).into_iter().collect()
     }
 
     fn uses_seed(&self) -> bool {
@@ -402,10 +370,7 @@ impl Stage for Optimizer {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let read = |table| inputs.table("stiffness", table);
-        let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
-        let base = MeshCycle::new(&pair, &compliance, self.settings)?;
+        let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let mut settings = self.first_settings(&base, &pair);
         let mut round = 1;
         let found = loop {

@@ -8,15 +8,13 @@ mod tables;
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::parameter::{Choice, Field, Shape, count, joined};
 use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
-use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
-use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use crate::gear::transmission_error::cycle::Settings;
 use crate::optimize::latin_hypercube;
-use crate::stage::{Context, Inputs, Kind, Port, Stage, pair};
+use crate::stage::{Context, Inputs, Kind, Port, Stage, common, pair};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
@@ -39,17 +37,20 @@ samples: 4
     build,
 };
 
-const FIELDS: &[Field] = &[
+const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+
+const PARTS: &[&[Field]] = &[LOAD, common::TEETH, CASES];
+
+const LOAD: &[Field] = &[
     Field::reference("pair", &["geometry"], "The pair in the middle of the grid; cases stand without backlash."),
     Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion, where an axis does not say otherwise.")
         .default("50 N m"),
     Field::quantity("relief", LENGTH, 0.0, 5e-3, "Depth of the linear tip relief of both gears.").default("0 um"),
     Field::quantity("relief_length", LENGTH, 0.0, 1.0, "Roll length of the relief from the tip.").default("0 mm"),
     Field::quantity("crowning", LENGTH, 0.0, 5e-3, "Lead crowning of both gears.").default("0 um"),
-    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
-        .default("energy"),
-    Field::choice("root", ROOT_SHAPES, "The shape of the tooth below its involute.").default("trochoid"),
-    Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
+];
+
+const CASES: &[Field] = &[
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("none"),
     Field::integer(
@@ -102,39 +103,18 @@ struct Stability {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let (name, options) = record.member("method");
-    let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
-    let method: &'static Method = compliance::method(name).ok_or_else(|| unknown(name))?;
-    let [root, contact] = [record.choice("root"), record.choice("contact")];
-    let contact_law = ContactLaw::named(contact).ok_or_else(|| unknown(contact))?;
-    if method.whole_pair && contact_law != ContactLaw::Linear {
-        let message =
-            format!("`contact: {contact}` is not for the method `{name}`: its stiffness is that of a whole pair");
-        return Err(Diagnostic::new(message).at(record.place_of("contact")));
-    }
-    let assumptions = Assumptions {
-        root: RootShape::named(root).ok_or_else(|| unknown(root))?,
-        contact: contact_law,
-        coupled: record.choice("coupling") == "body",
-        torque: None,
-        accuracy: None,
-    };
-    let positions = usize::try_from(record.integer("positions")).unwrap_or(512);
+    let (method, options, assumptions) = common::teeth(record)?;
+    let positions = common::whole(record, "positions");
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
     let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));
     Ok(Box::new(Stability {
         pair: record.reference("pair").to_owned(),
         load: ["torque", "relief", "relief_length", "crowning"].map(|field| record.quantity(field)),
-        model: Model {
-            method,
-            options: options.clone(),
-            assumptions,
-            settings: Settings { positions, ..Settings::default() },
-        },
+        model: Model { method, options, assumptions, settings: Settings { positions, ..Settings::default() } },
         axes: axes.collect(),
         traps: record.flag("traps"),
-        samples: usize::try_from(record.integer("samples")).unwrap_or(0),
+        samples: common::whole(record, "samples"),
     }))
 }
 

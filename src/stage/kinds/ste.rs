@@ -9,17 +9,17 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape};
+use crate::base::parameter::{Field, Shape, count, joined};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
 use crate::base::work::Counter;
-use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
+use crate::gear::contact::SliceCoupling;
 use crate::gear::modification::{self, Design};
 use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, compliance, designs, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -37,8 +37,12 @@ torque: { from: 25 N m, to: 100 N m, count: 4 }
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("stiffness", &["stiffness"], "The pair's compliances."),
+const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+
+const PARTS: &[&[Field]] = &[LOADS, &[common::positions(100_000), common::SLICES], common::CONTACT, TABLES];
+
+const LOADS: &[Field] = &[
+    common::STIFFNESS,
     Field::new("designs", Shape::List(&Shape::Reference(&["modification", "optimizer"])), "Who gives the designs."),
     Field::quantity("torque", TORQUE, 0.0, 1e9, "Torque on the pinion.").axis(1),
     Field::quantity(
@@ -49,25 +53,9 @@ const FIELDS: &[Field] = &[
         "Wanted relative accuracy of the peak-to-peak; sets positions and slices.",
     )
     .optional(),
-    Field::integer(
-        "positions",
-        8,
-        100_000,
-        "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.",
-    )
-    .default("64"),
-    Field::integer(
-        "slices",
-        1,
-        10_000,
-        "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
-         whole face, 200 at most.",
-    )
-    .default("17"),
-    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
-        .default("none"),
-    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.")
-        .default("none"),
+];
+
+const TABLES: &[Field] = &[
     Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
     Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
     Field::quantity(
@@ -107,7 +95,6 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         Value::Reference(name) => Some(name.clone()),
         _ => None,
     };
-    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(0);
     let designs: Vec<String> = record.list("designs").iter().filter_map(|entry| reference(&entry.value)).collect();
     if designs.is_empty() {
         return Err(Diagnostic::new("no designs are given").at(record.place_of("designs")));
@@ -118,27 +105,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(place));
         }
     }
-    let slice_coupling = SliceCoupling::named(record.choice("slice_coupling"));
-    let slices = whole("slices");
-    if slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
-        return Err(Diagnostic::new(format!(
-            "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
-        ))
-        .at(record.place_of("slices")));
-    }
     Ok(Box::new(Ste {
         stiffness: record.reference("stiffness").to_owned(),
         designs,
         torques: record.axis("torque").to_vec(),
         accuracy: record.maybe_quantity("accuracy"),
-        settings: Settings {
-            positions: whole("positions"),
-            slices,
-            corner_contact: CornerContact::named(record.choice("corner_contact")),
-            slice_coupling,
-        },
-        harmonics: whole("harmonics"),
-        samples: whole("samples"),
+        settings: common::settings(record)?,
+        harmonics: common::whole(record, "harmonics"),
+        samples: common::whole(record, "samples"),
         first_sample: record.quantity("first_sample"),
     }))
 }
@@ -264,10 +238,7 @@ impl Ste {
 
 impl Stage for Ste {
     fn inputs(&self) -> Vec<Port> {
-        let mut ports = vec![
-            Port::tables("pair", &self.stiffness, &["gears", "pair"]).through("pair"),
-            Port::tables("stiffness", &self.stiffness, &["compliance", "neighbours", "model"]),
-        ];
+        let mut ports = common::mesh_cycle_ports(&self.stiffness);
         for (index, stage) in self.designs.iter().enumerate() {
             ports.push(Port::tables(format!("designs_{}", index + 1), stage, &["designs", "elements"]));
         }
@@ -292,9 +263,7 @@ impl Stage for Ste {
             times: PER_SLICE * self.settings.slices as f64,
         };
         let mut omissions = vec![Omission::new("slices across the face", slices).saving(Some(sliced))];
-        if self.settings.corner_contact == CornerContact::None {
-            omissions.push(Omission::corner_contact());
-        }
+        omissions.extend(common::corner_contact_left_out(self.settings));
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }
@@ -317,10 +286,7 @@ impl Stage for Ste {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let read = |table| inputs.table("stiffness", table);
-        let compliance = compliance::read(read("compliance")?, read("neighbours")?, read("model")?)?;
-        let base = MeshCycle::new(&pair, &compliance, self.settings)?;
+        let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let mut designs: Vec<(Design, String)> = Vec::new();
         let mut givers: Vec<&str> = Vec::new();
         for (index, giver) in (1..).zip(&self.designs) {

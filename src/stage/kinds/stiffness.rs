@@ -5,18 +5,17 @@
 use std::time::Instant;
 
 use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
+use crate::base::parameter::{Choice, Field, count, joined};
 use crate::base::record::Record;
 use crate::base::units::{RATIO, TORQUE, in_unit};
 use crate::base::work::Counter;
 use crate::gear::compliance::iso6336;
-use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
+use crate::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use crate::gear::geometry::Pair;
-use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::stiffness::stiffness;
 use crate::stage::compliance as codec;
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, pair};
+use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, common, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -36,12 +35,11 @@ coupling: body
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("pair", &["geometry"], "The pair."),
-    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
-        .default("energy"),
-    Field::choice("root", ROOT_SHAPES, "The shape of the tooth below its involute.").default("trochoid"),
-    Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
+const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+
+const PARTS: &[&[Field]] = &[&[Field::reference("pair", &["geometry"], "The pair.")], common::TEETH, MESH];
+
+const MESH: &[Field] = &[
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("body"),
     Field::quantity(
@@ -85,44 +83,21 @@ struct Stiffness {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let (name, options) = record.member("method");
-    let method = compliance::method(name).ok_or_else(|| Diagnostic::new(format!("unknown method `{name}`")))?;
-    let (root, contact) = (record.choice("root"), record.choice("contact"));
-    let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
+    let (method, options, assumptions) = common::teeth(record)?;
     let torque = record.maybe_quantity("torque");
-    let assumptions = Assumptions {
-        root: RootShape::named(root).ok_or_else(|| unknown(root))?,
-        contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
-        coupled: record.choice("coupling") == "body",
-        torque,
-        accuracy: record.maybe_quantity("accuracy"),
-    };
-    if method.whole_pair && assumptions.contact != ContactLaw::Linear {
-        return Err(Diagnostic::new(format!(
-            "`contact: {contact}` is not for the method `{name}`: its stiffness is that of a pair with its contact"
-        ))
-        .at(record.place_of("contact"))
-        .help("leave `contact` out, or take a method of single teeth"));
-    }
-    if method.needs_fillet && assumptions.root == RootShape::BaseCircle {
-        return Err(Diagnostic::new(format!(
-            "`root: {root}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite"
-        ))
-        .at(record.place_of("root"))
-        .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
-    }
+    let assumptions = Assumptions { torque, accuracy: record.maybe_quantity("accuracy"), ..assumptions };
     if assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
             .at(record.place_of("contact"))
             .help("add for example `torque: 50 N m`"));
     }
-    let positions = usize::try_from(record.integer("positions")).unwrap_or(64);
+    let positions = common::whole(record, "positions");
     Ok(Box::new(Stiffness {
         pair: record.reference("pair").to_owned(),
         method,
-        options: options.clone(),
+        options,
         assumptions,
-        root,
+        root: record.choice("root"),
         torque: torque.unwrap_or(ANY_TORQUE),
         settings: Settings { positions, ..Settings::default() },
     }))

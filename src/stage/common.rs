@@ -1,0 +1,136 @@
+//! What several kinds declare and read alike: how teeth deflect, and how a mesh cycle is sampled and loaded.
+//!
+//! A field that is added to one of these tables is a field of every kind that has it. Must not know: what any kind computes.
+
+use crate::base::error::{Diagnostic, Failure};
+use crate::base::parameter::{Field, Shape};
+use crate::base::record::Record;
+use crate::base::work::Counter;
+use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
+use crate::gear::geometry::Pair;
+use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
+
+/// How the teeth of a pair deflect; read by [`teeth`].
+pub const TEETH: &[Field] = &[
+    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
+        .default("energy"),
+    Field::choice("root", ROOT_SHAPES, "The shape of the tooth below its involute.").default("trochoid"),
+    Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
+];
+
+/// The method with its options, and what it is to assume, but for what is each kind's own.
+///
+/// # Errors
+/// When the choices exclude each other.
+pub fn teeth(record: &Record) -> Result<(&'static Method, Record, Assumptions), Diagnostic> {
+    let (name, options) = record.member("method");
+    let (root, contact) = (record.choice("root"), record.choice("contact"));
+    let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
+    let method = compliance::method(name).ok_or_else(|| unknown(name))?;
+    let assumptions = Assumptions {
+        root: RootShape::named(root).ok_or_else(|| unknown(root))?,
+        contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
+        coupled: record.choice("coupling") == "body",
+        torque: None,
+        accuracy: None,
+    };
+    if method.whole_pair && assumptions.contact != ContactLaw::Linear {
+        return Err(Diagnostic::new(format!(
+            "`contact: {contact}` is not for the method `{name}`: its stiffness is that of a pair with its contact"
+        ))
+        .at(record.place_of("contact"))
+        .help("leave `contact` out, or take a method of single teeth"));
+    }
+    if method.needs_fillet && assumptions.root == RootShape::BaseCircle {
+        return Err(Diagnostic::new(format!(
+            "`root: {root}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite"
+        ))
+        .at(record.place_of("root"))
+        .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
+    }
+    Ok((method, options.clone(), assumptions))
+}
+
+pub const STIFFNESS: Field = Field::reference("stiffness", &["stiffness"], "The pair's compliances.");
+
+/// At most `most`.
+pub const fn positions(most: i64) -> Field {
+    let summary = "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.";
+    Field::integer("positions", 8, most, summary).default("64")
+}
+
+pub const SLICES: Field = Field::integer(
+    "slices",
+    1,
+    10_000,
+    "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
+     whole face, 200 at most.",
+)
+.default("17");
+
+/// Where flanks touch and what holds them.
+pub const CONTACT: &[Field] = &[
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
+    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.").default("none"),
+];
+
+/// What [`positions`], [`SLICES`] and [`CONTACT`] say.
+///
+/// # Errors
+/// With more slices than can hold each other.
+pub fn settings(record: &Record) -> Result<Settings, Diagnostic> {
+    let settings = Settings {
+        positions: whole(record, "positions"),
+        slices: whole(record, "slices"),
+        corner_contact: CornerContact::named(record.choice("corner_contact")),
+        slice_coupling: SliceCoupling::named(record.choice("slice_coupling")),
+    };
+    let slices = settings.slices;
+    if settings.slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
+        return Err(Diagnostic::new(format!(
+            "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
+        ))
+        .at(record.place_of("slices")));
+    }
+    Ok(settings)
+}
+
+/// A whole number that is declared not to be negative.
+pub fn whole(record: &Record, name: &str) -> usize {
+    usize::try_from(record.integer(name)).unwrap_or(0)
+}
+
+/// The ports through which [`mesh_cycle`] reads.
+pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
+    vec![
+        Port::tables("pair", stiffness, &["gears", "pair"]).through("pair"),
+        Port::tables("stiffness", stiffness, &["compliance", "neighbours", "model"]),
+    ]
+}
+
+/// The pair and its mesh cycle.
+///
+/// # Errors
+/// When a table is not what its schema says, or the pair cannot be loaded.
+pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(Pair, MeshCycle), Failure> {
+    let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+    let read = |table| inputs.table("stiffness", table);
+    let compliance = codec::read(read("compliance")?, read("neighbours")?, read("model")?)?;
+    let cycle = MeshCycle::new(&pair, &compliance, settings)?;
+    Ok((pair, cycle))
+}
+
+/// Time of a solve with corner contact over that of one without.
+const CORNER_SOLVES: f64 = 3.0;
+
+/// What the settings leave out.
+pub fn corner_contact_left_out(settings: Settings) -> Option<Omission> {
+    let none = settings.corner_contact == CornerContact::None;
+    let saved = Saved::For { done: Counter::ContactSolves, saved: Counter::ContactSolves, times: CORNER_SOLVES - 1.0 };
+    let omission = Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only");
+    none.then(|| omission.saving(Some(saved)))
+}
