@@ -13,6 +13,7 @@ mod export;
 mod extremes;
 mod fuzz;
 mod layering;
+mod numbers;
 mod optimize;
 mod properties;
 mod python;
