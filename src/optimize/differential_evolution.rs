@@ -8,6 +8,7 @@ use super::latin_hypercube;
 use super::local::Limits;
 use super::nelder_mead::NelderMead;
 use super::random::{below, chance};
+use super::restarts::Restarted;
 use super::search::Reason;
 use super::{Method, Strategy, count};
 use crate::base::error::Diagnostic;
@@ -67,7 +68,7 @@ struct DifferentialEvolution {
     trials: Vec<Vec<f64>>,
     told: usize,
     ended: Option<Reason>,
-    polishing: Option<NelderMead>,
+    polishing: Option<Restarted<NelderMead>>,
 }
 
 fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
@@ -205,7 +206,8 @@ impl DifferentialEvolution {
             let edge = self.extent().clamp(EDGES.0, EDGES.1);
             let limits = Limits { tolerance: POINT, restarts: 3, evaluations };
             let start = self.population[best].clone();
-            self.polishing = Some(NelderMead::new(start, Some(self.values[best]), edge, limits));
+            let simplex = NelderMead::new(start, Some(self.values[best]), edge, POINT);
+            self.polishing = Some(Restarted::new(simplex, edge, limits));
         }
     }
 }

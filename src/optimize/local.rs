@@ -1,4 +1,4 @@
-//! What local searches share: where they start, when they stop, and that they may be asked to begin anew.
+//! What local searches share: what they are asked, where they start and when they stop.
 //!
 //! Lengths are shares of each variable's range. Must not know: how any of them searches.
 
@@ -9,11 +9,25 @@ use crate::base::parameter::{Choice, Field};
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 
-/// A method that searches from one point.
-pub trait Local {
-    /// Begins anew at a point of the unit cube, because the function has changed; what it has used of its evaluations
-    /// stays used.
-    fn start_over(&mut self, at: Vec<f64>);
+/// A search from one point until it has converged by its own measure; what then becomes of it, [`super::restarts`] says.
+pub trait Search: Send {
+    /// As [`super::Strategy::batch`].
+    fn batch(&self) -> &[Vec<f64>];
+
+    /// As [`super::Strategy::learn`].
+    ///
+    /// # Errors
+    /// When the batch has not as many values as it must have.
+    fn learn(&mut self, values: &[f64]) -> Result<(), String>;
+
+    fn converged(&self) -> bool;
+
+    /// The lowest point and its value.
+    fn best(&self) -> (&[f64], f64);
+
+    /// Begins anew at a point, with the first steps of the study; `value` is the function's there, if it is known, and
+    /// `down` a direction in which it falls.
+    fn begin(&mut self, at: Vec<f64>, value: Option<f64>, down: Option<Vec<f64>>);
 }
 
 pub const START: Field = Field::choice("start", STARTS, "where it starts").default("centre");
@@ -29,7 +43,7 @@ pub const fn tolerance(least: f64, summary: &'static str) -> Field {
 }
 
 pub const fn restarts(summary: &'static str) -> Field {
-    Field::integer("restarts", 0, 1000, summary).default("3")
+    Field::integer("restarts", 0, 1000, summary).default("30")
 }
 
 pub const EVALUATIONS: Field = Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000");
@@ -74,4 +88,22 @@ pub fn read(
 /// Onto the range.
 pub fn clip(coordinate: f64) -> f64 {
     coordinate.clamp(0.0, 1.0)
+}
+
+/// The stretch of a line on which at least one variable is off its bounds.
+pub fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
+    let (mut least, mut most) = (0.0_f64, 0.0_f64);
+    for (at, along) in at.iter().zip(along) {
+        if *along != 0.0 {
+            let (zero, one) = (-at / along, (1.0 - at) / along);
+            least = least.min(zero.min(one));
+            most = most.max(zero.max(one));
+        }
+    }
+    (least, most)
+}
+
+/// A variable that has met a bound stays there while the others go on.
+pub fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
+    at.iter().zip(along).map(|(at, along)| clip(at + place * along)).collect()
 }

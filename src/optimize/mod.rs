@@ -19,18 +19,19 @@ pub mod constraints;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod grid;
+mod kink;
 pub mod latin_hypercube;
 mod line;
 mod local;
 pub mod nelder_mead;
 pub mod powell;
 pub mod random;
+mod restarts;
 pub mod sampling;
 pub mod search;
 pub mod sobol;
 
 use bounds::Bounds;
-use local::Local;
 use search::{Optimizer, Reason};
 
 use crate::base::error::{Diagnostic, suggest};
@@ -80,6 +81,13 @@ pub trait Strategy: Send {
     fn local(&mut self) -> Option<&mut dyn Local> {
         None
     }
+}
+
+/// A method that searches from one point.
+pub trait Local {
+    /// Begins anew at a point of the unit cube, because the function has changed; what it has used of its evaluations
+    /// stays used.
+    fn start_over(&mut self, at: Vec<f64>);
 }
 
 /// The methods as a user sees them, for [`crate::base::parameter::Shape::Member`].

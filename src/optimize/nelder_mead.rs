@@ -2,14 +2,14 @@
 //!
 //! Sources: Nelder and Mead, Computer Journal 7 (1965) 308; coefficients ρ = 1, χ = 1 + 2/n, ψ = 3/4 − 1/(2n),
 //! σ = 1 − 1/n of Gao and Han, Comput. Optim. Appl. 51 (2012) 259, section 4 (for n = 1 those of n = 2, since σ would be
-//! 0). A simplex may be pressed flat against a bound, or stall: so, once it has converged, it starts again around its best
-//! point until that gains nothing. Sure for up to five variables; where from six on several lie on a bound at once it may
-//! use up its evaluations, and differential evolution is the better choice. Lengths are shares of each variable's range.
+//! 0). A simplex may be pressed flat against a bound, or stall: what becomes of one that has converged, [`super::restarts`]
+//! says. Sure for up to five variables; where from six on several lie on a bound at once it may use up its evaluations,
+//! and differential evolution is the better choice. Lengths are shares of each variable's range.
 //!
 //! Must not know: randomness, but for a random start.
 
-use super::local::{self, Limits, Local, clip};
-use super::search::Reason;
+use super::local::{self, Search, clip};
+use super::restarts::Restarted;
 use super::{Method, Strategy};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
@@ -29,13 +29,14 @@ const FIELDS: &[Field] = &[
     local::START,
     Field::number("edge", 1e-6, 1.0, "edge of the first simplex, as a share of each range").default("0.1"),
     local::tolerance(1e-14, "the simplex's extent, as a share of each range, at which it has converged"),
-    local::restarts("most restarts around the best point"),
+    local::restarts("most restarts around the best point, or along a kink; with 0 it is not checked"),
     local::EVALUATIONS,
 ];
 
 fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
     let (start, limits) = local::read(record, dimension, seed, (dimension + 1, "a simplex in"))?;
-    Ok(Box::new(NelderMead::new(start, None, record.number("edge"), limits)))
+    let edge = record.number("edge");
+    Ok(Box::new(Restarted::new(NelderMead::new(start, None, edge, limits.tolerance), edge, limits)))
 }
 
 #[derive(Clone, Debug)]
@@ -62,7 +63,7 @@ enum Step {
 /// The search; also used to polish what another method found.
 pub struct NelderMead {
     edge: f64,
-    limits: Limits,
+    tolerance: f64,
     expansion: f64,
     contraction: f64,
     shrinkage: f64,
@@ -71,31 +72,22 @@ pub struct NelderMead {
     simplex: Vec<Vertex>,
     batch: Vec<Vec<f64>>,
     step: Step,
-    told: usize,
-    restarted: usize,
-    /// The best value when the present simplex was begun.
-    before: f64,
-    ended: Option<Reason>,
 }
 
 impl NelderMead {
     /// Starts at `start`, whose value may be known, with a simplex of edge `edge` along the axes.
     #[must_use]
-    pub fn new(start: Vec<f64>, value: Option<f64>, edge: f64, limits: Limits) -> Self {
+    pub fn new(start: Vec<f64>, value: Option<f64>, edge: f64, tolerance: f64) -> Self {
         let dimension = start.len().max(2) as f64;
         let mut search = Self {
             edge,
-            limits,
+            tolerance,
             expansion: 1.0 + 2.0 / dimension,
             contraction: 0.75 - 0.5 / dimension,
             shrinkage: 1.0 - 1.0 / dimension,
             simplex: Vec::new(),
             batch: Vec::new(),
             step: Step::Begin,
-            told: 0,
-            restarted: 0,
-            before: f64::INFINITY,
-            ended: None,
         };
         let mut vertices = search.around(&start);
         match value {
@@ -120,9 +112,6 @@ impl NelderMead {
     }
 
     fn propose(&mut self, step: Step, points: Vec<Vec<f64>>) {
-        if self.told + points.len() > self.limits.evaluations {
-            self.ended = Some(Reason::Evaluations);
-        }
         self.step = step;
         self.batch = points;
     }
@@ -152,22 +141,12 @@ impl NelderMead {
             .iter()
             .flat_map(|vertex| vertex.at.iter().zip(&best.at).map(|(a, b)| (a - b).abs()))
             .fold(0.0, f64::max);
-        if extent > self.limits.tolerance {
+        if extent > self.tolerance {
             let reflected = self.along(1.0);
             self.propose(Step::Reflect, vec![reflected]);
             return;
         }
-        let gained = self.before - best.value > self.limits.tolerance * best.value.abs();
-        if self.restarted == self.limits.restarts || !gained {
-            self.ended = Some(Reason::Converged);
-            self.batch.clear();
-            return;
-        }
-        self.before = best.value;
-        self.restarted += 1;
-        self.simplex.truncate(1);
-        let vertices = self.around(&self.simplex[0].at);
-        self.propose(Step::Begin, vertices);
+        self.batch.clear();
     }
 
     fn shrink(&mut self) {
@@ -198,13 +177,12 @@ impl NelderMead {
     }
 }
 
-impl Strategy for NelderMead {
+impl Search for NelderMead {
     fn batch(&self) -> &[Vec<f64>] {
         &self.batch
     }
 
     fn learn(&mut self, values: &[f64]) -> Result<(), String> {
-        self.told += values.len();
         let batch = std::mem::take(&mut self.batch);
         let mut vertices: Vec<Vertex> =
             batch.into_iter().zip(values).map(|(at, &value)| Vertex { at, value }).collect();
@@ -233,25 +211,15 @@ impl Strategy for NelderMead {
         Ok(())
     }
 
-    fn finished(&self) -> Option<Reason> {
-        self.ended
+    fn converged(&self) -> bool {
+        self.batch.is_empty()
     }
 
-    fn budget(&self) -> usize {
-        self.limits.evaluations
+    fn best(&self) -> (&[f64], f64) {
+        self.simplex.first().map_or((&[], f64::INFINITY), |best| (&best.at, best.value))
     }
 
-    fn local(&mut self) -> Option<&mut dyn Local> {
-        Some(self)
-    }
-}
-
-impl Local for NelderMead {
-    fn start_over(&mut self, at: Vec<f64>) {
-        let (told, edge, limits) = (self.told, self.edge, self.limits);
-        let fresh = Self::new(at, None, edge, limits);
-        let vertices = fresh.batch.clone();
-        *self = Self { told, ..fresh };
-        self.propose(Step::Begin, vertices);
+    fn begin(&mut self, at: Vec<f64>, value: Option<f64>, _down: Option<Vec<f64>>) {
+        *self = Self::new(at, value, self.edge, self.tolerance);
     }
 }

@@ -4,12 +4,12 @@
 //! Source: Powell, Computer Journal 7 (1964) 155, sections 2 and 3 (the test that keeps the directions independent is its
 //! step 6). A line ends where its last variable has met a bound; a variable that has met one stays there while the others
 //! go on, so a minimum on a face, an edge or in a corner is met exactly and the directions can still follow the face. Once
-//! a cycle moves by less than the tolerance, the search starts again along the axes around its best point until that gains
-//! nothing. Lengths are shares of each variable's range. Must not know: randomness, but for a random start.
+//! a cycle moves by less than the tolerance, the search has converged; what then, [`super::restarts`] says. Lengths are
+//! shares of each variable's range. Must not know: randomness, but for a random start.
 
 use super::line::Line;
-use super::local::{self, Limits, Local, clip};
-use super::search::Reason;
+use super::local::{self, Search, clip, ends, moved};
+use super::restarts::Restarted;
 use super::{Method, Strategy};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
@@ -29,14 +29,15 @@ const FIELDS: &[Field] = &[
     local::START,
     Field::number("step", 1e-6, 1.0, "first step along each axis, as a share of each range").default("0.1"),
     local::tolerance(1e-12, "a cycle's way, as a share of each range, at which it has converged"),
-    local::restarts("most restarts along the axes, around the best point"),
+    local::restarts("most restarts around the best point, along the axes or a kink; with 0 it is not checked"),
     local::EVALUATIONS,
 ];
 
 fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
     let least = (2 * dimension + 1, "a line along each of");
     let (start, limits) = local::read(record, dimension, seed, least)?;
-    Ok(Box::new(Powell::new(start, record.number("step"), limits)))
+    let step = record.number("step");
+    Ok(Box::new(Restarted::new(Powell::new(start, step, limits.tolerance), step, limits)))
 }
 
 /// A direction whose largest component is 1, and the length of the first step along it.
@@ -59,7 +60,7 @@ enum Phase {
 
 struct Powell {
     step: f64,
-    limits: Limits,
+    tolerance: f64,
     directions: Vec<Direction>,
     at: Vec<f64>,
     value: f64,
@@ -70,19 +71,18 @@ struct Powell {
     began: (Vec<f64>, f64),
     /// The direction of the cycle that gained most, and its gain.
     largest: (usize, f64),
-    told: usize,
-    restarted: usize,
-    /// The value when the search began along the axes.
-    before: f64,
-    ended: Option<Reason>,
 }
 
 impl Powell {
-    fn new(start: Vec<f64>, step: f64, limits: Limits) -> Self {
+    fn new(start: Vec<f64>, step: f64, tolerance: f64) -> Self {
+        let axis = |axis| {
+            let along = (0..start.len()).map(|other| if other == axis { 1.0 } else { 0.0 }).collect();
+            Direction { along, step }
+        };
         Self {
             step,
-            limits,
-            directions: Vec::new(),
+            tolerance,
+            directions: (0..start.len()).map(axis).collect(),
             began: (start.clone(), f64::INFINITY),
             batch: vec![start.clone()],
             at: start,
@@ -90,28 +90,11 @@ impl Powell {
             phase: Phase::Start,
             line: None,
             largest: (0, 0.0),
-            told: 0,
-            restarted: 0,
-            before: f64::INFINITY,
-            ended: None,
         }
     }
 
     fn ask(&mut self, point: Vec<f64>) {
-        if self.told == self.limits.evaluations {
-            self.ended = Some(Reason::Evaluations);
-        }
         self.batch = vec![point];
-    }
-
-    fn begin_along_the_axes(&mut self) {
-        self.before = self.value;
-        let axis = |axis| {
-            let along = (0..self.at.len()).map(|other| if other == axis { 1.0 } else { 0.0 }).collect();
-            Direction { along, step: self.step }
-        };
-        self.directions = (0..self.at.len()).map(axis).collect();
-        self.begin_cycle();
     }
 
     fn begin_cycle(&mut self) {
@@ -124,7 +107,7 @@ impl Powell {
     fn go_on_from(&mut self, next: usize) {
         for number in next..self.directions.len() {
             let Direction { along, step } = &self.directions[number];
-            let line = Line::new(self.value, ends(&self.at, along), *step, self.limits.tolerance);
+            let line = Line::new(self.value, ends(&self.at, along), *step, self.tolerance);
             if let Some(place) = line.place() {
                 let point = moved(&self.at, along, place);
                 (self.phase, self.line) = (Phase::Line(number), Some(line));
@@ -133,8 +116,8 @@ impl Powell {
             }
         }
         let way = self.way();
-        if way <= self.limits.tolerance {
-            self.converged();
+        if way <= self.tolerance {
+            self.batch.clear();
         } else if self.at.len() == 1 {
             self.begin_cycle();
         } else {
@@ -149,18 +132,6 @@ impl Powell {
         self.at.iter().zip(&self.began.0).map(|(at, began)| (at - began).abs()).fold(0.0, f64::max)
     }
 
-    fn converged(&mut self) {
-        let gained = self.before - self.value > self.limits.tolerance * self.value.abs();
-        // Where nothing is admissible nothing is gained: ∞ − ∞ is no number.
-        if self.restarted == self.limits.restarts || !gained {
-            self.ended = Some(Reason::Converged);
-            self.batch.clear();
-            return;
-        }
-        self.restarted += 1;
-        self.begin_along_the_axes();
-    }
-
     /// Step 6 of the source: whether the way of the cycle shall replace the direction that gained most. It shall not when
     /// the function turns up further on, or when another direction's gain made most of the cycle's.
     fn decide(&mut self, further: f64) {
@@ -172,7 +143,7 @@ impl Powell {
         }
         let way = self.way();
         let along: Vec<f64> = self.at.iter().zip(&self.began.0).map(|(at, began)| (at - began) / way).collect();
-        let line = Line::new(self.value, ends(&self.at, &along), way, self.limits.tolerance);
+        let line = Line::new(self.value, ends(&self.at, &along), way, self.tolerance);
         let Some(place) = line.place() else {
             self.begin_cycle();
             return;
@@ -202,7 +173,7 @@ impl Powell {
         self.at = moved(&self.at, along, place);
         self.value = lowest;
         // The next line along it is likely to be as short.
-        let step = place.abs().max(10.0 * self.limits.tolerance);
+        let step = place.abs().max(10.0 * self.tolerance);
         match phase {
             Phase::Way(direction) => {
                 self.directions.remove(self.largest.0);
@@ -221,35 +192,17 @@ impl Powell {
     }
 }
 
-/// The stretch of a line on which at least one variable is off its bounds.
-fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
-    let (mut least, mut most) = (0.0_f64, 0.0_f64);
-    for (at, along) in at.iter().zip(along) {
-        if *along != 0.0 {
-            let (zero, one) = (-at / along, (1.0 - at) / along);
-            least = least.min(zero.min(one));
-            most = most.max(zero.max(one));
-        }
-    }
-    (least, most)
-}
-
-fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
-    at.iter().zip(along).map(|(at, along)| clip(at + place * along)).collect()
-}
-
-impl Strategy for Powell {
+impl Search for Powell {
     fn batch(&self) -> &[Vec<f64>] {
         &self.batch
     }
 
     fn learn(&mut self, values: &[f64]) -> Result<(), String> {
         let [value] = *values else { return Err("Powell's method evaluates one point at a time".to_owned()) };
-        self.told += 1;
         match std::mem::replace(&mut self.phase, Phase::Start) {
             Phase::Start => {
                 self.value = value;
-                self.begin_along_the_axes();
+                self.begin_cycle();
             }
             Phase::Further => self.decide(value),
             phase => self.along(value, phase),
@@ -257,32 +210,31 @@ impl Strategy for Powell {
         Ok(())
     }
 
-    fn finished(&self) -> Option<Reason> {
-        self.ended
+    fn converged(&self) -> bool {
+        self.batch.is_empty()
     }
 
-    fn budget(&self) -> usize {
-        self.limits.evaluations
+    fn best(&self) -> (&[f64], f64) {
+        (&self.at, self.value)
     }
 
-    fn local(&mut self) -> Option<&mut dyn Local> {
-        Some(self)
-    }
-}
-
-impl Local for Powell {
-    fn start_over(&mut self, at: Vec<f64>) {
-        let (told, step, limits) = (self.told, self.step, self.limits);
-        *self = Self { told, ..Self::new(at.clone(), step, limits) };
-        self.ask(at);
+    /// The direction in which the function falls takes the place of the axis that is nearest to it.
+    fn begin(&mut self, at: Vec<f64>, value: Option<f64>, down: Option<Vec<f64>>) {
+        *self = Self::new(at, self.step, self.tolerance);
+        if let Some(along) = down {
+            let nearest = (0..along.len()).max_by(|a, b| along[*a].abs().total_cmp(&along[*b].abs())).unwrap_or(0);
+            self.directions[nearest].along = along;
+        }
+        if let Some(value) = value {
+            self.value = value;
+            self.begin_cycle();
+        }
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    const LIMITS: Limits = Limits { tolerance: 1e-9, restarts: 0, evaluations: 5000 };
 
     /// A quadratic form with eigenvalues 1, 10, … along tilted axes, lowest at `MINIMUM`.
     struct Quadratic(Vec<Vec<f64>>);
@@ -321,9 +273,9 @@ mod tests {
 
     /// The search after a number of cycles, or at its end.
     fn after(cycles: usize, function: &Quadratic) -> Powell {
-        let mut search = Powell::new(vec![0.5; function.0.len()], 0.1, LIMITS);
+        let mut search = Powell::new(vec![0.5; function.0.len()], 0.1, 1e-9);
         let mut begun = 0;
-        while search.ended.is_none() && begun <= cycles {
+        while !search.converged() && begun <= cycles {
             let before = search.began.clone();
             let value = function.value(&search.batch[0]);
             search.learn(&[value]).unwrap();

@@ -19,10 +19,28 @@ pub enum Reason {
     Generations,
     /// The method's own criterion was met.
     Converged,
+    /// It found no way further down, though the slopes around say that there is one, or its restarts were used up.
+    Stalled,
     /// The next step would have taken more evaluations than allowed.
     Evaluations,
     /// All points of a sample were evaluated.
     Complete,
+}
+
+impl Reason {
+    /// Why the point that was found may not be a minimum, where the search itself says so.
+    #[must_use]
+    pub fn doubt(self) -> Option<&'static str> {
+        match self {
+            Self::Stalled => Some(
+                "the search stalled: slopes around the design that it found say that one nearby is better, but no line leads \
+                 there, or its `restarts` were used up; start it elsewhere (`start: random` and another `seed`), or take \
+                 `differential_evolution`",
+            ),
+            Self::Evaluations => Some("the search has used up its `evaluations` and has not converged; give it more"),
+            Self::Generations | Self::Converged | Self::Complete => None,
+        }
+    }
 }
 
 impl fmt::Display for Reason {
@@ -30,6 +48,7 @@ impl fmt::Display for Reason {
         formatter.write_str(match self {
             Self::Generations => "all generations done",
             Self::Converged => "converged",
+            Self::Stalled => "stalled",
             Self::Evaluations => "evaluations used up",
             Self::Complete => "all points evaluated",
         })
@@ -180,7 +199,7 @@ impl Optimizer {
 
     /// Once a local search has converged: does the point it found keep the constraints? If not, on from there.
     fn next_round(&mut self) {
-        if self.strategy.finished() != Some(Reason::Converged) {
+        if !matches!(self.strategy.finished(), Some(Reason::Converged | Reason::Stalled)) {
             return;
         }
         if let (Some(multipliers), Some(lowest)) = (&mut self.multipliers, self.lowest.take())

@@ -387,6 +387,9 @@ impl Stage for Optimizer {
             }
             (settings, round) = (next, round + 1);
         };
+        if let Some(doubt) = found.reason.doubt() {
+            (context.warn)(doubt.to_owned());
+        }
         let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
         if context.demand.table("evaluations") {
             let rows = self.evaluation_rows(&found.tried);

@@ -235,6 +235,9 @@ impl Stage for RootOptimizer {
             Ok(told)
         })?;
         let best = search.best().ok_or_else(|| Failure::new("none of the roots that were tried can be built"))?;
+        if let Some(doubt) = reason.doubt() {
+            (context.warn)(doubt.to_owned());
+        }
         if best.violation > 0.0 {
             (context.warn)(format!(
                 "no root that was tried keeps the constraints; the one given breaks them by {:.3e} modules in all",

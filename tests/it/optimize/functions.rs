@@ -113,6 +113,19 @@ fn restarts_free_a_simplex_stuck_in_a_sharp_valley() {
     assert!(missed(3) < 1e-7, "{:e}", missed(3));
 }
 
+/// Without the replacement of directions both would use up 5000.
+#[test]
+fn conjugate_directions_save_evaluations() {
+    let narrow: Function = |x| (x[0] + x[1] - 1.1).powi(2) + 1e3 * (x[0] - x[1] - 0.2).powi(2);
+    let cases: [(Function, _, _); 2] = [(rosenbrock, [(-2.0, 2.0); 2], 300), (narrow, [(0.0, 1.0); 2], 60)];
+    for (function, bounds, most) in cases {
+        let found = run(search("powell", &[("restarts", integer(0))], &bounds, 1), function);
+        assert_eq!(found.finished(), Some(Reason::Converged));
+        assert!(found.best().unwrap().value < 1e-15, "{:?}", found.best());
+        assert!(found.evaluations() < most, "{} evaluations", found.evaluations());
+    }
+}
+
 #[test]
 fn a_minimum_in_a_corner_is_met_exactly() {
     // Lowest at (−1, 7): falling to one bound and to the other.

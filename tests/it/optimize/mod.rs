@@ -3,6 +3,7 @@
 mod conformance;
 mod constrained;
 mod functions;
+mod kinks;
 mod reference;
 
 use gearstudy::base::error::Failure;

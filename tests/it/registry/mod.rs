@@ -4,6 +4,7 @@
 mod members;
 mod profiles;
 mod samples;
+mod searches;
 pub mod walk;
 
 use std::collections::BTreeSet;

@@ -1,0 +1,236 @@
+//! What the values around a point say where a local search has stopped: is the function smooth there, and if it has a
+//! kink, which way does the kink go down?
+//!
+//! On a kink every line along a few fixed directions may lead upwards although the kink itself goes down. Gradients on
+//! all its sides tell: the shortest vector of their convex hull is zero where the point is stationary, and else points up
+//! along the kink. Sources: Burke, Lewis and Overton, SIAM J. Optim. 15 (2005) 751, section 2; gradients from differences
+//! as in Kiwiel, SIAM J. Optim. 20 (2010) 1983. The places are a turned cross, another one in each try and dense in all
+//! directions (Abramson, Audet, Dennis and Le Digabel, SIAM J. Optim. 20 (2009) 948, section 3: a Householder reflection
+//! of the axes by a Halton point). Lengths are shares of each variable's range. Must not know: who asks.
+
+use super::local::clip;
+
+/// An orthonormal basis; those of all numbers are dense.
+fn basis(number: usize, dimension: usize) -> Vec<Vec<f64>> {
+    let normal: Vec<f64> = primes().take(dimension).map(|prime| 2.0 * halton(number + 1, prime) - 1.0).collect();
+    let square: f64 = normal.iter().map(|x| x * x).sum();
+    // Only the centre of the cube has no direction, and of these points none but the first of one variable is there.
+    let factor = if square > 0.0 { 2.0 / square } else { 0.0 };
+    let entry = |row: usize, column: usize| f64::from(u8::from(row == column)) - factor * normal[row] * normal[column];
+    (0..dimension).map(|row| (0..dimension).map(|column| entry(row, column)).collect()).collect()
+}
+
+fn primes() -> impl Iterator<Item = usize> {
+    (2..).filter(|candidate: &usize| {
+        (2..*candidate).take_while(|d| d * d <= *candidate).all(|d| !candidate.is_multiple_of(d))
+    })
+}
+
+/// The digits of `index` in a base, mirrored at the point.
+fn halton(mut index: usize, base: usize) -> f64 {
+    let (mut value, mut share) = (0.0, 1.0 / base as f64);
+    while index > 0 {
+        value += share * (index % base) as f64;
+        share /= base as f64;
+        index /= base;
+    }
+    value
+}
+
+/// The arms of the cross of this number around a point, one after the other, clipped to the cube.
+pub fn cross(at: &[f64], radius: f64, number: usize) -> Vec<Vec<f64>> {
+    let arm = |direction: &[f64], radius: f64| at.iter().zip(direction).map(|(x, d)| clip(x + radius * d)).collect();
+    basis(number, at.len()).iter().flat_map(|direction| [arm(direction, radius), arm(direction, -radius)]).collect()
+}
+
+/// Whether differences of second order fall otherwise than like the square of the radius, in any direction: values of a
+/// wide and of a narrow [`cross`] around a point of value `value`, the wide one `ratio` times as large. On a kink they fall
+/// like the radius, and beside one, which only the wide cross meets, much faster.
+pub fn kinked(value: f64, wide: &[f64], narrow: &[f64], ratio: f64) -> bool {
+    let second = |arms: &[f64]| ((arms[0] - value) + (arms[1] - value)).abs();
+    wide.chunks_exact(2).zip(narrow.chunks_exact(2)).any(|(wide, narrow)| {
+        let (wide, narrow) = (second(wide), second(narrow) * ratio * ratio);
+        narrow > wide * ratio.sqrt() || wide > narrow * ratio.sqrt()
+    })
+}
+
+/// The points whose values give the gradient in each of `places` by differences over `step`: the place itself, and one
+/// along each axis, towards the inside of the cube.
+pub fn stencils(places: &[Vec<f64>], step: f64) -> Vec<Vec<f64>> {
+    let mut points = Vec::new();
+    for place in places {
+        points.push(place.clone());
+        for axis in 0..place.len() {
+            let mut point = place.clone();
+            point[axis] += inward(place[axis], step);
+            points.push(point);
+        }
+    }
+    points
+}
+
+fn inward(coordinate: f64, step: f64) -> f64 {
+    if coordinate > 0.5 { -step } else { step }
+}
+
+/// What gradients around a point say of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slope {
+    /// Down; its largest component is 1.
+    pub along: Vec<f64>,
+    /// Length of the shortest vector of the hull of the gradients, over that of the longest gradient.
+    pub share: f64,
+}
+
+/// The gradients by the values at [`stencils`] of `places`, but for those that are not finite.
+pub fn gradients(places: &[Vec<f64>], step: f64, values: &[f64]) -> Vec<Vec<f64>> {
+    let gradient = |(place, values): (&Vec<f64>, &[f64])| -> Vec<f64> {
+        place.iter().zip(&values[1..]).map(|(x, value)| (value - values[0]) / inward(*x, step)).collect()
+    };
+    let stencil = places.first().map_or(1, Vec::len) + 1;
+    let mut gradients: Vec<Vec<f64>> = places.iter().zip(values.chunks_exact(stencil)).map(gradient).collect();
+    gradients.retain(|gradient| gradient.iter().all(|slope| slope.is_finite()));
+    gradients
+}
+
+/// The way down from `at` where these are the gradients around; none where it is stationary or flat. A variable on its
+/// bound does not go out.
+pub fn slope(at: &[f64], mut gradients: Vec<Vec<f64>>) -> Option<Slope> {
+    let longest = gradients.iter().map(|gradient| dot(gradient, gradient)).fold(0.0, f64::max).sqrt();
+    if longest == 0.0 {
+        return None;
+    }
+    // Each round holds at least one variable more.
+    let up = loop {
+        let up = shortest(&gradients);
+        let held: Vec<usize> = (0..at.len())
+            .filter(|&axis| (at[axis] <= 0.0 && up[axis] > 0.0) || (at[axis] >= 1.0 && up[axis] < 0.0))
+            .collect();
+        if held.is_empty() {
+            break up;
+        }
+        for gradient in &mut gradients {
+            for &axis in &held {
+                gradient[axis] = 0.0;
+            }
+        }
+    };
+    let largest = up.iter().map(|slope| slope.abs()).fold(0.0, f64::max);
+    let share = dot(&up, &up).sqrt() / longest;
+    (largest > 0.0).then(|| Slope { along: up.iter().map(|slope| -slope / largest).collect(), share })
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Of the gap between the hull and the plane through the vector found, as a share of its square.
+const GAP: f64 = 1e-10;
+const MOST_STEPS: usize = 10_000;
+
+/// The shortest vector of the convex hull, by exchange of weight between the two vectors that gain most by it.
+///
+/// Source: Mitchell, Dem'yanov and Malozemov, SIAM J. Control 12 (1974) 19.
+fn shortest(vectors: &[Vec<f64>]) -> Vec<f64> {
+    let mut weights = vec![0.0; vectors.len()];
+    weights[0] = 1.0;
+    let mut found = vectors[0].clone();
+    for _ in 0..MOST_STEPS {
+        let products: Vec<f64> = vectors.iter().map(|vector| dot(vector, &found)).collect();
+        let of = |at: &usize| products[*at];
+        let (Some(low), Some(high)) = (
+            (0..vectors.len()).min_by(|a, b| of(a).total_cmp(&of(b))),
+            (0..vectors.len()).filter(|&at| weights[at] > 0.0).max_by(|a, b| of(a).total_cmp(&of(b))),
+        ) else {
+            break;
+        };
+        let gap = products[high] - products[low];
+        let difference: Vec<f64> = vectors[low].iter().zip(&vectors[high]).map(|(a, b)| a - b).collect();
+        let square = dot(&difference, &difference);
+        if gap <= GAP * dot(&found, &found) || square == 0.0 {
+            break;
+        }
+        let moved = (gap / square).min(weights[high]);
+        weights[high] -= moved;
+        weights[low] += moved;
+        for (found, difference) in found.iter_mut().zip(&difference) {
+            *found += moved * difference;
+        }
+    }
+    found
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn bases_are_orthonormal_and_turn() {
+        for dimension in 2..=6 {
+            let bases: Vec<_> = (0..50).map(|number| basis(number, dimension)).collect();
+            for (number, basis) in bases.iter().enumerate() {
+                for (row, one) in basis.iter().enumerate() {
+                    for (column, other) in basis.iter().enumerate() {
+                        let expected = if row == column { 1.0 } else { 0.0 };
+                        assert!((dot(one, other) - expected).abs() < 1e-14);
+                    }
+                }
+                assert!(number == 0 || bases[number - 1] != *basis, "{number}");
+            }
+        }
+    }
+
+    /// Tier: closed form. A vertex, a point on an edge, a point inside.
+    #[test]
+    fn the_shortest_vector_of_a_hull() {
+        let cases: [(&[[f64; 2]], [f64; 2]); 4] = [
+            (&[[3.0, 4.0]], [3.0, 4.0]),
+            (&[[1.0, 5.0], [1.0, -4.0]], [1.0, 0.0]),
+            (&[[2.0, 0.0], [0.0, 2.0], [3.0, 3.0]], [1.0, 1.0]),
+            (&[[1.0, 0.0], [-1.0, 1.0], [-1.0, -1.0]], [0.0, 0.0]),
+        ];
+        for (vectors, expected) in cases {
+            let vectors: Vec<Vec<f64>> = vectors.iter().map(|vector| vector.to_vec()).collect();
+            let found = shortest(&vectors);
+            assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
+        }
+    }
+
+    fn slope_of(function: impl Fn(&[f64]) -> f64, at: &[f64]) -> Option<Slope> {
+        let places = cross(at, 1e-4, 3);
+        let values: Vec<f64> = stencils(&places, 1e-6).iter().map(|point| function(point)).collect();
+        slope(at, gradients(&places, 1e-6, &values))
+    }
+
+    /// Tier: closed form. A roof a thousand times as steep as its valley falls, which no cross would hit.
+    #[test]
+    fn a_narrow_valley_is_seen_along_its_floor() {
+        let valley = |x: &[f64]| 1000.0 * (x[0] - 2.0 * x[1]).abs() + 2.0 * x[0] + x[1];
+        let found = slope_of(valley, &[0.6, 0.3]).unwrap();
+        // The floor goes along (2, 1), and falls by 5 along it.
+        assert!((found.along[0] + 1.0).abs() < 1e-6 && (found.along[1] + 0.5).abs() < 1e-5, "{found:?}");
+        assert!((found.share - 1e-3).abs() < 1e-5, "{found:?}");
+        let around = |x: &[f64]| 3.0 * (x[0] - 0.6).abs() + (x[0] - x[1] - 0.3).abs();
+        assert!(slope_of(around, &[0.6, 0.3]).is_none_or(|slope| slope.share < 1e-3));
+    }
+
+    #[test]
+    fn on_a_bound_only_what_is_left_counts() {
+        let found = slope_of(|x| x[0] - x[1], &[0.0, 0.4]).unwrap();
+        assert_eq!(found.along, [-0.0, 1.0]);
+        assert_eq!(slope_of(|x| x[0] - x[1], &[0.0, 1.0]), None);
+        assert_eq!(slope_of(|_| f64::INFINITY, &[0.2, 1.0]), None);
+    }
+
+    #[test]
+    fn kinks_are_told_from_curves() {
+        let look = |function: fn(&[f64]) -> f64| {
+            let at = [0.4, 0.7];
+            let around = |radius| cross(&at, radius, 1).iter().map(|x| function(x)).collect::<Vec<_>>();
+            kinked(function(&at), &around(1e-4), &around(1e-5), 10.0)
+        };
+        assert!(look(|x| (x[0] - 0.4).abs() + x[1]));
+        assert!(!look(|x| (x[0] - 0.4).powi(2) + 50.0 * (x[0] - 0.4) * (x[1] - 0.7) + x[1]));
+        assert!(!look(|_| 1.0));
+    }
+}

@@ -1,0 +1,46 @@
+//! Searches for tip relief, whose peak-to-peak has kinks.
+
+use super::walk::{load, walk};
+
+const STAGES: &str = "
+study: t
+seed: 1
+stages:
+  pair:
+    kind: geometry
+    module: 3 mm
+    pressure_angle: 20 deg
+    rack: { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 }
+    material: { youngs_modulus: 206 GPa, poisson_ratio: 0.3 }
+    pinion: { teeth: 19, face_width: 20 mm, bore_radius: 14.079 mm }
+    gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
+  k: { kind: stiffness, pair: pair, root: circular_fillet, coupling: none }
+  centre: &search
+    kind: optimizer
+    stiffness: k
+    method: powell
+    at: { torque: 100 N m }
+    design:
+      - tip_relief: { gear: both, amount: [0 um, 30 um], length: [0.5 mm, 6 mm] }
+  random: { <<: *search, method: { powell: { start: random } } }
+  simplex: { <<: *search, method: nelder_mead }
+  global: { <<: *search, method: { differential_evolution: { polish: nelder_mead } } }
+  alone: { <<: *search, method: { powell: { restarts: 0 } } }
+  short: { <<: *search, method: { powell: { evaluations: 40 } } }
+";
+
+/// Tier: second method. From the middle of the box lines along the axes stop on a kink, at twice the least value.
+#[test]
+fn a_kink_of_the_peak_to_peak_does_not_stop_a_local_search() {
+    let ran = walk(&load(STAGES));
+    let best = |stage: &str| {
+        let table = ran[stage].tables.iter().find(|table| table.name() == "best").unwrap();
+        (table.floats("objective")[0], table.texts("ended")[0].clone())
+    };
+    let least = best("global").0;
+    for stage in ["centre", "random", "simplex"] {
+        assert!((best(stage).0 / least - 1.0).abs() < 1e-6, "{stage}: {:?}, not {least}", best(stage));
+    }
+    assert!(best("alone").0 > 1.5 * least, "{:?}", best("alone"));
+    assert_eq!(best("short").1, "evaluations used up");
+}
