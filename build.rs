@@ -1,8 +1,8 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another, a changed test nothing. The compiler's version and the digest of `Cargo.lock` go into the program for
-//! the manifest.
+//! stage does not recompute another, a changed test nothing. The compiler's version, the commit and the digest of `Cargo.lock` go into the
+//! program for the manifest.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -24,6 +24,13 @@ fn main() -> io::Result<()> {
     println!("cargo:rerun-if-changed=Cargo.lock");
     println!("cargo:rerun-if-changed=src");
     println!("cargo:rerun-if-changed=build.rs");
+    // The whole program, whatever a result depends on: what a manifest names it by.
+    let mut all = Vec::new();
+    collect(&source, &mut all)?;
+    println!("cargo:rustc-env=GEARSTUDY_CODE={}", digest(&all)?);
+    let (commit, changed) = commit().unwrap_or_default();
+    println!("cargo:rustc-env=GEARSTUDY_COMMIT={commit}");
+    println!("cargo:rustc-env=GEARSTUDY_CHANGED={changed}");
     let mut shared = Vec::new();
     for layer in SHARED {
         collect(&source.join(layer), &mut shared)?;
@@ -45,6 +52,20 @@ fn main() -> io::Result<()> {
     let lines =
         format!("pub const SHARED_CODE: &str = \"{base}\";\npub const KIND_CODE: &[(&str, &str)] = &[\n{digests}];\n");
     fs::write(Path::new(&env::var("OUT_DIR").expect("cargo sets OUT_DIR")).join("code.rs"), lines)
+}
+
+/// The commit that the sources are of, and whether they differ from it; none outside a repository that tracks them.
+///
+/// A commit alone builds nothing anew: the program says what it was built from, and its sources are the same.
+fn commit() -> Option<(String, bool)> {
+    let git = |words: &[&str]| {
+        let output = Command::new("git").args(words).output().ok()?;
+        output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
+    };
+    // The folder of a dependency may lie in the repository of somebody else.
+    git(&["ls-files", "--error-unmatch", "Cargo.toml", "build.rs"])?;
+    let changed = git(&["status", "--porcelain", "--", "src", "build.rs", "Cargo.toml", "Cargo.lock"])?;
+    Some((git(&["rev-parse", "--verify", "HEAD"])?, !changed.is_empty()))
 }
 
 /// Debian's libhdf5 brings thirty other shared libraries along (its network driver needs curl, and that the rest), which

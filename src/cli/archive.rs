@@ -8,11 +8,12 @@ use std::path::{Path, PathBuf};
 
 use super::arguments::Places;
 use super::progress::out;
-use super::{Ending, pages};
+use super::{Ending, pages, rights};
 use crate::runner::graph::Graph;
 use crate::runner::standing::{self, standing};
 use crate::stage::{self, kinds::KINDS};
 use crate::store::archive::metadata::{Author, Description, Step, metadata};
+use crate::store::archive::open::MOST_BYTES;
 use crate::store::archive::pack::{Entries, pack};
 use crate::store::archive::{self, METADATA, about};
 use crate::store::file::{self, Durability};
@@ -37,18 +38,24 @@ pub(super) fn archive(
 ) -> Result<(), Ending> {
     let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.name));
     refuse_to_lose(output, study, places).map_err(usage)?;
-    let license = about.license.map(spdx).transpose().map_err(Ending::Usage)?;
+    let license = about.license.map(rights::license).transpose().map_err(Ending::Usage)?;
     let authors: Vec<Author> =
-        about.authors.iter().map(|text| author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
+        about.authors.iter().map(|text| rights::author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
     let folder = Folder::new(&places.results, &study.name);
     // So that nobody publishes while the files are read.
     let _lock = if folder.path().is_dir() { folder.lock().map_err(|error| usage(error.to_string()))? } else { None };
-    let standing = standing(study, &folder, stage::code_digest, false).map_err(|error| usage(error.message))?;
+    let standing = standing(study, &folder, stage::code_digest).map_err(|error| usage(error.message))?;
     let first = |command: &str| format!("first: gearstudy {command} {}", study.path.display());
     if let Some(problem) = standing.problem() {
         return Err(usage(format!("{problem}; {}", first("run"))));
     }
-    let manifest = folder.manifest().ok_or_else(|| usage(format!("there are no results; {}", first("run"))))?;
+    if let Some(file) = standing.absent().first() {
+        return Err(usage(format!("`{file}` is not here; {}", first("run"))));
+    }
+    let manifest = folder
+        .read_manifest()
+        .map_err(|error| usage(error.to_string()))?
+        .ok_or_else(|| usage(format!("there are no results; {}", first("run"))))?;
     let Some(pages) = pages::current(&folder) else {
         return Err(usage(format!("the report is not that of the last run; {}", first("report"))));
     };
@@ -107,7 +114,8 @@ fn results(folder: &Folder, manifest: &Manifest, pages: &[PathBuf]) -> Result<En
     let mut entries = Entries::new();
     let mut put = |name: &str| -> Result<(), String> {
         let path = folder.path().join(name);
-        let bytes = fs::read(&path).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
+        let bytes =
+            file::read(&path, MOST_BYTES).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
         entries.insert(format!("{inside}{name}"), bytes);
         Ok(())
     };
@@ -142,54 +150,4 @@ fn steps(study: &Study, manifest: &Manifest) -> Result<Vec<Step>, String> {
         Step { stage: of_study.name.clone(), summary: of_study.kind.summary.to_owned(), reads }
     };
     Ok(graph.order.iter().map(step).collect())
-}
-
-/// An SPDX identifier, as far as its letters tell.
-fn spdx(text: &str) -> Result<String, String> {
-    let allowed = |c: char| c.is_ascii_alphanumeric() || matches!(c, '.' | '-' | '+');
-    if !text.is_empty() && text.chars().all(allowed) {
-        Ok(text.to_owned())
-    } else {
-        Err(format!("`{text}` is no SPDX identifier of a licence; for example `CC-BY-4.0`"))
-    }
-}
-
-/// A name, and an ORCID iD behind it where there is one.
-fn author(text: &str) -> Result<Author, String> {
-    let is_orcid = |word: &str| {
-        let digits: Vec<&str> = word.split('-').collect();
-        let group = |digits: &&str| digits.len() == 4 && digits.chars().all(|c| c.is_ascii_digit() || c == 'X');
-        digits.len() == 4 && digits.iter().all(group)
-    };
-    let (name, orcid) = match text.trim().rsplit_once(' ') {
-        Some((name, last)) if is_orcid(last.trim_start_matches("https://orcid.org/")) => {
-            (name.trim(), Some(last.trim_start_matches("https://orcid.org/").to_owned()))
-        }
-        _ => (text.trim(), None),
-    };
-    if name.is_empty() || is_orcid(name) {
-        return Err(format!("`{text}` is no author; write a name, or a name and an ORCID iD"));
-    }
-    Ok(Author { name: name.to_owned(), orcid })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn authors_are_names_with_or_without_an_orcid() {
-        let parsed = |text| author(text).map(|author| (author.name, author.orcid));
-        let orcid = Some("0000-0002-1825-009X".to_owned());
-        assert_eq!(parsed("Ada Lovelace"), Ok(("Ada Lovelace".to_owned(), None)));
-        assert_eq!(parsed("Ada Lovelace 0000-0002-1825-009X"), Ok(("Ada Lovelace".to_owned(), orcid.clone())));
-        assert_eq!(parsed(" Ada https://orcid.org/0000-0002-1825-009X"), Ok(("Ada".to_owned(), orcid)));
-        assert!(parsed("").is_err() && parsed("0000-0002-1825-0097").is_err());
-    }
-
-    #[test]
-    fn licences_are_spdx_identifiers() {
-        assert!(spdx("CC-BY-4.0").is_ok() && spdx("LGPL-2.1+").is_ok());
-        assert!(spdx("").is_err() && spdx("my own").is_err() && spdx("../x").is_err());
-    }
 }

@@ -40,11 +40,16 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     let cache = cache.map_err(|error| Ending::Usage(error.to_string()))?;
     let ignored = |study: &str| {
         let (Ok(repository), Some(folder)) = (&repository, after.path()) else { return false };
-        let manifest = repository.inside(&folder.join(study).join(MANIFEST));
-        before.path().is_none() && manifest.is_ok_and(|manifest| repository.ignores(&manifest))
+        before.path().is_none() && repository.leaves_out(&folder.join(study).join(MANIFEST))
     };
-    let options =
-        Options { studies: &studies, tolerances: &tolerances, cache: cache.as_ref(), leaves_out: Some(&ignored) };
+    let not_kept = |file: &Path| Repository::around(file).is_ok_and(|repository| repository.leaves_out(file));
+    let options = Options {
+        studies: &studies,
+        tolerances: &tolerances,
+        cache: cache.as_ref(),
+        leaves_out: Some(&ignored),
+        not_kept: Some(&not_kept),
+    };
     let comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
     if !quiet {
         out(&shown(&comparison, asked.format)?);

@@ -11,8 +11,11 @@ pub mod print;
 pub mod progress;
 #[cfg(feature = "frames")]
 mod query;
+mod rights;
 pub mod run;
 pub mod show;
+mod status;
+mod studies;
 pub mod verify;
 
 use std::ffi::OsString;
@@ -22,9 +25,10 @@ pub use crate::stage::memory::Allocator;
 
 use clap::Parser;
 
-use crate::study::{self, LoadError, Study};
+use crate::study::LoadError;
 
 use arguments::{Arguments, Command};
+use studies::load_all;
 
 /// Why a command ended without doing all of its work.
 #[derive(Debug, thiserror::Error)]
@@ -37,6 +41,9 @@ pub enum Ending {
     /// A query that makes no sense, or asks for what is not there.
     #[error("{0}")]
     Query(String),
+    /// Some of several studies are none; what is wrong with them was printed.
+    #[error("{0}")]
+    Unreadable(String),
     /// A stage failed; what it said was printed where it happened.
     #[error("{0}")]
     Failed(String),
@@ -53,7 +60,7 @@ impl Ending {
     pub fn code(&self) -> i32 {
         match self {
             Self::Usage(_) => 1,
-            Self::Invalid(_) | Self::Query(_) => 2,
+            Self::Invalid(_) | Self::Query(_) | Self::Unreadable(_) => 2,
             Self::Failed(_) => 3,
             Self::Differs(_) => 4,
             // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
@@ -81,7 +88,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
             match &ending {
                 Ending::Invalid(error) => draw::invalid_study(error),
                 Ending::Differs(message) if message.is_empty() => {}
-                other => eprintln!("gearstudy: {other}"),
+                other => progress::aside(None, &format!("gearstudy: {other}")),
             }
             ending.code()
         }
@@ -93,7 +100,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     let quiet = arguments.quiet;
     match &arguments.command {
         Command::New { file } => show::new_study(file),
-        Command::Check { studies } => show::check(studies, quiet),
+        Command::Check { studies: words } => show::check(&studies::named_or_all(words)?, quiet),
         Command::Plan { studies, selection, json } => run::plan(&load_all(studies)?, places, selection, *json),
         Command::Run { studies, selection, explain, dry_run: true, .. } => {
             let _ = explain;
@@ -103,7 +110,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let how = run::How { explain: *explain, keep_going: *keep_going, jobs: jobs.map(usize::from), quiet };
             run::run(&load_all(studies)?, places, selection, &how)
         }
-        Command::Status { studies, json } => show::status(&load_all(&show::named_or_all(studies)?)?, places, *json),
+        Command::Status { studies: words, json } => status::status(words, places, *json),
         Command::Archive { study, output, license, authors } => {
             let about = archive::About { license: license.as_deref(), authors };
             archive::archive(&load_all(std::slice::from_ref(study))?[0], places, output, &about, quiet)
@@ -135,23 +142,4 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             Ok(())
         }
     }
-}
-
-/// Reads every study before anything runs, so that a slip in the second one costs nothing.
-fn load_all(paths: &[std::path::PathBuf]) -> Result<Vec<Study>, Ending> {
-    let studies: Vec<Study> = paths
-        .iter()
-        .map(|path| study::load(path))
-        .collect::<Result<_, _>>()
-        .map_err(|error| Ending::Invalid(Box::new(error)))?;
-    for (index, study) in studies.iter().enumerate() {
-        if let Some(other) = studies[..index].iter().find(|other| other.name == study.name) {
-            let (a, b) = (other.path.display(), study.path.display());
-            return Err(Ending::Usage(format!(
-                "{a} and {b} are both called `{}`; their results would overwrite each other",
-                study.name
-            )));
-        }
-    }
-    Ok(studies)
 }

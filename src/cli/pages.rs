@@ -5,8 +5,9 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::progress::plain;
 use crate::base::digest::Writer;
-use crate::report::text;
+use crate::report::text as as_text;
 use crate::report::{self, ReportError};
 use crate::store::file::{self, Durability};
 use crate::store::manifest::Manifest;
@@ -32,16 +33,21 @@ pub(super) fn are_current(folder: &Folder) -> bool {
 /// The page and its figures, relative to the folder, when they are those of the manifest as it stands.
 #[must_use]
 pub(super) fn current(folder: &Folder) -> Option<Vec<PathBuf>> {
-    let page = fs::read_to_string(path(folder)).ok()?;
+    let page = text(&path(folder))?;
     let figures = page.lines().last()?.strip_prefix(&mark(folder))?.trim_end_matches(MARK_END);
     let figures = figures.split_whitespace().map(|name| Path::new(FIGURES).join(name));
     let files: Vec<PathBuf> = std::iter::once(PathBuf::from(PAGE)).chain(figures).collect();
     files.iter().all(|file| folder.path().join(file).is_file()).then_some(files)
 }
 
+/// None for what is no file of text.
+fn text(path: &Path) -> Option<String> {
+    String::from_utf8(file::read(path, file::MOST_TABLE).ok()?).ok()
+}
+
 /// How the last line of a page begins: of which manifest it is.
 fn mark(folder: &Folder) -> String {
-    let manifest = fs::read_to_string(folder.path().join(MANIFEST)).unwrap_or_default();
+    let manifest = text(&folder.path().join(MANIFEST)).unwrap_or_default();
     format!("<!-- manifest {} figures ", Writer::new("page").text(&manifest).finish())
 }
 
@@ -60,7 +66,7 @@ pub(super) fn write(folder: &Folder, manifest: &Manifest) -> Result<String, Stri
         |path: &Path, bytes: &[u8]| file::write(path, bytes, Durability::Lazy).map_err(|error| cannot(path, &error));
     file::sweep(&figures);
     file::sweep(folder.path());
-    let mut page = rendered.html + "\n" + &mark(folder);
+    let mut page = plain(&rendered.html).into_owned() + "\n" + &mark(folder);
     for (name, svg) in &rendered.figures {
         page += &format!("{name}.svg ");
         put(&figures.join(format!("{name}.svg")), svg.as_bytes())?;
@@ -121,7 +127,7 @@ pub(super) fn verdicts(folder: &Folder, manifest: &Manifest) -> Result<String, S
     let width = terminal_width();
     let tables = of_reports(folder, manifest, "verdicts");
     let shown: Result<Vec<String>, String> =
-        tables.iter().map(|table| text::verdicts(table, width).map_err(|error| error.to_string())).collect();
+        tables.iter().map(|table| as_text::verdicts(table, width).map_err(|error| error.to_string())).collect();
     Ok(shown?.concat())
 }
 

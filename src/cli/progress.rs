@@ -2,6 +2,7 @@
 //!
 //! Must not know: what stages compute.
 
+use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::Mutex;
@@ -31,7 +32,7 @@ impl Watcher {
         }
         match &self.bars {
             // Above the bars; when the terminal is gone there is nobody to tell.
-            Some(bars) => drop(bars.println(text)),
+            Some(bars) => drop(bars.println(plain(text))),
             None => tell(&format!("{text}\n")),
         }
     }
@@ -104,9 +105,33 @@ pub fn bars(quiet: bool) -> Option<MultiProgress> {
 /// Says something on standard error while bars may be drawn there.
 pub fn aside(bars: Option<&MultiProgress>, text: &str) {
     match bars {
-        Some(bars) => bars.suspend(|| eprintln!("{text}")),
-        None => eprintln!("{text}"),
+        Some(bars) => bars.suspend(|| eprintln!("{}", plain(text))),
+        None => eprintln!("{}", plain(text)),
     }
+}
+
+/// A text that no terminal takes for more than text: what would move the cursor, colour, hide or turn round is written as
+/// JSON writes it. Titles, labels and cells come from files that anybody may have made.
+#[must_use]
+pub fn plain(text: &str) -> Cow<'_, str> {
+    if !text.contains(is_hidden) {
+        return Cow::Borrowed(text);
+    }
+    let shown = |mut all: String, c: char| {
+        if is_hidden(c) {
+            all += &format!("\\u{:04x}", u32::from(c));
+        } else {
+            all.push(c);
+        }
+        all
+    };
+    Cow::Owned(text.chars().fold(String::with_capacity(text.len()), shown))
+}
+
+/// Control characters but line ends and tabs, and those that turn the direction of writing round.
+pub fn is_hidden(c: char) -> bool {
+    let turns = matches!(c, '\u{061c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    turns || (c.is_control() && c != '\n' && c != '\t')
 }
 
 /// Seconds in the unit that suits them.
@@ -140,6 +165,21 @@ pub fn tell(text: &str) {
 
 fn write(text: &str) -> std::io::Result<()> {
     let mut stdout = std::io::stdout().lock();
-    stdout.write_all(text.as_bytes())?;
+    stdout.write_all(plain(text).as_bytes())?;
     stdout.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::plain;
+
+    #[test]
+    fn no_text_steers_a_terminal() {
+        assert_eq!(plain("µm\t→ 1\n"), "µm\t→ 1\n");
+        assert_eq!(plain("\u{1b}[2J\r\u{7}\u{9b}\u{7f}a\u{202e}"), "\\u001b[2J\\u000d\\u0007\\u009b\\u007fa\\u202e");
+        // In JSON it stays the same text.
+        let text = "a\u{1b}\u{9b}\u{202e}\u{7f}";
+        let json = serde_json::to_string(text).unwrap();
+        assert_eq!(serde_json::from_str::<String>(&plain(&json)).unwrap(), text);
+    }
 }

@@ -1,4 +1,4 @@
-//! Commands that only show something: check, status, kinds, schema, table, import, and writing a study to start from.
+//! Commands that only show something: check, kinds, schema, table, import, and writing a study to start from.
 //!
 //! Must not know: execution.
 
@@ -6,22 +6,17 @@ use std::fs::{File, OpenOptions};
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-use serde_json::json;
-
 use super::Ending;
 use super::arguments::{Format, Places};
 use super::progress::out;
-use super::{draw, pages, print};
+use super::{draw, print};
 use crate::base::error::suggest;
-use crate::runner::standing::{StageStanding, Standing, State, standing};
 use crate::stage::{self, kinds::KINDS};
 use crate::store::manifest::{Manifest, TableRecord};
 use crate::store::results::Folder;
 use crate::study::{Study, describe, load, load_text, rexs, schema as studies};
 use crate::table::data::Table;
 
-/// Where `status` looks when no study is named.
-const STUDIES: &str = "studies";
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
 
 /// Writes a small study; never over a file that is there.
@@ -73,80 +68,6 @@ pub(super) fn check(files: &[PathBuf], quiet: bool) -> Result<(), Ending> {
     last.map_or(Ok(()), |error| Err(Ending::Invalid(Box::new(error))))
 }
 
-/// The studies that were named, or all in the folder `studies`.
-pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
-    if !named.is_empty() {
-        return Ok(named.to_vec());
-    }
-    let entries = std::fs::read_dir(STUDIES).into_iter().flatten().flatten().map(|entry| entry.path());
-    let mut all: Vec<PathBuf> = entries.filter(|path| path.extension().is_some_and(|word| word == "yaml")).collect();
-    all.sort();
-    if all.is_empty() {
-        return Err(Ending::Usage(format!("there are no studies in `{STUDIES}` here; name one")));
-    }
-    Ok(all)
-}
-
-/// Says of every study what of its results is up to date, what is not, and why.
-pub(super) fn status(studies: &[Study], places: &Places, as_json: bool) -> Result<(), Ending> {
-    let mut all = Vec::new();
-    for study in studies {
-        let folder = Folder::new(&places.results, &study.name);
-        let standing = standing(study, &folder, stage::code_digest, false)
-            .map_err(|error| Ending::Usage(format!("{}: {}", study.path.display(), error.message)))?;
-        let report = pages::are_current(&folder);
-        if as_json {
-            let stages: Vec<_> = standing
-                .stages
-                .iter()
-                .map(|stage| json!({ "name": stage.name, "state": stage.state.word(), "why": stage.state.why() }))
-                .collect();
-            all.push(json!({
-                "study": study.name, "file": study.path, "up_to_date": standing.is_up_to_date() && report,
-                "results": standing.has_results, "text_changed": standing.text_changed, "gone": standing.gone,
-                "report_up_to_date": report, "stages": stages,
-            }));
-        } else {
-            out(&status_text(study, &standing, report));
-        }
-    }
-    if as_json {
-        out(&format!("{:#}\n", serde_json::Value::Array(all)));
-    }
-    Ok(())
-}
-
-fn status_text(study: &Study, standing: &Standing, report: bool) -> String {
-    if !standing.has_results {
-        return format!("{}: no results; next: gearstudy run {}\n", study.name, study.path.display());
-    }
-    let others: Vec<&StageStanding> = standing.stages.iter().filter(|stage| stage.state != State::UpToDate).collect();
-    let mut parts = Vec::new();
-    if !others.is_empty() {
-        parts.push(format!("{} of {} stages are not up to date", others.len(), standing.stages.len()));
-    }
-    if !standing.gone.is_empty() {
-        parts.push(format!("the results have stages that the study has not: {}", standing.gone.join(", ")));
-    }
-    if parts.is_empty() && standing.text_changed {
-        parts.push("the study's file has changed, but no stage of it".to_owned());
-    }
-    let command = if parts.is_empty() && !report { "report" } else { "run" };
-    if parts.is_empty() && !report {
-        parts.push("the report is not that of the last run".to_owned());
-    }
-    if parts.is_empty() {
-        return format!("{}: up to date\n", study.name);
-    }
-    let mut text =
-        format!("{}: {}; next: gearstudy {command} {}\n", study.name, parts.join("; "), study.path.display());
-    let width = others.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
-    for stage in others {
-        text += &format!("  {:width$}  {:7}  {}\n", stage.name, stage.state.word(), stage.state.why());
-    }
-    text
-}
-
 pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
     let Some(name) = name else {
         out(&describe::list(KINDS));
@@ -195,7 +116,8 @@ pub(super) fn table(
 /// The results folder of a study and the manifest in it.
 pub(super) fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
     let folder = Folder::new(&places.results, &study.name);
-    let manifest = folder.manifest().ok_or_else(|| {
+    let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
+    let manifest = read.ok_or_else(|| {
         let (path, file) = (folder.path().display(), study.path.display());
         Ending::Usage(format!("there are no results in {path}; first: gearstudy run {file}"))
     })?;

@@ -4,17 +4,18 @@
 
 use std::path::Path;
 
-use serde_json::{Value, json};
+use serde_json::{Value as Json, json};
 
 use super::Ending;
 use super::progress::{self, Watcher, out};
 use super::run::stop_flag;
-use crate::runner::agreement::{Agreement, Worst};
+use crate::base::number::with_unit;
+use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
+use crate::diff::words;
 use crate::runner::options::Options;
 use crate::runner::verify::{Verification, Verified, VerifyError, verify as run};
 use crate::store::archive::about;
 use crate::store::archive::open::open;
-use crate::table::data::Cell;
 
 /// Says per table whether it came out as archived; differences end with code 4.
 pub(super) fn verify(file: &Path, jobs: Option<usize>, as_json: bool, quiet: bool) -> Result<(), Ending> {
@@ -45,11 +46,11 @@ pub(super) fn verify(file: &Path, jobs: Option<usize>, as_json: bool, quiet: boo
 }
 
 /// One word for a table.
-fn word(agreement: &Agreement) -> &'static str {
-    match agreement {
-        Agreement::Identical => "identical",
-        Agreement::Within(_) => "within tolerance",
-        Agreement::Different(_) | Agreement::Incomparable(_) => "different",
+fn word(diff: &TableDiff) -> &'static str {
+    match diff.state {
+        State::Same => "identical",
+        State::WithinTolerance => "within tolerance",
+        State::Changed | State::Removed | State::Added => "different",
     }
 }
 
@@ -59,13 +60,8 @@ fn as_text(verification: &Verification) -> String {
         text += &format!("  note: {note}\n");
     }
     let width = verification.tables.iter().map(|table| table.name.chars().count()).max().unwrap_or(0);
-    for Verified { name, agreement, .. } in &verification.tables {
-        let detail = match agreement {
-            Agreement::Identical => String::new(),
-            Agreement::Within(worst) | Agreement::Different(worst) => sentence(worst),
-            Agreement::Incomparable(why) => why.clone(),
-        };
-        text += format!("  {name:width$}  {:16}  {detail}", word(agreement)).trim_end();
+    for Verified { name, diff, .. } in &verification.tables {
+        text += format!("  {name:width$}  {:16}  {}", word(diff), sentence(diff)).trim_end();
         text += "\n";
     }
     let [identical, within, different] = verification.counts();
@@ -76,26 +72,58 @@ fn as_text(verification: &Verification) -> String {
     )
 }
 
-/// The worst value, as a sentence.
-fn sentence(worst: &Worst) -> String {
-    let unit = if worst.unit.is_empty() { String::new() } else { format!(" {}", worst.unit) };
-    let key: Vec<String> = worst.key.iter().map(|(name, value)| format!("{name}={value}")).collect();
-    let row = if key.is_empty() { format!("row {}", worst.row) } else { key.join(", ") };
-    let (was, is) = (&worst.recorded, &worst.computed);
-    let by = if worst.absolute.is_finite() { format!(", by {:.2e} of it", worst.relative) } else { String::new() };
-    format!("worst in {} at {row}: {was}{unit} archived, {is}{unit} computed{by}", worst.column)
+/// What is not the same; of values the one that is over its tolerance by most, or nearest to it.
+fn sentence(diff: &TableDiff) -> String {
+    let mut parts = Vec::new();
+    if !diff.note.is_empty() {
+        parts.push(diff.note.clone());
+    }
+    if diff.rows_added + diff.rows_removed > 0 {
+        parts.push(words::rows(diff));
+    }
+    parts.extend(diff.schema.iter().filter(|change| change.differs).map(|change| {
+        let values = [&change.before, &change.after].map(|value| if value.is_empty() { "–" } else { value });
+        format!("column {} {}: {} → {}", change.column, change.what, values[0], values[1])
+    }));
+    if let Some((column, worst)) = worst(diff) {
+        let (was, is) = words::pair(&worst.before, &worst.after);
+        let with = |value: &str| with_unit(value, &column.unit);
+        let by = relative(worst).map_or_else(String::new, |by| format!(", by {by:.2e} of it"));
+        let row = words::key(&worst.key);
+        parts.push(format!("worst in {} at {row}: {} archived, {} computed{by}", column.name, with(&was), with(&is)));
+    }
+    parts.join("; ")
 }
 
-fn as_value(file: &Path, verification: &Verification) -> Value {
-    let tables: Vec<Value> = verification
+/// The value that is over its tolerance by most, or nearest to it, and its column.
+fn worst(diff: &TableDiff) -> Option<(&ColumnDiff, &Extreme)> {
+    let all = diff.columns.iter().filter_map(|column| Some((column, column.largest_over.as_ref()?)));
+    // The first of equals.
+    all.reduce(|most, other| if other.1.difference > most.1.difference { other } else { most })
+}
+
+/// By how much of the larger of the two values, where both are numbers.
+fn relative(worst: &Extreme) -> Option<f64> {
+    match (&worst.before, &worst.after) {
+        (Value::Float(a), Value::Float(b)) => {
+            let (difference, size) = ((a - b).abs(), a.abs().max(b.abs()));
+            Some(difference / size).filter(|share| share.is_finite())
+        }
+        _ => None,
+    }
+}
+
+fn as_value(file: &Path, verification: &Verification) -> Json {
+    let tables: Vec<Json> = verification
         .tables
         .iter()
         .map(|table| {
-            let mut value = json!({ "name": table.name, "rows": table.rows, "agreement": word(&table.agreement) });
-            match &table.agreement {
-                Agreement::Identical => {}
-                Agreement::Within(worst) | Agreement::Different(worst) => value["worst"] = worst_value(worst),
-                Agreement::Incomparable(why) => value["why"] = json!(why),
+            let mut value = json!({ "name": table.name, "rows": table.rows, "agreement": word(&table.diff) });
+            if table.diff.state != State::Same {
+                value["why"] = json!(sentence(&table.diff));
+            }
+            if let Some((column, worst)) = worst(&table.diff) {
+                value["worst"] = worst_value(column, worst);
             }
             value
         })
@@ -108,21 +136,11 @@ fn as_value(file: &Path, verification: &Verification) -> Value {
     })
 }
 
-fn worst_value(worst: &Worst) -> Value {
-    let key: serde_json::Map<String, Value> =
-        worst.key.iter().map(|(name, value)| (name.clone(), cell(value))).collect();
+fn worst_value(column: &ColumnDiff, worst: &Extreme) -> Json {
+    let key: serde_json::Map<String, Json> =
+        worst.key.iter().map(|(name, value)| (name.clone(), json!(value))).collect();
     json!({
-        "column": worst.column, "unit": worst.unit, "row": worst.row, "key": key,
-        "archived": cell(&worst.recorded), "computed": cell(&worst.computed),
-        "absolute": worst.absolute, "relative": worst.relative, "over_tolerance": worst.excess,
+        "column": column.name, "unit": column.unit, "key": key, "archived": worst.before, "computed": worst.after,
+        "relative": relative(worst), "over_tolerance": worst.difference,
     })
-}
-
-fn cell(cell: &Cell) -> Value {
-    match cell {
-        Cell::Float(value) => json!(value),
-        Cell::Integer(value) => json!(value),
-        Cell::Text(value) => json!(value),
-        Cell::Flag(value) => json!(value),
-    }
 }

@@ -20,6 +20,8 @@ pub struct Differences {
     pub largest_absolute: Option<(f64, usize)>,
     /// Size over the larger of the two, and where.
     pub largest_relative: Option<(f64, usize)>,
+    /// Size over what the tolerance allows, infinite for what is no number, and where.
+    pub largest_over: Option<(f64, usize)>,
     /// The furthest apart beyond tolerance: how far, as a share of the column's largest value, and where.
     pub worst: Vec<(f64, usize)>,
 }
@@ -57,6 +59,7 @@ fn words(same: impl Iterator<Item = bool>) -> Differences {
     let mut found = Differences::default();
     for (place, _) in same.enumerate().filter(|(_, same)| !same) {
         found.changed += 1;
+        found.largest_over.get_or_insert((f64::INFINITY, place));
         if found.worst.len() < KEPT {
             found.worst.push((f64::INFINITY, place));
         }
@@ -84,6 +87,7 @@ fn numbers(values: impl Iterator<Item = (f64, f64)>, tolerance: Tolerance, slack
         if size.is_nan() {
             // A number that came or went is further away than any other.
             found.beyond += 1;
+            over(&mut found, f64::INFINITY, place);
             keep(&mut found.worst, f64::INFINITY, place);
             continue;
         }
@@ -93,7 +97,9 @@ fn numbers(values: impl Iterator<Item = (f64, f64)>, tolerance: Tolerance, slack
         if found.largest_relative.is_none_or(|(most, _)| size / largest > most) {
             found.largest_relative = Some((size / largest, place));
         }
-        if size > tolerance.absolute + tolerance.relative * largest {
+        let allowed = tolerance.absolute + tolerance.relative * largest;
+        over(&mut found, size / allowed, place);
+        if size > allowed {
             found.beyond += 1;
             keep(&mut found.worst, size, place);
         }
@@ -102,6 +108,13 @@ fn numbers(values: impl Iterator<Item = (f64, f64)>, tolerance: Tolerance, slack
         *size /= scale;
     }
     found
+}
+
+/// Keeps the place that is over its tolerance by most, the first of equals.
+fn over(found: &mut Differences, share: f64, place: usize) {
+    if found.largest_over.is_none_or(|(most, _)| share > most) {
+        found.largest_over = Some((share, place));
+    }
 }
 
 /// Keeps the furthest apart, the first of equals.

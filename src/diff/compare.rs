@@ -2,9 +2,10 @@
 //!
 //! Must not know: how the outcome is shown.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 
-use super::model::{Comparison, Flip, StageDiff, State, StudyDiff, TableDiff};
+use super::model::{Comparison, Damage, Flip, StageDiff, State, StudyDiff, TableDiff};
 use super::{table, verdict, why};
 use crate::base::error::suggest;
 use crate::history::side::{Got, Side};
@@ -12,6 +13,9 @@ use crate::store::cache::Cache;
 use crate::store::manifest::{Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
 use crate::table::tolerance::{Allowance, find};
+
+/// Columns that one tolerance is meant for and that are named; of more only their number is said.
+const MOST_MEANT: usize = 6;
 
 /// What is asked for besides the two sides.
 #[derive(Default)]
@@ -24,6 +28,8 @@ pub struct Options<'a> {
     pub cache: Option<&'a Cache>,
     /// Whether a study that only the later side has is left out on purpose.
     pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
+    /// Whether a file of a folder of results is one that is not kept there on purpose.
+    pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
 }
 
 /// A study's name and its manifests, with the folder each lies in.
@@ -42,14 +48,16 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
         before: before.label.clone(),
         after: after.label.clone(),
         state: State::Same,
+        damaged: Vec::new(),
         verdicts: Vec::new(),
         studies: Vec::new(),
         problems: Vec::new(),
         remarks: Vec::new(),
     };
     let pairs = pairs(before, after, options, &mut comparison)?;
-    check_tolerances(&pairs, options.tolerances)?;
+    comparison.remarks.extend(check_tolerances(&pairs, options.tolerances)?);
     for pair in &pairs {
+        comparison.damaged.extend(damaged(pair, before, after, options));
         let study = match (&pair.before, &pair.after) {
             (Some(old), Some(new)) => {
                 let own = new.1.tolerances.iter().map(|(name, value)| Allowance::new(name, value));
@@ -57,19 +65,61 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
                 let own =
                     own.map_err(|problem| format!("{}, in the manifest of {}: {problem}", pair.name, after.label))?;
                 let task = Task { before, after, old, new, own, options };
-                let (study, flips) = task.study(&pair.name);
-                comparison.verdicts.extend(flips);
+                let (study, found) = task.study(&pair.name);
+                comparison.verdicts.extend(found.flips);
+                comparison.damaged.extend(found.damaged);
                 study
             }
-            (Some((_, only)), None) => one_sided(&pair.name, only, State::Removed),
+            (Some((folder, only)), None) => {
+                let stages = only.stages.iter();
+                let gone = stages.flat_map(|stage| gone(before, folder, &pair.name, stage, options));
+                comparison.verdicts.extend(gone);
+                one_sided(&pair.name, only, State::Removed)
+            }
             (None, Some((_, only))) => one_sided(&pair.name, only, State::Added),
             (None, None) => continue,
         };
         comparison.studies.push(study);
     }
     verdict::sort(&mut comparison.verdicts);
-    comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state));
+    let damaged = (!comparison.damaged.is_empty()).then_some(State::Changed);
+    comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
     Ok(comparison)
+}
+
+/// Files that are not what their manifests say, but for tables whose values will be compared.
+fn damaged(pair: &Pair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
+    let tables = |side: &Option<(String, Manifest)>| -> BTreeSet<(String, String)> {
+        let manifest = side.iter().flat_map(|(_, manifest)| &manifest.stages);
+        manifest.flat_map(|stage| &stage.tables).map(|table| (table.name.clone(), table.content.clone())).collect()
+    };
+    let both = tables(&pair.before).into_iter().chain(tables(&pair.after));
+    let mut contents = BTreeMap::<String, BTreeSet<String>>::new();
+    for (name, content) in both {
+        contents.entry(name).or_default().insert(content);
+    }
+    let compared = |table: &TableRecord| contents.get(&table.name).is_some_and(|contents| contents.len() > 1);
+    let mut found = Vec::new();
+    for (side, held, other, there) in
+        [(before, &pair.before, after, &pair.after), (after, &pair.after, before, &pair.before)]
+    {
+        let Some((folder, manifest)) = held else { continue };
+        let mut tell = |file: String, problem: String| {
+            found.push(Damage { at: side.label.clone(), study: pair.name.clone(), file, problem });
+        };
+        for (file, problem) in side.damage(folder, manifest, &compared) {
+            tell(file, problem);
+        }
+        // Git seldom keeps all; what the other side has of the same study should be here too.
+        let (Some(path), Some((there, theirs))) = (side.path(), there) else { continue };
+        let listed = manifest.files.iter().filter(|listed| theirs.files.iter().any(|other| other.file == listed.file));
+        for listed in listed.filter(|listed| !side.has(folder, &listed.file) && other.has(there, &listed.file)) {
+            if !options.not_kept.is_some_and(|not_kept| not_kept(&path.join(folder).join(&listed.file))) {
+                tell(listed.file.clone(), format!("is not there; {} has it", other.label));
+            }
+        }
+    }
+    found
 }
 
 fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Comparison) -> Result<Vec<Pair>, String> {
@@ -130,9 +180,12 @@ fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Co
     Ok(pairs)
 }
 
-/// Every tolerance of the command line must be meant for some column, and fit it.
-fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<(), String> {
+/// Every tolerance of the command line must be meant for some column, and fit it; where a name means several, it is said
+/// which.
+fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<Vec<String>, String> {
+    let mut remarks = Vec::new();
     for allowance in tolerances {
+        let mut meant = BTreeSet::new();
         let mut known: Vec<String> = Vec::new();
         let mut found = false;
         let manifests = pairs.iter().flat_map(|pair| [&pair.before, &pair.after]).flatten();
@@ -141,6 +194,7 @@ fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<(), Stri
             for record in table.columns.iter().filter(|record| !record.volatile) {
                 if allowance.means(stage, name, &record.name) {
                     found = true;
+                    meant.insert(format!("{}.{}", table.name, record.name));
                     let kind = Type::from_name(&record.kind).unwrap_or(Type::Text);
                     allowance.of(&Column { kind, ..Column::float(&record.name, &record.unit, "") })?;
                 } else if table::is_number(record) {
@@ -156,8 +210,15 @@ fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<(), Stri
             let help = suggest(&allowance.name, known.iter().map(String::as_str).collect::<Vec<_>>());
             return Err(format!("there is no column `{}`; {help}", allowance.name));
         }
+        if meant.len() > 1 {
+            let more = meant.len().saturating_sub(MOST_MEANT);
+            let mut names: Vec<String> = meant.iter().take(MOST_MEANT).cloned().collect();
+            names.extend((more > 0).then(|| format!("{more} more")));
+            let (name, number) = (&allowance.name, meant.len());
+            remarks.push(format!("the tolerance of `{name}` is that of {number} columns: {}", names.join(", ")));
+        }
     }
-    Ok(())
+    Ok(remarks)
 }
 
 fn one_sided(name: &str, manifest: &Manifest, state: State) -> StudyDiff {
@@ -175,12 +236,29 @@ fn one_sided_table(record: &TableRecord, state: State) -> TableDiff {
     TableDiff { name: record.name.clone(), state, rows_before, rows_after, ..TableDiff::default() }
 }
 
+/// The verdicts of a stage that is no more.
+fn gone(side: &Side, folder: &str, study: &str, stage: &StageRecord, options: &Options<'_>) -> Vec<Flip> {
+    let tables = stage.tables.iter().filter(|table| stage.kind == "report" && table.table() == verdict::TABLE);
+    let flips = tables.map(|record| match side.table(folder, stage, record, options.cache).0 {
+        Got::Table(table) => verdict::gone(study, &stage.name, &table),
+        Got::Without(_) => Vec::new(),
+    });
+    flips.flatten().collect()
+}
+
 /// Whether a stage is one that is gone, under another name: names are in no key, so nothing else need have changed.
 fn is_renamed(gone: &StageRecord, new: &StageRecord) -> bool {
     let contents = |stage: &StageRecord| -> BTreeMap<String, String> {
         stage.tables.iter().map(|table| (table.table().to_owned(), table.content.clone())).collect()
     };
     gone.kind == new.kind && !new.tables.is_empty() && contents(gone) == contents(new)
+}
+
+/// What is told apart from the stage it was found in.
+#[derive(Default)]
+struct Found {
+    flips: Vec<Flip>,
+    damaged: Vec<Damage>,
 }
 
 /// One study that both sides have.
@@ -195,9 +273,9 @@ struct Task<'a> {
 }
 
 impl Task<'_> {
-    fn study(&self, name: &str) -> (StudyDiff, Vec<Flip>) {
+    fn study(&self, name: &str) -> (StudyDiff, Found) {
         let (old, new) = (&self.old.1, &self.new.1);
-        let (mut stages, mut flips) = (Vec::new(), Vec::new());
+        let (mut stages, mut found) = (Vec::new(), Found::default());
         let is_in = |manifest: &Manifest, name: &str| manifest.stages.iter().any(|stage| stage.name == name);
         let mut gone: Vec<&StageRecord> = old.stages.iter().filter(|stage| !is_in(new, &stage.name)).collect();
         for stage in &new.stages {
@@ -205,22 +283,25 @@ impl Task<'_> {
             let renamed = || Some(gone.remove(gone.iter().position(|earlier| is_renamed(earlier, stage))?));
             stages.push(match same_name.or_else(renamed) {
                 None => one_sided_stage(stage, State::Added),
-                Some(earlier) => self.stage(name, earlier, stage, &mut flips),
+                Some(earlier) => self.stage(name, earlier, stage, &mut found),
             });
+        }
+        for stage in &gone {
+            found.flips.extend(self::gone(self.before, &self.old.0, name, stage, self.options));
         }
         stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, State::Removed)));
         let state = State::of_parts(stages.iter().map(|stage| stage.state));
-        (StudyDiff { name: name.to_owned(), state, stages }, flips)
+        (StudyDiff { name: name.to_owned(), state, stages }, found)
     }
 
-    fn stage(&self, study: &str, old: &StageRecord, new: &StageRecord, flips: &mut Vec<Flip>) -> StageDiff {
+    fn stage(&self, study: &str, old: &StageRecord, new: &StageRecord, found: &mut Found) -> StageDiff {
         let mut tables = Vec::new();
         for record in &new.tables {
             let Some(earlier) = old.tables.iter().find(|earlier| earlier.table() == record.table()) else {
                 tables.push(one_sided_table(record, State::Added));
                 continue;
             };
-            tables.push(self.table(study, (old, earlier), (new, record), flips));
+            tables.push(self.table(study, (old, earlier), (new, record), found));
         }
         let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.table() == table.table()));
         tables.extend(gone.map(|table| one_sided_table(table, State::Removed)));
@@ -241,7 +322,7 @@ impl Task<'_> {
         study: &str,
         (old, before): (&StageRecord, &TableRecord),
         (new, after): (&StageRecord, &TableRecord),
-        flips: &mut Vec<Flip>,
+        found: &mut Found,
     ) -> TableDiff {
         if before.content == after.content {
             return table::by_record(before, after, String::new());
@@ -252,7 +333,15 @@ impl Task<'_> {
             || self.after.table(&self.new.0, new, after, cache),
         );
         let (stage, name) = after.name.split_once('.').unwrap_or((&after.name, ""));
-        let (first, second) = match (first, second) {
+        for (side, file, problem) in [(self.before, &before.file, first.1), (self.after, &after.file, second.1)] {
+            found.damaged.extend(problem.map(|problem| Damage {
+                at: side.label.clone(),
+                study: study.to_owned(),
+                file: file.clone(),
+                problem,
+            }));
+        }
+        let (first, second) = match (first.0, second.0) {
             (Got::Table(first), Got::Table(second)) => (first, second),
             (Got::Without(note), Got::Table(_)) | (Got::Table(_), Got::Without(note)) => {
                 return table::by_record(before, after, note);
@@ -264,7 +353,7 @@ impl Task<'_> {
         };
         let of_verdicts = new.kind == "report" && name == verdict::TABLE;
         if of_verdicts {
-            flips.extend(verdict::flips(study, stage, &first, &second));
+            found.flips.extend(verdict::flips(study, stage, &first, &second));
         }
         let tolerances = |column: &Column| {
             let flagged = find(self.options.tolerances, stage, name, &column.name);

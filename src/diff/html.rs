@@ -14,6 +14,8 @@ use super::words;
 struct View<'a> {
     comparison: &'a Comparison,
     verdict: String,
+    damages: String,
+    damaged: Vec<String>,
     flips: Vec<FlipView<'a>>,
     studies: Vec<StudyView<'a>>,
     /// The report's own, so that both look alike, and what is added here.
@@ -77,6 +79,8 @@ pub fn page(comparison: &Comparison) -> Result<String, String> {
     let view = View {
         comparison,
         verdict: words::verdict(comparison),
+        damages: words::damages(comparison),
+        damaged: comparison.damaged.iter().map(words::damage).collect(),
         flips: flips.collect(),
         studies: comparison.studies.iter().map(study).collect(),
         styles: [include_str!("../report/page.css"), include_str!("page.css")],
@@ -113,9 +117,9 @@ fn table(table: &TableDiff) -> TableView<'_> {
             words::column(&column.name, &column.unit),
             words::changed(column),
             largest.map_or_else(|| "–".to_owned(), |largest| words::difference(largest.difference)),
-            largest.map_or_else(String::new, words::change),
+            column.shown().map_or_else(String::new, words::change),
             relative.map_or_else(|| "–".to_owned(), |largest| words::relative(largest.difference)),
-            largest.map_or_else(String::new, |largest| words::key(&largest.key)),
+            column.shown().map_or_else(String::new, |shown| words::key(&shown.key)),
         ]
     });
     let worst = table.worst.iter().map(|worst| {

@@ -10,6 +10,12 @@ use super::words;
 pub fn text(comparison: &Comparison) -> String {
     let mut text = format!("## {}\n\n", escaped(&words::verdict(comparison)));
     text += &format!("{} → {}\n", escaped(&comparison.before), escaped(&comparison.after));
+    if !comparison.damaged.is_empty() {
+        text += &format!("\n### {}\n\n", escaped(&words::damages(comparison)));
+        for damage in &comparison.damaged {
+            text += &format!("- {}\n", escaped(&words::damage(damage)));
+        }
+    }
     if !comparison.verdicts.is_empty() {
         text += "\n### Verdicts that flipped\n\n";
         let rows = comparison.verdicts.iter().map(|flip| {
@@ -47,7 +53,7 @@ fn study(study: &StudyDiff) -> String {
     let rows = told.iter().map(|stage| {
         let why: Vec<String> = words::reasons(&stage.why).iter().map(|reason| escaped(reason)).collect();
         let state = format!("{} {}", stage.state.sign(), escaped(&words::state(stage)));
-        [format!("`{}`", stage.name), escaped(&stage.kind), state, why.join("<br>")]
+        [code(&stage.name), escaped(&stage.kind), state, why.join("<br>")]
     });
     text += "\n";
     text += &table(["Stage", "Kind", "State", "Why"], rows);
@@ -60,7 +66,7 @@ fn study(study: &StudyDiff) -> String {
 }
 
 fn of_table(diff: &TableDiff) -> String {
-    let head = format!("{} `{}`: {}; {}", diff.state.sign(), diff.name, diff.state.word(), words::rows(diff));
+    let head = format!("{} {}: {}; {}", diff.state.sign(), code(&diff.name), diff.state.word(), words::rows(diff));
     let mut text = format!("\n#### {head}\n");
     if !diff.note.is_empty() {
         let lead = if diff.by_values { "" } else { "Compared by content hash alone: it " };
@@ -68,7 +74,7 @@ fn of_table(diff: &TableDiff) -> String {
     }
     if !diff.schema.is_empty() {
         let rows = diff.schema.iter().map(|change| {
-            [format!("`{}`", change.column), change.what.to_owned(), escaped(&change.before), escaped(&change.after)]
+            [code(&change.column), change.what.to_owned(), escaped(&change.before), escaped(&change.after)]
         });
         text += &format!("\n{}", table(["Column", "Change", "Before", "After"], rows));
     }
@@ -85,11 +91,15 @@ fn of_table(diff: &TableDiff) -> String {
                 escaped(&words::column(&column.name, &column.unit)),
                 words::changed(column),
                 largest.map_or_else(|| "–".to_owned(), |largest| words::difference(largest.difference)),
+                column.shown().map_or_else(String::new, |shown| escaped(&words::change(shown))),
                 relative.map_or_else(|| "–".to_owned(), |largest| words::relative(largest.difference)),
-                largest.map_or_else(String::new, |largest| escaped(&words::key(&largest.key))),
+                column.shown().map_or_else(String::new, |shown| escaped(&words::key(&shown.key))),
             ]
         });
-        text += &format!("\n{}", table(["Column", "Changed", "Largest", "Relative", "Largest where"], rows));
+        text += &format!(
+            "\n{}",
+            table(["Column", "Changed", "Largest", "Values there", "Relative", "Largest where"], rows)
+        );
     }
     if !diff.worst.is_empty() {
         let rows = diff.worst.iter().map(|worst| {
@@ -109,6 +119,12 @@ fn table<const N: usize>(header: [&str; N], rows: impl Iterator<Item = [String; 
         text += &format!("| {} |\n", row.join(" | "));
     }
     text
+}
+
+/// A name; what is none for this program, but stands in a manifest, is text like any other.
+fn code(name: &str) -> String {
+    let plain = name.chars().all(|c| c.is_alphanumeric() || matches!(c, '_' | '-' | '.'));
+    if plain && !name.is_empty() { format!("`{name}`") } else { escaped(name) }
 }
 
 /// A text that Markdown shows as it is, on one line.

@@ -11,9 +11,10 @@ pub mod markdown;
 pub mod model;
 pub mod pretty;
 mod rows;
+mod source;
 pub mod table;
 #[cfg(test)]
 mod tests;
 mod verdict;
 mod why;
-mod words;
+pub mod words;

@@ -62,6 +62,8 @@ pub struct Comparison {
     pub before: String,
     pub after: String,
     pub state: State,
+    /// Files that are not what their manifest says: whatever else is said of their tables goes by the manifest.
+    pub damaged: Vec<Damage>,
     /// Verdicts on published numbers that are other words now, those that need attention first.
     pub verdicts: Vec<Flip>,
     pub studies: Vec<StudyDiff>,
@@ -69,6 +71,17 @@ pub struct Comparison {
     pub problems: Vec<String>,
     /// What was left out on purpose, and why.
     pub remarks: Vec<String>,
+}
+
+/// A file that is not what its manifest says.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Damage {
+    /// The side, in words.
+    pub at: String,
+    pub study: String,
+    pub file: String,
+    /// A phrase that follows the file's name.
+    pub problem: String,
 }
 
 /// A verdict that is another word than it was.
@@ -121,6 +134,9 @@ pub struct Reason {
     pub part: Part,
     /// The field, the port.
     pub what: String,
+    /// Of an input: the tables of the stage behind the port that are other ones, `stage.table`; the stage alone where none
+    /// is.
+    pub from: Vec<String>,
     pub before: Option<String>,
     pub after: Option<String>,
 }
@@ -157,7 +173,7 @@ impl Part {
     }
 }
 
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct TableDiff {
     /// `stage.table`.
     pub name: String,
@@ -194,7 +210,7 @@ pub struct SchemaChange {
     pub differs: bool,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnDiff {
     pub name: String,
     /// Of both values; where the unit changed, that of the later table.
@@ -210,18 +226,28 @@ pub struct ColumnDiff {
     pub largest_absolute: Option<Extreme>,
     /// Relative to the larger of the two values.
     pub largest_relative: Option<Extreme>,
+    /// As a multiple of what the tolerance allows: beyond it above 1, infinite for what is no number.
+    pub largest_over: Option<Extreme>,
 }
 
-#[derive(Clone, Debug, Serialize)]
+impl ColumnDiff {
+    /// The values that stand for all that changed: those furthest apart, and of words the first.
+    #[must_use]
+    pub fn shown(&self) -> Option<&Extreme> {
+        self.largest_absolute.as_ref().or(self.largest_over.as_ref())
+    }
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Extreme {
-    /// `after − before`, or its size over the larger of the two.
+    /// `after − before`; its size over the larger of the two; or over what is allowed.
     pub difference: f64,
     pub before: Value,
     pub after: Value,
     pub key: Key,
 }
 
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Worst {
     pub key: Key,
     /// The column that is beyond tolerance by most in this row.

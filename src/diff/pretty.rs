@@ -16,6 +16,13 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     let width = width.max(60);
     let mut page = Page { text: String::new(), width: usize::from(width) };
     page.wrap("", &format!("{} → {}", comparison.before, comparison.after));
+    if !comparison.damaged.is_empty() {
+        page.blank();
+        page.wrap("", &words::damages(comparison));
+        for damage in &comparison.damaged {
+            page.wrap("  ! ", &words::damage(damage));
+        }
+    }
     if !comparison.verdicts.is_empty() {
         page.blank();
         page.wrap("", &format!("{} flipped", words::count(comparison.verdicts.len(), "verdict")));
@@ -102,14 +109,18 @@ impl Page {
             .columns
             .iter()
             .map(|column| {
-                let largest = column.largest_absolute.as_ref();
                 let relative = column.largest_relative.as_ref();
+                // Words have no distance: what the first of them was and is.
+                let largest = match (&column.largest_absolute, column.shown()) {
+                    (Some(largest), _) => words::difference(largest.difference),
+                    (None, shown) => shown.map_or_else(|| "–".to_owned(), words::change),
+                };
                 [
                     words::column(&column.name, &column.unit),
                     words::changed(column),
-                    largest.map_or_else(|| "–".to_owned(), |largest| words::difference(largest.difference)),
+                    largest,
                     relative.map_or_else(|| "–".to_owned(), |largest| words::relative(largest.difference)),
-                    largest.map_or_else(String::new, |largest| words::key(&largest.key)),
+                    column.shown().map_or_else(String::new, |shown| words::key(&shown.key)),
                 ]
             })
             .collect();

@@ -83,6 +83,7 @@ pub fn compare(
             relative_tolerance: tolerance.relative,
             largest_absolute: found.largest_absolute.map(extreme),
             largest_relative: found.largest_relative.map(extreme),
+            largest_over: found.largest_over.map(extreme),
         });
     }
     diff.worst = worst(&compared.iter().map(|(shared, _, found)| (*shared, found)).collect::<Vec<_>>(), &rows, &key_at);

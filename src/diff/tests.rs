@@ -158,6 +158,29 @@ fn the_largest_differences_are_told_with_their_rows() {
     assert_eq!(worst, wanted);
 }
 
+/// What `verify` shows: the value that is over its tolerance by most, or nearest to it, and words that changed.
+#[test]
+fn the_value_that_is_over_its_tolerance_by_most_is_told() {
+    let near = diff(&numbers("um", &[1.0, 2.0, 3.0]), &numbers("um", &[1.125, 2.25, 3.0]));
+    let over = near.columns[0].largest_over.as_ref().unwrap();
+    assert_eq!((over.difference, &over.key[0].1, near.state), (0.5, &Value::Integer(1), State::WithinTolerance));
+    // Relative to what is allowed there, not to the largest difference.
+    let relative = |_: &Column| Some(Tolerance { absolute: 0.0, relative: 0.5 });
+    let found = compare("", &numbers("um", &[1.0, 100.0]), &numbers("um", &[4.0, 110.0]), None, &relative);
+    let over = found.columns[0].largest_over.as_ref().unwrap();
+    assert_eq!((over.difference, &over.key[0].1), (1.5, &Value::Integer(0)));
+    let gone = diff(&numbers("um", &[1.0, 2.0]), &numbers("um", &[9.0, f64::NAN]));
+    assert_eq!(gone.columns[0].largest_over.as_ref().unwrap().key[0].1, Value::Integer(1));
+    let words = |of: &[&str]| {
+        let columns = vec![Column::integer("row", "").key(), Column::text("word", "")];
+        let rows = of.iter().enumerate().map(|(row, word)| vec![row.into(), (*word).into()]).collect();
+        Table::from_rows(Schema::new("t", "", columns), rows).unwrap()
+    };
+    let found = diff(&words(&["a", "b", "c"]), &words(&["a", "B", "C"]));
+    let shown = found.columns[0].shown().unwrap();
+    assert_eq!((super::words::change(shown), &shown.key[0].1), ("b → B".to_owned(), &Value::Integer(1)));
+}
+
 #[test]
 fn units_that_convert_are_compared_in_the_later_one() {
     let values = [7.81, 0.1, 1.0 / 3.0, f64::NAN, 0.0];

@@ -78,6 +78,13 @@ pub fn flips(study: &str, stage: &str, before: &Table, after: &Table) -> Vec<Fli
     found
 }
 
+/// The entries of a table that is gone.
+#[must_use]
+pub fn gone(study: &str, stage: &str, before: &Table) -> Vec<Flip> {
+    let nothing = Table::from_rows(before.schema().clone(), Vec::new());
+    nothing.map_or_else(|_| Vec::new(), |nothing| flips(study, stage, before, &nothing))
+}
+
 /// Those that need attention first; then those that changed, came, went.
 pub fn sort(flips: &mut [Flip]) {
     flips.sort_by_key(|flip| (!flip.needs_attention, flip.after.is_none(), flip.before.is_none()));

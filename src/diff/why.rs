@@ -5,6 +5,7 @@
 use serde_json::Value as Json;
 
 use super::model::{Part, Reason};
+use super::source;
 use crate::store::manifest::{KeyRecord, Manifest, Program, StageRecord};
 
 /// Places within one field that are told apart; of a field that differs in more only their number is said.
@@ -19,12 +20,18 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
         if !complete(stage) && (is_new || complete(new)) {
             let text = Some(format!("{}: {}", stage.status, stage.why));
             let (before, after) = if is_new { (None, text) } else { (text, None) };
-            why.push(Reason { part: Part::Status, what: String::new(), before, after });
+            why.push(Reason { part: Part::Status, what: String::new(), from: Vec::new(), before, after });
         }
     }
     if (&old.kind, old.version) != (&new.kind, new.version) {
         let named = |stage: &StageRecord| Some(format!("{} {}", stage.kind, stage.version));
-        why.push(Reason { part: Part::Kind, what: String::new(), before: named(old), after: named(new) });
+        why.push(Reason {
+            part: Part::Kind,
+            what: String::new(),
+            from: Vec::new(),
+            before: named(old),
+            after: named(new),
+        });
     }
     let (Some(first), Some(second)) = (old.keys.first(), new.keys.first()) else { return why };
     if old.kind == new.kind {
@@ -38,33 +45,40 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
             why.extend(config(axis.as_deref().unwrap_or("axis"), value(old).as_ref(), value(new).as_ref()));
         }
         if first.config != second.config && why.is_empty() {
-            why.push(Reason { part: Part::Config, what: String::new(), before: None, after: None });
+            why.push(Reason { part: Part::Config, what: String::new(), from: Vec::new(), before: None, after: None });
         }
     }
     for port in differing(&first.inputs, &second.inputs) {
         let there = |key: &KeyRecord| key.inputs.iter().any(|(name, _)| *name == port);
         let only = |one, other| (there(one) && !there(other)).then(|| "read".to_owned());
-        why.push(Reason { part: Part::Input, before: only(first, second), after: only(second, first), what: port });
+        let from = source::tables((old_run, old), (new_run, new), &port);
+        let (before, after) = (only(first, second), only(second, first));
+        why.push(Reason { part: Part::Input, from, before, after, what: port });
     }
     if first.seed != second.seed {
-        let seed = |key: &KeyRecord, run: &Manifest| {
-            Some(if key.seed.is_empty() { "none".into() } else { run.seed.to_string() })
-        };
+        let seed = |key: &KeyRecord, run: &Manifest| (!key.seed.is_empty()).then(|| run.seed.to_string());
         why.push(Reason {
             part: Part::Seed,
             what: String::new(),
+            from: Vec::new(),
             before: seed(first, old_run),
             after: seed(second, new_run),
         });
     }
     if first.code != second.code {
-        let (before, after) = (Some(program(&old_run.program)), Some(program(&new_run.program)));
-        let told = before != after;
-        let (before, after) = if told { (before, after) } else { (None, None) };
-        why.push(Reason { part: Part::Code, what: String::new(), before, after });
+        let (old, new) = (&old_run.program, &new_run.program);
+        let (before, after) = if program(old) == program(new) && old.code != new.code {
+            // Two builds of one commit and its uncommitted changes.
+            let code = |of: &Program| Some(format!("{}, code {:.7}", program(of), of.code));
+            (code(old), code(new))
+        } else {
+            (Some(program(old)), Some(program(new)))
+        };
+        let (before, after) = if before == after { (None, None) } else { (before, after) };
+        why.push(Reason { part: Part::Code, what: String::new(), from: Vec::new(), before, after });
     }
     if first.demand != second.demand {
-        why.push(Reason { part: Part::Demand, what: String::new(), before: None, after: None });
+        why.push(Reason { part: Part::Demand, what: String::new(), from: Vec::new(), before: None, after: None });
     }
     why
 }
@@ -72,13 +86,16 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
 /// When the same key gave another content: what else is known of the two runs.
 #[must_use]
 pub fn unknown(before: &Manifest, after: &Manifest) -> Reason {
-    let facts = |run: &Manifest| Some(format!("{}; {}", run.machine.processor, program(&run.program)));
-    Reason {
-        part: Part::Unknown,
-        what: "the same key gave other values".to_owned(),
-        before: facts(before),
-        after: facts(after),
-    }
+    let facts = |run: &Manifest| {
+        // Some systems do not name their processor.
+        let processor = Some(&run.machine.processor).filter(|name| !name.is_empty() && *name != "unknown");
+        let parts: Vec<String> = processor.cloned().into_iter().chain([program(&run.program)]).collect();
+        parts.join("; ")
+    };
+    let what = "the same key gave other values".to_owned();
+    let (before, after) = (facts(before), facts(after));
+    let (before, after) = if before == after { (None, None) } else { (Some(before), Some(after)) };
+    Reason { part: Part::Unknown, what, from: Vec::new(), before, after }
 }
 
 #[must_use]
@@ -121,13 +138,14 @@ fn config(name: &str, before: Option<&Json>, after: Option<&Json>) -> Vec<Reason
         places.push(Reason {
             part: Part::Config,
             what: format!("{name}: {more} more places"),
+            from: Vec::new(),
             before: None,
             after: None,
         });
     }
     if places.is_empty() {
         // The manifest of an earlier version, or a difference beyond the digits that are shown.
-        places.push(Reason { part: Part::Config, what: name.to_owned(), before: None, after: None });
+        places.push(Reason { part: Part::Config, what: name.to_owned(), from: Vec::new(), before: None, after: None });
     }
     places
 }
@@ -146,7 +164,13 @@ fn walk(path: String, before: Option<&Json>, after: Option<&Json>, places: &mut 
         (Some(Json::Array(old)), Some(Json::Array(new))) => lists(&path, old, new, places),
         (before, after) => {
             let text = |value: Option<&Json>| value.map(words);
-            places.push(Reason { part: Part::Config, what: path, before: text(before), after: text(after) });
+            places.push(Reason {
+                part: Part::Config,
+                what: path,
+                from: Vec::new(),
+                before: text(before),
+                after: text(after),
+            });
         }
     }
 }
@@ -163,7 +187,7 @@ fn lists(path: &str, old: &[Json], new: &[Json], places: &mut Vec<Reason>) {
             (None, None) => (Some(words(&Json::Array(old.to_vec()))), Some(words(&Json::Array(new.to_vec())))),
             other => other,
         };
-        places.push(Reason { part: Part::Config, what: path.to_owned(), before, after });
+        places.push(Reason { part: Part::Config, what: path.to_owned(), from: Vec::new(), before, after });
         return;
     }
     // Items that have a name or a label are found by it, others by their place.

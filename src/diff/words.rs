@@ -3,7 +3,7 @@
 //! Must not know: terminals, HTML, Markdown.
 
 use super::model::{
-    ColumnDiff, Comparison, Extreme, Flip, Key, Part, Reason, StageDiff, State, StudyDiff, TableDiff, Value,
+    ColumnDiff, Comparison, Damage, Extreme, Flip, Key, Part, Reason, StageDiff, State, StudyDiff, TableDiff, Value,
 };
 use crate::base::number::{significant, unit_symbol, with_unit};
 
@@ -75,10 +75,10 @@ pub fn change(extreme: &Extreme) -> String {
     format!("{before} → {after}")
 }
 
-/// `12 of 25, 3 beyond`.
+/// `12 of 25, 3 beyond`; `12 of 25, all within`.
 pub fn changed(column: &ColumnDiff) -> String {
     let beyond = match column.beyond {
-        0 => "none beyond".to_owned(),
+        0 => "all within".to_owned(),
         all if all == column.changed => String::new(),
         some => format!("{some} beyond"),
     };
@@ -88,10 +88,13 @@ pub fn changed(column: &ColumnDiff) -> String {
 
 /// `config pinion.face_width: 20 mm → 22 mm`. What the code was and is is said once for a study: [`program`].
 fn reason(reason: &Reason) -> String {
-    let mut text = reason.part.word().to_owned();
-    if !reason.what.is_empty() {
-        text += &format!(" {}", reason.what);
-    }
+    let what = if reason.from.is_empty() { reason.what.clone() } else { input(&reason.from) };
+    let mut text = match reason.part {
+        // A sentence of its own.
+        Part::Unknown => what,
+        part if what.is_empty() => part.word().to_owned(),
+        part => format!("{} {what}", part.word()),
+    };
     if reason.part == Part::Code {
         return text;
     }
@@ -102,6 +105,13 @@ fn reason(reason: &Reason) -> String {
         (None, None) => {}
     }
     text
+}
+
+/// `optimum (best, elements changed)`: the stage, and its tables that are others now; which of them are read is not known.
+fn input(from: &[String]) -> String {
+    let tables: Vec<&str> = from.iter().filter_map(|name| Some(name.split_once('.')?.1)).collect();
+    let stage = from.first().map_or("", |name| name.split_once('.').map_or(name.as_str(), |(stage, _)| stage));
+    if tables.is_empty() { stage.to_owned() } else { format!("{stage} ({} changed)", tables.join(", ")) }
 }
 
 /// All reasons of a stage: those without values in one phrase.
@@ -188,10 +198,14 @@ pub fn entry(flip: &Flip) -> String {
 
 /// `published 2.316 µm, computed 2.31 → 2.41 µm`.
 pub fn numbers(flip: &Flip) -> String {
-    if !(flip.found_before.is_empty() && flip.found_after.is_empty()) {
-        return [&flip.found_before, &flip.found_after]
-            .map(|found| if found.is_empty() { "none" } else { found })
-            .join(" → ");
+    // A claim; one side alone where it is new or gone.
+    let found: Vec<&str> = [&flip.found_before, &flip.found_after]
+        .into_iter()
+        .map(String::as_str)
+        .filter(|found| !found.is_empty())
+        .collect();
+    if !found.is_empty() {
+        return found.join(" → ");
     }
     let published = (!flip.published.is_empty()).then(|| format!("published {}", flip.published));
     let with = |text: &str| with_unit(text, &flip.unit);
@@ -207,6 +221,19 @@ pub fn numbers(flip: &Flip) -> String {
         (None, None) => None,
     };
     published.into_iter().chain(computed).collect::<Vec<_>>().join(", ")
+}
+
+/// `results: quick/ste.summary.parquet holds other values than its manifest says`.
+pub fn damage(damage: &Damage) -> String {
+    format!("{}: {}/{} {}", damage.at, damage.study, damage.file, damage.problem)
+}
+
+/// Stands over files that are not what their manifest says.
+pub fn damages(comparison: &Comparison) -> String {
+    let files = &comparison.damaged;
+    let (is, its, it) = if files.len() == 1 { ("is", "its", "it") } else { ("are", "their", "them") };
+    let number = count(files.len(), "file");
+    format!("{number} {is} not what {its} manifest says; delete {it}, and `gearstudy run` writes {it} anew")
 }
 
 /// What a table's rows did: `25 rows`, `25 → 26 rows: 1 added`.
@@ -265,6 +292,10 @@ pub fn verdict(comparison: &Comparison) -> String {
         many => format!("; {} flipped", count(many, "verdict")),
     };
     let studies = count(comparison.studies.len(), "study");
+    let flips = match comparison.damaged.len() {
+        0 => flips,
+        many => format!("{flips}; {} damaged", count(many, "file")),
+    };
     if differing > 0 {
         let verb = if differing == 1 { "differs" } else { "differ" };
         let of = if comparison.studies.len() == 1 { String::new() } else { format!("{differing} of ") };

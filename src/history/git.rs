@@ -16,6 +16,8 @@ use crate::base::error::nearest;
 #[derive(Clone, Debug)]
 pub struct Repository {
     top: PathBuf,
+    /// A link, and the folder that the last commit has in its place.
+    link: Option<(PathBuf, PathBuf)>,
 }
 
 /// A revision that was found.
@@ -53,11 +55,15 @@ fn ask<S: AsRef<OsStr>>(folder: &Path, words: &[S]) -> Result<Vec<u8>, String> {
 }
 
 impl Repository {
-    /// The repository around `path`, which need not exist itself.
+    /// The repository around `path`, which need not exist itself. A link is followed, unless the last commit has a folder
+    /// in its place: results may have been moved to a larger disk.
     ///
     /// # Errors
     /// When there is none, or git refuses.
     pub fn around(path: &Path) -> Result<Self, String> {
+        if let Some(found) = Self::around_link(path) {
+            return Ok(found);
+        }
         let mut folder = path;
         while !folder.is_dir() {
             folder = folder.parent().unwrap_or(Path::new(""));
@@ -65,15 +71,32 @@ impl Repository {
                 folder = Path::new(".");
             }
         }
-        let top = ask(folder, &["rev-parse", "--show-toplevel"]).map_err(|problem| {
+        Self::top(folder).map_err(|problem| {
             if problem.contains("not a git repository") {
                 format!("`{}` is not in a git repository", folder.display())
             } else {
                 problem
             }
-        })?;
+        })
+    }
+
+    fn top(folder: &Path) -> Result<Self, String> {
+        let top = ask(folder, &["rev-parse", "--show-toplevel"])?;
         let text = String::from_utf8_lossy(&top);
-        Ok(Self { top: PathBuf::from(text.trim_end_matches(['\n', '\r'])) })
+        Ok(Self { top: PathBuf::from(text.trim_end_matches(['\n', '\r'])), link: None })
+    }
+
+    fn around_link(path: &Path) -> Option<Self> {
+        let path = std::path::absolute(path).ok()?;
+        let (parent, name) = (path.parent()?, path.file_name()?);
+        if !path.symlink_metadata().ok()?.is_symlink() {
+            return None;
+        }
+        let found = Self::top(parent).ok()?;
+        let inside = found.inside(parent).ok()?.join(name);
+        let words = ["ls-tree", "-d", "HEAD", "--"].map(OsStr::new);
+        let listed = ask(&found.top, &[&words[..], &[inside.as_os_str()]].concat()).ok()?;
+        (!listed.is_empty()).then_some(Self { link: Some((path, inside)), ..found })
     }
 
     /// `path` relative to the top of the work tree.
@@ -83,6 +106,11 @@ impl Repository {
     pub fn inside(&self, path: &Path) -> Result<PathBuf, String> {
         let cannot = |error: std::io::Error| format!("cannot find `{}`: {error}", path.display());
         let absolute = std::path::absolute(path).map_err(cannot)?;
+        if let Some((link, inside)) = &self.link
+            && let Ok(rest) = absolute.strip_prefix(link)
+        {
+            return Ok(if rest.as_os_str().is_empty() { inside.clone() } else { inside.join(rest) });
+        }
         // What exists may lie behind symbolic links; the rest is taken by its name.
         let (mut existing, mut rest) = (absolute.as_path(), Vec::new());
         while !existing.exists() {
@@ -124,10 +152,11 @@ impl Repository {
         String::from_utf8_lossy(&listed.unwrap_or_default()).lines().map(str::to_owned).collect()
     }
 
-    /// Whether git is told to leave this file alone.
+    /// Whether git is told to leave this file alone, wherever it is.
     #[must_use]
-    pub fn ignores(&self, path: &Path) -> bool {
-        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), path.as_os_str()];
+    pub fn leaves_out(&self, path: &Path) -> bool {
+        let Ok(inside) = self.inside(path) else { return false };
+        let words = [OsStr::new("check-ignore"), OsStr::new("--quiet"), OsStr::new("--"), inside.as_os_str()];
         ask(&self.top, &words).is_ok()
     }
 
@@ -175,6 +204,11 @@ impl Files {
     /// Paths below the folder.
     pub fn paths(&self) -> impl Iterator<Item = &Path> {
         self.objects.keys().map(PathBuf::as_path)
+    }
+
+    #[must_use]
+    pub fn has(&self, path: &Path) -> bool {
+        self.objects.contains_key(path)
     }
 
     /// A file's bytes; none when it is not in the commit.

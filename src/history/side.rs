@@ -3,15 +3,22 @@
 //! Must not know: what is done with them.
 
 use std::fs;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
 
 use super::git::{Commit, Files, Repository};
 use crate::base::digest::Digest;
 use crate::store::cache::Cache;
+use crate::store::file;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
 use crate::store::results::MANIFEST;
 use crate::table::data::Table;
+
+/// A pointer of Git LFS has some 130 bytes.
+const SMALL: u64 = 1 << 10;
 
 /// Where the files come from.
 enum Source {
@@ -33,6 +40,16 @@ pub enum Got {
     Table(Box<Table>),
     /// Not there, or not to be trusted: a phrase that follows `ste.curve`.
     Without(String),
+}
+
+/// The file of a table where the results lie.
+enum Held {
+    Table(Box<Table>),
+    Absent,
+    /// There, but git has its contents elsewhere: a phrase.
+    Elsewhere(&'static str),
+    /// Not what the manifest says: a phrase that follows the file's name.
+    Damaged(String),
 }
 
 impl Side {
@@ -68,13 +85,13 @@ impl Side {
         }
     }
 
-    fn read(&self, path: &Path) -> Result<Option<Vec<u8>>, String> {
+    fn read(&self, path: &Path, most: u64) -> Result<Option<Vec<u8>>, String> {
         match &self.source {
             Source::Commit(files) => files.read(path),
-            Source::Folder(folder) => match fs::read(folder.join(path)) {
+            Source::Folder(folder) => match file::read(&folder.join(path), most) {
                 Ok(bytes) => Ok(Some(bytes)),
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
-                Err(error) => Err(format!("cannot read `{}`: {error}", folder.join(path).display())),
+                Err(error) => Err(format!("cannot be read: {error}")),
             },
         }
     }
@@ -97,7 +114,8 @@ impl Side {
                     Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
                     other => other.map_err(|error| format!("cannot read `{}`: {error}", folder.display()))?,
                 };
-                let with_manifest = entries.flatten().filter(|entry| entry.path().join(MANIFEST).is_file());
+                // Whatever it is: what is no file is told when it is read.
+                let with_manifest = entries.flatten().filter(|entry| entry.path().join(MANIFEST).exists());
                 with_manifest.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
             }
         };
@@ -112,7 +130,8 @@ impl Side {
     pub fn manifest(&self, study: &str) -> Result<Option<Manifest>, String> {
         let path = Path::new(study).join(MANIFEST);
         let wrong = |problem: &str| format!("`{}` of {} {problem}", path.display(), self.label);
-        let Some(bytes) = self.read(&path)? else { return Ok(None) };
+        let read = self.read(&path, file::MOST_MANIFEST).map_err(|problem| wrong(&problem))?;
+        let Some(bytes) = read else { return Ok(None) };
         if let Some(pointer) = pointer(&bytes) {
             return Err(wrong(pointer));
         }
@@ -125,24 +144,93 @@ impl Side {
         }
     }
 
-    /// A table of a study, checked against its manifest. Where its file is not kept, the cache may still have it.
-    pub fn table(&self, study: &str, stage: &StageRecord, record: &TableRecord, cache: Option<&Cache>) -> Got {
-        let why = match self.read(&Path::new(study).join(&record.file)) {
-            Err(problem) => problem,
-            Ok(None) => match &self.source {
-                Source::Commit(_) => format!("is not kept at {}", self.label),
-                Source::Folder(_) => format!("is not there in {}", self.label),
+    /// A table of a study, checked against its manifest, and what is wrong with its file. Where the file is not kept or
+    /// damaged, the cache may still have the table.
+    pub fn table(
+        &self,
+        study: &str,
+        stage: &StageRecord,
+        record: &TableRecord,
+        cache: Option<&Cache>,
+    ) -> (Got, Option<String>) {
+        let (why, damage) = match self.held(study, record) {
+            Held::Table(table) => return (Got::Table(table), None),
+            Held::Absent => match &self.source {
+                Source::Commit(_) => (format!("is not kept at {}", self.label), None),
+                Source::Folder(_) => (format!("is not there in {}", self.label), None),
             },
-            Ok(Some(bytes)) => match (pointer(&bytes), parquet::read(bytes)) {
-                (Some(pointer), _) => format!("at {} {pointer}", self.label),
-                (None, Err(problem)) => format!("at {} is damaged: {problem}", self.label),
-                (None, Ok(table)) if table.content_hash().to_string() == record.content => {
-                    return Got::Table(Box::new(table));
-                }
-                (None, Ok(_)) => format!("at {} holds other values than its manifest says", self.label),
-            },
+            Held::Elsewhere(why) => (format!("at {} {why}", self.label), None),
+            Held::Damaged(problem) => (format!("at {} {problem}", self.label), Some(problem)),
         };
-        cached(cache, stage, record).map_or(Got::Without(why), |table| Got::Table(Box::new(table)))
+        (cached(cache, stage, record).map_or(Got::Without(why), |table| Got::Table(Box::new(table))), damage)
+    }
+
+    fn held(&self, study: &str, record: &TableRecord) -> Held {
+        // A manifest from elsewhere may name anything.
+        if Path::new(&record.file).file_name().is_none_or(|name| *name != *record.file) {
+            return Held::Damaged("lies elsewhere".to_owned());
+        }
+        let bytes = match self.read(&Path::new(study).join(&record.file), file::MOST_TABLE) {
+            Err(problem) => return Held::Damaged(problem),
+            Ok(None) => return Held::Absent,
+            Ok(Some(bytes)) => bytes,
+        };
+        if let Some(pointer) = pointer(&bytes) {
+            return Held::Elsewhere(pointer);
+        }
+        // The library that reads Parquet trusts its files more than one that anybody may have edited deserves.
+        let read = catch_unwind(AssertUnwindSafe(|| parquet::read(bytes)));
+        match read.unwrap_or_else(|_| Err("it is no Parquet file".to_owned())) {
+            Err(problem) => Held::Damaged(format!("is damaged: {problem}")),
+            Ok(table) if table.content_hash().to_string() == record.content => Held::Table(Box::new(table)),
+            Ok(_) => Held::Damaged("holds other values than its manifest says".to_owned()),
+        }
+    }
+
+    /// Whether this file is there, whatever is in it.
+    #[must_use]
+    pub fn has(&self, study: &str, file: &str) -> bool {
+        let path = Path::new(study).join(file);
+        match &self.source {
+            Source::Commit(files) => files.has(&path),
+            Source::Folder(folder) => folder.join(path).symlink_metadata().is_ok(),
+        }
+    }
+
+    /// What is wrong with the files that a manifest lists, but for tables that are `read` anyway: each file, and a phrase
+    /// that follows its name. Of a file that is no table only the size is known. What is not there is for the caller to
+    /// judge: git seldom keeps all.
+    #[must_use]
+    pub fn damage(
+        &self,
+        study: &str,
+        manifest: &Manifest,
+        read: &(dyn Fn(&TableRecord) -> bool + Sync),
+    ) -> Vec<(String, String)> {
+        let tables: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+        let of_table = |record: &&TableRecord| match self.held(study, record) {
+            Held::Damaged(problem) => Some((record.file.clone(), problem)),
+            _ => None,
+        };
+        let mut found: Vec<(String, String)> =
+            tables.par_iter().filter(|record| !read(record)).filter_map(of_table).collect();
+        let others = manifest.files.iter().filter(|listed| tables.iter().all(|record| record.file != listed.file));
+        found.extend(others.filter_map(|listed| {
+            let Source::Folder(folder) = &self.source else { return None };
+            let path = folder.join(study).join(&listed.file);
+            let metadata = path.metadata().ok()?;
+            let problem = match metadata.len() {
+                _ if !metadata.is_file() => "cannot be read: it is no regular file".to_owned(),
+                // Of a pointer of Git LFS the contents are elsewhere.
+                size if size < SMALL && file::read(&path, SMALL).is_ok_and(|bytes| pointer(&bytes).is_some()) => {
+                    return None;
+                }
+                size if size != listed.bytes => format!("has {size} bytes; its manifest says {}", listed.bytes),
+                _ => return None,
+            };
+            Some((listed.file.clone(), problem))
+        }));
+        found
     }
 }
 

@@ -5,18 +5,20 @@
 
 use std::any::Any;
 use std::cmp::Ordering;
-use std::thread;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 
 use polars::prelude::{AnyValue, Column as Series, DataFrame, IntoColumn, IntoLazy, NamedFrom, Series as Values};
 use polars::sql::SQLContext;
 
 use super::names::Parsed;
-use super::{Answer, Column};
+use super::{Answer, Column, memory};
 use crate::base::error::suggest;
 use crate::table::data::{Cell, Data, Table};
 
-/// Memory for a plan of terms within terms; only what is used of it is taken.
-const STACK: usize = 512 << 20;
+/// Bytes of what polars says; what is longer is a plan, or the query again as it was parsed.
+const LONGEST_SENTENCE: usize = 240;
+/// Values of an answer; each takes some thirty bytes until it is written.
+const MOST_VALUES: usize = 20_000_000;
 
 /// Asks the query of tables under the names it calls them by.
 ///
@@ -27,12 +29,18 @@ pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)]) -> Result<Answer,
     for (name, table) in tables {
         context.register(name, frame(table).map_err(|error| failed(&error.to_string(), tables))?.lazy());
     }
-    let ask = move || context.execute(&query.text).and_then(polars::prelude::LazyFrame::collect);
-    let outcome = thread::scope(|scope| {
-        let asked = thread::Builder::new().stack_size(STACK).spawn_scoped(scope, ask);
-        asked.map_err(|error| format!("no thread can be started: {error}"))?.join().map_err(|panic| said(&*panic))
-    });
-    let rows = outcome?.map_err(|error| failed(&error.to_string(), tables))?;
+    let text = query.text.clone();
+    let ask = move || context.execute(&text).and_then(polars::prelude::LazyFrame::collect);
+    // polars has panics for queries that it did not foresee.
+    let outcome = memory::within(memory::MOST, || catch_unwind(AssertUnwindSafe(ask)))?;
+    let rows = outcome.map_err(|panic| said(&*panic))?.map_err(|error| failed(&error.to_string(), tables))?;
+    if rows.height().saturating_mul(rows.width()) > MOST_VALUES {
+        let (height, width) = (rows.height(), rows.width());
+        return Err(format!(
+            "the answer has {height} rows of {width} columns; at most {MOST_VALUES} values are given: choose fewer with \
+             WHERE or LIMIT, or sum up with GROUP BY"
+        ));
+    }
     let mut columns: Vec<Column> = rows.columns().iter().map(column).collect::<Result<_, _>>()?;
     if !query.ordered {
         sort(&mut columns, rows.height());
@@ -119,14 +127,21 @@ fn failed(said: &str, tables: &[(&str, Table)]) -> String {
     format!("there is no column `{name}`; {}", suggest(name, known))
 }
 
-/// Behind it polars tells of its plan.
+/// Behind it polars tells of its plan; where it tells how it reads the query inside, of no use to who wrote it.
 fn first_sentence(said: &str) -> String {
-    let line = said.lines().find(|line| !line.trim().is_empty()).unwrap_or("polars gave no reason");
-    format!("the query cannot be answered: {}", line.trim())
+    let line = said.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().trim();
+    if ["big-idx", "bigidx", "2^32"].iter().any(|word| line.contains(word)) {
+        return "the query has more than 4294967295 rows on its way: join on more columns".to_owned();
+    }
+    let inside = ["{", "::", "Some(", "polars", "assertion", "unwrap", "Err value", "dsl", "IR "];
+    if line.is_empty() || line.len() > LONGEST_SENTENCE || inside.iter().any(|word| line.contains(word)) {
+        return "the query cannot be answered: it has a part that is SQL, but not known here".to_owned();
+    }
+    format!("the query cannot be answered: {line}")
 }
 
 /// What a panic said: polars has some for queries that it did not foresee.
 fn said(panic: &(dyn Any + Send)) -> String {
     let text = panic.downcast_ref::<&str>().copied().or_else(|| panic.downcast_ref::<String>().map(String::as_str));
-    first_sentence(text.unwrap_or("polars gave up on it"))
+    first_sentence(text.unwrap_or_default())
 }

@@ -1,9 +1,11 @@
 //! SQL over the tables of any studies and commits.
 //!
-//! `names` finds the tables in the text, `tables` reads them, `frame` hands both to polars and takes the rows back. Behind
+//! `names` finds the tables in the text, `tables` reads them, `frame` hands both to polars and takes the rows back, in as
+//! much memory as `memory` grants. Behind
 //! the feature `frames`. Must not know: how the answer is shown; what the tables mean.
 
 mod frame;
+mod memory;
 mod names;
 pub mod tables;
 

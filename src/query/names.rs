@@ -22,6 +22,9 @@ pub(super) const MOST_DEPTH: usize = 200;
 /// SELECTs in one query: polars plans a chain of UNIONs in a time that grows with its square.
 pub(super) const MOST_SELECTS: usize = 64;
 
+/// CASEs within each other: polars copies all that is within for each of them.
+pub(super) const MOST_CASES: usize = 8;
+
 /// A query that was read.
 pub(super) struct Parsed {
     /// With every table's name in one pair of quotes.
@@ -74,6 +77,7 @@ struct Names {
     /// Names that the query gives to its own parts: `WITH name AS`.
     own: BTreeSet<String>,
     depth: usize,
+    cases: usize,
     selects: usize,
 }
 
@@ -125,6 +129,18 @@ impl VisitorMut for Names {
         if self.depth > MOST_DEPTH {
             return ControlFlow::Break(format!("the query has more than {MOST_DEPTH} terms within each other"));
         }
+        match term {
+            Expr::Case { .. } => {
+                self.cases += 1;
+                if self.cases > MOST_CASES {
+                    return ControlFlow::Break(format!("the query has more than {MOST_CASES} CASEs within each other"));
+                }
+            }
+            Expr::Exists { .. } => {
+                return ControlFlow::Break("EXISTS is not known here: write IN (SELECT …) or a JOIN".to_owned());
+            }
+            _ => {}
+        }
         if let (Pass::Columns, Expr::CompoundIdentifier(parts)) = (self.pass, term)
             && parts.len() > 2
             && let Some((column, table)) = parts.split_last()
@@ -137,8 +153,9 @@ impl VisitorMut for Names {
         ControlFlow::Continue(())
     }
 
-    fn post_visit_expr(&mut self, _: &mut Expr) -> ControlFlow<String> {
+    fn post_visit_expr(&mut self, term: &mut Expr) -> ControlFlow<String> {
         self.depth -= 1;
+        self.cases -= usize::from(matches!(term, Expr::Case { .. }));
         ControlFlow::Continue(())
     }
 }

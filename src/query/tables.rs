@@ -47,13 +47,14 @@ impl<'a> Tables<'a> {
         let (study, cache) = (self.study, self.cache);
         let side = self.side(revision)?;
         let studies = studies(side)?;
+        known_study(&studies, study, side)?;
         let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
         let Some((of, stage, record)) = find(&studies, only, inside) else {
             let known = known(&studies, only, inside.matches('.').count());
             let help = suggest(inside, known.iter().map(String::as_str));
             return Err(format!("there is no table `{inside}` in {}; {help}", side.label));
         };
-        match side.table(&of.folder, stage, record, cache) {
+        match side.table(&of.folder, stage, record, cache).0 {
             Got::Table(table) => Ok(*table),
             Got::Without(why) => {
                 Err(format!("`{inside}` {why}, and the cache does not have it; `gearstudy run` computes it again"))
@@ -67,7 +68,9 @@ impl<'a> Tables<'a> {
     /// When the results cannot be read.
     pub fn list(&mut self) -> Result<Vec<(String, TableRecord)>, String> {
         let wanted = self.study;
-        let studies = studies(self.side(None)?)?;
+        let side = self.side(None)?;
+        let studies = studies(side)?;
+        known_study(&studies, wanted, side)?;
         let wanted = studies.into_iter().filter(|study| wanted.is_none_or(|wanted| study.name == wanted));
         let tables = wanted.flat_map(|study| {
             let records = study.manifest.stages.into_iter().flat_map(|stage| stage.tables);
@@ -97,6 +100,12 @@ fn studies(side: &Side) -> Result<Vec<Study>, String> {
         }
     }
     if studies.is_empty() { Err(format!("there are no results in {}", side.label)) } else { Ok(studies) }
+}
+
+fn known_study(studies: &[Study], wanted: Option<&str>, side: &Side) -> Result<(), String> {
+    let Some(wanted) = wanted.filter(|wanted| studies.iter().all(|study| study.name != *wanted)) else { return Ok(()) };
+    let help = suggest(wanted, studies.iter().map(|study| study.name.as_str()));
+    Err(format!("there is no study `{wanted}` in {}; {help}", side.label))
 }
 
 fn find<'a>(

@@ -2,7 +2,6 @@
 //!
 //! Must not know: gears, what a stage computes, how progress is drawn.
 
-pub mod agreement;
 pub mod board;
 pub mod chunk;
 pub mod events;

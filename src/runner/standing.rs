@@ -7,6 +7,7 @@
 use super::graph::Graph;
 use super::key::{self, explain, phrase};
 use super::options::Wanted;
+use crate::base::digest::Digest;
 use crate::base::error::Diagnostic;
 use crate::stage::Want;
 use crate::store::entry::StoredTable;
@@ -30,6 +31,11 @@ pub struct Standing {
 pub struct StageStanding {
     pub name: String,
     pub state: State,
+    /// Of a stage that is up to date: files that the manifest lists and that are not here. A clone has only what git
+    /// keeps; a run brings them back.
+    pub absent: Vec<String>,
+    /// Of a stage that is up to date: the keys under which a cache has its tables.
+    pub keys: Vec<Digest>,
 }
 
 /// Where one stage stands.
@@ -40,6 +46,8 @@ pub enum State {
     Stale(String),
     /// With what is not there.
     Missing(String),
+    /// A file that is not as the manifest lists it.
+    Damaged(String),
     /// Only a run of these stages can tell.
     Waits(Vec<String>),
 }
@@ -51,6 +59,7 @@ impl State {
             Self::UpToDate => "up to date",
             Self::Stale(_) => "stale",
             Self::Missing(_) => "missing",
+            Self::Damaged(_) => "damaged",
             Self::Waits(_) => "waits",
         }
     }
@@ -60,7 +69,7 @@ impl State {
     pub fn why(&self) -> String {
         match self {
             Self::UpToDate => String::new(),
-            Self::Stale(why) | Self::Missing(why) => why.clone(),
+            Self::Stale(why) | Self::Missing(why) | Self::Damaged(why) => why.clone(),
             Self::Waits(names) => format!("for {}", names.join(", ")),
         }
     }
@@ -73,6 +82,12 @@ impl Standing {
             && !self.text_changed
             && self.gone.is_empty()
             && self.stages.iter().all(|stage| stage.state == State::UpToDate)
+    }
+
+    /// All files that the manifest lists and that are not here.
+    #[must_use]
+    pub fn absent(&self) -> Vec<&str> {
+        self.stages.iter().flat_map(|stage| &stage.absent).map(String::as_str).collect()
     }
 
     /// The first thing that is not as it should be.
@@ -91,18 +106,13 @@ impl Standing {
     }
 }
 
-/// Compares a study with its results. `ignore_files` takes what the manifest says for granted, as in a clone where only
-/// small tables are kept; otherwise every file must be there in its size.
+/// Compares a study with its results. What the manifest says of tables that are not here is taken for granted: a clone
+/// has only those that git keeps. Files that are here must have their size.
 ///
 /// # Errors
-/// What is wrong with the study's graph.
-pub fn standing(
-    study: &Study,
-    folder: &Folder,
-    code: fn(&str) -> String,
-    ignore_files: bool,
-) -> Result<Standing, Diagnostic> {
-    let manifest = folder.manifest();
+/// What is wrong with the study's graph; a manifest that cannot be read.
+pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Result<Standing, Diagnostic> {
+    let manifest = folder.read_manifest().map_err(|error| Diagnostic::new(error.to_string()))?;
     let graph = Graph::new(study, &manifest.as_ref().map(|manifest| demand(study, manifest)).unwrap_or_default())?;
     let mut tables: Vec<Option<Vec<StoredTable>>> = vec![None; study.nodes.len()];
     let mut stages = Vec::new();
@@ -113,6 +123,7 @@ pub fn standing(
         unknown.dedup();
         unknown.retain(|&input| tables[input].is_none());
         let record = manifest.as_ref().and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
+        let (mut absent, mut keys) = (Vec::new(), Vec::new());
         let state = match (&manifest, record) {
             (None, _) => State::Missing("there are no results".to_owned()),
             (Some(_), None) => State::Missing("never ran".to_owned()),
@@ -131,14 +142,15 @@ pub fn standing(
                     Some(why) => State::Stale(why),
                     None => {
                         tables[node] = record.tables.iter().map(TableRecord::stored).collect();
-                        absent(folder, manifest, record)
-                            .filter(|_| !ignore_files)
-                            .map_or(State::UpToDate, State::Missing)
+                        keys = parts.iter().map(|part| part.key).collect();
+                        let damaged;
+                        (absent, damaged) = files(folder, manifest, record);
+                        damaged.map_or(State::UpToDate, State::Damaged)
                     }
                 }
             }
         };
-        stages.push(StageStanding { name: name.clone(), state });
+        stages.push(StageStanding { name: name.clone(), state, absent, keys });
     }
     let known = |stage: &&StageRecord| study.nodes.iter().any(|node| node.name == stage.name);
     let of_manifest = manifest.iter().flat_map(|manifest| &manifest.stages);
@@ -192,17 +204,15 @@ fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'st
     (record.keys.len() != now.len()).then(|| format!("config changed: fewer values of {}", axis.unwrap_or("an axis")))
 }
 
-/// The files of a stage that are not there as the manifest lists them.
-fn absent(folder: &Folder, manifest: &Manifest, record: &StageRecord) -> Option<String> {
-    let files: Vec<&str> = record
-        .tables
-        .iter()
-        .map(|TableRecord { file, .. }| file.as_str())
-        .filter(|file| !folder.intact(manifest, file))
-        .collect();
-    match files[..] {
+/// The files of a stage's tables that are not here, and those that are, but not as the manifest lists them.
+fn files(folder: &Folder, manifest: &Manifest, record: &StageRecord) -> (Vec<String>, Option<String>) {
+    let tables = record.tables.iter().flat_map(|table| [&table.file].into_iter().chain(&table.files));
+    let odd = tables.filter(|file| !folder.intact(manifest, file));
+    let (here, absent): (Vec<&String>, _) = odd.partition(|file| folder.path().join(file).symlink_metadata().is_ok());
+    let damaged = match here[..] {
         [] => None,
-        [one] => Some(format!("`{one}` is not there")),
-        [first, ..] => Some(format!("`{first}` and {} more are not there", files.len() - 1)),
-    }
+        [one] => Some(format!("`{one}` is not as the manifest lists it")),
+        [first, ..] => Some(format!("`{first}` and {} more are not as the manifest lists them", here.len() - 1)),
+    };
+    (absent.into_iter().cloned().collect(), damaged)
 }

@@ -8,12 +8,13 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use super::agreement::{Agreement, compare};
 use super::events::Observer;
 use super::execute::{self, RunError};
 use super::options::Options;
 use super::outcome::Outcome;
 use super::standing;
+use crate::diff::model::{State, TableDiff};
+use crate::diff::table;
 use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError, about};
 use crate::store::cache::Cache;
@@ -57,7 +58,8 @@ pub struct Verified {
     /// `stage.table`.
     pub name: String,
     pub rows: usize,
-    pub agreement: Agreement,
+    /// What was archived against what was computed; [`State::Removed`] for a table that this program does not give.
+    pub diff: TableDiff,
 }
 
 impl Verification {
@@ -66,10 +68,10 @@ impl Verification {
     pub fn counts(&self) -> [usize; 3] {
         let mut counts = [0; 3];
         for table in &self.tables {
-            counts[match table.agreement {
-                Agreement::Identical => 0,
-                Agreement::Within(_) => 1,
-                Agreement::Different(_) | Agreement::Incomparable(_) => 2,
+            counts[match table.diff.state {
+                State::Same => 0,
+                State::WithinTolerance => 1,
+                State::Changed | State::Removed | State::Added => 2,
             }] += 1;
         }
         counts
@@ -127,12 +129,15 @@ pub fn verify<R: Read + Seek>(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Verification, VerifyError> {
+    archive.intact()?;
     let Unpacked { study, manifest } = unpack(archive, work)?;
     let folder = archive::results(&study.name);
     let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
     for record in &records {
-        // Before anything runs: what is not there cannot be compared.
-        archive.bytes(&format!("{folder}{}", record.file))?;
+        // Before anything runs: what is not there, or not what it should be, cannot be compared.
+        let entry = format!("{folder}{}", record.file);
+        let bytes = archive.bytes(&entry)?;
+        archived(archive, &entry, record, bytes)?;
     }
     let cache = Cache::open(&work.join("cache")).map_err(RunError::from)?;
     let options = Options { wanted: standing::demand(&study, &manifest), ..options.clone() };
@@ -148,16 +153,36 @@ pub fn verify<R: Read + Seek>(
     for record in records {
         let entry = format!("{folder}{}", record.file);
         let bytes = archive.bytes(&entry)?;
-        let agreement = match computed(&outcome, &cache, record)? {
+        let diff = match computed(&outcome, &cache, record)? {
             // The very bytes: nothing of the archive need be understood.
-            Some((_, computed)) if computed == bytes => Agreement::Identical,
-            Some((table, _)) => compare(&archived(archive, &entry, record, bytes)?, &table),
-            None => Agreement::Incomparable("this program gives no such table".to_owned()),
+            Some((_, computed)) if computed == bytes => TableDiff { by_values: true, ..TableDiff::default() },
+            Some((table, _)) => compared(&archived(archive, &entry, record, bytes)?, &table),
+            None => TableDiff {
+                state: State::Removed,
+                note: "this program gives no such table".to_owned(),
+                ..TableDiff::default()
+            },
         };
-        tables.push(Verified { name: record.name.clone(), rows: record.rows, agreement });
+        let diff = TableDiff { name: record.name.clone(), ..diff };
+        tables.push(Verified { name: record.name.clone(), rows: record.rows, diff });
     }
     let notes = notes(&manifest);
     Ok(Verification { study: study.name, title: study.title, version: manifest.program.version, notes, tables })
+}
+
+/// Compares by the tolerances of the computed table.
+fn compared(archived: &Table, computed: &Table) -> TableDiff {
+    let diff = table::compare("", archived, computed, None, &|_| None);
+    if diff.state != State::Same || archived.content_hash() == computed.content_hash() {
+        return diff;
+    }
+    // Another hash, and no value is another one.
+    if archived.schema() == computed.schema() {
+        let note = "numbers of the key differ in their last digits".to_owned();
+        return TableDiff { state: State::WithinTolerance, note, ..diff };
+    }
+    let note = "the values are equal, but not what the columns are".to_owned();
+    TableDiff { state: State::Changed, note, ..diff }
 }
 
 /// A table as this program computes it, and its Parquet file.
@@ -206,4 +231,28 @@ fn notes(manifest: &Manifest) -> Vec<String> {
         notes.push("made with other versions of libraries (another Cargo.lock)".to_owned());
     }
     notes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::table::schema::{Column, Schema};
+
+    fn table(key: f64, value: f64, unit: &str, description: &str) -> Table {
+        let columns = vec![Column::float("at", "mm", "").key(), Column::float("x", unit, description)];
+        Table::from_rows(Schema::new("t", "", columns), vec![vec![key.into(), value.into()]]).unwrap()
+    }
+
+    #[test]
+    fn another_hash_of_the_same_values_is_told_for_what_it_is() {
+        let archived = table(0.1, 0.0, "um", "");
+        let against = |computed: Table| (compared(&archived, &computed).state, compared(&archived, &computed).note);
+        assert_eq!(against(table(0.1, 0.0, "um", "")), (State::Same, String::new()));
+        assert_eq!(against(table(0.1, -0.0, "um", "")).0, State::Same, "a sign of zero is no content");
+        assert_eq!(against(table(0.1_f64.next_up(), 0.0, "um", "")).0, State::WithinTolerance);
+        assert_eq!(against(table(0.1, 1.0, "um", "")).0, State::Changed);
+        assert_eq!(against(table(0.1, 0.0, "mm", "")).0, State::Changed);
+        let (state, note) = against(table(0.1, 0.0, "um", "other words"));
+        assert!(state == State::Same || note.contains("what the columns are"), "{note}");
+    }
 }

@@ -10,6 +10,8 @@ pub mod pack;
 #[cfg(test)]
 mod tests;
 
+use sha2::{Digest, Sha256};
+
 /// The name that the RO-Crate specification gives to the description.
 pub const METADATA: &str = "ro-crate-metadata.json";
 /// The schema of the study, for editors.
@@ -26,6 +28,16 @@ pub fn results(study: &str) -> String {
 #[must_use]
 pub fn study(name: &str) -> String {
     format!("{name}.yaml")
+}
+
+/// The digest of a file as the description gives it, in hexadecimal: SHA-256, which every system has a command for.
+#[must_use]
+pub fn sha256(bytes: &[u8]) -> String {
+    let mut text = String::with_capacity(64);
+    for byte in Sha256::digest(bytes) {
+        text += &format!("{byte:02x}");
+    }
+    text
 }
 
 /// Why an archive cannot be used. `path` names it.

@@ -8,12 +8,13 @@ use std::process::Command;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use super::archive::about;
-use super::manifest::{Machine, Program};
+use super::manifest::{Machine, Program, StudyFolder};
 
 /// What a manifest says besides the results.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub program: Program,
+    pub study_folder: StudyFolder,
     pub machine: Machine,
     /// UTC, RFC 3339.
     pub written: String,
@@ -24,16 +25,19 @@ impl Facts {
     #[must_use]
     pub fn collect(folder: &Path, threads: usize) -> Self {
         let (commit, uncommitted_changes) = git(folder).map_or((None, None), |(commit, dirty)| (commit, Some(dirty)));
+        let built = about::commit();
         let seconds = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_secs());
         Self {
             program: Program {
                 version: about::VERSION.to_owned(),
-                commit,
-                uncommitted_changes,
+                code: about::CODE.to_owned(),
+                commit: built.map(|(commit, _)| commit.to_owned()),
+                uncommitted_changes: built.map(|(_, changed)| changed),
                 rustc: env!("GEARSTUDY_RUSTC").to_owned(),
                 profile: env!("GEARSTUDY_PROFILE").to_owned(),
                 dependencies: about::DEPENDENCIES.to_owned(),
             },
+            study_folder: StudyFolder { commit, uncommitted_changes },
             machine: Machine {
                 system: format!("{} {}", std::env::consts::OS, std::env::consts::ARCH),
                 processor: processor(),
@@ -104,7 +108,10 @@ mod tests {
     fn a_folder_outside_git_has_no_commit() {
         let folder = tempfile::tempdir().unwrap();
         let facts = Facts::collect(folder.path(), 3);
-        assert_eq!((facts.program.commit, facts.program.uncommitted_changes), (None, None));
+        assert_eq!(facts.study_folder, StudyFolder::default());
+        // Built here, wherever the study lies.
+        assert_eq!(facts.program.commit.as_deref(), about::commit().map(|(commit, _)| commit));
+        assert_eq!(facts.program.code, about::CODE);
         assert!(facts.program.rustc.starts_with("rustc "), "{}", facts.program.rustc);
         assert!(facts.machine.cores >= 1 && facts.machine.threads == 3);
     }
@@ -126,5 +133,12 @@ mod tests {
         assert_eq!((commit.unwrap().len(), dirty), (40, false));
         std::fs::write(folder.path().join("a"), "2").unwrap();
         assert!(git(folder.path()).unwrap().1);
+        // The study's commit is none of the program's.
+        let facts = Facts::collect(folder.path(), 1);
+        assert_eq!(
+            (facts.study_folder.commit.clone(), facts.study_folder.uncommitted_changes),
+            (git(folder.path()).unwrap().0, Some(true))
+        );
+        assert_ne!(facts.program.commit, facts.study_folder.commit);
     }
 }

@@ -4,7 +4,7 @@
 //! undo the rename, the file is missing, which every reader of these files is ready for. Must not know: contents.
 
 use std::fs::{self, File};
-use std::io::Write;
+use std::io::{self, Read, Write};
 use std::path::Path;
 
 use tempfile::{Builder, NamedTempFile};
@@ -53,9 +53,36 @@ pub fn persist(file: NamedTempFile, path: &Path, durability: Durability) -> Resu
 /// # Errors
 /// As [`temporary`] and [`persist`].
 pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), StoreError> {
-    let mut file = temporary(path.parent().unwrap_or(Path::new(".")))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut file = temporary(folder)?;
     file.write_all(bytes).map_err(StoreError::io("write", path))?;
     persist(file, path, durability)
+}
+
+/// Bytes of a manifest; the largest known has less than one million.
+pub const MOST_MANIFEST: u64 = 64 << 20;
+/// Bytes of a table, a page, a figure.
+pub const MOST_TABLE: u64 = 4 << 30;
+
+/// Reads a whole file of at most `most` bytes.
+///
+/// A pipe nobody writes to would be waited for and a device has no end, so what is no file is not opened.
+///
+/// # Errors
+/// What the system says; that it is no regular file; that it is larger.
+pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+    let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidData, problem));
+    let metadata = fs::metadata(path)?;
+    if !metadata.is_file() {
+        return wrong("it is no regular file".to_owned());
+    }
+    if metadata.len() > most {
+        return wrong(format!("it has {} bytes, more than {} MiB", metadata.len(), most >> 20));
+    }
+    let mut bytes = Vec::new();
+    // A file of the system may say that it has no bytes, and another may grow meanwhile.
+    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > most { wrong(format!("it has more than {} MiB", most >> 20)) } else { Ok(bytes) }
 }
 
 /// Removes what killed runs left in a folder that nobody else writes to now.
@@ -99,5 +126,24 @@ mod tests {
         }
         let missing = write(&folder.path().join("no/such"), b"", Durability::Lazy).unwrap_err().to_string();
         assert!(missing.contains("no"), "{missing}");
+    }
+    /// Neither is opened: a pipe would be waited for, a device has no end.
+    #[cfg(unix)]
+    #[test]
+    fn only_regular_files_of_a_sensible_size_are_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let said = |path: &Path, most| read(path, most).unwrap_err().to_string();
+        let pipe = folder.path().join("pipe");
+        assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        for path in [&pipe, Path::new("/dev/zero"), folder.path()] {
+            assert_eq!(said(path, 1), "it is no regular file");
+        }
+        let large = folder.path().join("large");
+        File::create(&large).unwrap().set_len(MOST_MANIFEST + 1).unwrap();
+        assert_eq!(said(&large, MOST_MANIFEST), "it has 67108865 bytes, more than 64 MiB");
+        // Its size is said to be 0.
+        assert_eq!(said(Path::new("/proc/self/environ"), 1), "it has more than 0 MiB");
+        fs::write(folder.path().join("a"), "abc").unwrap();
+        assert_eq!(read(&folder.path().join("a"), 3).unwrap(), b"abc");
     }
 }

@@ -24,6 +24,9 @@ pub struct Manifest {
     /// BLAKE3 of the study file's bytes.
     pub study_digest: String,
     pub program: Program,
+    /// The repository that the study's file lies in.
+    #[serde(default)]
+    pub study_folder: StudyFolder,
     pub machine: Machine,
     /// UTC, RFC 3339. The only time in the file besides the seconds.
     pub written: String,
@@ -56,14 +59,28 @@ pub struct Source {
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
 pub struct Program {
     pub version: String,
-    /// The commit of the folder the study lies in, when it is a git work tree.
+    /// Digest of all sources it was built from; empty in manifests of earlier versions, whose `commit` is that of the
+    /// study's folder.
+    #[serde(default)]
+    pub code: String,
+    /// The commit it was built from, where it was built in a repository that tracks its sources.
     pub commit: Option<String>,
+    /// Whether the sources it was built from differed from that commit.
     pub uncommitted_changes: Option<bool>,
     pub rustc: String,
     pub profile: String,
     /// BLAKE3 of `Cargo.lock`; empty when it is not known.
     #[serde(default)]
     pub dependencies: String,
+}
+
+/// Where the study's file lay when it was run.
+#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq, Eq)]
+pub struct StudyFolder {
+    /// The commit of the folder, when it is a git work tree.
+    pub commit: Option<String>,
+    /// Whether anything in that work tree differed from the commit.
+    pub uncommitted_changes: Option<bool>,
 }
 
 #[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]

@@ -17,7 +17,7 @@ use super::facts::Facts;
 use super::file::{self, Durability};
 #[cfg(feature = "hdf5")]
 use super::hdf5;
-use super::manifest::{FORMAT, FileRecord, Machine, Manifest, Program, StageRecord, TableRecord};
+use super::manifest::{FORMAT, FileRecord, Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
 use super::parquet;
 use crate::table::data::{Data, Table};
 
@@ -72,11 +72,28 @@ impl Folder {
         format!("{}.h5", self.study)
     }
 
-    /// The manifest of the last run; none when there is none that can be read.
+    /// The manifest of the last run; none when there is none that can be read: a run writes a new one.
     #[must_use]
     pub fn manifest(&self) -> Option<Manifest> {
-        let manifest: Manifest = serde_json::from_slice(&fs::read(self.path.join(MANIFEST)).ok()?).ok()?;
-        (manifest.format == FORMAT).then_some(manifest)
+        self.read_manifest().ok().flatten()
+    }
+
+    /// The manifest of the last run; none when there is none.
+    ///
+    /// # Errors
+    /// When it is no file, too large, damaged, or of another format.
+    pub fn read_manifest(&self) -> Result<Option<Manifest>, StoreError> {
+        let path = self.path.join(MANIFEST);
+        let bytes = match file::read(&path, file::MOST_MANIFEST) {
+            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+            other => other.map_err(StoreError::io("read", &path))?,
+        };
+        let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
+        let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
+        if manifest.format == FORMAT {
+            return Ok(Some(manifest));
+        }
+        Err(damaged(format!("it has format {}; this program reads format {FORMAT}", manifest.format)))
     }
 
     /// A published table.
@@ -85,7 +102,7 @@ impl Folder {
     /// When its file is missing, damaged, or holds other values than the manifest says.
     pub fn table(&self, record: &TableRecord) -> Result<Table, StoreError> {
         let path = self.path.join(&record.file);
-        let bytes = fs::read(&path).map_err(StoreError::io("read", &path))?;
+        let bytes = file::read(&path, file::MOST_TABLE).map_err(StoreError::io("read", &path))?;
         // Runs look at sizes only, so a file of the right size with wrong bytes has to be pointed out.
         let damaged = |problem: String| StoreError::Damaged {
             path: path.display().to_string(),
@@ -153,8 +170,8 @@ impl Folder {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
             Some(old) if essence(&old) == essence(&new) => Manifest { files: new.files, ..old },
             _ => {
-                let Facts { program, machine, written } = facts();
-                Manifest { program, machine, written, ..new }
+                let Facts { program, study_folder, machine, written } = facts();
+                Manifest { program, study_folder, machine, written, ..new }
             }
         };
         self.write_manifest(&new)?;
@@ -229,7 +246,8 @@ impl Folder {
     /// Whether a file is there in the size that the manifest lists.
     #[must_use]
     pub fn intact(&self, manifest: &Manifest, file: &str) -> bool {
-        let size = fs::metadata(self.path.join(file)).map(|metadata| metadata.len()).ok();
+        let metadata = fs::metadata(self.path.join(file)).ok().filter(fs::Metadata::is_file);
+        let size = metadata.map(|metadata| metadata.len());
         manifest.files.iter().any(|record| record.file == file && Some(record.bytes) == size)
     }
 
@@ -305,6 +323,7 @@ fn split(name: &str) -> (&str, &str) {
 fn essence(manifest: &Manifest) -> Manifest {
     let mut essence = manifest.clone();
     (essence.program, essence.machine) = (Program::default(), Machine::default());
+    essence.study_folder = StudyFolder::default();
     (essence.written, essence.seconds) = (String::new(), 0.0);
     essence.files.clear();
     for stage in &mut essence.stages {

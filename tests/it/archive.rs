@@ -8,6 +8,7 @@ use std::path::Path;
 
 use gearstudy::store::archive::open::open;
 use gearstudy::store::archive::pack::{Entries, pack};
+use gearstudy::store::archive::{METADATA, sha256};
 use gearstudy::store::manifest::Manifest;
 use gearstudy::store::parquet;
 use gearstudy::table::data::{Data, Table};
@@ -36,6 +37,19 @@ fn manifest(entries: &Entries) -> Manifest {
 
 fn put_manifest(entries: &mut Entries, manifest: &Manifest) {
     entries.insert("results/quick/manifest.json".to_owned(), serde_json::to_vec(manifest).unwrap());
+}
+
+/// Packs an archive that is described as it is: files that are described have the digest of what is in them now.
+pub fn packed(mut entries: Entries) -> Vec<u8> {
+    if let Ok(mut value) = serde_json::from_slice::<Value>(&entries[METADATA]) {
+        for entity in value["@graph"].as_array_mut().into_iter().flatten().filter(|it| it["sha256"].is_string()) {
+            if let Some(bytes) = entity["@id"].as_str().and_then(|name| entries.get(name)) {
+                entity["sha256"] = sha256(bytes).into();
+            }
+        }
+        entries.insert(METADATA.to_owned(), serde_json::to_vec(&value).unwrap());
+    }
+    pack(&entries).unwrap()
 }
 
 /// The same table with one number of a column moved by a share of itself.
@@ -95,7 +109,8 @@ fn an_archive_is_the_same_bytes_again_and_verifies_as_identical() {
         fs::write(path, bytes).unwrap();
     }
     let output = desk.command(&["status", "quick.yaml"]).current_dir(empty.path()).output().unwrap();
-    assert_eq!(String::from_utf8_lossy(&output.stdout), "quick: up to date\n");
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert_eq!(said, "quick: up to date; the cache does not have 6 of 6 stages, so a run computes them again\n");
 }
 
 #[test]
@@ -105,7 +120,6 @@ fn verify_says_what_came_out_other_than_archived() {
     let mut manifest = manifest(&entries);
     manifest.program.version = "0.0.9".to_owned();
     // Two archived tables are made to differ, consistently: by less and by more than the tolerance of 1e-9.
-    let mut rows = Vec::new();
     for (name, column, by) in [("ste.summary", "mean", 1e-12), ("stiffness.summary", "single_max", 1e-3)] {
         let record = manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables).find(|table| table.name == name);
         let record = record.unwrap();
@@ -114,11 +128,10 @@ fn verify_says_what_came_out_other_than_archived() {
         let row = table.rows() - 1;
         let table = moved(&table, column, row, by);
         record.content = table.content_hash().to_string();
-        rows.push(row);
         entries.insert(file, parquet::write(&table).unwrap());
     }
     put_manifest(&mut entries, &manifest);
-    fs::write(desk.path("b.zip"), pack(&entries).unwrap()).unwrap();
+    fs::write(desk.path("b.zip"), packed(entries)).unwrap();
     let (out, error) = desk.run(&["verify", "b.zip"], 4);
     assert!(error.contains("quick: 1 of "), "{error}");
     assert!(out.contains("made with another version of gearstudy: 0.0.9"), "{out}");
@@ -126,14 +139,42 @@ fn verify_says_what_came_out_other_than_archived() {
     let within = line("ste.summary");
     assert!(within.contains("within tolerance") && within.contains("worst in mean at design="), "{within}");
     let different = line("stiffness.summary");
-    assert!(different.contains("different") && different.contains("worst in single_max at row 0"), "{different}");
+    assert!(different.contains("different") && different.contains("worst in single_max at row=1"), "{different}");
     assert!(different.contains("by 9.99e-4 of it"), "{different}");
     let (json, _) = desk.run(&["verify", "b.zip", "--json"], 4);
     let said: Value = serde_json::from_str(&json).unwrap();
     assert_eq!((said["within_tolerance"].as_u64(), said["different"].as_u64()), (Some(1), Some(1)));
     let summary = said["tables"].as_array().unwrap().iter().find(|table| table["name"] == "ste.summary").unwrap();
-    assert_eq!(summary["worst"]["row"].as_u64(), Some(rows[0] as u64));
+    assert_eq!(summary["worst"]["column"], "mean");
+    assert!(summary["worst"]["key"].as_object().is_some_and(|key| key.contains_key("design")), "{summary}");
     assert!(summary["worst"]["over_tolerance"].as_f64().is_some_and(|over| over > 0.0 && over <= 1.0), "{summary}");
+}
+
+/// Whatever the file: found before anything runs.
+#[test]
+fn a_file_that_is_not_as_archived_is_found_before_the_run() {
+    let desk = archived("quick.yaml", &[]);
+    let whole = entries(&desk.path("a.zip"));
+    let said = |entries: &Entries| {
+        fs::write(desk.path("b.zip"), pack(entries).unwrap()).unwrap();
+        let (out, error) = desk.run(&["verify", "b.zip"], 1);
+        // Not even the first line of the run.
+        assert_eq!(out, "");
+        error
+    };
+    for name in whole.keys().filter(|name| *name != METADATA) {
+        let mut entries = whole.clone();
+        let bytes = entries.get_mut(name).unwrap();
+        let middle = bytes.len() / 2;
+        bytes[middle] ^= 1;
+        assert!(said(&entries).contains(&format!("`{name}` has other contents")), "{name}: {}", said(&entries));
+    }
+    let mut entries = whole.clone();
+    entries.insert("results/quick/more.parquet".to_owned(), b"x".to_vec());
+    assert!(said(&entries).contains("`results/quick/more.parquet` was added"));
+    entries = whole.clone();
+    entries.remove("results/quick/report.html");
+    assert!(said(&entries).contains("`results/quick/report.html`, which is not in it"), "{}", said(&entries));
 }
 
 #[test]
@@ -155,7 +196,9 @@ fn what_is_missing_stale_or_incomplete_is_not_archived() {
     refused("the study's file has changed since", "run");
     fs::write(desk.path("quick.yaml"), &text).unwrap();
     fs::remove_file(desk.path("results/quick/ste.curve.parquet")).unwrap();
-    refused("stage `ste` is not up to date: missing: `ste.curve.parquet` is not there", "run");
+    refused("`ste.curve.parquet` is not here", "run");
+    fs::write(desk.path("results/quick/ste.curve.parquet"), "short").unwrap();
+    refused("stage `ste` is not up to date: damaged: `ste.curve.parquet` is not as the manifest lists it", "run");
     desk.run(&["run", "quick.yaml", "--quiet"], 0);
     fs::remove_file(desk.path("results/quick/report.html")).unwrap();
     refused("the report is not that of the last run", "report");
@@ -163,39 +206,4 @@ fn what_is_missing_stale_or_incomplete_is_not_archived() {
     desk.run(&["archive", "quick.yaml", "-o", "a.zip", "--license", "CC BY"], 1);
     desk.run(&["archive", "quick.yaml", "-o", "no/such/folder/a.zip"], 1);
     desk.run(&["archive", "quick.yaml", "-o", "a.zip"], 0);
-}
-
-/// Neither the cache nor a run is needed to say where results stand.
-#[test]
-fn status_says_what_is_up_to_date_stale_and_missing() {
-    let desk = Desk::with("quick.yaml");
-    let states = |words: &[&str]| -> Vec<(String, String, String)> {
-        let (json, _) = desk.run(&[&["status", "--json"], words].concat(), 0);
-        let said: Value = serde_json::from_str(&json).unwrap();
-        let text = |value: &Value| value.as_str().unwrap().to_owned();
-        let stages = said[0]["stages"].as_array().unwrap().clone();
-        stages.iter().map(|stage| (text(&stage["name"]), text(&stage["state"]), text(&stage["why"]))).collect()
-    };
-    let (out, _) = desk.run(&["status", "quick.yaml"], 0);
-    assert_eq!(out, "quick: no results; next: gearstudy run quick.yaml\n");
-    assert!(states(&["quick.yaml"]).iter().all(|(_, state, _)| state == "missing"));
-    desk.run(&["run", "quick.yaml", "--quiet"], 0);
-    fs::remove_dir_all(desk.path(".gearstudy")).unwrap();
-    assert_eq!(desk.run(&["status", "quick.yaml"], 0).0, "quick: up to date\n");
-    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
-    fs::write(desk.path("quick.yaml"), text.replace("module: 3 mm", "module: 3.1 mm")).unwrap();
-    let said = states(&["quick.yaml"]);
-    assert_eq!(said[0], ("pair".into(), "stale".into(), "config changed: module".into()));
-    assert!(said[1..].iter().all(|(_, state, _)| state == "waits"), "{said:?}");
-    assert!(said.iter().any(|(name, _, why)| name == "stiffness" && why == "for pair"), "{said:?}");
-    assert!(!desk.path(".gearstudy").exists(), "status makes no cache");
-    // Without names: those in the folder `studies`.
-    fs::write(desk.path("quick.yaml"), &text).unwrap();
-    assert!(desk.run(&["status"], 1).1.contains("no studies in `studies`"));
-    fs::create_dir(desk.path("studies")).unwrap();
-    fs::rename(desk.path("quick.yaml"), desk.path("studies/quick.yaml")).unwrap();
-    assert_eq!(desk.run(&["status"], 0).0, "quick: up to date\n");
-    fs::remove_file(desk.path("results/quick/figures/torque.svg")).unwrap();
-    let (out, _) = desk.run(&["status"], 0);
-    assert_eq!(out, "quick: the report is not that of the last run; next: gearstudy report studies/quick.yaml\n");
 }

@@ -51,7 +51,7 @@ fn committed_results_are_not_stale() {
         let study = study::load(&top.join("studies").join(format!("{name}.yaml"))).unwrap();
         let folder = Folder::new(&clone.path().join("results"), &study.name);
         // Only the small tables are committed; what the manifest says of the others is what they are.
-        let found = standing(&study, &folder, code_digest, true).unwrap();
+        let found = standing(&study, &folder, code_digest).unwrap();
         problems.extend(found.problem().map(|problem| format!("results/{name}: {problem}")));
         let manifest = folder.manifest().unwrap();
         let there = manifest.stages.iter().flat_map(|stage| &stage.tables);
@@ -81,9 +81,9 @@ fn stale_results_are_found() {
     let other = text.replacen("face_width: 20 mm", "face_width: 20.5 mm", 1);
     assert_ne!(text, other);
     let study = study::load_text(&other, &path).unwrap();
-    let found = standing(&study, &folder, code_digest, true).unwrap().problem().unwrap();
+    let found = standing(&study, &folder, code_digest).unwrap().problem().unwrap();
     assert!(found.contains("stage `pair` is not up to date: stale: ") && found.contains("pinion"), "{found}");
     let study = study::load_text(&text, &path).unwrap();
-    let found = standing(&study, &folder, |_| "other".to_owned(), true).unwrap().problem().unwrap();
+    let found = standing(&study, &folder, |_| "other".to_owned()).unwrap().problem().unwrap();
     assert!(found.contains("stage `pair` is not up to date: stale: code changed"), "{found}");
 }

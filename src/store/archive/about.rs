@@ -10,6 +10,15 @@ pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 pub const SUMMARY: &str = env!("CARGO_PKG_DESCRIPTION");
 /// BLAKE3 of `Cargo.lock`, which fixes every dependency; empty when it was built without one.
 pub const DEPENDENCIES: &str = env!("GEARSTUDY_DEPENDENCIES");
+/// Digest of all sources of the program.
+pub const CODE: &str = env!("GEARSTUDY_CODE");
+
+/// The commit of the sources that the program was built from, and whether they differed from it; none where it was built
+/// outside a repository.
+#[must_use]
+pub fn commit() -> Option<(&'static str, bool)> {
+    Some((env!("GEARSTUDY_COMMIT"), env!("GEARSTUDY_CHANGED") == "true")).filter(|(commit, _)| !commit.is_empty())
+}
 
 /// The value of a line `key: "value"` of the citation file, also as an item of a list.
 #[must_use]
@@ -31,6 +40,7 @@ mod tests {
         // `[MIT, Apache-2.0]` and `MIT OR Apache-2.0` are the same licences.
         let license = citation("license").unwrap();
         assert!(LICENSE.split(" OR ").all(|one| license.contains(one)), "{license}");
-        assert_eq!(DEPENDENCIES.len(), 64);
+        assert_eq!((DEPENDENCIES.len(), CODE.len()), (64, 32));
+        assert!(commit().is_none_or(|(commit, _)| commit.len() >= 40));
     }
 }

@@ -10,7 +10,7 @@ use std::collections::BTreeSet;
 use serde_json::{Map, Value, json};
 
 use super::pack::Entries;
-use super::{CITATION, METADATA, SCHEMA, about, results, study};
+use super::{CITATION, METADATA, SCHEMA, about, results, sha256, study};
 use crate::store::manifest::{Manifest, Source, StageRecord};
 use crate::store::results::MANIFEST;
 
@@ -175,6 +175,7 @@ fn workflow(description: &Description<'_>) -> Value {
         "alternateName": manifest.study,
         "encodingFormat": "application/yaml",
         "contentSize": size(description.entries, &file),
+        "sha256": digest(description.entries, &file),
         "identifier": format!("blake3:{}", manifest.study_digest),
         "programmingLanguage": reference(LANGUAGE),
         "hasPart": references(kinds.into_iter().map(tool)),
@@ -285,8 +286,13 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
         ("cores", manifest.machine.cores.to_string()),
         ("threads", manifest.machine.threads.to_string()),
     ];
-    facts.extend(program.commit.clone().map(|commit| ("commit", commit)));
-    facts.extend(program.uncommitted_changes.map(|changes| ("uncommitted changes", changes.to_string())));
+    let folder_of_study = &manifest.study_folder;
+    facts.extend((!program.code.is_empty()).then(|| ("program code", program.code.clone())));
+    facts.extend(program.commit.clone().map(|commit| ("program commit", commit)));
+    let changes = |changes: Option<bool>| changes.map(|changes| changes.to_string());
+    facts.extend(changes(program.uncommitted_changes).map(|changes| ("program uncommitted changes", changes)));
+    facts.extend(folder_of_study.commit.clone().map(|commit| ("study commit", commit)));
+    facts.extend(changes(folder_of_study.uncommitted_changes).map(|changes| ("study uncommitted changes", changes)));
     let fact = |name: &str| format!("#fact-{}", name.replace(' ', "-"));
     let mut entities = vec![
         by(json!({
@@ -344,6 +350,10 @@ fn size(entries: &Entries, name: &str) -> String {
     entries.get(name).map_or(0, Vec::len).to_string()
 }
 
+fn digest(entries: &Entries, name: &str) -> String {
+    sha256(entries.get(name).map_or(&[], Vec::as_slice))
+}
+
 /// Every file but the study, which is the workflow.
 fn files(description: &Description<'_>) -> Vec<Value> {
     let manifest = description.manifest;
@@ -375,6 +385,7 @@ fn files(description: &Description<'_>) -> Vec<Value> {
             put("encodingFormat", json!(format));
         }
         put("contentSize", json!(size(description.entries, name)));
+        put("sha256", json!(digest(description.entries, name)));
         if let Some(table) = table {
             put("identifier", json!(format!("gearstudy-content:{}", table.content)));
         }

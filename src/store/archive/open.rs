@@ -13,7 +13,7 @@ use zip::result::ZipError;
 use zip::unstable::read::ZipIterable;
 use zip::{CompressionMethod, ZipArchive};
 
-use super::{ArchiveError, METADATA};
+use super::{ArchiveError, METADATA, sha256};
 
 /// An archive has a few dozen entries.
 pub const MOST_ENTRIES: usize = 10_000;
@@ -22,6 +22,8 @@ pub const MOST_BYTES: u64 = 1 << 30;
 /// Bytes of the description.
 const LARGEST_METADATA: u64 = 1 << 24;
 const LONGEST_NAME: usize = 255;
+/// Files with something wrong that are named; of more only their number is said.
+const MOST_TOLD: usize = 20;
 
 /// What `st_mode` says of the type of a file.
 const TYPE_OF_FILE: u32 = 0o170_000;
@@ -43,15 +45,13 @@ pub struct Archive<R> {
 /// [`ArchiveError`]: what is wrong with it.
 pub fn open(path: &Path) -> Result<Archive<BufReader<File>>, ArchiveError> {
     let name = path.display().to_string();
-    let file = File::open(path);
-    let file = file.and_then(|file| file.metadata().map(|metadata| (file, metadata)));
-    match file {
-        Err(error) => Err(ArchiveError::Unreadable { path: name, problem: error.to_string() }),
-        Ok((_, metadata)) if !metadata.is_file() => {
-            Err(ArchiveError::NoArchive { path: name, problem: "it is no file".to_owned() })
-        }
-        Ok((file, _)) => Archive::check(BufReader::new(file), &name),
+    let unreadable =
+        |error: std::io::Error| ArchiveError::Unreadable { path: name.clone(), problem: error.to_string() };
+    // Not opened yet: a pipe nobody writes to would be waited for.
+    if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
+        return Err(ArchiveError::NoArchive { path: name, problem: "it is no file".to_owned() });
     }
+    Archive::check(BufReader::new(File::open(path).map_err(unreadable)?), &name)
 }
 
 impl<R: Read + Seek> Archive<R> {
@@ -158,24 +158,14 @@ impl<R: Read + Seek> Archive<R> {
     pub fn described(&mut self) -> Result<String, ArchiveError> {
         let path = self.path.clone();
         let no = |problem: &str| ArchiveError::NoArchive { path: path.clone(), problem: problem.to_owned() };
-        let Some(&index) = self.entries.get(METADATA) else {
-            return Err(no(&format!("it has no `{METADATA}`, which says what is in it")));
-        };
-        let size = self.zip.by_index(index).map_or(0, |entry| entry.size());
-        if size > LARGEST_METADATA {
-            return Err(no(&format!("`{METADATA}` is larger than {} MiB", LARGEST_METADATA >> 20)));
-        }
-        let bytes = self.bytes(METADATA)?;
-        let value: Value =
-            serde_json::from_slice(&bytes).map_err(|error| self.damaged(METADATA, &error.to_string()))?;
+        let value = self.description()?;
         let graph = value["@graph"].as_array().map_or(&[][..], Vec::as_slice);
         let entity = |id: &str| graph.iter().find(|entity| entity["@id"] == id);
         let root = entity(METADATA).and_then(|metadata| entity(metadata["about"]["@id"].as_str()?));
         let root = root.ok_or_else(|| no(&format!("`{METADATA}` describes no data set")))?;
         let parts = root["hasPart"].as_array().map_or(&[][..], Vec::as_slice);
         for id in parts.iter().filter_map(|part| part["@id"].as_str()) {
-            let elsewhere = ["http://", "https://", "#"].iter().any(|start| id.starts_with(start));
-            if !elsewhere && !self.entries.contains_key(id) {
+            if !elsewhere(id) && !self.entries.contains_key(id) {
                 let problem = format!("`{METADATA}` names `{}`, which is not in it", id.escape_debug());
                 return Err(ArchiveError::Refused { path, problem });
             }
@@ -183,6 +173,64 @@ impl<R: Read + Seek> Archive<R> {
         let study = root["mainEntity"]["@id"].as_str().filter(|id| self.entries.contains_key(*id));
         study.map(str::to_owned).ok_or_else(|| no(&format!("`{METADATA}` names no study that is in it")))
     }
+
+    fn description(&mut self) -> Result<Value, ArchiveError> {
+        let no = |problem: String| ArchiveError::NoArchive { path: self.path.clone(), problem };
+        let Some(&index) = self.entries.get(METADATA) else {
+            return Err(no(format!("it has no `{METADATA}`, which says what is in it")));
+        };
+        let size = self.zip.by_index(index).map_or(0, |entry| entry.size());
+        if size > LARGEST_METADATA {
+            return Err(no(format!("`{METADATA}` is larger than {} MiB", LARGEST_METADATA >> 20)));
+        }
+        let bytes = self.bytes(METADATA)?;
+        serde_json::from_slice(&bytes).map_err(|error| self.damaged(METADATA, &error.to_string()))
+    }
+
+    /// Compares every file with the digest that the description gives of it.
+    ///
+    /// # Errors
+    /// All at once: files with other contents, without a digest, missing, and added.
+    pub fn intact(&mut self) -> Result<(), ArchiveError> {
+        let value = self.description()?;
+        let graph = value["@graph"].as_array().map_or(&[][..], Vec::as_slice);
+        let is_file = |entity: &Value| match &entity["@type"] {
+            Value::Array(types) => types.iter().any(|one| one == "File"),
+            one => one == "File",
+        };
+        let files = graph.iter().filter(|entity| is_file(entity));
+        let listed: BTreeMap<&str, Option<&str>> =
+            files.filter_map(|entity| Some((entity["@id"].as_str()?, entity["sha256"].as_str()))).collect();
+        let names: Vec<String> = self.entries.keys().filter(|name| *name != METADATA).cloned().collect();
+        let mut wrong = Vec::new();
+        for name in &names {
+            match listed.get(name.as_str()) {
+                None => wrong.push(format!("`{name}` was added")),
+                Some(None) => wrong.push(format!("`{name}` has no digest")),
+                Some(Some(digest)) if sha256(&self.bytes(name)?) != digest.to_ascii_lowercase() => {
+                    wrong.push(format!("`{name}` has other contents"));
+                }
+                Some(Some(_)) => {}
+            }
+        }
+        let missing = listed.keys().filter(|name| !elsewhere(name) && !self.entries.contains_key(**name));
+        wrong.extend(missing.map(|name| format!("`{}` is missing", name.escape_debug())));
+        if wrong.is_empty() {
+            return Ok(());
+        }
+        let more = wrong.len().saturating_sub(MOST_TOLD);
+        wrong.truncate(MOST_TOLD);
+        if more > 0 {
+            wrong.push(format!("and {more} more"));
+        }
+        let problem = format!("it is not what `{METADATA}` says: {}", wrong.join(", "));
+        Err(ArchiveError::Damaged { path: self.path.clone(), problem })
+    }
+}
+
+/// Whether an identifier is none of a file in the archive.
+fn elsewhere(id: &str) -> bool {
+    ["http://", "https://", "#"].iter().any(|start| id.starts_with(start))
 }
 
 /// What is wrong with a name.

@@ -8,9 +8,9 @@ use serde_json::json;
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::METADATA;
 use super::open::{Archive, MOST_BYTES, MOST_ENTRIES, open};
 use super::pack::{Entries, pack};
+use super::{METADATA, sha256};
 
 const STUDY: &str = "a.yaml";
 const TABLE: &str = "results/a/t.parquet";
@@ -23,6 +23,17 @@ fn metadata(parts: &[&str]) -> Vec<u8> {
         { "@id": "./", "hasPart": parts, "mainEntity": { "@id": STUDY } },
     ]);
     serde_json::to_vec(&json!({ "@graph": graph })).unwrap()
+}
+
+/// The entries, described with their digests.
+fn digested() -> Entries {
+    let mut entries = entries();
+    let value: serde_json::Value = serde_json::from_slice(&entries[METADATA]).unwrap();
+    let mut graph = value["@graph"].as_array().unwrap().clone();
+    let files = entries.iter().filter(|(name, _)| *name != METADATA);
+    graph.extend(files.map(|(name, bytes)| json!({ "@id": name, "@type": ["File", "X"], "sha256": sha256(bytes) })));
+    entries.insert(METADATA.to_owned(), serde_json::to_vec(&json!({ "@graph": graph })).unwrap());
+    entries
 }
 
 fn entries() -> Entries {
@@ -204,6 +215,31 @@ fn a_description_that_does_not_describe_is_refused() {
     }
     let other = String::from_utf8(metadata(&[])).unwrap().replace(STUDY, "../a.yaml");
     refused(&described(other.into_bytes()), "names no study");
+}
+
+/// Checksums of the zip are those of whoever packed it last; the description says what was archived.
+#[test]
+fn files_are_those_that_the_description_names() {
+    assert_eq!(sha256(b"abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad", "FIPS 180-4, B.1");
+    let intact =
+        |entries: &Entries| check(&pack(entries).unwrap()).unwrap().intact().map_err(|error| error.to_string());
+    assert_eq!(intact(&digested()), Ok(()));
+    let mut changed = digested();
+    changed.get_mut(TABLE).unwrap()[299] = 8;
+    changed.insert("more".to_owned(), Vec::new());
+    let said = intact(&changed).unwrap_err();
+    let both = "is not what `ro-crate-metadata.json` says: `more` was added, `results/a/t.parquet` has other contents";
+    assert!(said.ends_with(both), "{said}");
+    let text = String::from_utf8(digested()[METADATA].clone()).unwrap();
+    let described = |text: String| {
+        let mut entries = digested();
+        entries.insert(METADATA.to_owned(), text.into_bytes());
+        intact(&entries).unwrap_err()
+    };
+    assert!(described(text.replace("sha256", "sha1")).contains("`a.yaml` has no digest"));
+    let gone = text.replace("\"@graph\":[", "\"@graph\":[{\"@id\":\"gone\",\"@type\":\"File\"},");
+    assert!(described(gone).ends_with("says: `gone` is missing"));
+    assert!(intact(&entries()).unwrap_err().contains("`a.yaml` was added"), "no digest at all");
 }
 
 /// Bytes changed, cut out, put in, moved: an answer, never a panic; what is accepted can be read.

@@ -44,7 +44,7 @@ fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: Manifest) -> (Pu
         asked.set(asked.get() + 1);
         parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
     };
-    let facts = || Facts { program: Program::default(), machine: Machine::default(), written: "now".into() };
+    let facts = Facts::default;
     (folder.publish(manifest, facts, &bytes).unwrap(), asked.get())
 }
 
@@ -202,7 +202,7 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     assert_eq!((listed(&first, "ste.a.csv"), listed(&first, "ste.b.dxf")), (Some(4), Some(6)));
     let nothing = |_: &str, _: &str| panic!("nothing is read");
     assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"]))), Changes::default());
-    let facts = || Facts { program: Program::default(), machine: Machine::default(), written: "now".into() };
+    let facts = Facts::default;
     assert_eq!(folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing).unwrap().changes, Changes::default());
 
     // A file that was cut short comes back from its table.

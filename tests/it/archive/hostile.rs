@@ -11,7 +11,7 @@ use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
 
-use super::{archived, entries, manifest, put_manifest};
+use super::{archived, entries, manifest, packed, put_manifest};
 use crate::desk::Desk;
 
 /// Verifies what `change` makes of an archive, which must end with `code` and one message with `wanted` in it.
@@ -19,7 +19,7 @@ use crate::desk::Desk;
 fn refused(desk: &Desk, code: i32, wanted: &str, change: impl FnOnce(&mut Entries)) {
     let mut changed = entries(&desk.path("a.zip"));
     change(&mut changed);
-    fs::write(desk.path("b.zip"), pack(&changed).unwrap()).unwrap();
+    fs::write(desk.path("b.zip"), packed(changed)).unwrap();
     let (_, error) = desk.run(&["verify", "b.zip", "--quiet"], code);
     assert!(error.contains(wanted) && !error.contains("bug"), "{error}");
 }

@@ -16,7 +16,7 @@ use crate::desk::Desk;
 const IGNORED: &str = ".gearstudy/\nresults/*/*\n!results/*/manifest.json\n!results/*/*.summary.parquet\n\
     !results/*/*.verdicts.parquet\n";
 
-fn git(desk: &Desk, words: &[&str]) -> String {
+pub fn git(desk: &Desk, words: &[&str]) -> String {
     let identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"];
     let output = Command::new("git").arg("-C").arg(desk.path("")).args(identity).args(words).output().unwrap();
     assert!(output.status.success(), "{words:?}: {}", String::from_utf8_lossy(&output.stderr));
@@ -24,7 +24,7 @@ fn git(desk: &Desk, words: &[&str]) -> String {
 }
 
 /// A repository in which the quick study was run and its results committed.
-fn committed() -> Desk {
+pub fn committed() -> Desk {
     let desk = Desk::with("quick.yaml");
     git(&desk, &["init", "-q", "-b", "main"]);
     fs::write(desk.path(".gitignore"), IGNORED).unwrap();
@@ -41,7 +41,7 @@ fn edit(desk: &Desk, from: &str, to: &str) {
     fs::write(desk.path("quick.yaml"), changed).unwrap();
 }
 
-fn json(desk: &Desk, words: &[&str], code: i32) -> Value {
+pub fn json(desk: &Desk, words: &[&str], code: i32) -> Value {
     let words = [&["diff", "--format", "json"], words].concat();
     serde_json::from_str(&desk.run(&words, code).0).unwrap()
 }

@@ -2,10 +2,12 @@
 
 mod bad;
 mod diff;
+mod disk;
 mod ended;
 mod places;
 mod python;
 mod readme;
+mod status;
 mod stubborn;
 mod work;
 

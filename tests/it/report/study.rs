@@ -91,6 +91,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
         study_digest: "5d".repeat(32),
         program: Program {
             version: "0.1.0".to_owned(),
+            code: "c0de".repeat(8),
             commit: Some("524add1f".repeat(5)),
             uncommitted_changes: Some(false),
             rustc: "rustc 1.95.0".to_owned(),

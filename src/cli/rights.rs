@@ -1,0 +1,100 @@
+//! Licence and authors of an archive, as words of the command line.
+//!
+//! SPDX licence list: <https://spdx.org/licenses/>. ORCID iD: 16 digits, the last a check by ISO/IEC 7064:2003, MOD 11-2.
+//! Must not know: what they are put into.
+
+use crate::base::error::nearest;
+use crate::store::archive::metadata::Author;
+
+const ORCID: &str = "https://orcid.org/";
+
+/// An identifier of the SPDX list, in its own letters.
+///
+/// # Errors
+/// When it is none, with the nearest that is.
+pub(super) fn license(text: &str) -> Result<String, String> {
+    let (name, later) = text.strip_suffix('+').map_or((text, ""), |name| (name, "+"));
+    if let Some(id) = spdx::license_id(name) {
+        return Ok(format!("{}{later}", id.name));
+    }
+    let near = nearest(text, spdx::identifiers::LICENSES.iter().map(|license| license.name));
+    let help = near.map_or_else(|| "for example `CC-BY-4.0`".to_owned(), |near| format!("did you mean `{near}`?"));
+    Err(format!("`{text}` is no SPDX identifier of a licence; {help}"))
+}
+
+/// A name, and an ORCID iD behind it where there is one.
+///
+/// # Errors
+/// When there is no name, or the last digit of the iD does not fit the others.
+pub(super) fn author(text: &str) -> Result<Author, String> {
+    let (name, orcid) = match text.trim().rsplit_once(' ') {
+        Some((name, last)) if looks_like_orcid(last) => (name.trim(), Some(last.trim_start_matches(ORCID).to_owned())),
+        _ => (text.trim(), None),
+    };
+    if name.is_empty() || looks_like_orcid(name) {
+        return Err(format!("`{text}` is no author; write a name, or a name and an ORCID iD"));
+    }
+    if let Some(orcid) = orcid.as_ref().filter(|orcid| !is_orcid(orcid)) {
+        return Err(format!("`{orcid}` is no ORCID iD: its last digit does not fit the others; is one mistyped?"));
+    }
+    Ok(Author { name: name.to_owned(), orcid })
+}
+
+/// Four groups of four digits.
+fn looks_like_orcid(word: &str) -> bool {
+    let digits: Vec<&str> = word.trim_start_matches(ORCID).split('-').collect();
+    let group = |digits: &&str| digits.len() == 4 && digits.chars().all(|c| c.is_ascii_digit() || c == 'X');
+    digits.len() == 4 && digits.iter().all(group)
+}
+
+/// Whether the last digit is the check of the others; `X` is ten.
+fn is_orcid(orcid: &str) -> bool {
+    let digits: Option<Vec<u32>> = orcid
+        .chars()
+        .filter(|c| *c != '-')
+        .enumerate()
+        .map(|(place, c)| if c == 'X' && place == 15 { Some(10) } else { c.to_digit(10) })
+        .collect();
+    let Some((check, others)) = digits.as_deref().and_then(<[u32]>::split_last) else { return false };
+    let total = others.iter().fold(0, |total, digit| (total + digit) * 2 % 11);
+    others.len() == 15 && (12 - total) % 11 == *check
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The iDs are those of <https://support.orcid.org/hc/en-us/articles/360006897674> (its example, and one with `X`).
+    #[test]
+    fn authors_are_names_with_or_without_an_orcid() {
+        let parsed = |text| author(text).map(|author| (author.name, author.orcid));
+        let orcid = Some("0000-0002-1825-0097".to_owned());
+        assert_eq!(parsed("Ada Lovelace"), Ok(("Ada Lovelace".to_owned(), None)));
+        assert_eq!(parsed("Ada Lovelace 0000-0002-1825-0097"), Ok(("Ada Lovelace".to_owned(), orcid.clone())));
+        assert_eq!(parsed(" Ada https://orcid.org/0000-0002-1825-0097"), Ok(("Ada".to_owned(), orcid)));
+        assert_eq!(parsed("Ada 0000-0002-1694-233X").unwrap().1.as_deref(), Some("0000-0002-1694-233X"));
+        assert!(parsed("").is_err() && parsed("0000-0002-1825-0097").is_err());
+        // Any one digit mistyped, and any two neighbours swapped that differ, is found.
+        let right = "0000-0002-1825-0097";
+        for place in (0..right.len()).filter(|place| right.as_bytes()[*place] != b'-') {
+            for digit in b'0'..=b'9' {
+                let mut wrong = right.as_bytes().to_vec();
+                wrong[place] = digit;
+                let wrong = String::from_utf8(wrong).unwrap();
+                assert_eq!(is_orcid(&wrong), wrong == right, "{wrong}");
+            }
+        }
+        assert!(parsed("Ada 0000-0002-1825-0079").unwrap_err().contains("does not fit"));
+        assert!(parsed("Ada 0000-X002-1825-0097").is_err());
+    }
+
+    #[test]
+    fn licences_are_those_of_the_list() {
+        assert_eq!(license("CC-BY-4.0").as_deref(), Ok("CC-BY-4.0"));
+        assert!(license("LGPL-2.1+").is_ok() && license("MIT").is_ok());
+        assert!(license("CC-BY-4").unwrap_err().contains("did you mean `CC-BY-4.0`?"), "{:?}", license("CC-BY-4"));
+        for wrong in ["", "my own", "../x", "NO-SUCH-1.0"] {
+            assert!(license(wrong).unwrap_err().contains("no SPDX identifier"), "{wrong}");
+        }
+    }
+}

@@ -1,0 +1,159 @@
+//! `status`: what of the results is up to date, what is not, and why.
+//!
+//! Must not know: how it is found out.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use super::arguments::Places;
+use super::progress::out;
+use super::{Ending, pages, studies};
+use crate::runner::standing::{StageStanding, Standing, State, standing};
+use crate::stage;
+use crate::store::cache::{Cache, Lookup};
+use crate::store::results::Folder;
+use crate::study::{self, Study};
+
+/// A study and where it stands.
+struct Told {
+    study: Study,
+    standing: Standing,
+    /// Whether page and figures are those of the last run.
+    report: bool,
+    /// Stages that are up to date, but whose tables the cache does not have: a run computes them again.
+    uncached: usize,
+}
+
+/// Why nothing can be said of a study.
+enum Fault {
+    Study(study::LoadError),
+    Other(String),
+}
+
+/// Says it of every study; one that cannot be read silences no other.
+pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool) -> Result<(), Ending> {
+    let files = studies::named_or_all(words)?;
+    // Only looked into: a missing one is not made.
+    let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
+    let mut faults = Vec::new();
+    let (mut all, mut values) = (Vec::new(), Vec::new());
+    for file in &files {
+        match told(file, places, cache.as_ref()) {
+            Ok(told) => {
+                studies::distinct(&all, &told.study)?;
+                if as_json {
+                    values.push(value(&told));
+                } else {
+                    out(&text(&told));
+                }
+                all.push(told.study);
+            }
+            Err(fault) => {
+                let problem = match &fault {
+                    // The first line names the place; help is for those who ask for this study alone.
+                    Fault::Study(error) => error.to_string().lines().next().unwrap_or_default().to_owned(),
+                    Fault::Other(problem) => problem.clone(),
+                };
+                if as_json {
+                    values.push(json!({ "file": file, "problem": problem }));
+                } else if files.len() > 1 {
+                    out(&format!("{problem}\n"));
+                }
+                faults.push(fault);
+            }
+        }
+    }
+    if as_json {
+        out(&format!("{:#}\n", Value::Array(values)));
+    }
+    let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
+    match faults.pop() {
+        None => Ok(()),
+        Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
+        Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
+        Some(_) => {
+            let message = format!("{number} of {} studies could not be looked at", files.len());
+            Err(if invalid { Ending::Unreadable(message) } else { Ending::Usage(message) })
+        }
+    }
+}
+
+fn told(file: &Path, places: &Places, cache: Option<&Cache>) -> Result<Told, Fault> {
+    let study = study::load(file).map_err(Fault::Study)?;
+    let folder = Folder::new(&places.results, &study.name);
+    let standing = standing(&study, &folder, stage::code_digest)
+        .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
+    let report = pages::are_current(&folder);
+    let kept = |stage: &&StageStanding| {
+        let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
+        stage.state != State::UpToDate || stage.keys.iter().all(|key| kept(*key))
+    };
+    let uncached = standing.stages.iter().filter(|stage| !kept(stage)).count();
+    Ok(Told { study, standing, report, uncached })
+}
+
+fn value(told: &Told) -> Value {
+    let Told { study, standing, report, uncached } = told;
+    let of_stage = |stage: &StageStanding| {
+        json!({
+            "name": stage.name, "state": stage.state.word(), "why": stage.state.why(), "not_here": stage.absent,
+        })
+    };
+    let stages: Vec<Value> = standing.stages.iter().map(of_stage).collect();
+    let tables_here = standing.has_results && standing.absent().is_empty();
+    json!({
+        "study": study.name, "file": study.path,
+        // A clone has neither all tables nor the page, and is up to date nevertheless.
+        "up_to_date": standing.is_up_to_date() && (*report || !tables_here),
+        "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,
+        "text_changed": standing.text_changed, "gone": standing.gone, "report_up_to_date": report, "stages": stages,
+    })
+}
+
+fn text(told: &Told) -> String {
+    let Told { study, standing, report, uncached } = told;
+    let next = |command: &str| format!("next: gearstudy {command} {}", study.path.display());
+    if !standing.has_results {
+        return format!("{}: no results; {}\n", study.name, next("run"));
+    }
+    let others: Vec<&StageStanding> = standing.stages.iter().filter(|stage| stage.state != State::UpToDate).collect();
+    let mut parts = Vec::new();
+    if !others.is_empty() {
+        parts.push(format!("{} of {} stages are not up to date", others.len(), standing.stages.len()));
+    }
+    if !standing.gone.is_empty() {
+        parts.push(format!("the results have stages that the study has not: {}", standing.gone.join(", ")));
+    }
+    if parts.is_empty() && standing.text_changed {
+        parts.push("the study's file has changed, but no stage of it".to_owned());
+    }
+    if parts.is_empty() {
+        return format!("{}: {}\n", study.name, up_to_date(standing, *report, *uncached, next));
+    }
+    let mut text = format!("{}: {}; {}\n", study.name, parts.join("; "), next("run"));
+    let width = others.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
+    for stage in others {
+        text += &format!("  {:width$}  {:7}  {}\n", stage.name, stage.state.word(), stage.state.why());
+    }
+    text
+}
+
+/// Every stage is; what is not here, and what a run would do all the same.
+fn up_to_date(standing: &Standing, report: bool, uncached: usize, next: impl Fn(&str) -> String) -> String {
+    let absent = standing.absent().len();
+    let again = match uncached {
+        0 => "takes them from the cache".to_owned(),
+        some => format!("computes {some} of {} stages again", standing.stages.len()),
+    };
+    match (absent, report, uncached) {
+        (0, false, _) => format!("the report is not that of the last run; {}", next("report")),
+        (0, true, 0) => "up to date".to_owned(),
+        (0, true, some) => {
+            let all = standing.stages.len();
+            format!("up to date; the cache does not have {some} of {all} stages, so a run computes them again")
+        }
+        (1, ..) => format!("up to date, 1 table not here; {} {again}", next("run")),
+        (many, ..) => format!("up to date, {many} tables not here; {} {again}", next("run")),
+    }
+}
