@@ -29,6 +29,8 @@ pub struct Loading<'a> {
     pub(super) breaks: Vec<f64>,
     /// Interferences at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
+    /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
+    pub(super) refines: bool,
 }
 
 /// What corner contact adds.
@@ -86,6 +88,8 @@ impl<'a> Loading<'a> {
         let slices = Sliced::new(cycle, design, &face);
         // Where slices hold each other, the load of a pair is no function of its interference alone.
         let levels = if slices.is_some() { Vec::new() } else { face.levels() };
+        // Slices take up load one by one: no cut makes what they carry smooth.
+        let refines = slices.is_none() && !face.is_sliced();
         let mut loading = Self {
             levels,
             cycle,
@@ -95,6 +99,7 @@ impl<'a> Loading<'a> {
             profiles,
             corners: None,
             breaks: Vec::new(),
+            refines,
         };
         let pair = &cycle.pair;
         if cycle.settings.corner_contact == CornerContact::Exact {
@@ -172,16 +177,16 @@ impl<'a> Loading<'a> {
         self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
-    /// The same without cuts where a stretch of the face begins to touch or has come into contact all along.
+    /// The same without the cuts that only integrals need: extrema are refined on the function itself.
     #[must_use]
-    pub fn without_levels(&self) -> Self {
-        Self { levels: Vec::new(), ..self.clone() }
+    pub fn for_extrema(&self) -> Self {
+        Self { levels: Vec::new(), refines: false, ..self.clone() }
     }
 
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
-        Self { force: 0.0, levels: Vec::new(), ..self.clone() }
+        Self { force: 0.0, levels: Vec::new(), refines: false, ..self.clone() }
     }
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
