@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use gearstudy::base::seed::Seed;
+use gearstudy::base::work::Tally;
 use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
 use gearstudy::gear::geometry::Pair;
 use gearstudy::gear::geometry::root::RootShape;
@@ -85,6 +86,7 @@ impl Stages {
             stop: &AtomicBool::new(false),
             progress: &|_| {},
             warn: &|_| {},
+            work: &Tally::default(),
         };
         node.stage.run(&context, &inputs).unwrap_or_else(|error| panic!("{name}: {error:?}"))
     }

@@ -48,6 +48,7 @@ fn publish(folder: &Path, table: &Table) {
         status: "ran".to_owned(),
         why: String::new(),
         seconds: 0.0,
+        work: std::collections::BTreeMap::new(),
         warnings: Vec::new(),
         left_out: Vec::new(),
         tables: vec![record],

@@ -67,8 +67,9 @@ impl Rule {
     }
 }
 
-/// P_n and P_{n−1} at `x`.
-fn legendre(degree: usize, x: f64) -> (f64, f64) {
+/// Legendre's P_n and P_{n−1} at `x`, for n ≥ 1.
+#[must_use]
+pub fn legendre(degree: usize, x: f64) -> (f64, f64) {
     let (mut value, mut before) = (x, 1.0);
     for k in 2..=degree {
         let k = k as f64;

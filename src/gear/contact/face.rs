@@ -192,31 +192,40 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// Width means of `response` (value and slope at a local interference > 0), by slices.
+    /// Width means of `response` (value and slope at a local interference > 0), by slices. The slope is that of the sum
+    /// itself, whose slices move as the contact widens: Newton's method for pairs that nearly share their deflection
+    /// takes more of its digits than slices give the integral of slopes.
     #[must_use]
     pub fn summed(&self, interference: f64, response: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
         let (mut sum, mut slope) = (0.0, 0.0);
-        let mut add = |share: f64, depth: f64| {
+        let mut add = |share: f64, depth: f64, [widening, sinking]: [f64; 2]| {
             if depth > 0.0 {
                 let (value, rise) = response(depth);
                 sum += share * value;
-                slope += share * rise;
+                slope += widening * value + share * sinking * rise;
             }
         };
         match &self.shape {
-            Shape::Flat => add(1.0, interference),
+            Shape::Flat => add(1.0, interference, [0.0, 1.0]),
             Shape::Quadratic(pieces) => {
                 for piece in pieces {
                     let depth = interference - piece.base;
-                    let reach = if depth > 0.0 { piece.reach(depth) } else { 0.0 };
+                    if depth <= 0.0 {
+                        continue;
+                    }
+                    let reach = piece.reach(depth);
+                    let rate = piece.widening(depth, reach);
                     for (node, weight) in self.rule.nodes.iter().zip(&self.rule.weights) {
                         let distance = reach * node;
                         let rise = distance * (piece.slope + distance * piece.bend);
-                        add(piece.weight * reach * weight, depth - rise);
+                        let sinking = 1.0 - node * rate * (piece.slope + 2.0 * distance * piece.bend);
+                        add(piece.weight * reach * weight, depth - rise, [piece.weight * rate * weight, sinking]);
                     }
                 }
             }
-            Shape::Sliced(slices) => slices.iter().for_each(|(share, deviation)| add(*share, interference - deviation)),
+            Shape::Sliced(slices) => {
+                slices.iter().for_each(|(share, deviation)| add(*share, interference - deviation, [0.0, 1.0]));
+            }
         }
         (sum, slope)
     }
@@ -250,6 +259,11 @@ impl Piece {
         // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
         let root = (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt();
         (2.0 * depth / (self.slope + root)).min(self.length)
+    }
+
+    /// How fast it grows with the depth.
+    fn widening(&self, depth: f64, reach: f64) -> f64 {
+        if depth >= self.rise { 0.0 } else { 1.0 / (self.slope + 2.0 * self.bend * reach) }
     }
 
     #[inline]
@@ -310,6 +324,27 @@ mod tests {
                 assert!((width - share).abs() < 2e-5, "{index} {interference}: {width} {share}");
                 let (summed, _) = face.summed(interference, |depth| (depth, 1.0));
                 assert!((summed / passed - 1.0).abs() < 1e-12, "slices are exact for what is quadratic");
+            }
+        }
+    }
+
+    /// The slope of a sum over few slices of a law that is no polynomial is that of the sum, not of the integral: central
+    /// differences tell, since seventeen slices of w/(1 − ln w) are off by 1e-4.
+    #[test]
+    fn the_slope_is_that_of_the_sum_of_slices() {
+        let law = |w: f64| {
+            let total = 1.0 - libm::log(w / 1e-3);
+            (w / total, (1.0 + 1.0 / total) / total)
+        };
+        let rule = Rule::new(9);
+        for (index, design) in designs().iter().enumerate() {
+            let face = Face::new(design, WIDTH, &rule);
+            for interference in [1e-8, 3e-7, 2.5e-6, 7e-6, 60e-6] {
+                let step = 1e-5 * interference;
+                let [below, above] = [-step, step].map(|step| face.summed(interference + step, law).0);
+                let (_, slope) = face.summed(interference, law);
+                let ratio = slope * 2.0 * step / (above - below);
+                assert!((ratio - 1.0).abs() < 1e-8, "{index} {interference}: {ratio}");
             }
         }
     }

@@ -117,9 +117,9 @@ pub struct Report {
     pub digits: Vec<DigitsLost>,
 }
 
-/// Digits that may be lost on top of what the condition number takes: log10 of 2¹⁵ roundings that all go one way, more
+/// Digits that may be lost on top of what the condition number takes: log10 of 2¹³ roundings that all go one way, more
 /// than any number of the chain has behind it.
-pub const MOST_LOST: f64 = 4.5;
+pub const MOST_LOST: f64 = 4.0;
 /// Roundings in a path position.
 const ROUNDINGS: f64 = 4.0;
 /// Of the base pitch.

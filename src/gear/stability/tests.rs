@@ -138,6 +138,60 @@ fn what_was_mended_stays_mended() {
     assert!(found.condition > 100.0 && found.lost < 6.0, "{found:?}");
 }
 
+/// Digits of the mean that were lost between positions, with as many of these as a study takes by default: where two
+/// touches lie next to each other, and where a relief rises by more over the rounding of a position than the flanks
+/// deflect. Torque, relief, its length, crowning, digits lost before beyond the condition number.
+#[test]
+fn few_positions_lose_nothing() {
+    let rules = Rules::new();
+    let beyond = |case: &Case| {
+        let report = check(case, &rules);
+        assert!(report.findings.iter().all(|finding| finding.verdict == Verdict::Holds), "{:?}", report.findings);
+        let mean = report.digits.iter().find(|digits| digits.quantity == "mean transmission error").unwrap();
+        mean.lost - libm::log10(mean.condition.max(1.0))
+    };
+    for (torque, relief, relief_length, crowning, before) in [
+        (1.0, 8e-6, 4e-3, 6e-6, 6.1),
+        (50.0, 100e-6, 4e-3, 6e-6, 6.8),
+        (3e-12, 6.5e-6, 0.49e-3, 0.0, 3.5),
+        (1.0, 8e-6, 4e-3, 0.0, 4.5),
+    ] {
+        let mut case = base();
+        case.model.settings.positions = Settings::default().positions;
+        (case.torque, case.relief, case.relief_length, case.crowning) = (torque, relief, relief_length, crowning);
+        if crowning == 0.0 && relief_length == 4e-3 {
+            case.model.assumptions.contact = ContactLaw::LoadDependent;
+        }
+        let found = beyond(&case);
+        println!("{torque} {relief} {crowning}: {before} {found}");
+        assert!(found < before - 2.0, "{torque} {relief} {crowning}: {found}");
+    }
+}
+
+/// On tiny bores all teeth turn together, so that own and mutual compliances agree to a thousandth and better: what is
+/// left decides how slices of a crowned face share the load. The peak-to-peak was 4e-4 off.
+#[test]
+fn teeth_that_turn_together_share_the_load_exactly() {
+    let rules = Rules::new();
+    for (bore, contact) in
+        [(0.01, ContactLaw::LoadDependent), (0.001, ContactLaw::LoadDependent), (0.001, ContactLaw::Linear)]
+    {
+        let mut case = base();
+        case.model.options.fields[1].1.value = Value::Choice("ring");
+        case.model.assumptions = Assumptions { contact, coupled: true, ..case.model.assumptions };
+        (case.relief, case.relief_length, case.crowning) = (8e-6, 4e-3, 6e-6);
+        for gear in &mut case.gears {
+            gear.bore_radius *= 1.75 * bore;
+        }
+        let report = check(&case, &rules);
+        for name in ["scale", "which gear drives"] {
+            let found = report.findings.iter().find(|finding| finding.invariant == name).unwrap();
+            assert!(found.value < 1e-13, "{bore} {contact:?}: {found:?}");
+        }
+        assert!(report.findings.iter().all(|found| found.verdict != Verdict::Broken), "{:?}", report.findings);
+    }
+}
+
 /// Every check is able to fail: a report with a wrong number in it is broken.
 #[test]
 fn findings_break_where_a_value_is_above_its_limit_or_no_number() {

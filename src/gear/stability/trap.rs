@@ -9,7 +9,6 @@ use super::{Case, Finding, Model, TABLE};
 use crate::base::record::{Entry, Value};
 use crate::gear::compliance::ContactLaw;
 use crate::gear::geometry::root::RootShape;
-use crate::gear::transmission_error::cycle::Settings;
 
 /// Distance of the contact ratio from a whole number.
 const NEAR: f64 = 1e-6;
@@ -60,8 +59,6 @@ pub fn traps(base: &Point, model: &Model) -> Vec<Case> {
     });
     let weber = Model {
         assumptions: super::Assumptions { contact: ContactLaw::LoadDependent, ..model.assumptions },
-        // A pair takes up load like w/ln w, which the nodes between two touches near each other integrate to 1e-9 only.
-        settings: Settings { positions: 8 * model.settings.positions, ..model.settings },
         ..model.clone()
     };
     for torque in [1e-12, 1e-6, 1.0, 1e9] {

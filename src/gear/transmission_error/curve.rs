@@ -134,8 +134,7 @@ impl Loading<'_> {
     /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        // Extrema are refined on the function itself and need no smooth spans.
-        let trace = self.without_levels().trace();
+        let trace = self.for_extrema().trace();
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         let rows = &self.cycle.rows;
         let largest = trace.largest(rows, value).value;

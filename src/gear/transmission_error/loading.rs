@@ -31,6 +31,8 @@ pub struct Loading<'a> {
     /// Interferences at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
     pub(super) count: Count<'a>,
+    /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
+    pub(super) refines: bool,
 }
 
 /// What corner contact adds.
@@ -93,6 +95,8 @@ impl<'a> Loading<'a> {
             Elasticity::Logarithmic { .. } => face.slices(),
         };
         let count = Count::new(&cycle.work, slices.as_ref().map_or(uncoupled, Sliced::count));
+        // Slices take up load one by one: no cut makes what they carry smooth.
+        let refines = slices.is_none() && !face.is_sliced();
         let mut loading = Self {
             count,
             levels,
@@ -103,6 +107,7 @@ impl<'a> Loading<'a> {
             profiles,
             corners: None,
             breaks: Vec::new(),
+            refines,
         };
         let pair = &cycle.pair;
         if cycle.settings.corner_contact == CornerContact::Exact {
@@ -180,16 +185,16 @@ impl<'a> Loading<'a> {
         self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
-    /// The same without cuts where a stretch of the face begins to touch or has come into contact all along.
+    /// The same without the cuts that only integrals need: extrema are refined on the function itself.
     #[must_use]
-    pub fn without_levels(&self) -> Self {
-        Self { levels: Vec::new(), ..self.clone() }
+    pub fn for_extrema(&self) -> Self {
+        Self { levels: Vec::new(), refines: false, ..self.clone() }
     }
 
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
-        Self { force: 0.0, levels: Vec::new(), ..self.clone() }
+        Self { force: 0.0, levels: Vec::new(), refines: false, ..self.clone() }
     }
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are

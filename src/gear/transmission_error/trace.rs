@@ -7,7 +7,7 @@
 
 use crate::numeric::extremum::maximum;
 use crate::numeric::harmonics::Node;
-use crate::numeric::lobatto::Rule;
+use crate::numeric::lobatto::{Rule, legendre};
 
 /// Nodes of a span.
 pub const NODES: usize = 8;
@@ -24,13 +24,31 @@ const PLACE: f64 = 1e-5;
 pub struct Rows {
     pub nodes: [f64; NODES],
     pub weights: [f64; NODES],
+    /// What turns values into the coefficients of the last two Legendre polynomials that the nodes hold.
+    last: [[f64; NODES]; 2],
 }
 
 impl Rows {
     #[must_use]
     pub fn new() -> Self {
         let rule = Rule::new(NODES);
-        Self { nodes: std::array::from_fn(|i| rule.nodes[i]), weights: std::array::from_fn(|i| rule.weights[i]) }
+        let nodes: [f64; NODES] = std::array::from_fn(|i| rule.nodes[i]);
+        let weights: [f64; NODES] = std::array::from_fn(|i| rule.weights[i]);
+        let last = [NODES - 2, NODES - 1].map(|degree| {
+            let values = nodes.map(|node| legendre(degree, 2.0 * node - 1.0).0);
+            let square: f64 = values.iter().zip(&weights).map(|(value, weight)| weight * value * value).sum();
+            std::array::from_fn(|i| weights[i] * values[i] / square)
+        });
+        Self { nodes, weights, last }
+    }
+
+    /// The larger of the last two coefficients of the polynomial through the values, over the largest value: how far the
+    /// nodes are from following a function.
+    #[must_use]
+    pub fn tail(&self, values: &[f64; NODES]) -> f64 {
+        let coefficient = |row: &[f64; NODES]| row.iter().zip(values).map(|(a, b)| a * b).sum::<f64>().abs();
+        let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
+        coefficient(&self.last[0]).max(coefficient(&self.last[1])) / size.max(f64::MIN_POSITIVE)
     }
 }
 
@@ -253,6 +271,20 @@ mod tests {
         for touches in [[false, false], [true, false], [false, true], [true, true]] {
             assert!((total(touches, &|x| 1.0 + x * x * x) - 6.0).abs() < 1e-13);
         }
+    }
+
+    #[test]
+    fn the_tail_tells_what_the_nodes_follow() {
+        let rows = Rows::new();
+        let tail = |function: &dyn Fn(f64) -> f64| rows.tail(&rows.nodes.map(function));
+        assert!(tail(&|x| 3.0 + x.powi(5)) < 1e-14);
+        // Legendre's own P_6 and P_7 on 0..=1, whose largest value at the nodes is 1.
+        for degree in [6, 7] {
+            assert!((tail(&|x| legendre(degree, 2.0 * x - 1.0).0) - 1.0).abs() < 1e-14);
+        }
+        // Bernstein's ellipse of a pole a quarter of the span beyond its end: (1.5 + √1.25)⁻⁷ = 1e-3 or so.
+        assert!((1e-5..1e-3).contains(&tail(&|x| 1.0 / (1.25 - x))));
+        assert!(tail(&|x| 1.0 / (9.0 - x)) < 1e-9);
     }
 
     #[test]

@@ -11,13 +11,21 @@ use super::trace::{NODES, Span, Trace};
 pub(super) const CLOSEST: f64 = 1e-10;
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
+/// Roundings of a path position, from the roll angle where a modification starts and back.
+const ROUNDINGS: f64 = 4.0;
+/// What the last of a span's polynomials may hold of the transmission error: quadrature is then good to about the square
+/// of it, next to a change of a logarithmic law to 1e-12.
+const TAIL: f64 = 1e-8;
 
 impl Loading<'_> {
     /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
     pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[State; NODES])) {
         let closest = CLOSEST * self.cycle.period();
+        let rounding = ROUNDINGS * f64::EPSILON * self.cycle.pair.tangent_length;
         for zone in &self.cycle.zones {
             let mut start = zone.start;
+            // A steep relief makes much of a rounded position, so that where one starts the limit from inside is taken.
+            let mut inwards = [0.0; 2];
             let inside = self.breaks.iter().copied().filter(|cut| zone.end - cut > closest).chain([zone.end]);
             for end in inside {
                 if end - start <= closest {
@@ -26,49 +34,48 @@ impl Loading<'_> {
                 let panels = ((end - start) / longest - 1e-9).ceil().max(1.0);
                 let width = (end - start) / panels;
                 let mut from = start;
-                let mut first = self.state(start, zone.pairs);
+                inwards[1] = if end < zone.end { rounding } else { 0.0 };
+                let mut first = self.state(start + inwards[0], zone.pairs);
                 let mut panel = 1.0;
                 while panel <= panels {
                     let to = if panel < panels { start + width * panel } else { end };
                     let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
                     let mut cuts = MOST_CUTS;
-                    first = self.smooth(&span, first, &mut cuts, &mut visit);
+                    let last = self.state(if panel < panels { to } else { end - inwards[1] }, zone.pairs);
+                    self.smooth(&span, [first, last], &mut cuts, &mut visit);
+                    first = last;
                     from = to;
                     panel += 1.0;
                 }
-                start = end;
+                (start, inwards[0]) = (end, inwards[1]);
             }
         }
     }
 
-    /// Visits a span, in parts if the set of loaded pairs changes inside it. Returns the state at its end.
+    /// Visits a span with the states at its ends, in parts if the set of loaded pairs changes inside it, or where it bends
+    /// more than its nodes can follow: the next change may be near, though beyond the end.
     ///
     /// All parts share `cuts`: where gaps are equal but for rounding, the changes that rounding makes have no end.
-    fn smooth(
-        &self,
-        span: &Span,
-        first: State,
-        cuts: &mut usize,
-        visit: &mut impl FnMut(&Span, &[State; NODES]),
-    ) -> State {
+    fn smooth(&self, span: &Span, ends: [State; 2], cuts: &mut usize, visit: &mut impl FnMut(&Span, &[State; NODES])) {
         let rows = &self.cycle.rows;
-        let mut states = [first; NODES];
-        for (node, state) in states.iter_mut().enumerate().skip(1) {
+        let mut states = [ends[0]; NODES];
+        states[NODES - 1] = ends[1];
+        for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        if *cuts > 0
-            && let Some((position, pair)) = self.change(span, &states)
-        {
-            *cuts -= 1;
-            let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
-            let after = Span { start: position, touches: [pair, span.touches[1]], ..*span };
-            let middle = self.smooth(&before, first, cuts, visit);
-            return self.smooth(&after, middle, cuts, visit);
-        }
-        let last = states[NODES - 1];
-        self.settle(span, &mut states);
-        visit(span, &states);
-        last
+        let change = if *cuts > 0 { self.change(span, &states) } else { None };
+        let bent = || self.refines && *cuts > 0 && rows.tail(&states.map(|state| state.transmission_error())) > TAIL;
+        let cut = change.or_else(|| bent().then(|| (0.5 * (span.start + span.end), None)));
+        let Some((position, pair)) = cut else {
+            self.settle(span, &mut states);
+            return visit(span, &states);
+        };
+        *cuts -= 1;
+        let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
+        let after = Span { start: position, touches: [pair, span.touches[1]], ..*span };
+        let middle = self.state(position, span.pairs);
+        self.smooth(&before, [ends[0], middle], cuts, visit);
+        self.smooth(&after, [middle, ends[1]], cuts, visit);
     }
 
     /// The transmission error over the cycle.
