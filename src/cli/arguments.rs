@@ -54,6 +54,7 @@ pub enum Command {
     },
     /// Run studies: compute what is missing, write tables, manifest and report.
     Run {
+        /// Files, or names of studies in the folder `studies`; so with every command.
         #[arg(required = true)]
         studies: Vec<PathBuf>,
         #[command(flatten)]
