@@ -45,7 +45,7 @@ pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
     // No more than one byte too many, whatever the file says of its size.
     File::open(file).map_err(cannot)?.take(rexs::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
     let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8".to_owned()))?;
-    out(&rexs::geometry(&text, stage).map_err(|error| refused(error.to_string()))?);
+    out(&rexs::geometry(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?);
     Ok(())
 }
 

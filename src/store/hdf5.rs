@@ -1,4 +1,5 @@
-//! All tables of a study in one HDF5 file: `/stage/table/column`, one dataset per column.
+//! All tables of a study in one HDF5 file, but for those of files, which lie beside it: `/stage/table/column`, one dataset
+//! per column.
 //!
 //! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
 //! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,

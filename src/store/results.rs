@@ -281,7 +281,9 @@ impl Folder {
         let path = self.path.join(self.hdf5_file());
         if changed {
             let mut writer = hdf5::Writer::create(&path)?;
-            for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
+            // A table of files lies there as these files already.
+            let tables = manifest.stages.iter().flat_map(|stage| &stage.tables);
+            for record in tables.filter(|record| record.files.is_empty()) {
                 writer.add(split(&record.name).0, &self.table(record)?)?;
             }
             writer.finish(&path)?;

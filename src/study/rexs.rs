@@ -3,12 +3,17 @@
 //! Source: FVA GmbH, REXS 1.0 to 2.0: the schema of files (`rexs-file.xsd`) and the lists of components, attributes and
 //! relations (`rexs_schema_*.xml`) in the reference implementation `fva-net/rexs-api-java`, under Apache-2.0. A stage
 //! relates two gears, a flank relation their flanks, a manufacturing step the tool, a reference the material. What the file
-//! does not say is left out and named, never invented; what a spur gear pair cannot have is refused. The file may come from
-//! anybody: its size and its elements are limited, its depth needs no stack (the parser
-//! has a counter), and a document type, which entities come from, is refused.
+//! does not say is left out and named, never invented; what a spur gear pair cannot have is refused, with line and column
+//! of the file: the study that comes out is read, so its own limits hold. The file may come from anybody: its size and its
+//! elements are limited, its depth needs no stack (the parser has a counter), components are found by id in one index, and
+//! a document type, which entities come from, is refused.
 //! Must not know: stages that are run, files.
 
+mod written;
+
+use std::collections::BTreeMap;
 use std::fmt;
+use std::path::Path;
 
 use roxmltree::{Document, Node, ParsingOptions};
 
@@ -16,50 +21,100 @@ use roxmltree::{Document, Node, ParsingOptions};
 pub const MOST_BYTES: usize = 64 << 20;
 const MOST_NODES: u32 = 4_000_000;
 
-/// Why a file cannot be used, in one sentence.
+/// Most ids in a message.
+const MOST_NAMED: usize = 20;
+
+/// Versions of the format that are read.
+const VERSIONS: (f64, f64) = (1.0, 2.0);
+
+/// Why a file cannot be used: a sentence, behind line and column where it is about a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Refusal(String);
+pub struct Refusal {
+    message: String,
+    /// Byte of the file.
+    at: Option<usize>,
+    /// Line and column, counted from 1.
+    place: Option<(u32, u32)>,
+}
 
 impl fmt::Display for Refusal {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(&self.0)
+        if let Some((line, column)) = self.place {
+            write!(formatter, "{line}:{column}: ")?;
+        }
+        formatter.write_str(&self.message)
     }
 }
 
-fn refuse<T>(message: impl Into<String>) -> Result<T, Refusal> {
-    Err(Refusal(message.into()))
+impl Refusal {
+    fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), at: None, place: None }
+    }
+
+    /// The sentence behind the file's name.
+    #[must_use]
+    pub fn in_file(&self, file: &Path) -> String {
+        let between = if self.place.is_some() { ":" } else { ": " };
+        format!("{}{between}{self}", file.display())
+    }
+
+    fn at(mut self, byte: usize) -> Self {
+        self.at.get_or_insert(byte);
+        self
+    }
+}
+
+fn refuse<T>(at: Node, message: impl Into<String>) -> Result<T, Refusal> {
+    Err(Refusal::new(message).at(at.range().start))
 }
 
 /// The text of a study whose one stage is the geometry of a cylindrical stage in `xml`; `stage` is its id, needed where
 /// there are several.
 ///
 /// # Errors
-/// A sentence that says what is wrong with the file, or with the pair.
+/// A sentence that says what is wrong with the file, or with the pair, and where.
 pub fn geometry(xml: &str, stage: Option<&str>) -> Result<String, Refusal> {
     if xml.len() > MOST_BYTES {
-        return refuse(format!("the file is larger than {} MiB", MOST_BYTES >> 20));
+        return Err(Refusal::new(format!("the file is larger than {} MiB", MOST_BYTES >> 20)));
     }
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
-    let document = Document::parse_with_options(xml, options).map_err(|error| match error {
-        roxmltree::Error::DtdDetected => Refusal("it has a document type, which files of REXS have not".to_owned()),
-        roxmltree::Error::NodesLimitReached => Refusal(format!("it has more than {MOST_NODES} elements")),
-        other => Refusal(format!("it is not XML: {other}")),
+    let document = Document::parse_with_options(xml, options).map_err(|error| {
+        let place = error.pos();
+        let refusal = Refusal::new(match error {
+            roxmltree::Error::DtdDetected => "it has a document type, which files of REXS have not".to_owned(),
+            roxmltree::Error::NodesLimitReached => format!("it has more than {MOST_NODES} elements"),
+            other => format!("it is not XML: {other}"),
+        });
+        Refusal { place: Some((place.row, place.col)), ..refusal }
     })?;
-    let root = document.root_element();
-    if !root.has_tag_name("model") {
-        return refuse(format!(
-            "it is no REXS file: its outermost element is `{}`, not `model`",
-            root.tag_name().name()
-        ));
-    }
-    let model = Model { root };
-    let relation = model.stage(stage)?;
-    Pair::read(&model, relation)?.text(root.attribute("version").unwrap_or("unknown"))
+    read(&document, stage).map_err(|refusal| {
+        let place = refusal.at.map(|at| document.text_pos_at(at)).map(|place| (place.row, place.col));
+        Refusal { place, ..refusal }
+    })
 }
 
-/// The outermost element of a file.
+fn read(document: &Document, stage: Option<&str>) -> Result<String, Refusal> {
+    let root = document.root_element();
+    if !root.has_tag_name("model") {
+        let name = root.tag_name().name();
+        return refuse(root, format!("it is no REXS file: its outermost element is `{name}`, not `model`"));
+    }
+    let version = root.attribute("version").unwrap_or("");
+    let known = version.parse::<f64>().is_ok_and(|version| (VERSIONS.0..=VERSIONS.1).contains(&version));
+    if !known {
+        let (least, most) = VERSIONS;
+        let shown: String = version.escape_debug().take(16).collect();
+        return refuse(root, format!("its version is `{shown}`; versions {least:.1} to {most:.1} of REXS can be read"));
+    }
+    let model = Model::new(root)?;
+    let relation = model.stage(stage)?;
+    Pair::read(&model, relation)?.text(version)
+}
+
+/// The outermost element of a file, and its components by id.
 struct Model<'a> {
     root: Node<'a, 'a>,
+    components: BTreeMap<&'a str, Node<'a, 'a>>,
 }
 
 /// A component with attributes.
@@ -67,13 +122,28 @@ struct Model<'a> {
 struct Component<'a>(Node<'a, 'a>);
 
 impl<'a> Model<'a> {
+    fn new(root: Node<'a, 'a>) -> Result<Self, Refusal> {
+        let mut model = Self { root, components: BTreeMap::new() };
+        for node in model.inside("components", "component") {
+            let Some(id) = node.attribute("id") else { continue };
+            if let Some(first) = model.components.insert(id, node) {
+                let line = root.document().text_pos_at(first.range().start).row;
+                return refuse(
+                    node,
+                    format!("the component {id} is given twice, first in line {line}; ids are unique"),
+                );
+            }
+        }
+        Ok(model)
+    }
+
     fn inside(&self, list: &'static str, name: &'static str) -> impl Iterator<Item = Node<'a, 'a>> + use<'a> {
         let lists = self.root.children().filter(move |node| node.has_tag_name(list));
         lists.flat_map(move |list| list.children().filter(move |node| node.has_tag_name(name)))
     }
 
     fn component(&self, id: &str) -> Option<Component<'a>> {
-        self.inside("components", "component").find(|node| node.attribute("id") == Some(id)).map(Component)
+        self.components.get(id).copied().map(Component)
     }
 
     /// What stands in the role `wanted` of the relations of a type in which a component has the role `role`.
@@ -92,13 +162,17 @@ impl<'a> Model<'a> {
         };
         let stages: Vec<Node<'a, 'a>> = self.inside("relations", "relation").filter(is_cylindrical).collect();
         let ids: Vec<&str> = stages.iter().filter_map(|relation| in_role(*relation, "stage")).collect();
+        // A message is no list of a whole factory.
+        let named = ids[..ids.len().min(MOST_NAMED)].join(", ") + if ids.len() > MOST_NAMED { ", …" } else { "" };
         match (wanted, stages.as_slice()) {
-            (_, []) => refuse("it has no stage of two cylindrical gears"),
+            (_, []) => refuse(self.root, "it has no stage of two cylindrical gears"),
             (None, [one]) => Ok(*one),
-            (None, _) => refuse(format!("it has {} cylindrical stages; name one of {}", ids.len(), ids.join(", "))),
+            (None, [_, second, ..]) => {
+                refuse(*second, format!("it has {} cylindrical stages; name one of {named}", ids.len()))
+            }
             (Some(id), _) => match stages.iter().find(|relation| in_role(**relation, "stage") == Some(id)) {
                 Some(found) => Ok(*found),
-                None => refuse(format!("it has no cylindrical stage `{id}`; it has {}", ids.join(", "))),
+                None => refuse(self.root, format!("it has no cylindrical stage `{id}`; it has {named}")),
             },
         }
     }
@@ -119,19 +193,46 @@ impl<'a> Component<'a> {
     }
 
     /// A number in one of these units; none when it is not given.
-    fn number(self, name: &str, units: &[&str]) -> Result<Option<f64>, Refusal> {
+    fn number(self, name: &str, units: &[&str]) -> Result<Option<Said>, Refusal> {
         let is_meant = |node: &Node| node.has_tag_name("attribute") && node.attribute("id") == Some(name);
-        let Some(attribute) = self.0.children().find(is_meant) else { return Ok(None) };
+        let mut given = self.0.children().filter(is_meant);
+        let Some(attribute) = given.next() else { return Ok(None) };
         let (kind, id) = (self.kind(), self.id());
+        if let Some(second) = given.next() {
+            return refuse(second, format!("`{name}` of the {kind} {id} is given twice"));
+        }
         let unit = attribute.attribute("unit").unwrap_or("");
         if !units.contains(&unit) {
-            return refuse(format!("`{name}` of the {kind} {id} is in `{unit}`, not in {}", units[0]));
+            return refuse(attribute, format!("`{name}` of the {kind} {id} is in `{unit}`, not in {}", units[0]));
         }
         let text = attribute.text().unwrap_or("").trim();
         match text.parse::<f64>() {
-            Ok(value) if value.is_finite() => Ok(Some(value)),
-            _ => refuse(format!("`{name}` of the {kind} {id} is `{}`, which is no number", text.escape_debug())),
+            Ok(value) if value.abs() <= LARGEST => Ok(Some(Said { value, at: attribute.range().start })),
+            Ok(value) if value.is_finite() => refuse(
+                attribute,
+                format!("`{name}` of the {kind} {id} is {value:e}; it must be -{LARGEST:e} to {LARGEST:e}"),
+            ),
+            _ => {
+                let shown: String = text.escape_debug().take(40).collect();
+                refuse(attribute, format!("`{name}` of the {kind} {id} is `{shown}`, which is no number"))
+            }
         }
+    }
+}
+
+/// No number of a gear is larger, in any unit of REXS.
+const LARGEST: f64 = 1e9;
+
+/// A number of the file, and the byte where it stands.
+#[derive(Clone, Copy, Debug)]
+struct Said {
+    value: f64,
+    at: usize,
+}
+
+impl Said {
+    fn map(self, change: impl FnOnce(f64) -> f64) -> Self {
+        Self { value: change(self.value), ..self }
     }
 }
 
@@ -142,19 +243,19 @@ const MEGAPASCALS: &[&str] = &["MPa", "N / mm^2", "N/mm^2"];
 
 /// A gear as far as a file says it; lengths in mm, as they are shown.
 struct Gear {
-    teeth: u32,
-    module: f64,
-    pressure_angle: Option<f64>,
-    shift: Option<f64>,
-    width: Option<f64>,
-    tip_diameter: Option<f64>,
-    bore_diameter: Option<f64>,
+    teeth: Said,
+    module: Said,
+    pressure_angle: Option<Said>,
+    shift: Option<Said>,
+    width: Option<Said>,
+    tip_diameter: Option<Said>,
+    bore_diameter: Option<Said>,
     /// In modules, from the tool or from the root circle.
-    dedendum: Option<f64>,
-    addendum: Option<f64>,
-    rack_tip_radius: Option<f64>,
-    youngs_modulus: Option<f64>,
-    poisson_ratio: Option<f64>,
+    dedendum: Option<Said>,
+    addendum: Option<Said>,
+    rack_tip_radius: Option<Said>,
+    youngs_modulus: Option<Said>,
+    poisson_ratio: Option<Said>,
 }
 
 /// The one value that several components give.
@@ -162,51 +263,55 @@ fn agreed<'a>(
     components: impl Iterator<Item = Component<'a>>,
     name: &str,
     units: &[&str],
-) -> Result<Option<f64>, Refusal> {
-    let mut found: Option<(f64, &str)> = None;
+) -> Result<Option<Said>, Refusal> {
+    let mut found: Option<(Said, &str)> = None;
     for component in components {
-        let Some(value) = component.number(name, units)? else { continue };
+        let Some(said) = component.number(name, units)? else { continue };
         match found {
-            Some((other, id)) if (other - value).abs() > 1e-12 * value.abs() => {
-                return refuse(format!(
-                    "`{name}` is {other} of the component {id} and {value} of {}; both flanks of a gear must be alike",
+            Some((other, id)) if (other.value - said.value).abs() > 1e-12 * said.value.abs() => {
+                let message = format!(
+                    "`{name}` is {} of the component {id} and {} of {}; both flanks of a gear must be alike",
+                    other.value,
+                    said.value,
                     component.id()
-                ));
+                );
+                return Err(Refusal::new(message).at(said.at));
             }
-            _ => found = Some((value, component.id())),
+            _ => found = Some((said, component.id())),
         }
     }
-    Ok(found.map(|(value, _)| value))
+    Ok(found.map(|(said, _)| said))
 }
 
 impl Gear {
     fn read(model: &Model, gear: Component) -> Result<Self, Refusal> {
         let id = gear.id();
         if gear.kind() != "cylindrical_gear" {
-            return refuse(format!(
-                "the component {id} is a {}; only external cylindrical gears can be read",
-                gear.kind()
-            ));
+            return refuse(
+                gear.0,
+                format!("the component {id} is a {}; only external cylindrical gears can be read", gear.kind()),
+            );
         }
-        let needed = |value: Option<f64>, name: &str| match value {
-            Some(value) => Ok(value),
-            None => refuse(format!("the cylindrical_gear {id} has no `{name}`")),
+        let needed = |said: Option<Said>, name: &str| match said {
+            Some(said) => Ok(said),
+            None => refuse(gear.0, format!("the cylindrical_gear {id} has no `{name}`")),
         };
         let module = needed(gear.number("normal_module", MILLIMETRES)?, "normal_module")?;
         let teeth = needed(gear.number("number_of_teeth", PLAIN)?, "number_of_teeth")?;
-        if !(teeth.fract() == 0.0 && (1.0..=1e6).contains(&teeth)) {
-            return refuse(format!(
-                "the cylindrical_gear {id} has {teeth} teeth; only whole external gears can be read"
-            ));
+        let z = teeth.value;
+        if !(z.fract() == 0.0 && (1.0..=1e6).contains(&z)) {
+            let message = format!("the cylindrical_gear {id} has {z} teeth; only whole external gears can be read");
+            return Err(Refusal::new(message).at(teeth.at));
         }
-        if module <= 0.0 {
-            return refuse(format!("the cylindrical_gear {id} has a module of {module} mm"));
+        if module.value <= 0.0 {
+            let message = format!("the cylindrical_gear {id} has a module of {} mm; it must be positive", module.value);
+            return Err(Refusal::new(message).at(module.at));
         }
-        let helix = gear.number("helix_angle_reference_diameter", DEGREES)?.unwrap_or(0.0);
-        if helix != 0.0 {
-            return refuse(format!(
-                "the cylindrical_gear {id} has a helix angle of {helix}°; only spur gears can be read"
-            ));
+        if let Some(helix) = gear.number("helix_angle_reference_diameter", DEGREES)?.filter(|helix| helix.value != 0.0)
+        {
+            let message =
+                format!("the cylindrical_gear {id} has a helix angle of {}°; only spur gears can be read", helix.value);
+            return Err(Refusal::new(message).at(helix.at));
         }
         let flanks: Vec<Component> =
             ["left", "right"].iter().flat_map(|side| model.related("flank", "gear", id, side)).collect();
@@ -224,18 +329,17 @@ impl Gear {
         let shift = of_flank("addendum_modification_coefficient", PLAIN)?;
         let root = gear.number("root_diameter", MILLIMETRES)?;
         // r_f = m(z/2 − h_fP* + x).
-        let by_root = root.zip(shift).map(|(root, shift)| 0.5 * teeth + shift - 0.5 * root / module);
-        let round = of_tool("tip_radius", MILLIMETRES)?.map(|radius| radius / module);
+        let by_root =
+            root.zip(shift).map(|(root, shift)| root.map(|root| 0.5 * z + shift.value - 0.5 * root / module.value));
+        let round = of_tool("tip_radius", MILLIMETRES)?.map(|radius| radius.map(|radius| radius / module.value));
         Ok(Self {
-            // Checked above.
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            teeth: teeth as u32,
+            teeth,
             module,
             pressure_angle: of_flank("normal_pressure_angle", DEGREES)?,
             shift,
             width: gear.number("face_width", MILLIMETRES)?,
             tip_diameter: gear.number("tip_diameter", MILLIMETRES)?,
-            bore_diameter: gear.number("inner_diameter", MILLIMETRES)?.filter(|diameter| *diameter > 0.0),
+            bore_diameter: gear.number("inner_diameter", MILLIMETRES)?.filter(|diameter| diameter.value > 0.0),
             // The tool's addendum cuts the gear's dedendum.
             dedendum: of_tool("addendum_coefficient_reference_profile", PLAIN)?.or(by_root),
             addendum: of_flank("addendum_coefficient_basic_profile", PLAIN)?,
@@ -248,92 +352,36 @@ impl Gear {
 
 struct Pair {
     stage: String,
+    /// Where the relation of the stage stands.
+    at: usize,
     gears: [Gear; 2],
-    centre_distance: Option<f64>,
+    centre_distance: Option<Said>,
 }
 
 impl Pair {
     fn read(model: &Model, relation: Node) -> Result<Self, Refusal> {
         let gear = |role: &str| -> Result<Gear, Refusal> {
             let component = in_role(relation, role).and_then(|id| model.component(id));
-            component.map_or_else(|| refuse(format!("the stage has no `{role}`")), |gear| Gear::read(model, gear))
+            component
+                .map_or_else(|| refuse(relation, format!("the stage has no `{role}`")), |gear| Gear::read(model, gear))
         };
         let id = in_role(relation, "stage").unwrap_or("");
         let centre_distance = match model.component(id) {
             Some(stage) => stage.number("center_distance", MILLIMETRES)?,
             None => None,
         };
-        Ok(Self { stage: id.to_owned(), gears: [gear("gear_1")?, gear("gear_2")?], centre_distance })
+        let at = relation.range().start;
+        Ok(Self { stage: id.to_owned(), at, gears: [gear("gear_1")?, gear("gear_2")?], centre_distance })
     }
 
     /// A value that both gears must have in common; what one of them does not say, the other's stands for.
-    fn common(&self, name: &str, get: impl Fn(&Gear) -> Option<f64>) -> Result<Option<f64>, Refusal> {
+    fn common(&self, name: &str, get: impl Fn(&Gear) -> Option<Said>) -> Result<Option<Said>, Refusal> {
         match self.gears.each_ref().map(get) {
-            [Some(a), Some(b)] if (a - b).abs() > 1e-9 * a.abs().max(b.abs()) => {
-                refuse(format!("the gears' {name} differ, {a} and {b}; a pair here has one"))
+            [Some(a), Some(b)] if (a.value - b.value).abs() > 1e-9 * a.value.abs().max(b.value.abs()) => {
+                let message = format!("the gears' {name} differ, {} and {}; a pair here has one", a.value, b.value);
+                Err(Refusal::new(message).at(b.at))
             }
             [a, b] => Ok(a.or(b)),
         }
-    }
-
-    fn text(&self, version: &str) -> Result<String, Refusal> {
-        let version: String = version.chars().filter(|c| c.is_ascii_alphanumeric() || *c == '.').take(16).collect();
-        let stage: String = self.stage.chars().filter(char::is_ascii_alphanumeric).take(16).collect();
-        let mut missing = Vec::new();
-        let mut text =
-            format!("study: imported\ntitle: Cylindrical stage {stage} of a REXS file\n\nstages:\n  pair:\n");
-        text += "    kind: geometry\n";
-        let module = self.common("modules", |gear| Some(gear.module))?.unwrap_or_default();
-        text += &format!("    module: {module} mm\n");
-        match self.common("pressure angles", |gear| gear.pressure_angle)? {
-            Some(angle) => text += &format!("    pressure_angle: {angle} deg\n"),
-            None => missing.push("normal_pressure_angle (20 deg stands for it)".to_owned()),
-        }
-        let rack = [
-            ("addendum", self.common("rack addenda", |gear| gear.addendum)?, "1.0"),
-            ("dedendum", self.common("rack dedenda", |gear| gear.dedendum)?, "1.25"),
-            ("tip_radius", self.common("rack tip radii", |gear| gear.rack_tip_radius)?, "0.38"),
-        ];
-        let given: Vec<String> =
-            rack.iter().filter_map(|(name, value, _)| value.map(|value| format!("{name}: {value}"))).collect();
-        if !given.is_empty() {
-            text += &format!("    rack: {{ {} }}\n", given.join(", "));
-        }
-        let unsaid = rack.iter().filter(|(_, value, _)| value.is_none());
-        missing.extend(unsaid.map(|(name, _, usual)| format!("the rack's {name} ({usual} modules stand for it)")));
-        for (name, gear) in ["pinion", "gear"].iter().zip(&self.gears) {
-            let mut fields = vec![format!("teeth: {}", gear.teeth)];
-            let mut put = |field: &str, value: Option<f64>, unit: &str, needed: bool| match value {
-                Some(value) => fields.push(format!("{field}: {value}{unit}")),
-                None if needed => missing.push(format!("{field} of the {name}, which must be given by hand")),
-                None => {}
-            };
-            put("face_width", gear.width, " mm", true);
-            put("bore_radius", gear.bore_diameter.map(|diameter| 0.5 * diameter), " mm", true);
-            put("profile_shift", gear.shift, "", false);
-            put("tip_radius", gear.tip_diameter.map(|diameter| 0.5 * diameter), " mm", false);
-            if gear.shift.is_none() {
-                missing.push(format!("addendum_modification_coefficient of the {name} (0 stands for it)"));
-            }
-            let material: Vec<String> = [
-                gear.youngs_modulus.map(|modulus| format!("youngs_modulus: {modulus} MPa")),
-                gear.poisson_ratio.map(|ratio| format!("poisson_ratio: {ratio}")),
-            ]
-            .into_iter()
-            .flatten()
-            .collect();
-            if !material.is_empty() {
-                fields.push(format!("material: {{ {} }}", material.join(", ")));
-            }
-            text += &format!("    {name}: {{ {} }}\n", fields.join(", "));
-        }
-        if let Some(distance) = self.centre_distance {
-            text += &format!("    centre_distance: {distance} mm\n");
-        }
-        let mut head = format!("# From a file of REXS {version}.\n");
-        for what in missing {
-            head += &format!("# It does not say: {what}.\n");
-        }
-        Ok(head + &text)
     }
 }

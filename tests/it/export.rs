@@ -76,6 +76,7 @@ fn files_are_listed_archived_and_gone_when_no_longer_wanted() {
 fn another_program_reads_the_drawing() {
     for (root, counts) in [
         ("tangent_arc", [("ARC", 5 * 23), ("LWPOLYLINE", 2 * 23), ("CIRCLE", 1)]),
+        ("arc", [("ARC", 3 * 23), ("LWPOLYLINE", 2 * 23), ("CIRCLE", 1)]),
         ("trochoid", [("ARC", 3 * 23), ("LWPOLYLINE", 4 * 23), ("CIRCLE", 1)]),
     ] {
         let desk = desk(&format!("{{ root: {root}, teeth: all, points: 200, chord_error: 0.5 um }}"), "");

@@ -41,10 +41,14 @@ ends, turned = [], []
 for entity in contour:
     there = points(entity)
     back = False
-    if entity.dxftype() == "ARC":
-        before = ends[-1][1] if ends else None
-        back = before is not None and there[1].distance(before) < there[0].distance(before)
-        there = there[::-1] if back else there
+    if entity.dxftype() == "ARC" and ends:
+        back = there[1].distance(ends[-1][1]) < there[0].distance(ends[-1][1])
+    elif entity.dxftype() == "ARC":
+        # The first one has nothing before it: it ends where the second begins or ends.
+        following = points(contour[1])
+        near = [min(end.distance(following[0]), end.distance(following[-1])) for end in there]
+        back = near[0] < near[1]
+    there = there[::-1] if back else there
     ends.append((there[0], there[-1]))
     turned.append(back)
 gap = max(one[1].distance(other[0]) for one, other in zip(ends, ends[1:] + ends[:1]))

@@ -56,7 +56,7 @@ pub enum Problem {
     )]
     ProfileShiftSum { sum: Plain, least: Plain },
     #[error(
-        "its tip circle ({tip}) reaches to the root circle of the mate: clearance {clearance}, but must be above 0 mm"
+        "its tip circle ({tip}) reaches to the root circle of the mate: clearance {clearance}, but must be at least 0 mm"
     )]
     NoClearance { tip: Millimetres, clearance: Millimetres },
     #[error(

@@ -71,7 +71,10 @@ impl Pair {
         for (side, mate_side) in [(Side::Pinion, Side::Gear), (Side::Gear, Side::Pinion)] {
             let (own, mate) = (self.side(side), self.side(mate_side));
             let clearance = self.centre_distance - own.tip_radius - mate.root_radius;
-            if clearance <= 0.0 {
+            // The centre distance goes through an angle, each radius is a sum of products, and all began as decimals in other
+            // units: some thirty roundings of at most ε of the centre distance. A 0 that was written down comes out within.
+            let rounding = 32.0 * f64::EPSILON * self.centre_distance;
+            if clearance < -rounding {
                 let (tip, clearance) = (Millimetres(own.tip_radius), Millimetres(clearance));
                 return Err(GeometryError::from(Problem::NoClearance { tip, clearance }).on(side));
             }

@@ -207,6 +207,36 @@ fn pairs_that_cannot_run_are_refused() {
     assert_eq!(Pair::new(deep(40), deep(48), None).unwrap_err().field(), "pinion.profile_shift");
 }
 
+/// As deep a tooth as the space that is cut for it leaves a clearance of 0, whatever rounding makes of it.
+#[test]
+fn a_clearance_of_exactly_nothing_is_kept() {
+    let (mut below, mut tried) = (0, 0);
+    for module in [0.05, 0.3, 1.0, 3.0, 7.0, 50.0] {
+        for (pinion, gear) in [(30, 41), (37, 53), (61, 97), (33, 400)] {
+            for (depth, shift) in [(1.0, 0.0), (1.1, 0.1), (1.157, 0.3), (1.07, -0.05)] {
+                let cut = |teeth, shift, longer: f64| Specification {
+                    rack: Rack { addendum: depth, dedendum: depth, tip_radius: 0.0 },
+                    tip_radius: Some(module * 1e-3 * (0.5 * f64::from(teeth) + depth + shift) + longer),
+                    ..specification(teeth, module, shift)
+                };
+                let with = |longer| Pair::new(cut(pinion, shift, longer), cut(gear, -shift, 0.0), None);
+                let refused = |pair: &Result<Pair, GeometryError>| {
+                    pair.as_ref().is_err_and(|error| matches!(error.problem, Problem::NoClearance { .. }))
+                };
+                let exact = with(0.0);
+                assert!(!refused(&exact), "{module} {pinion} {gear} {depth} {shift}: {exact:?}");
+                assert!(refused(&with(1e-9)), "{module} {pinion} {gear} {depth} {shift}");
+                tried += 1;
+                below += i32::from(
+                    exact.is_ok_and(|pair| pair.centre_distance - pair.pinion.tip_radius - pair.gear.root_radius < 0.0),
+                );
+            }
+        }
+    }
+    // Else nothing was tried that rounding would refuse.
+    assert!(below > 5, "{below} of {tried}");
+}
+
 /// Tier: a second way to the same length; with three pairs in contact too.
 #[test]
 fn the_path_of_contact() {

@@ -5,8 +5,7 @@
 //! or the whole gear is drawn, and with which root, is said where the outline is made. The files travel as lines of a
 //! table: they are cached, compared, archived and removed like any other result.
 //!
-//! There is no STEP: `truck-stepio` 0.3, the one crate that is kept, brings 78 others and their solid modeller for what
-//! would be an extruded contour. Must not know: how a profile is made.
+//! Why there is no STEP, ARCHITECTURE.md says. Must not know: how a profile is made.
 
 mod contour;
 mod dxf;

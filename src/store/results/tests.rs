@@ -196,6 +196,11 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     let (first, _) = publish(&folder, &with(&["0", "EOF"]), manifest(&with(&["0", "EOF"])));
     assert_eq!(first.changes.files, ["ste.a.csv", "ste.b.dxf"]);
     assert_eq!((read("ste.a.csv").as_str(), read("ste.b.dxf").as_str()), ("x,y\n", "0\nEOF\n"));
+    #[cfg(feature = "hdf5")]
+    {
+        let path = folder.path().join(folder.hdf5_file());
+        assert!(hdf5::read(&path, "ste", "files").is_err() && hdf5::read(&path, "pair", "curve").is_ok());
+    }
     let listed = |published: &Published, name: &str| {
         published.manifest.files.iter().find(|record| record.file == name).map(|record| record.bytes)
     };
