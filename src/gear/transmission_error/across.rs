@@ -16,7 +16,7 @@ use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::contact::slices::{Slice, Slices};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::Design;
-use crate::numeric::complementarity::{Balance, MOST, PerSpring};
+use crate::numeric::complementarity::{Balance, MOST, PerSpring, Springs};
 use crate::numeric::graded::Graded;
 use crate::numeric::layer::add_influences;
 use crate::numeric::lobatto::Rule;
@@ -146,9 +146,51 @@ impl<'a> Sliced<'a> {
         gaps: &[f64],
         [force, above]: [f64; 2],
     ) -> (many_springs::Balance, f64) {
-        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
-        let width = cycle.face_width / count as f64;
         let matrix = self.matrix(cycle, springs, positions);
+        // The lowest place of the face is one of a slice but for rounding.
+        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
+        let smallest = behind().fold(f64::INFINITY, f64::min);
+        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
+        let slices = self.springs(cycle, positions, &matrix);
+        (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
+    }
+
+    /// The load over the force that a slice carries and its interference, recomputed from loads, gaps and influences, does
+    /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
+    pub(super) fn unexplained(
+        &self,
+        cycle: &MeshCycle,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        [force, above]: [f64; 2],
+    ) -> [f64; 2] {
+        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
+        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
+        let matrix = self.matrix(cycle, springs, positions);
+        let slices = self.springs(cycle, positions, &matrix);
+        let mut worst = [0.0, 1.0];
+        for (slice, &load) in found.loads.iter().enumerate() {
+            let row = &matrix[slice * size..][..size];
+            let others: f64 =
+                (0..size).filter(|other| *other != slice).map(|other| row[other] * found.loads[other]).sum();
+            let gap = gaps[slice / count] + self.lows[slice % count] - smallest;
+            let interference = found.approach - gap - others;
+            let (carried, rise) =
+                if interference > 0.0 { slices.response(slice, interference) } else { (0.0, 1.0 / row[slice]) };
+            let value = (carried - load).abs() / force;
+            let scale = 1.0 + rise * (found.approach + gap + others.abs()) / force;
+            if value * worst[1] >= worst[0] * scale {
+                worst = [value, scale];
+            }
+        }
+        worst
+    }
+
+    /// What each slice carries by itself.
+    fn springs(&self, cycle: &MeshCycle, positions: &[f64], matrix: &[f64]) -> Slices<'_> {
+        let (count, size) = (self.faces.len(), positions.len() * self.faces.len());
+        let width = cycle.face_width / count as f64;
         let mut slices = Vec::with_capacity(size);
         for (pair, &s) in positions.iter().enumerate() {
             let own = (pair * count..(pair + 1) * count).map(|slice| matrix[slice * (size + 1)]);
@@ -162,12 +204,7 @@ impl<'a> Sliced<'a> {
                 }
             }
         }
-        // The lowest place of the face is one of a slice but for rounding.
-        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
-        let smallest = behind().fold(f64::INFINITY, f64::min);
-        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
-        let slices = Slices { slices, faces: &self.faces, width };
-        (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
+        Slices { slices, faces: &self.faces, width }
     }
 
     /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows.

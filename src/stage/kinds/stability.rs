@@ -12,6 +12,7 @@ use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
+use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use crate::gear::transmission_error::cycle::Settings;
@@ -52,6 +53,10 @@ const FIELDS: &[Field] = &[
     Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
         .default("none"),
+    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+        .default("none"),
+    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.").default("none"),
+    Field::integer("slices", 1, MOST_COUPLED, "Slices of a face that has no closed form.").default("17"),
     Field::integer(
         "positions",
         8,
@@ -63,6 +68,9 @@ const FIELDS: &[Field] = &[
     Field::new("traps", Shape::Flag, "Whether the named traps are checked.").default("true"),
     Field::integer("samples", 0, 100_000, "Points of a Latin hypercube over the whole box of the axes.").default("0"),
 ];
+
+#[allow(clippy::cast_possible_wrap)] // a few hundred
+const MOST_COUPLED: i64 = MOST_COUPLED_SLICES as i64;
 
 const COUPLINGS: &[Choice] = &[
     Choice { name: "none", summary: "pair stiffnesses are summed, as the second evaluation does" },
@@ -119,7 +127,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         torque: None,
         accuracy: None,
     };
-    let positions = usize::try_from(record.integer("positions")).unwrap_or(512);
+    let count = |field| usize::try_from(record.integer(field)).unwrap_or(1);
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
     let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));
@@ -130,11 +138,16 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             method,
             options: options.clone(),
             assumptions,
-            settings: Settings { positions, ..Settings::default() },
+            settings: Settings {
+                positions: count("positions"),
+                slices: count("slices"),
+                corner_contact: CornerContact::named(record.choice("corner_contact")),
+                slice_coupling: SliceCoupling::named(record.choice("slice_coupling")),
+            },
         },
         axes: axes.collect(),
         traps: record.flag("traps"),
-        samples: usize::try_from(record.integer("samples")).unwrap_or(0),
+        samples: count("samples"),
     }))
 }
 
