@@ -224,7 +224,9 @@ impl<'a> Face<'a> {
                 }
             }
             Shape::Sliced(slices) => {
-                slices.iter().for_each(|(share, deviation)| add(*share, interference - deviation, [0.0, 1.0]));
+                for (share, deviation) in slices {
+                    add(*share, interference - deviation, [0.0, 1.0]);
+                }
             }
         }
         (sum, slope)

@@ -18,7 +18,7 @@ pub use axis::{AXES, Axis, Point, axis, sample};
 pub use trap::{Continuity, continuity, traps};
 
 use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
-use super::contact::CornerContact;
+use super::contact::{CornerContact, SliceCoupling};
 use super::geometry::{Pair, Specification};
 use super::modification::{Design, family};
 use super::transmission_error::cycle::{MeshCycle, Settings};
@@ -206,6 +206,8 @@ impl Case {
             Some("the second evaluation adds pairs; coupling comes from a Fourier series of the ring")
         } else if settings.corner_contact != CornerContact::None {
             Some("the second evaluation stays on the line of action")
+        } else if self.crowning != 0.0 && settings.slice_coupling != SliceCoupling::None {
+            Some("the slices of the second evaluation do not hold each other")
         } else if self.crowning != 0.0 && assumptions.contact == ContactLaw::LoadDependent {
             Some("a crowned face under the load-dependent law has no closed form: its slices decide, not rounding")
         } else {
@@ -275,7 +277,13 @@ pub fn check(case: &Case, rules: &Rules) -> Report {
         }
     };
     let mut report = Report::default();
-    let values = contact::check(case, &built, &mut report.findings);
+    let values = match contact::check(case, &built, &mut report.findings) {
+        Ok(values) => values,
+        Err(reason) => {
+            report.findings.push(Finding::refused("approach within the model", reason));
+            return report;
+        }
+    };
     let inputs = case.inputs();
     let exact = precise::evaluate(&inputs, &rules.fine);
     let mut conditions = precise::conditions(&inputs, &rules.coarse);

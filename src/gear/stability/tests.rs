@@ -5,6 +5,7 @@ use std::f64::consts::PI;
 use super::precise::{NAMES, Rule, evaluate};
 use super::*;
 use crate::base::record::Value;
+use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::Rack;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::material::Material;
@@ -192,6 +193,35 @@ fn teeth_that_turn_together_share_the_load_exactly() {
     }
 }
 
+/// Tip corners, and slices that hold each other, hold what every pair must, and what is beyond the model is told.
+#[test]
+fn corners_and_plates_hold_every_invariant() {
+    let rules = Rules::new();
+    for (corner_contact, slice_coupling) in
+        [(CornerContact::Exact, SliceCoupling::None), (CornerContact::None, SliceCoupling::Plate)]
+    {
+        for (torque, relief, crowning) in
+            [(1e-12, 8e-6, 6e-6), (50.0, 0.0, 6e-6), (300.0, 8e-6, 20e-6), (300.0, 100e-6, 0.0), (1e9, 8e-6, 6e-6)]
+        {
+            let mut case = base();
+            case.model.settings = Settings { corner_contact, slice_coupling, slices: 7, ..Settings::default() };
+            (case.torque, case.relief, case.relief_length, case.crowning) = (torque, relief, 4e-3, crowning);
+            let findings = check(&case, &rules).findings;
+            let verdict = |name: &str| findings.iter().find(|found| found.invariant == name).map(|found| found.verdict);
+            assert!(findings.iter().all(|found| found.verdict != Verdict::Broken), "{torque}: {findings:?}");
+            if corner_contact == CornerContact::Exact && torque == 1e9 {
+                assert!(findings.len() == 1 && findings[0].reason.contains("corner contact"), "{findings:?}");
+                continue;
+            }
+            let zones = (corner_contact == CornerContact::Exact).then_some(Verdict::Holds);
+            assert_eq!(verdict("continuous from zone to zone"), zones);
+            for name in ["load balance", "no negative load", "complementarity", "scale", "which gear drives"] {
+                assert_eq!(verdict(name), Some(Verdict::Holds), "{name}");
+            }
+        }
+    }
+}
+
 /// Every check is able to fail: a report with a wrong number in it is broken.
 #[test]
 fn findings_break_where_a_value_is_above_its_limit_or_no_number() {
@@ -222,6 +252,16 @@ fn traps_are_refused_with_their_reason_or_hold() {
     ] {
         let findings = of(name);
         assert!(findings.len() == 1 && findings[0].reason.contains(words), "{name}: {findings:?}");
+    }
+    // Ends of the axes, which are refused on the pair in the middle, are computed there.
+    for name in
+        ["ratio 3", "angle 10", "angle 35", "x -1", "x 1.5 on", "z 2000", "0.001 of", "0.999999999 of the root: el"]
+    {
+        let findings = of(name);
+        assert!(
+            findings.len() > 10 && findings.iter().all(|found| found.verdict != Verdict::Broken),
+            "{name}: {findings:?}"
+        );
     }
     for name in ["without a root", "no length", "crowning 1e-300", "elastic ring", "contact ratio 2.3"] {
         let findings = of(name);

@@ -40,13 +40,14 @@ pub fn traps(base: &Point, model: &Model) -> Vec<Case> {
     let other_root =
         Model { assumptions: super::Assumptions { root: RootShape::BaseCircle, ..model.assumptions }, ..model.clone() };
     add("z 48 without a root: base circle inside the root circle", &other_root, &|_| {});
-    for ratio in [0.9, 1.0 + 1e-12, 2.0, 2.3, 2.7] {
+    for ratio in [0.9, 1.0 + 1e-12, 1.0001, 1.9999, 2.0, 2.0001, 2.3, 2.7] {
         add(&format!("contact ratio {ratio}"), model, &move |point| {
             point.teeth = [60.0, 100.0];
             point.shift = [0.0; 2];
             point.contact_ratio = Some(ratio);
         });
     }
+    ends(model, &mut add);
     for torque in [1e-12, 1e6] {
         add(&format!("torque {torque:e} N m"), model, &move |point| point.torque = torque);
     }
@@ -79,6 +80,38 @@ pub fn traps(base: &Point, model: &Model) -> Vec<Case> {
         }
     }
     cases
+}
+
+/// Ends of the axes at which the pair in the middle of a grid cannot be, on pairs that can: the rack, the teeth or the gear
+/// body are chosen for the end.
+fn ends(model: &Model, add: &mut impl FnMut(&str, &Model, &dyn Fn(&mut Point))) {
+    // The teeth of a rack at 20 deg end in a point before they are deep enough.
+    add("contact ratio 3 at 14 deg", model, &|point| {
+        (point.teeth, point.shift) = ([60.0, 100.0], [0.0; 2]);
+        (point.pressure_angle, point.contact_ratio) = (14.0_f64.to_radians(), Some(3.0));
+    });
+    for (degrees, height) in [(10.0_f64, 1.0), (35.0, 0.9)] {
+        add(&format!("pressure angle {degrees} deg"), model, &move |point| {
+            (point.teeth, point.shift, point.pressure_angle) = ([100.0, 150.0], [0.0; 2], degrees.to_radians());
+            (point.rack.addendum, point.rack.dedendum) = (height, height + 0.2);
+        });
+    }
+    for shift in [-1.0, 1.5] {
+        add(&format!("x {shift} on both gears"), model, &move |point| {
+            (point.teeth, point.shift, point.pressure_angle) = ([100.0, 150.0], [shift; 2], 25.0_f64.to_radians());
+            point.rack.addendum = 0.8;
+        });
+    }
+    add("z 5/20 with stub teeth at 25 deg", model, &|point| {
+        (point.teeth, point.shift, point.pressure_angle) = ([5.0, 20.0], [0.4, 0.0], 25.0_f64.to_radians());
+        (point.rack.addendum, point.rack.dedendum) = (0.9, 1.05);
+    });
+    if let Some(ring) = with_ring(model) {
+        add("z 2000/2000: elastic ring", &ring, &|point| (point.teeth, point.shift) = ([2000.0; 2], [0.0; 2]));
+        for bore in [1e-3, 1.0 - 1e-9] {
+            add(&format!("bore at {bore} of the root: elastic ring"), &ring, &move |point| point.bore = [bore; 2]);
+        }
+    }
 }
 
 /// The same model on the elastic ring, where its method has the choice.

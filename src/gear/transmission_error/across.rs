@@ -16,7 +16,7 @@ use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::contact::slices::{Slice, Slices};
 use crate::gear::geometry::Pair;
 use crate::gear::modification::Design;
-use crate::numeric::complementarity::{Balance, MOST, PerSpring};
+use crate::numeric::complementarity::{Balance, MOST, PerSpring, Springs};
 use crate::numeric::graded::Graded;
 use crate::numeric::layer::add_influences;
 use crate::numeric::lobatto::Rule;
@@ -96,6 +96,8 @@ pub(super) struct Sliced<'a> {
     lows: Vec<f64>,
     /// How many slices of the face each stands for: itself, or itself and its mirror image.
     stands_for: Vec<f64>,
+    /// The width of that \[m\].
+    widths: Vec<f64>,
     /// Slices of the whole face.
     whole: usize,
     /// Influences of the wind-up.
@@ -113,10 +115,11 @@ impl<'a> Sliced<'a> {
         let strip = |slice: usize| Face::between(design, [place(slice), place(slice + 1)], &across.rule);
         let faces: Vec<Face> = (0..kept).map(strip).collect();
         let lows = faces.iter().map(|face| (face.offset - whole.offset).max(0.0)).collect();
-        let stands_for = (0..kept).map(stands_for).collect();
+        let stands_for: Vec<f64> = (0..kept).map(stands_for).collect();
+        let widths = stands_for.iter().map(|stands_for| stands_for * cycle.face_width / count as f64).collect();
         let mut body = vec![0.0; count * count];
         add_influences(across.reach, 1.0, count, count, &mut body);
-        Some(Self { across, faces, lows, stands_for, whole: count, body })
+        Some(Self { across, faces, lows, stands_for, widths, whole: count, body })
     }
 
     /// How many slices are looked at.
@@ -144,9 +147,8 @@ impl<'a> Sliced<'a> {
             let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             balance.loads[pair] = loads.iter().sum();
             balance.interference[pair] = largest(interference);
-            let of_slice = |(load, stands_for): (&f64, &f64)| load / stands_for;
-            let largest = loads.iter().zip(&self.stands_for).map(of_slice).fold(f64::NEG_INFINITY, f64::max);
-            peaks[pair] = largest * self.whole as f64 / cycle.face_width;
+            let per_width = loads.iter().zip(&self.widths).map(|(load, width)| load / width);
+            peaks[pair] = per_width.fold(f64::NEG_INFINITY, f64::max);
         }
         (balance, peaks)
     }
@@ -160,13 +162,51 @@ impl<'a> Sliced<'a> {
         gaps: &[f64],
         [force, above]: [f64; 2],
     ) -> (many_springs::Balance, f64) {
-        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
-        let width = cycle.face_width / self.whole as f64;
-        let widths: Vec<f64> = self.stands_for.iter().map(|stands_for| stands_for * width).collect();
         let (matrix, own) = self.matrix(cycle, springs, positions);
-        let mut slices = Vec::with_capacity(size);
-        for (&s, own) in positions.iter().zip(own.chunks(count)) {
-            let own = own.iter().zip(&widths);
+        // The lowest place of the face is one of a slice but for rounding.
+        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
+        let smallest = behind().fold(f64::INFINITY, f64::min);
+        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
+        let slices = self.springs(cycle, positions, &own);
+        (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
+    }
+
+    /// The load over the force that a slice carries and its interference, recomputed from loads, gaps and influences, does
+    /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
+    pub(super) fn unexplained(
+        &self,
+        cycle: &MeshCycle,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        [force, above]: [f64; 2],
+    ) -> [f64; 2] {
+        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
+        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
+        let (matrix, own) = self.matrix(cycle, springs, positions);
+        let slices = self.springs(cycle, positions, &own);
+        let mut worst = [0.0, 1.0];
+        for (slice, &load) in found.loads.iter().enumerate() {
+            let row = &matrix[slice * size..][..size];
+            let others: f64 = row.iter().zip(&found.loads).map(|(influence, load)| influence * load).sum();
+            let gap = gaps[slice / count] + self.lows[slice % count] - smallest;
+            let interference = found.approach - gap - others;
+            let (carried, rise) =
+                if interference > 0.0 { slices.response(slice, interference) } else { (0.0, 1.0 / own[slice]) };
+            let value = (carried - load).abs() / force;
+            let scale = 1.0 + rise * (found.approach + gap + others.abs()) / force;
+            if value * worst[1] >= worst[0] * scale {
+                worst = [value, scale];
+            }
+        }
+        worst
+    }
+
+    /// What each slice carries by itself.
+    fn springs(&self, cycle: &MeshCycle, positions: &[f64], own: &[f64]) -> Slices<'_> {
+        let mut slices = Vec::with_capacity(own.len());
+        for (&s, own) in positions.iter().zip(own.chunks(self.count())) {
+            let own = own.iter().zip(&self.widths);
             match &cycle.elasticity {
                 Elasticity::Linear(_) => {
                     slices.extend(own.map(|(own, width)| Slice::Linear(1.0 / (own + self.across.contact / width))));
@@ -177,12 +217,7 @@ impl<'a> Sliced<'a> {
                 }
             }
         }
-        // The lowest place of the face is one of a slice but for rounding.
-        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
-        let smallest = behind().fold(f64::INFINITY, f64::min);
-        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
-        let slices = Slices { slices, faces: &self.faces, widths: &widths };
-        (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
+        Slices { slices, faces: &self.faces, widths: &self.widths }
     }
 
     /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each

@@ -205,6 +205,18 @@ impl MeshCycle {
         self.pair.start_of_contact + position + self.pair.base_pitch * pitches
     }
 
+    /// The roll angles of the points of pinion and gear that touch at a path position, tip corners included.
+    #[must_use]
+    pub fn rolls(&self, s: f64) -> [f64; 2] {
+        self.path.rolls(s).into()
+    }
+
+    /// The flanks' radii of curvature there, pinion and gear.
+    #[must_use]
+    pub fn radii(&self, s: f64) -> [f64; 2] {
+        self.path.radii(s)
+    }
+
     pub(super) fn materials(&self) -> [&Material; 2] {
         [&self.pair.pinion.specification.material, &self.pair.gear.specification.material]
     }

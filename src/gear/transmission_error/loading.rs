@@ -199,7 +199,8 @@ impl<'a> Loading<'a> {
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
     /// too far apart.
-    fn gap(&self, s: f64) -> Option<f64> {
+    #[must_use]
+    pub fn gap(&self, s: f64) -> Option<f64> {
         if let Some(Corners { gaps, window, .. }) = &self.corners {
             return if s >= window.0 && s <= window.1 { gaps.at(s) } else { None };
         }
@@ -234,6 +235,18 @@ impl<'a> Loading<'a> {
         let (loads, interference) = (spread(&balance.loads, 0.0), spread(&balance.interference, OUT_OF_REACH));
         let balance = Balance { loads, interference, ..balance };
         State { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
+    }
+
+    /// Where slices hold each other, the load over the force that one carries and its recomputed interference does not
+    /// explain, and its limit in roundings.
+    #[must_use]
+    pub fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
+        let slices = self.slices.as_ref()?;
+        let Carried { count, springs, positions, gaps, .. } = self.carried(position, pairs);
+        let (positions, gaps) = (&positions[..count], &gaps[..count]);
+        let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
+        let given = [self.force, self.alone(positions[nearest])];
+        Some(slices.unexplained(self.cycle, &springs[..count], positions, gaps, given))
     }
 
     /// The pairs that can touch at all; with corner contact only those that come near enough.

@@ -12,7 +12,6 @@ use crate::base::parameter::{Choice, Field, Shape, count, joined};
 use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use crate::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
-use crate::gear::transmission_error::cycle::Settings;
 use crate::optimize::latin_hypercube;
 use crate::stage::{Context, Inputs, Kind, Port, Stage, common, pair};
 use crate::table::data::Table;
@@ -39,7 +38,7 @@ samples: 4
 
 const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
 
-const PARTS: &[&[Field]] = &[LOAD, common::TEETH, CASES];
+const PARTS: &[&[Field]] = &[LOAD, common::TEETH, &[COUPLING], common::CONTACT, &[common::SLICES], CASES];
 
 const LOAD: &[Field] = &[
     Field::reference("pair", &["geometry"], "The pair in the middle of the grid; cases stand without backlash."),
@@ -50,9 +49,11 @@ const LOAD: &[Field] = &[
     Field::quantity("crowning", LENGTH, 0.0, 5e-3, "Lead crowning of both gears.").default("0 um"),
 ];
 
-const CASES: &[Field] = &[
+const COUPLING: Field =
     Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
-        .default("none"),
+        .default("none");
+
+const CASES: &[Field] = &[
     Field::integer(
         "positions",
         8,
@@ -104,14 +105,14 @@ struct Stability {
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let (method, options, assumptions) = common::teeth(record)?;
-    let positions = common::whole(record, "positions");
+    let settings = common::settings(record)?;
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
     let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));
     Ok(Box::new(Stability {
         pair: record.reference("pair").to_owned(),
         load: ["torque", "relief", "relief_length", "crowning"].map(|field| record.quantity(field)),
-        model: Model { method, options, assumptions, settings: Settings { positions, ..Settings::default() } },
+        model: Model { method, options, assumptions, settings },
         axes: axes.collect(),
         traps: record.flag("traps"),
         samples: common::whole(record, "samples"),
