@@ -32,7 +32,7 @@ fn rack_cut(gear: &Gear) -> Result<Outline, GeometryError> {
     outlined(gear, "trochoid", ("rack_tip", "given"))
 }
 
-fn shaped(gear: &Gear, family: &str) -> Result<Outline, GeometryError> {
+pub fn shaped(gear: &Gear, family: &str) -> Result<Outline, GeometryError> {
     let option = match family {
         "trochoid" => ("rack_tip", "given"),
         "arc" => ("formulas", "derived"),
