@@ -6,7 +6,8 @@ use criterion::{Criterion, criterion_group};
 use gearstudy::gear::geometry::outline::sample::Density;
 use gearstudy::gear::geometry::outline::tip::Tip;
 use gearstudy::gear::geometry::outline::{Outline, roots};
-use gearstudy::gear::geometry::{Gear, Pair, Rack, Specification};
+use gearstudy::gear::geometry::validity::{Mating, Validity};
+use gearstudy::gear::geometry::{Gear, Pair, Rack, Side, Specification};
 use gearstudy::gear::material::Material;
 
 use crate::brief;
@@ -44,11 +45,17 @@ fn sweep() -> usize {
                 let of = |teeth, shift| specification(teeth, shift, 0.02 * f64::from(round));
                 let shift = 0.05 * f64::from(shift) - 0.3;
                 let Ok(pair) = Pair::new(of(teeth, shift), of(48, 0.0), None) else { continue };
-                let outlines = [&pair.pinion, &pair.gear].map(outline);
-                let valid = outlines
-                    .iter()
-                    .flatten()
-                    .all(|outline| outline.junctions().iter().all(|junction| junction.position_jump() < 1e-12));
+                let [Some(pinion), Some(gear)] = [&pair.pinion, &pair.gear].map(outline) else { continue };
+                let valid = [(Side::Pinion, &pinion, &gear), (Side::Gear, &gear, &pinion)].into_iter().all(
+                    |(side, own, mate)| {
+                        let alone = black_box(Validity::new(pair.side(side), own));
+                        let mating = Mating::new(&pair, side, own, mate);
+                        alone.root_gap < 1e-12
+                            && !mating.interferes()
+                            && !mating.cuts_root(3e-3)
+                            && own.junctions().iter().all(|junction| junction.position_jump() < 1e-12)
+                    },
+                );
                 smooth += usize::from(valid);
             }
         }

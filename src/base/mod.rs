@@ -8,6 +8,7 @@ pub mod error;
 pub mod number;
 pub mod parameter;
 pub mod record;
+pub mod registry;
 pub mod seed;
 pub mod units;
 pub mod work;

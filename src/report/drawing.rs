@@ -62,5 +62,11 @@ mod tests {
         let [x0, y0, x1, y1, x2, y2] = numbers[..] else { panic!("{numbers:?}") };
         assert!((x1 - x0 - (y1 - y2)).abs() < 0.03 && (y0 - y1).abs() < 0.01 && (x1 - x2).abs() < 0.01, "{numbers:?}");
         assert!(!svg.contains("<circle") && !svg.contains(r#"class="jump""#), "{svg}");
+        // A series of one point is a point with a name, and not in the legend.
+        let mut named = plot;
+        named.series.insert(0, Series { label: "A".to_owned(), runs: vec![vec![(7.0, 35.0)]] });
+        let svg = named.svg(true);
+        assert!(svg.contains(r#"<circle class="point""#) && svg.matches(">A</text>").count() == 1, "{svg}");
+        assert!(svg.contains(r#"class="series" style="stroke:var(--s0)""#), "{svg}");
     }
 }

@@ -7,6 +7,7 @@ mod choice;
 mod drawing;
 mod figure;
 mod legend;
+mod marks;
 mod page;
 mod plot;
 mod scale;

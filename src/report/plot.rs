@@ -92,9 +92,9 @@ pub fn at(value: f64) -> String {
 }
 
 /// The frame in which points are placed.
-struct Frame {
-    left: f64,
-    top: f64,
+pub(super) struct Frame {
+    pub left: f64,
+    pub top: f64,
     width: f64,
     height: f64,
     x: Scale,
@@ -102,24 +102,24 @@ struct Frame {
 }
 
 impl Frame {
-    fn x(&self, value: f64) -> f64 {
+    pub fn x(&self, value: f64) -> f64 {
         self.left + self.width * self.x.share(value)
     }
 
-    fn y(&self, value: f64) -> f64 {
+    pub fn y(&self, value: f64) -> f64 {
         self.top + self.height * (1.0 - self.y.share(value))
     }
 
-    fn bottom(&self) -> f64 {
+    pub fn bottom(&self) -> f64 {
         self.top + self.height
     }
 
-    fn right(&self) -> f64 {
+    pub fn right(&self) -> f64 {
         self.left + self.width
     }
 
     /// Both coordinates, when the point can be drawn on these scales.
-    fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
+    pub fn place(&self, (x, y): (f64, f64)) -> Option<(f64, f64)> {
         let (x, y) = (self.x(x), self.y(y));
         (x.is_finite() && y.is_finite()).then_some((x, y))
     }
@@ -161,6 +161,7 @@ impl Plot {
             Kind::Bar => self.draw_bars(&mut svg, &frame),
         }
         self.draw_marks(&mut svg, &frame);
+        self.draw_named_points(&mut svg, &frame);
         svg.push_str("</svg>");
         svg
     }
@@ -205,10 +206,15 @@ impl Plot {
     }
 
     fn colour(&self, series: usize) -> Colour {
-        if self.series.len() <= COLOURS { Colour::Of(series) } else { Colour::ramp(series, self.series.len()) }
+        let lines = |series: &[Series]| series.iter().filter(|series| !self.is_named_point(series)).count();
+        match (lines(&self.series[..series]), lines(&self.series)) {
+            _ if self.is_named_point(&self.series[series]) => Colour::Ink,
+            (line, count) if count <= COLOURS => Colour::Of(line),
+            (line, count) => Colour::ramp(line, count),
+        }
     }
 
-    fn colour_of_mark(&self, mark: &Mark) -> Colour {
+    pub(super) fn colour_of_mark(&self, mark: &Mark) -> Colour {
         self.series
             .iter()
             .position(|series| series.label == mark.label)
@@ -222,7 +228,7 @@ impl Plot {
             Kind::Points => Sign::Dot,
             Kind::Bar => Sign::Square,
         };
-        let series = self.series.iter().enumerate().filter(|_| !is_alone);
+        let series = self.series.iter().enumerate().filter(|(_, series)| !is_alone && !self.is_named_point(series));
         let mut items: Vec<Item> = series
             .map(|(index, series)| Item {
                 label: if series.label.is_empty() { "computed".to_owned() } else { series.label.clone() },
@@ -306,6 +312,9 @@ impl Plot {
 
     fn draw_lines(&self, svg: &mut String, frame: &Frame) {
         for (index, series) in self.series.iter().enumerate() {
+            if self.is_named_point(series) {
+                continue;
+            }
             let style = self.colour(index).stroke();
             let (mut line, mut jumps) = (String::new(), String::new());
             let mut last: Option<(f64, f64)> = None;
@@ -363,39 +372,6 @@ impl Plot {
                     at(height)
                 );
             }
-        }
-    }
-
-    fn draw_marks(&self, svg: &mut String, frame: &Frame) {
-        for mark in &self.marks {
-            let colour = self.colour_of_mark(mark);
-            let x = mark.x.map(|x| frame.x(x)).filter(|x| x.is_finite());
-            let y = mark.y.map(|y| frame.y(y)).filter(|y| y.is_finite());
-            let style = colour.stroke();
-            let _ = match (x, y) {
-                (Some(x), Some(y)) => {
-                    write!(svg, r#"<path class="mark" {style} d="M{} {}l6 6l-6 6l-6 -6z"/>"#, at(x), at(y - 6.0))
-                }
-                (Some(x), None) if mark.y.is_none() => {
-                    write!(
-                        svg,
-                        r#"<path class="dashes" {style} d="M{} {}V{}"/>"#,
-                        at(x),
-                        at(frame.top),
-                        at(frame.bottom())
-                    )
-                }
-                (None, Some(y)) if mark.x.is_none() => {
-                    write!(
-                        svg,
-                        r#"<path class="dashes" {style} d="M{} {}H{}"/>"#,
-                        at(frame.left),
-                        at(y),
-                        at(frame.right())
-                    )
-                }
-                _ => Ok(()),
-            };
         }
     }
 

@@ -46,6 +46,11 @@ pub trait Stage: Send + Sync {
     /// The tables it can give; a table or column marked on demand is computed only when asked for.
     fn outputs(&self) -> Vec<Schema>;
 
+    /// Why it cannot give a table that other stages of its kind give.
+    fn lacks(&self, _table: &str) -> Option<&'static str> {
+        None
+    }
+
     /// Whether it draws random numbers. The seed is part of the key of those that do; the others are given a seed that
     /// never changes, so one that says nothing and draws all the same still has tables that fit their key.
     fn uses_seed(&self) -> bool {

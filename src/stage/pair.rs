@@ -65,32 +65,36 @@ const PAIR: &[(&str, &str, &str, Getter<Pair>)] = &[
     ("end_of_contact", "mm", "Path position of E, the end of contact.", |pair| pair.end_of_contact),
 ];
 
-/// The two tables of a pair.
+/// The table of gears.
 ///
 /// # Errors
-/// When a value is not finite, which a valid pair excludes.
-pub fn write(pair: &Pair) -> Result<[Table; 2], TableError> {
-    let row = |name: &str, gear: &Gear| -> Row {
-        let mut row: Row = vec![name.into(), gear.specification.teeth.into()];
+/// When a value is not finite, which a valid gear excludes.
+pub fn write_gears(gears: &[(Side, &Gear)]) -> Result<Table, TableError> {
+    let row = |(side, gear): &(Side, &Gear)| -> Row {
+        let mut row: Row = vec![side.name().into(), gear.specification.teeth.into()];
         row.extend(SPECIFIED.iter().map(|(_, unit, _, get)| in_unit(get(&gear.specification), unit).into()));
         row.extend(DERIVED.iter().map(|(_, unit, _, get)| in_unit(get(gear), unit).into()));
         row
     };
-    let gears = Table::from_rows(gears_schema(), vec![row("pinion", &pair.pinion), row("gear", &pair.gear)])?;
-    let values: Row = PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()).collect();
-    Ok([gears, Table::from_rows(pair_schema(), vec![values])?])
+    Table::from_rows(gears_schema(), gears.iter().map(row).collect())
 }
 
-/// The pair that [`write`] wrote.
+/// The table of the pair.
+///
+/// # Errors
+/// When a value is not finite, which a valid pair excludes.
+pub fn write_pair(pair: &Pair) -> Result<Table, TableError> {
+    let values: Row = PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()).collect();
+    Table::from_rows(pair_schema(), vec![values])
+}
+
+/// The pair that [`write_gears`] and [`write_pair`] wrote.
 ///
 /// # Errors
 /// When the tables are not from a valid pair.
 pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
     let specification = |side: Side| -> Result<Specification, Failure> {
-        let name = match side {
-            Side::Pinion => "pinion",
-            Side::Gear => "gear",
-        };
+        let name = side.name();
         let row = gears.texts("gear").iter().position(|gear| gear == name);
         let row = row.ok_or_else(|| Failure::new(format!("the geometry has no row for the {name}")))?;
         let value = |column: &str| si(gears, column, row);

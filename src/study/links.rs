@@ -118,7 +118,7 @@ pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
         for port in own {
             let target = source(port, &index, &ports).map_err(|found| found.at(place_of(&node.record, port, None)))?;
             for want in &port.wants {
-                check_want(names[target], want, &outputs[target])
+                check_want(&nodes[target], want, &outputs[target])
                     .map_err(|(found, column)| found.at(place_of(&node.record, port, Some((&want.table, column)))))?;
             }
         }
@@ -147,10 +147,14 @@ fn source(port: &Port, index: &BTreeMap<&str, usize>, ports: &[Vec<Port>]) -> Re
 }
 
 /// Says with the error which column is missing, if it is not the table.
-fn check_want<'a>(stage: &str, want: &'a Want, outputs: &[Schema]) -> Result<(), (Diagnostic, Option<&'a str>)> {
+fn check_want<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Result<(), (Diagnostic, Option<&'a str>)> {
+    let stage = node.name.as_str();
     let Some(schema) = outputs.iter().find(|schema| schema.name == want.table) else {
         let message = format!("stage {} has no table {}", quote(stage), quote(&want.table));
-        let help = suggest(&want.table, outputs.iter().map(|schema| schema.name.as_str()));
+        let help = match node.stage.lacks(&want.table) {
+            Some(why) => why.to_owned(),
+            None => suggest(&want.table, outputs.iter().map(|schema| schema.name.as_str())),
+        };
         return Err((Diagnostic::new(message).help(help), None));
     };
     let missing = want.columns.iter().find(|column| schema.column(column).is_none());

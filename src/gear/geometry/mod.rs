@@ -8,7 +8,9 @@ pub mod involute;
 pub mod outline;
 pub mod pair;
 pub mod root;
+pub mod tip_path;
 pub mod trochoid;
+pub mod validity;
 
 #[cfg(test)]
 mod tests;
@@ -60,6 +62,14 @@ impl Side {
         match self {
             Self::Pinion => "pinion",
             Self::Gear => "gear",
+        }
+    }
+
+    #[must_use]
+    pub fn other(self) -> Self {
+        match self {
+            Self::Pinion => Self::Gear,
+            Self::Gear => Self::Pinion,
         }
     }
 }

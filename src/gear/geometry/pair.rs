@@ -68,8 +68,8 @@ impl Pair {
     }
 
     fn check(&self) -> Result<(), GeometryError> {
-        for (side, mate_side) in [(Side::Pinion, Side::Gear), (Side::Gear, Side::Pinion)] {
-            let (own, mate) = (self.side(side), self.side(mate_side));
+        for side in [Side::Pinion, Side::Gear] {
+            let (own, mate) = (self.side(side), self.side(side.other()));
             let clearance = self.centre_distance - own.tip_radius - mate.root_radius;
             // The centre distance goes through an angle, each radius is a sum of products, and all began as decimals in other
             // units: some thirty roundings of at most ε of the centre distance. A 0 that was written down comes out within.
@@ -84,10 +84,8 @@ impl Pair {
         if !takes_over {
             return Err(Problem::ContactRatio { ratio: Plain(self.contact_ratio) }.into());
         }
-        for (side, mate_side, s) in
-            [(Side::Pinion, Side::Gear, self.start_of_contact), (Side::Gear, Side::Pinion, self.end_of_contact)]
-        {
-            let (own, mate, roll) = (self.side(side), self.side(mate_side), self.roll(side, s));
+        for side in [Side::Pinion, Side::Gear] {
+            let (own, mate, roll) = (self.side(side), self.side(side.other()), self.lowest_roll(side));
             // A rounding's worth of overlap is none.
             if roll < own.form_roll - 1e-12 {
                 let reach = self.tangent_length - own.base_radius * own.form_roll;
@@ -124,6 +122,15 @@ impl Pair {
         match side {
             Side::Pinion => roll * self.pinion.base_radius,
             Side::Gear => self.tangent_length - roll * self.gear.base_radius,
+        }
+    }
+
+    /// The roll angle of a gear to which its mate's tip reaches.
+    #[must_use]
+    pub fn lowest_roll(&self, side: Side) -> f64 {
+        match side {
+            Side::Pinion => self.roll(side, self.start_of_contact),
+            Side::Gear => self.roll(side, self.end_of_contact),
         }
     }
 

@@ -3,6 +3,7 @@
 mod cutter;
 mod meshing;
 mod outline;
+mod passing;
 
 use std::f64::consts::PI;
 

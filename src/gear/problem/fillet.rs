@@ -3,13 +3,9 @@
 //!
 //! The root is generated (its radius is that of the rack's tip) or an arc tangent to root circle and flank (its own
 //! radius). Two constraints keep the pair running: the flank must reach down to where the mate's tip touches it, and the
-//! corner of that tip must pass the root. A mate's corner at the angle β from the line of centres is at R² = a² + r_a²
-//! − 2 a r_a cos β from the gear's centre, so where it passes a point of the root is known in closed form; source: Litvin
-//! and Fuentes, Gear Geometry and Applied Theory (2004), section 10.9 (the extended epicycloid of the tip). Objectives are
-//! dimensionless: σ m b/F, and displacement times E b/F. They jump by the meshes' error where the mesh changes, so a search
-//! needs no finer tolerance than 1e-3. Must not know: how anything is searched, strength.
-
-use std::f64::consts::PI;
+//! corner of that tip, unbroken, must pass the root (`geometry/tip_path.rs`). Objectives are dimensionless: σ m b/F, and
+//! displacement times E b/F. They jump by the meshes' error where the mesh changes, so a search needs no finer tolerance
+//! than 1e-3. Must not know: how anything is searched, strength.
 
 use super::{Family, Problem, Variable, Worth};
 use crate::base::parameter::{Choice, Field, Member};
@@ -20,7 +16,9 @@ use crate::gear::finite_elements::gear_model::GearModel;
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
 use crate::gear::geometry::error::GeometryError;
+use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::root::{Root, RootShape};
+use crate::gear::geometry::tip_path::{Corner, TipPath};
 use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification, trochoid};
 
 pub const FAMILY: Family = Family {
@@ -40,7 +38,8 @@ pub const FAMILY: Family = Family {
             plane: if record.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain },
             across: across.next_multiple_of(2),
             roll: if tip { pair.side(side).tip_roll() } else { single_contact(pair, side) },
-            mate: Mate::new(pair, side),
+            active_radius: pair.side(side).radius_at(pair.lowest_roll(side)),
+            tip: TipPath::new(pair, side, vec![Corner::of(pair.side(side.other()))]),
         }))
     },
 };
@@ -73,9 +72,6 @@ const LOADS: &[Choice] = &[
 /// The smallest radius that is tried, as a share of the largest; a sharp root has no finite stress.
 const LEAST_SHARE: f64 = 0.1;
 
-/// Points of each curve of a root at which the mate's tip must pass it.
-const PASSED: usize = 64;
-
 /// The gear's roll angle at the end of single contact that is nearer to its tip; the tip where contact is never single.
 fn single_contact(pair: &Pair, side: Side) -> f64 {
     let s = match side {
@@ -85,61 +81,6 @@ fn single_contact(pair: &Pair, side: Side) -> f64 {
     if pair.contact_ratio < 2.0 { pair.roll(side, s) } else { pair.side(side).tip_roll() }
 }
 
-/// What the other gear's tip asks for.
-struct Mate {
-    centre_distance: f64,
-    tip_radius: f64,
-    tip_half_angle: f64,
-    /// z_1/z_2: how far the mate turns while the gear turns by 1.
-    ratio: f64,
-    half_pitch: f64,
-    /// Half the backlash, as an angle of the gear.
-    slack: f64,
-    /// Radius on the gear that its tip reaches.
-    active_radius: f64,
-}
-
-impl Mate {
-    fn new(pair: &Pair, side: Side) -> Self {
-        let (own, mate, lowest) = match side {
-            Side::Pinion => (&pair.pinion, &pair.gear, pair.start_of_contact),
-            Side::Gear => (&pair.gear, &pair.pinion, pair.end_of_contact),
-        };
-        let half_pitch = PI / f64::from(own.specification.teeth);
-        let ratio = f64::from(own.specification.teeth) / f64::from(mate.specification.teeth);
-        let working = libm::tan(pair.working_pressure_angle);
-        let space = half_pitch - own.half_angle_at_roll(working);
-        Self {
-            centre_distance: pair.centre_distance,
-            tip_radius: mate.tip_radius,
-            tip_half_angle: mate.half_angle_at_roll(mate.tip_roll()),
-            ratio,
-            half_pitch,
-            slack: space - mate.half_angle_at_roll(working) / ratio,
-            active_radius: own.radius_at(pair.roll(side, lowest)),
-        }
-    }
-
-    /// How far the corner of the mate's tip stays from a point of the gear's right flank or root, along the
-    /// circumference, while the flanks touch \[m\]; infinite where it never comes so low.
-    fn passes(&self, [half_thickness, height]: [f64; 2]) -> f64 {
-        let radius = libm::hypot(half_thickness, height);
-        let (a, tip) = (self.centre_distance, self.tip_radius);
-        let cosine = (a * a + tip * tip - radius * radius) / (2.0 * a * tip);
-        if cosine > 1.0 {
-            return f64::INFINITY;
-        }
-        let room = self.half_pitch - libm::atan2(half_thickness, height);
-        let corner = |beta: f64| {
-            let (sine, cosine) = libm::sincos(beta);
-            let turned = (beta - self.tip_half_angle) / self.ratio;
-            libm::atan2(tip * sine, a - tip * cosine) - turned + self.slack
-        };
-        let beta = libm::acos(cosine.max(-1.0));
-        radius * (room - corner(beta).max(corner(-beta)))
-    }
-}
-
 struct Fillet {
     gear: Gear,
     arc: bool,
@@ -147,7 +88,9 @@ struct Fillet {
     plane: Plane,
     across: usize,
     roll: f64,
-    mate: Mate,
+    /// Radius that the mate's tip reaches.
+    active_radius: f64,
+    tip: TipPath,
 }
 
 impl Fillet {
@@ -174,15 +117,8 @@ impl Fillet {
 
     /// How much lower the flank reaches than it must, and how far the mate's tip stays from the root.
     fn constraints(&self, gear: &Gear, root: &Root) -> Vec<f64> {
-        let place = |piece: &crate::gear::geometry::root::Piece, step: usize| {
-            let (from, to) = piece.range();
-            let section = piece.section(from + (to - from) * (step as f64 / PASSED as f64));
-            self.mate.passes([section.half_thickness, section.height])
-        };
-        let passed = root.pieces.iter().flat_map(|piece| (0..=PASSED).map(move |step| place(piece, step)));
-        // Nothing comes near a root that the mate does not reach; a module is as good as any distance.
-        let nearest = passed.fold(gear.specification.module, f64::min);
-        vec![self.mate.active_radius - gear.radius_at(root.form_roll), nearest]
+        let passed = self.tip.distance(&Toe::of(root).segments);
+        vec![self.active_radius - gear.radius_at(root.form_roll), passed]
     }
 }
 
@@ -239,29 +175,6 @@ mod tests {
             words.into_iter().map(|(name, usual)| (name, entry(Value::Choice(chosen(name, usual))))).collect();
         fields.push(("elements_across", entry(Value::Integer(6))));
         (FAMILY.build)(&Record { fields, place }, pair, side).unwrap()
-    }
-
-    /// Tier: second way. Where the mate's tip begins to touch, its corner is on the involute; above, it is off it.
-    #[test]
-    fn the_corner_of_the_mate_s_tip_is_on_the_flank_where_contact_begins() {
-        for shift in [0.0, 0.35] {
-            let pair = pair(shift);
-            for side in [Side::Pinion, Side::Gear] {
-                let mate = Mate::new(&pair, side);
-                let gear = pair.side(side);
-                let place = |radius: f64| {
-                    let section = gear.flank(((radius / gear.base_radius).powi(2) - 1.0).sqrt());
-                    [section.half_thickness, section.height]
-                };
-                let at = mate.passes(place(mate.active_radius));
-                assert!(at.abs() < 1e-15, "{side:?} {at:e}");
-                for above in [1.01, 1.03] {
-                    let off = mate.passes(place(mate.active_radius * above));
-                    assert!(off > 1e-6, "{side:?} {above}: {off:e}");
-                }
-                assert!(mate.passes([0.0, pair.centre_distance - mate.tip_radius - 1e-6]).is_infinite());
-            }
-        }
     }
 
     /// Tier: invariant. The rack that generates the root leaves room for a mate of any size.

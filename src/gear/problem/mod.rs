@@ -9,6 +9,7 @@ use super::geometry::error::GeometryError;
 use super::geometry::{Pair, Side};
 use crate::base::parameter::Member;
 use crate::base::record::Record;
+use crate::base::registry::registry;
 use crate::base::units::Dimension;
 
 /// A length that is free.
@@ -50,26 +51,4 @@ pub struct Family {
     pub build: Build,
 }
 
-/// Every problem, in the order in which they are listed to the user.
-pub const FAMILIES: &[&Family] = &[&root_arc::FAMILY, &fillet::FAMILY];
-
-/// The problem called `name`.
-#[must_use]
-pub fn family(name: &str) -> Option<&'static Family> {
-    FAMILIES.iter().copied().find(|family| family.member.name == name)
-}
-
-/// The problems as a user may write them, for [`crate::base::parameter::Shape::Member`].
-#[must_use]
-pub fn members() -> &'static [Member] {
-    const MEMBERS: [Member; FAMILIES.len()] = {
-        let mut members = [FAMILIES[0].member; FAMILIES.len()];
-        let mut at = 0;
-        while at < FAMILIES.len() {
-            members[at] = FAMILIES[at].member;
-            at += 1;
-        }
-        members
-    };
-    &MEMBERS
-}
+registry!(Family: root_arc, fillet);

@@ -137,6 +137,9 @@ impl Stage for Export {
         let all = contours(inputs.table("pair", "outline")?, inputs.table("pair", "gears")?)?;
         let wanted: Vec<&Contour> =
             self.gears.iter().filter_map(|gear| all.iter().find(|contour| contour.gear == *gear)).collect();
+        if wanted.len() < self.gears.len() {
+            return Err(Failure::new(format!("`{}` has one gear: write `gear: pinion`", self.pair)));
+        }
         let mut rows = Vec::new();
         for contour in &wanted {
             for format in &self.formats {

@@ -1,11 +1,13 @@
-//! `kind: geometry`: two spur gears and their pairing, checked before anything runs.
+//! `kind: geometry`: two spur gears and their pairing, or one gear alone, checked before anything runs.
 //!
-//! On demand it gives the full profiles of both gears, their junctions, how far the gears are from what they must not be,
-//! and the pair in mesh as curves. Must not know: stiffness. Names after ISO 21771 and ISO 53.
+//! On demand it gives the full profiles, their junctions, how far the gears are from what they must not be, and the pair
+//! in mesh as curves. Must not know: stiffness. Names after ISO 21771 and ISO 53.
 
 mod article;
+mod construction;
 mod drawn;
 mod meshing;
+mod valid;
 
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
@@ -15,8 +17,10 @@ use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::outline::sample::Density;
 use crate::gear::geometry::outline::tip::{self, Tip};
 use crate::gear::geometry::outline::{Outline, roots};
-use crate::gear::geometry::{Pair, Rack, Side, Specification};
+use crate::gear::geometry::validity::Mating;
+use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
 use crate::gear::material::Material;
+use crate::gear::modification::Design;
 use crate::gear::modification::template::Template;
 use crate::stage::designs;
 use crate::stage::pair::{self, gears_schema, pair_schema};
@@ -29,7 +33,7 @@ use drawn::Drawn;
 pub const KIND: Kind = Kind {
     name: "geometry",
     version: 1,
-    summary: "Two involute spur gears on their centre distance: radii, path of contact, contact ratio.",
+    summary: "Two involute spur gears on their centre distance, or one alone: radii, contact ratio, full profiles.",
     fields: FIELDS,
     example: "
 kind: geometry
@@ -50,7 +54,7 @@ const FIELDS: &[Field] = &[
     Field::group("rack", RACK, "Basic rack that cuts both gears, in modules (ISO 53).").default("{}"),
     Field::group("material", MATERIAL, "Material of both gears.").default("{}"),
     Field::group("pinion", GEAR, "The gear the torque is given on."),
-    Field::group("gear", GEAR, "The mating gear."),
+    Field::group("gear", GEAR, "The mating gear; without it the pinion is a gear alone, to be drawn.").optional(),
     Field::quantity("centre_distance", LENGTH, 1e-6, 1e3, "Centre distance a_w; zero backlash when it is not given.")
         .optional(),
     Field::group(
@@ -104,12 +108,19 @@ const GEAR: &[Field] = &[
 ];
 
 struct Geometry {
-    pair: Pair,
-    /// Pinion and gear.
-    outlines: [Outline; 2],
+    /// None of a gear alone.
+    pair: Option<Pair>,
+    /// The pinion, and the gear of a pair.
+    gears: Vec<Drawn>,
     density: Density,
     whole: bool,
 }
+
+/// The fields that say something of a pair.
+const OF_A_PAIR: &[(&str, &str)] = &[
+    ("centre_distance", "a gear alone has no centre distance"),
+    ("outline.flank", "a modification is laid out on the flank down to where the mate's tip reaches"),
+];
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let refused = |error: &GeometryError| {
@@ -120,35 +131,56 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         };
         Diagnostic::new(error.to_string()).at(place)
     };
-    for side in ["pinion", "gear"] {
-        let gear = record.group(side);
+    let stated = [Side::Pinion, Side::Gear].map(|side| record.maybe_group(side.name()).map(|gear| (side, gear)));
+    for (_, gear) in stated.iter().flatten() {
         if gear.entry("tip_radius").is_some() && gear.entry("tip_shortening").is_some() {
             return Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
                 .at(gear.place_of("tip_shortening"))
                 .help("give one of them"));
         }
     }
-    let pair = Pair::new(
-        specification(record, record.group("pinion")),
-        specification(record, record.group("gear")),
-        record.maybe_quantity("centre_distance"),
-    )
-    .map_err(|error| refused(&error))?;
     let options = record.group("outline");
-    let flank = Template::new(options.maybe_list("flank").unwrap_or_default())?.design(&pair, &[])?;
-    let outline = |side: Side| {
-        let (name, root) = record.group(side.name()).maybe_member("root").unwrap_or_else(|| options.member("root"));
+    let pinion = specification(record, record.group("pinion"));
+    let (pair, design, gears) = if let Some(gear) = record.maybe_group("gear") {
+        let pair = Pair::new(pinion, specification(record, gear), record.maybe_quantity("centre_distance"))
+            .map_err(|error| refused(&error))?;
+        let design = Template::new(options.maybe_list("flank").unwrap_or_default())?.design(&pair, &[])?;
+        let gears = vec![pair.pinion.clone(), pair.gear.clone()];
+        (Some(pair), design, gears)
+    } else {
+        check_alone(record)?;
+        let gear = Gear::new(&pinion).map_err(|error| refused(&error.on(Side::Pinion)))?;
+        (None, Design::default(), vec![gear])
+    };
+    let drawn = |((side, stated), gear): ((Side, &Record), Gear)| {
+        let (name, root) = stated.maybe_member("root").unwrap_or_else(|| options.member("root"));
         // The decoder lets only registered families through.
         let family = roots::family(name).ok_or_else(|| Diagnostic::new(format!("there is no root `{name}`")))?;
-        let gear = pair.side(side);
-        (family.build)(root, gear)
-            .and_then(|toe| Outline::new(gear, toe, Tip::of(options.member("tip")), flank.relief(side)))
-            .map_err(|error| refused(&error.on(side)))
+        let outline = (family.build)(root, &gear)
+            .and_then(|toe| Outline::new(&gear, toe, Tip::of(options.member("tip")), design.relief(side)))
+            .map_err(|error| refused(&error.on(side)))?;
+        Ok(Drawn { side, gear, outline })
     };
-    let outlines = [outline(Side::Pinion)?, outline(Side::Gear)?];
+    let gears = stated.into_iter().flatten().zip(gears).map(drawn).collect::<Result<_, Diagnostic>>()?;
     let points = usize::try_from(options.integer("points")).unwrap_or(0);
     let density = Density { points, chord_error: options.maybe_quantity("chord_error") };
-    Ok(Box::new(Geometry { pair, outlines, density, whole: options.choice("teeth") == "all" }))
+    Ok(Box::new(Geometry { pair, gears, density, whole: options.choice("teeth") == "all" }))
+}
+
+/// Refuses what only a pair can have.
+fn check_alone(record: &Record) -> Result<(), Diagnostic> {
+    for (path, why) in OF_A_PAIR {
+        let (group, field) = match path.split_once('.') {
+            Some((group, field)) => (record.group(group), field),
+            None => (record, *path),
+        };
+        if group.entry(field).is_some() {
+            return Err(Diagnostic::new(format!("`{field}` needs a mate: {why}"))
+                .at(group.place_of(field))
+                .help("add the mating gear as `gear`, or leave this out"));
+        }
+    }
+    Ok(())
 }
 
 fn specification(record: &Record, gear: &Record) -> Specification {
@@ -185,37 +217,62 @@ impl Stage for Geometry {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let drawn = [drawn::outline_schema(), drawn::junctions_schema(), drawn::validity_schema()];
-        let mut schemas = vec![gears_schema(), pair_schema()];
-        schemas.extend(drawn);
-        schemas.extend([meshing::schema(), article::schema()]);
+        let paired = self.pair.is_some();
+        let mut schemas = vec![gears_schema()];
+        schemas.extend(paired.then(pair_schema));
+        schemas.extend([drawn::outline_schema(), drawn::junctions_schema(), valid::schema(paired)]);
+        schemas.extend(paired.then(meshing::schema));
+        schemas.extend([article::schema(), construction::schema()]);
         schemas
+    }
+
+    fn lacks(&self, table: &str) -> Option<&'static str> {
+        let of_a_pair = [pair_schema(), meshing::schema()].iter().any(|schema| schema.name == table);
+        (of_a_pair && self.pair.is_none()).then_some("it has one gear, and this needs two: give it the mate as `gear`")
     }
 
     fn run(&self, context: &Context, _inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let failed = |error: TableError| Failure::new(error.to_string());
-        let pair = &self.pair;
-        let both = [Side::Pinion, Side::Gear].map(|side| {
-            let outline = &self.outlines[usize::from(side == Side::Gear)];
-            Drawn { side, pair, outline }
-        });
-        let mut tables = Vec::from(pair::write(pair).map_err(failed)?);
-        let wanted = self.outputs().iter().any(|schema| schema.on_demand && context.demand.table(&schema.name));
-        both.iter().filter(|_| wanted).filter_map(Drawn::interference).for_each(|text| (context.warn)(text));
-        let teeth = |drawn: &Drawn| if self.whole { drawn.outline.teeth } else { 1 };
-        for schema in self.outputs().into_iter().filter(|schema| schema.on_demand) {
-            if !context.demand.table(&schema.name) {
-                continue;
+        let gears: Vec<_> = self.gears.iter().map(|drawn| (drawn.side, &drawn.gear)).collect();
+        let mut tables = vec![pair::write_gears(&gears).map_err(failed)?];
+        if let Some(pair) = &self.pair {
+            tables.push(pair::write_pair(pair).map_err(failed)?);
+        }
+        let schemas =
+            self.outputs().into_iter().filter(|schema| schema.on_demand && context.demand.table(&schema.name));
+        let schemas: Vec<Schema> = schemas.collect();
+        let mated: Vec<(&Drawn, Option<(&Pair, Mating)>)> = if schemas.is_empty() {
+            Vec::new()
+        } else {
+            self.gears.iter().map(|drawn| (drawn, self.mating(drawn))).collect()
+        };
+        for (drawn, mating) in mated.iter().filter_map(|(drawn, mate)| Some((drawn, mate.as_ref()?.1))) {
+            for text in valid::warnings(drawn, &mating) {
+                (context.warn)(text);
             }
-            let rows: Vec<Row> = match schema.name.as_str() {
-                "outline" => both.iter().flat_map(|drawn| drawn.outline_rows(self.density, teeth(drawn))).collect(),
-                "junctions" => both.iter().flat_map(Drawn::junction_rows).collect(),
-                "validity" => both.iter().map(Drawn::validity_row).collect(),
-                "mesh_drawing" => meshing::rows(pair, [&both[0], &both[1]], self.density),
-                _ => both.iter().filter_map(|drawn| article::row(drawn, pair.side(drawn.side))).collect(),
+        }
+        let teeth = |drawn: &Drawn| if self.whole { drawn.outline.teeth } else { 1 };
+        for schema in schemas {
+            let rows: Vec<Row> = match (schema.name.as_str(), &self.pair) {
+                ("outline", _) => {
+                    self.gears.iter().flat_map(|drawn| drawn.outline_rows(self.density, teeth(drawn))).collect()
+                }
+                ("junctions", _) => self.gears.iter().flat_map(Drawn::junction_rows).collect(),
+                ("validity", _) => mated.iter().map(|(drawn, mate)| valid::row(drawn, *mate)).collect(),
+                ("mesh_drawing", Some(pair)) => meshing::rows(pair, &self.gears, self.density),
+                ("root_arc", _) => self.gears.iter().filter_map(article::row).collect(),
+                _ => self.gears.iter().flat_map(|drawn| construction::rows(drawn, self.density)).collect(),
             };
             tables.push(Table::from_rows(schema, rows).map_err(failed)?);
         }
         Ok(tables)
+    }
+}
+
+impl Geometry {
+    fn mating(&self, drawn: &Drawn) -> Option<(&Pair, Mating)> {
+        let pair = self.pair.as_ref()?;
+        let mate = self.gears.iter().find(|other| other.side != drawn.side)?;
+        Some((pair, Mating::new(pair, drawn.side, &drawn.outline, &mate.outline)))
     }
 }

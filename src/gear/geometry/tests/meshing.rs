@@ -1,8 +1,10 @@
 //! The pair at work, by brute force: polygons turned through a pitch nowhere overlap, and touch on the path of contact.
 
-use super::outline::outlined;
+use super::outline::shaped;
 use super::*;
+use crate::gear::geometry::outline::Outline;
 use crate::gear::geometry::outline::sample::{Density, Point};
+use crate::gear::geometry::validity::Mating;
 
 /// Half the angle of the tooth over its radius, read off a polygon of its right half: knows nothing of involutes.
 struct Silhouette {
@@ -12,12 +14,11 @@ struct Silhouette {
 }
 
 impl Silhouette {
-    fn new(gear: &Gear) -> Self {
-        let outline = outlined(gear, "trochoid", ("rack_tip", "given")).unwrap();
+    fn new(outline: &Outline) -> Self {
         let half = outline.half(Density { points: 40_000, chord_error: None });
         let polar = |[x, y]: [f64; 2]| (x.hypot(y), x.atan2(y));
         let rows = half.iter().map(|point| polar(point.local.position)).collect();
-        Self { rows, teeth: gear.specification.teeth }
+        Self { rows, teeth: outline.teeth }
     }
 
     /// How deep a point at this polar angle from a tooth's centreline lies inside the material, as a length along the
@@ -75,8 +76,8 @@ fn pairs_touch_on_the_path_of_contact_and_nowhere_overlap() {
             ..specification(teeth, 3.0, shift)
         };
         let pair = Pair::new(of(z1, x1), of(z2, x2), None).unwrap();
-        let outline = outlined(&pair.pinion, "trochoid", ("rack_tip", "given")).unwrap();
-        let (points, gear) = (outline.tooth(Density { points: 4000, chord_error: None }), Silhouette::new(&pair.gear));
+        let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, "trochoid").unwrap());
+        let (points, gear) = (pinion.tooth(Density { points: 4000, chord_error: None }), Silhouette::new(&gear));
         let (a, alpha) = (pair.centre_distance, pair.working_pressure_angle);
         for step in 0..40 {
             let turn = 2.0 * PI / f64::from(z1) * (f64::from(step) / 40.0 - 0.5);
@@ -92,5 +93,34 @@ fn pairs_touch_on_the_path_of_contact_and_nowhere_overlap() {
             let (nearer, _) = deepest(&pair, &points, &gear, turn, a - 1e-6);
             assert!(nearer > 2e-7 && nearer < 1e-6, "{what}: {nearer} m inside when 1 um nearer");
         }
+    }
+}
+
+/// Tier: second method (brute force); the turned polygons of a pair overlap where the closed form has the mate's tip cut
+/// into the root, and nowhere else. Along the circumference the overlap is deeper than along the normal.
+#[test]
+fn polygons_overlap_where_the_mate_s_tip_cuts_into_the_root() {
+    for (z1, z2, family, cuts) in [
+        (17, 23, "optimised_arc", true),
+        (17, 17, "optimised_arc", true),
+        (17, 23, "arc", true),
+        (30, 38, "arc", false),
+        (30, 38, "optimised_arc", false),
+        (23, 24, "trochoid", false),
+    ] {
+        let pair = Pair::new(specification(z1, 1.0, 0.0), specification(z2, 1.0, 0.0), None).unwrap();
+        let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, family).unwrap());
+        let points = pinion.tooth(Density { points: 4000, chord_error: None });
+        let silhouette = Silhouette::new(&gear);
+        let turn = |step: u32| 2.0 * PI / f64::from(z1) * (f64::from(step) / 200.0 - 0.5);
+        let depths = (0..200).map(|step| deepest(&pair, &points, &silhouette, turn(step), pair.centre_distance).0);
+        let depth = depths.fold(f64::NEG_INFINITY, f64::max);
+        // Either tip in the other's root.
+        let [one, other] = [(Side::Pinion, &pinion, &gear), (Side::Gear, &gear, &pinion)]
+            .map(|(side, own, mate)| Mating::new(&pair, side, own, mate));
+        let distance = one.root_distance.min(other.root_distance);
+        let what = format!("{z1}/{z2} {family}: {depth:e} for {distance:e}");
+        assert!((distance < 0.0) == cuts && (depth > 1e-8) == cuts, "{what}");
+        assert!(depth >= -0.98 * distance && (!cuts || depth < -2.5 * distance), "{what}");
     }
 }

@@ -4,7 +4,6 @@
 
 use super::drawn::Drawn;
 use crate::base::units::in_unit;
-use crate::gear::geometry::Gear;
 use crate::gear::problem::root_arc::RootArc;
 use crate::table::data::Row;
 use crate::table::schema::{Column, Schema};
@@ -73,8 +72,8 @@ pub fn schema() -> Schema {
 }
 
 #[must_use]
-pub fn row(drawn: &Drawn, gear: &Gear) -> Option<Row> {
-    let arc = RootArc::new(gear).ok()?;
+pub fn row(drawn: &Drawn) -> Option<Row> {
+    let arc = RootArc::new(&drawn.gear).ok()?;
     let angles = [arc.base.angle, arc.printed_angle()].map(|angle| in_unit(angle, "deg").into());
     let mut row: Row = vec![drawn.side.name().into()];
     row.extend(angles);

@@ -33,9 +33,10 @@ pub fn schema() -> Schema {
     .on_demand()
 }
 
-/// The rows of a pair with its two profiles.
+/// The rows of a pair with its two profiles, the pinion's and the gear's.
 #[must_use]
-pub fn rows(pair: &Pair, [pinion, gear]: [&Drawn; 2], density: Density) -> Vec<Row> {
+pub fn rows(pair: &Pair, gears: &[Drawn], density: Density) -> Vec<Row> {
+    let [pinion, gear] = gears else { return Vec::new() };
     let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
     let half_gear_pitch = PI / f64::from(pair.gear.specification.teeth);
     lines.push(("pinion", teeth(pinion, density, -1..=1, 0.0)));

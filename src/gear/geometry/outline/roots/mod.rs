@@ -11,6 +11,7 @@ pub mod trochoid;
 use super::curve::Segment;
 use crate::base::parameter::Member;
 use crate::base::record::Record;
+use crate::base::registry::registry;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
 
@@ -30,26 +31,4 @@ pub struct Family {
     pub build: fn(&Record, &Gear) -> Result<Toe, GeometryError>,
 }
 
-/// Every family, in the order in which they are listed to the user.
-pub const FAMILIES: &[&Family] = &[&trochoid::FAMILY, &arc::FAMILY, &tangent_arc::FAMILY, &optimised_arc::FAMILY];
-
-/// The family called `name`.
-#[must_use]
-pub fn family(name: &str) -> Option<&'static Family> {
-    FAMILIES.iter().copied().find(|family| family.member.name == name)
-}
-
-/// The families as a user may write them, for [`crate::base::parameter::Shape::Member`].
-#[must_use]
-pub fn members() -> &'static [Member] {
-    const MEMBERS: [Member; FAMILIES.len()] = {
-        let mut members = [FAMILIES[0].member; FAMILIES.len()];
-        let mut at = 0;
-        while at < FAMILIES.len() {
-            members[at] = FAMILIES[at].member;
-            at += 1;
-        }
-        members
-    };
-    &MEMBERS
-}
+registry!(Family: trochoid, arc, tangent_arc, optimised_arc);

@@ -1,0 +1,107 @@
+//! The article's root arc as curves to draw: circles, centre, tangent, the angle θ, the points A, B, C (zhai2020, Figures 12
+//! and 14).
+//!
+//! Frame: the gear's, with the tooth's centreline on the y axis. Must not know: how it is drawn.
+
+use std::f64::consts::{FRAC_PI_2, PI};
+
+use super::drawn::{Drawn, gear_column};
+use crate::base::units::in_unit;
+use crate::gear::geometry::outline::curve::Part;
+use crate::gear::geometry::outline::sample::Density;
+use crate::gear::problem::root_arc::RootArc;
+use crate::table::data::Row;
+use crate::table::schema::{Column, Schema};
+
+/// Points of an arc.
+const ARC: u32 = 90;
+
+#[must_use]
+pub fn schema() -> Schema {
+    Schema::new(
+        "arc_drawing",
+        "How zhai2020 constructs the root arc: right half of a tooth, circles, points; no rows where there is no such arc.",
+        vec![
+            gear_column(),
+            Column::text("curve", "What is drawn; A, B, C and θ are points.").key(),
+            Column::integer("point", "Number of the point on it.").key(),
+            Column::integer("run", "Counts lines of one name that do not meet."),
+            Column::text("step", "boundary: up to the tangent in A (Figure 12); arc: what follows from it (Figure 14)."),
+            Column::float("x", "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
+            Column::float("y", "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
+        ],
+    )
+    .on_demand()
+}
+
+struct Line {
+    curve: &'static str,
+    step: &'static str,
+    runs: Vec<Vec<[f64; 2]>>,
+}
+
+#[must_use]
+pub fn rows(drawn: &Drawn, density: Density) -> Vec<Row> {
+    let Ok(arc) = RootArc::new(&drawn.gear) else { return Vec::new() };
+    let (base, circle) = (arc.base, arc.article());
+    let ([a, c], r) = ([base.a, circle.centre], circle.radius);
+    // B is the lowest point of the arc on the page.
+    let b = [c[0], c[1] - r];
+    let about = |[x, y]: [f64; 2], radius: f64, from: f64, to: f64| -> Vec<[f64; 2]> {
+        let point = |step: u32| {
+            let (sine, cosine) = libm::sincos(from + (to - from) * f64::from(step) / f64::from(ARC));
+            [x + radius * cosine, y + radius * sine]
+        };
+        (0..=ARC).map(point).collect()
+    };
+    let reach = 1.6 * base.half_pitch;
+    let whole = |radius: f64| vec![about([0.0; 2], radius, FRAC_PI_2 - reach, FRAC_PI_2)];
+    let along = |from: f64, to: f64, angle: f64| {
+        let (sine, cosine) = libm::sincos(angle);
+        vec![[from * sine, from * cosine], [to * sine, to * cosine]]
+    };
+    let flank = drawn.outline.half(density).into_iter();
+    let flank = flank.filter(|point| drawn.outline.segments[point.segment].part == Part::Flank);
+    // As far above the base circle as the root circle is below it.
+    let high = 2.0 * base.base_radius - base.root_radius;
+    let flank = flank.map(|point| point.local.position).filter(|[x, y]| libm::hypot(*x, *y) <= high);
+    let flank: Vec<[f64; 2]> = flank.collect();
+    let line = |curve, step, runs| Line { curve, step, runs };
+    let lines = [
+        line("flank", "boundary", vec![flank]),
+        line("base circle", "boundary", whole(base.base_radius)),
+        line("root circle", "boundary", whole(base.root_radius)),
+        line(
+            "centrelines of tooth and space",
+            "boundary",
+            vec![
+                along(base.root_radius - 0.3 * r, high, 0.0),
+                along(base.root_radius - 0.3 * r, high, base.half_pitch),
+            ],
+        ),
+        line("tangent in A", "boundary", vec![along(base.root_radius, high, base.angle)]),
+        line("arc", "arc", vec![about(c, r, PI - base.angle, 1.5 * PI)]),
+        line(
+            "rest of its circle, with the radii to A and B",
+            "arc",
+            vec![about(c, r, 1.5 * PI, 3.0 * PI - base.angle), vec![a, c, b]],
+        ),
+        // Between the radius to A and the horizontal through C.
+        line("angle θ", "arc", vec![about(c, 0.7 * r, PI - base.angle, PI), vec![c, [c[0] - 0.85 * r, c[1]]]]),
+        line("A", "boundary", vec![vec![a]]),
+        line("B", "arc", vec![vec![b]]),
+        line("C", "arc", vec![vec![c]]),
+        line("θ", "arc", vec![about(c, 0.7 * r, PI - base.angle, PI)[ARC as usize / 2..=ARC as usize / 2].to_vec()]),
+    ];
+    let mut rows = Vec::new();
+    for Line { curve, step, runs } in lines {
+        let points = runs.iter().enumerate().flat_map(|(run, points)| points.iter().map(move |point| (run, point)));
+        rows.extend(points.enumerate().map(|(at, (run, [x, y]))| -> Row {
+            let mut row: Row =
+                vec![drawn.side.name().into(), curve.into(), (at + 1).into(), (run + 1).into(), step.into()];
+            row.extend([x, y].map(|length| in_unit(*length, "mm").into()));
+            row
+        }));
+    }
+    rows
+}
