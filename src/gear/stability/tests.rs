@@ -151,18 +151,17 @@ fn few_positions_lose_nothing() {
         let mean = report.digits.iter().find(|digits| digits.quantity == "mean transmission error").unwrap();
         mean.lost - libm::log10(mean.condition.max(1.0))
     };
-    for (torque, relief, relief_length, crowning, before) in [
-        (1.0, 8e-6, 4e-3, 6e-6, 6.1),
-        (50.0, 100e-6, 4e-3, 6e-6, 6.8),
-        (3e-12, 6.5e-6, 0.49e-3, 0.0, 3.5),
-        (1.0, 8e-6, 4e-3, 0.0, 4.5),
+    let (linear, logarithmic) = (ContactLaw::Linear, ContactLaw::LoadDependent);
+    for (contact, torque, relief, relief_length, crowning, before) in [
+        (linear, 1.0, 8e-6, 4e-3, 6e-6, 6.1),
+        (linear, 50.0, 100e-6, 4e-3, 6e-6, 6.8),
+        (linear, 3e-12, 6.5e-6, 0.49e-3, 0.0, 3.5),
+        (logarithmic, 1.0, 8e-6, 4e-3, 0.0, 4.5),
     ] {
         let mut case = base();
         case.model.settings.positions = Settings::default().positions;
         (case.torque, case.relief, case.relief_length, case.crowning) = (torque, relief, relief_length, crowning);
-        if crowning == 0.0 && relief_length == 4e-3 {
-            case.model.assumptions.contact = ContactLaw::LoadDependent;
-        }
+        case.model.assumptions.contact = contact;
         let found = beyond(&case);
         println!("{torque} {relief} {crowning}: {before} {found}");
         assert!(found < before - 2.0, "{torque} {relief} {crowning}: {found}");
@@ -209,7 +208,7 @@ fn corners_and_plates_hold_every_invariant() {
             let findings = check(&case, &rules).findings;
             let verdict = |name: &str| findings.iter().find(|found| found.invariant == name).map(|found| found.verdict);
             assert!(findings.iter().all(|found| found.verdict != Verdict::Broken), "{torque}: {findings:?}");
-            if corner_contact == CornerContact::Exact && torque == 1e9 {
+            if corner_contact == CornerContact::Exact && torque > 1e6 {
                 assert!(findings.len() == 1 && findings[0].reason.contains("corner contact"), "{findings:?}");
                 continue;
             }

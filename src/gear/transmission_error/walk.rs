@@ -42,7 +42,7 @@ impl Loading<'_> {
                     let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
                     let mut cuts = MOST_CUTS;
                     let last = self.state(if panel < panels { to } else { end - inwards[1] }, zone.pairs);
-                    self.smooth(&span, [first, last], &mut cuts, &mut visit);
+                    self.smooth(&span, &[first, last], &mut cuts, &mut visit);
                     first = last;
                     from = to;
                     panel += 1.0;
@@ -56,7 +56,7 @@ impl Loading<'_> {
     /// more than its nodes can follow: the next change may be near, though beyond the end.
     ///
     /// All parts share `cuts`: where gaps are equal but for rounding, the changes that rounding makes have no end.
-    fn smooth(&self, span: &Span, ends: [State; 2], cuts: &mut usize, visit: &mut impl FnMut(&Span, &[State; NODES])) {
+    fn smooth(&self, span: &Span, ends: &[State; 2], cuts: &mut usize, visit: &mut impl FnMut(&Span, &[State; NODES])) {
         let rows = &self.cycle.rows;
         let mut states = [ends[0]; NODES];
         states[NODES - 1] = ends[1];
@@ -65,7 +65,7 @@ impl Loading<'_> {
         }
         let change = if *cuts > 0 { self.change(span, &states) } else { None };
         let bent = || self.refines && *cuts > 0 && rows.tail(&states.map(|state| state.transmission_error())) > TAIL;
-        let cut = change.or_else(|| bent().then(|| (0.5 * (span.start + span.end), None)));
+        let cut = change.or_else(|| bent().then_some((0.5 * (span.start + span.end), None)));
         let Some((position, pair)) = cut else {
             self.settle(span, &mut states);
             return visit(span, &states);
@@ -74,8 +74,8 @@ impl Loading<'_> {
         let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
         let after = Span { start: position, touches: [pair, span.touches[1]], ..*span };
         let middle = self.state(position, span.pairs);
-        self.smooth(&before, [ends[0], middle], cuts, visit);
-        self.smooth(&after, [middle, ends[1]], cuts, visit);
+        self.smooth(&before, &[ends[0], middle], cuts, visit);
+        self.smooth(&after, &[middle, ends[1]], cuts, visit);
     }
 
     /// The transmission error over the cycle.
