@@ -79,6 +79,7 @@ impl Shop {
             status: "ran".to_owned(),
             why: String::new(),
             seconds: 0.0,
+            work: std::collections::BTreeMap::new(),
             warnings: Vec::new(),
             left_out: Vec::new(),
             tables: tables.iter().map(record).collect(),
