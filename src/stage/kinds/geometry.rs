@@ -13,6 +13,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS};
+use crate::base::work::{Counter, Work};
 use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::outline::sample::Density;
 use crate::gear::geometry::outline::tip::{self, Tip};
@@ -24,7 +25,7 @@ use crate::gear::modification::Design;
 use crate::gear::modification::template::Template;
 use crate::stage::designs;
 use crate::stage::pair::{self, gears_schema, pair_schema};
-use crate::stage::{Context, Inputs, Kind, Port, Stage};
+use crate::stage::{Context, Demand, Inputs, Kind, Port, Saved, Stage};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::Schema;
 
@@ -211,6 +212,9 @@ fn specification(record: &Record, gear: &Record) -> Specification {
     }
 }
 
+/// Tables that are made by going round whole outlines.
+const OF_OUTLINES: [&str; 3] = ["outline", "validity", "mesh_drawing"];
+
 impl Stage for Geometry {
     fn inputs(&self) -> Vec<Port> {
         Vec::new()
@@ -229,6 +233,10 @@ impl Stage for Geometry {
     fn lacks(&self, table: &str) -> Option<&'static str> {
         let of_a_pair = [pair_schema(), meshing::schema()].iter().any(|schema| schema.name == table);
         (of_a_pair && self.pair.is_none()).then_some("it has one gear, and this needs two: give it the mate as `gear`")
+    }
+
+    fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
+        OF_OUTLINES.contains(&table).then_some(Saved::Fixed(Counter::Outlines, self.gears.len() as f64))
     }
 
     fn run(&self, context: &Context, _inputs: &Inputs) -> Result<Vec<Table>, Failure> {
@@ -253,6 +261,9 @@ impl Stage for Geometry {
         }
         let teeth = |drawn: &Drawn| if self.whole { drawn.outline.teeth } else { 1 };
         for schema in schemas {
+            if OF_OUTLINES.contains(&schema.name.as_str()) {
+                context.work.add(&Work::of(Counter::Outlines, self.gears.len()));
+            }
             let rows: Vec<Row> = match (schema.name.as_str(), &self.pair) {
                 ("outline", _) => {
                     self.gears.iter().flat_map(|drawn| drawn.outline_rows(self.density, teeth(drawn))).collect()
