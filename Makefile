@@ -39,8 +39,6 @@ study: release  ## run one study: make study STUDY=energy_ga
 test: setup  ## format, lints, all tests, and the quick study run twice
 	cargo fmt --check
 	cargo clippy --locked --all-targets -- -D warnings
-	@# What the feature adds; polars is only checked for it, in three CPU minutes.
-	cargo clippy --locked --all-targets --features frames -- -D warnings
 	@# One build for all tests: with another set of features most of the dependencies would be built again.
 	cargo test --locked --features frames
 	@# The program that the tests were built with: another build would differ in features and take a minute.

@@ -18,7 +18,7 @@ use crate::store::archive::pack::{Entries, pack};
 use crate::store::archive::{self, METADATA, about};
 use crate::store::file::{self, Durability};
 use crate::store::manifest::Manifest;
-use crate::store::results::{Folder, MANIFEST};
+use crate::store::results::{Folder, MANIFEST, held_text};
 use crate::study::{Study, schema};
 
 /// What only the user knows.
@@ -131,7 +131,16 @@ fn results(folder: &Folder, manifest: &Manifest, pages: &[PathBuf]) -> Result<En
         put(&page.to_string_lossy())?;
     }
     for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
-        folder.table(record).map_err(|error| error.to_string())?;
+        let table = folder.table(record).map_err(|error| error.to_string())?;
+        for file in &record.files {
+            let packed = entries.get(&format!("{inside}{file}")).map(Vec::as_slice);
+            if packed != held_text(&table, file).as_deref().map(str::as_bytes) {
+                return Err(format!(
+                    "`{file}` is not what the table `{}` says; delete it, and the next run writes it anew",
+                    record.name
+                ));
+            }
+        }
     }
     Ok(entries)
 }

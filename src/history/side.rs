@@ -14,7 +14,7 @@ use crate::store::cache::Cache;
 use crate::store::file;
 use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
-use crate::store::results::MANIFEST;
+use crate::store::results::{MANIFEST, held_text};
 use crate::table::data::Table;
 
 /// A pointer of Git LFS has some 130 bytes.
@@ -187,6 +187,20 @@ impl Side {
         }
     }
 
+    /// The files of a table that are not the lines it holds.
+    fn changed_files(&self, study: &str, record: &TableRecord, table: &Table) -> Vec<(String, String)> {
+        let changed = |file: &&String| match self.read(&Path::new(study).join(file), file::MOST_TABLE) {
+            Ok(Some(bytes)) => {
+                pointer(&bytes).is_none() && held_text(table, file).is_some_and(|text| text.as_bytes() != bytes)
+            }
+            _ => false,
+        };
+        let told = |file: &String| (file.clone(), format!("is not what the table `{}` holds", record.name));
+        // A manifest from elsewhere may name anything.
+        let here = |file: &&String| Path::new(file).file_name().is_some_and(|name| name == file.as_str());
+        record.files.iter().filter(here).filter(changed).map(told).collect()
+    }
+
     /// Whether this file is there, whatever is in it.
     #[must_use]
     pub fn has(&self, study: &str, file: &str) -> bool {
@@ -209,12 +223,17 @@ impl Side {
     ) -> Vec<(String, String)> {
         let tables: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
         let of_table = |record: &&TableRecord| match self.held(study, record) {
-            Held::Damaged(problem) => Some((record.file.clone(), problem)),
-            _ => None,
+            Held::Damaged(problem) => vec![(record.file.clone(), problem)],
+            Held::Table(table) => self.changed_files(study, record, &table),
+            _ => Vec::new(),
         };
-        let mut found: Vec<(String, String)> =
-            tables.par_iter().filter(|record| !read(record)).filter_map(of_table).collect();
-        let others = manifest.files.iter().filter(|listed| tables.iter().all(|record| record.file != listed.file));
+        let looked_at = |record: &&&TableRecord| !read(record) || !record.files.is_empty();
+        let mut found: Vec<(String, String)> = tables.par_iter().filter(looked_at).flat_map_iter(of_table).collect();
+        let known: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
+        let others = manifest
+            .files
+            .iter()
+            .filter(|listed| !known.contains(&listed.file) && tables.iter().all(|record| record.file != listed.file));
         found.extend(others.filter_map(|listed| {
             let Source::Folder(folder) = &self.source else { return None };
             let path = folder.join(study).join(&listed.file);

@@ -28,9 +28,8 @@ pub enum Reason {
 }
 
 impl Reason {
-    /// Why the point that was found may not be a minimum, where the search itself says so.
-    #[must_use]
-    pub fn doubt(self) -> Option<&'static str> {
+    /// What a local search that ended so has to say against its point.
+    fn doubt(self) -> Option<&'static str> {
         match self {
             Self::Stalled => Some(
                 "the search stalled: slopes around the design that it found say that one nearby is better, but no line leads \
@@ -235,6 +234,13 @@ impl Optimizer {
     #[must_use]
     pub fn finished(&self) -> Option<Reason> {
         self.strategy.finished()
+    }
+
+    /// Why the point that was found may not be a minimum, where a local search says so of itself; a population has looked
+    /// elsewhere already, whatever becomes of its polish.
+    pub fn doubt(&mut self) -> Option<&'static str> {
+        let reason = self.finished()?;
+        self.strategy.local().and_then(|_| reason.doubt())
     }
 
     /// The first point with the lowest value of those that keep the constraints, or while none does the one that breaks

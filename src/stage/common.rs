@@ -125,7 +125,7 @@ pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(Pair, MeshCycl
 }
 
 /// Time of a solve with corner contact over that of one without.
-const CORNER_SOLVES: f64 = 3.0;
+const CORNER_SOLVES: f64 = 8.0;
 
 /// What the settings leave out.
 pub fn corner_contact_left_out(settings: Settings) -> Option<Omission> {

@@ -67,6 +67,10 @@ impl Cache {
     /// When the folder cannot be made or locked.
     pub fn open(root: &Path) -> Result<Self, StoreError> {
         let lock_path = root.join("lock");
+        // To open a pipe would wait for somebody at its other end.
+        if lock_path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+            return Err(StoreError::io("lock", &lock_path)(std::io::Error::other("it is no regular file")));
+        }
         let lock = match File::open(&lock_path) {
             Ok(lock) => lock,
             Err(_) => Self::create(root, &lock_path)?,

@@ -260,17 +260,11 @@ impl Folder {
     /// Writes files whose lines a table holds; its own file is there.
     fn write_files(&self, record: &TableRecord, wanted: &[&String]) -> Result<(), StoreError> {
         let table = self.table(record)?;
-        let (Some(Data::Text(names)), Some(Data::Text(lines))) = (table.column("file"), table.column("text")) else {
-            let problem = "it holds no files".to_owned();
-            return Err(StoreError::Format { table: record.name.clone(), problem });
-        };
         for file in wanted.iter().filter(|file| here(file)) {
-            let (_, own) = split(file);
-            let mut text = String::new();
-            for (_, line) in names.iter().zip(lines).filter(|(name, _)| *name == own) {
-                text += line;
-                text.push('\n');
-            }
+            let text = held_text(&table, file).ok_or_else(|| {
+                let problem = "it holds no files".to_owned();
+                StoreError::Format { table: record.name.clone(), problem }
+            })?;
             file::write(&self.path.join(file), text.as_bytes(), Durability::Lazy)?;
         }
         Ok(())
@@ -310,6 +304,21 @@ impl Folder {
 /// A manifest from elsewhere may name anything; only files right here are ours.
 fn here(file: &str) -> bool {
     Path::new(file).file_name().is_some_and(|name| name == file)
+}
+
+/// The text of a file `stage.name` that a table holds line by line; none when it holds no files.
+#[must_use]
+pub fn held_text(table: &Table, file: &str) -> Option<String> {
+    let (Some(Data::Text(names)), Some(Data::Text(lines))) = (table.column("file"), table.column("text")) else {
+        return None;
+    };
+    let (_, own) = split(file);
+    let mut text = String::new();
+    for (_, line) in names.iter().zip(lines).filter(|(name, _)| *name == own) {
+        text += line;
+        text.push('\n');
+    }
+    Some(text)
 }
 
 fn complete(stage: &StageRecord) -> bool {

@@ -64,6 +64,17 @@ fn files_are_listed_archived_and_gone_when_no_longer_wanted() {
     assert!(described.contains("image/vnd.dxf") && described.contains("text/csv"));
     desk.run(&["verify", "a.zip"], 0);
 
+    // One digit of a drawing, at the same size: neither is it packed nor is it the same.
+    let mut changed = before.clone();
+    let last = changed.iter().rposition(|byte| *byte == b'7').unwrap();
+    changed[last] = b'8';
+    fs::write(desk.path("results/cut/drawing.gear.dxf"), &changed).unwrap();
+    let (_, refused) = desk.run(&["archive", "cut.yaml", "-o", "b.zip"], 1);
+    assert!(refused.contains("`drawing.gear.dxf` is not what the table `drawing.files` says"), "{refused}");
+    let (told, _) = desk.run(&["diff", "results", "results"], 4);
+    assert!(told.contains("drawing.gear.dxf is not what the table `drawing.files` holds"), "{told}");
+    fs::write(desk.path("results/cut/drawing.gear.dxf"), &before).unwrap();
+
     fs::write(desk.path("cut.yaml"), study("{ teeth: all, points: 40 }", ", gear: pinion, formats: svg")).unwrap();
     assert_eq!(exported(&run(&desk)), ["drawing.pinion.svg"]);
     for gone in ["drawing.gear.svg", "drawing.pinion.dxf", "drawing.gear.dxf"] {

@@ -373,7 +373,7 @@ impl Stage for Optimizer {
         let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let mut settings = self.first_settings(&base, &pair);
         let mut round = 1;
-        let found = loop {
+        let mut found = loop {
             let found = self.found(context, &base, &pair, settings)?;
             let (Some(accuracy), Some(best)) = (self.accuracy, found.search.best()) else { break found };
             if found.error <= accuracy {
@@ -387,7 +387,7 @@ impl Stage for Optimizer {
             }
             (settings, round) = (next, round + 1);
         };
-        if let Some(doubt) = found.reason.doubt() {
+        if let Some(doubt) = found.search.doubt() {
             (context.warn)(doubt.to_owned());
         }
         let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;

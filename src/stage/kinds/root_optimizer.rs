@@ -234,10 +234,10 @@ impl Stage for RootOptimizer {
             (context.progress)(tried.len() as f64 / budget);
             Ok(told)
         })?;
-        let best = search.best().ok_or_else(|| Failure::new("none of the roots that were tried can be built"))?;
-        if let Some(doubt) = reason.doubt() {
+        if let Some(doubt) = search.doubt() {
             (context.warn)(doubt.to_owned());
         }
+        let best = search.best().ok_or_else(|| Failure::new("none of the roots that were tried can be built"))?;
         if best.violation > 0.0 {
             (context.warn)(format!(
                 "no root that was tried keeps the constraints; the one given breaks them by {:.3e} modules in all",

@@ -75,9 +75,9 @@ const LARGE_APPROACH: f64 = 0.5;
 const POOR: f64 = 0.01;
 
 /// Time of a solve that a slice adds, over that of a solve without slices.
-const PER_SLICE: f64 = 0.1;
+const PER_SLICE: f64 = 0.01;
 /// Solves that a curve takes for each of its positions, with its extrema and first touches.
-const SOLVES_PER_POSITION: f64 = 2.0;
+const SOLVES_PER_POSITION: f64 = 4.0;
 
 struct Ste {
     stiffness: String,
