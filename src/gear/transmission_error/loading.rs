@@ -96,7 +96,8 @@ impl<'a> Loading<'a> {
         };
         let count = Count::new(&cycle.work, slices.as_ref().map_or(uncoupled, Sliced::count));
         // Slices take up load one by one: no cut makes what they carry smooth.
-        let refines = slices.is_none() && !face.is_sliced();
+        // Corners come into contact as a square root: halving goes on to no end there, at three times the price.
+        let refines = slices.is_none() && !face.is_sliced() && cycle.settings.corner_contact == CornerContact::None;
         let mut loading = Self {
             count,
             levels,
