@@ -8,7 +8,7 @@ use serde_json::{Value as Json, json};
 
 use super::Ending;
 use super::progress::{self, Watcher, out};
-use super::run::stop_flag;
+use super::signals::stop_flag;
 use crate::base::number::with_unit;
 use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
 use crate::diff::words;
