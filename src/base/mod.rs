@@ -1,4 +1,4 @@
-//! What every other layer stands on: errors with a place, units, declared parameters, canonical digests, seeds,
+//! What every other layer stands on: errors with a place, texts, units, declared parameters, canonical digests, seeds,
 //! counts of work.
 //!
 //! Must not know: gears, graphs, files, YAML.
@@ -10,5 +10,6 @@ pub mod parameter;
 pub mod record;
 pub mod registry;
 pub mod seed;
+pub mod text;
 pub mod units;
 pub mod work;

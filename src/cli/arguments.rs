@@ -1,14 +1,18 @@
 //! The words of the command line. Must not know: what any command does.
 
-use std::path::PathBuf;
+use std::ffi::OsStr;
+use std::path::{Path, PathBuf};
 
-use clap::{Args, Parser, Subcommand, ValueEnum};
+use clap::builder::{PathBufValueParser, TypedValueParser};
+use clap::parser::ValueSource;
+use clap::{Arg, Args, Parser, Subcommand, ValueEnum};
 
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, 3 a stage failed, \
-    4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C.")]
+    4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C \
+    (143 by SIGTERM, 129 by SIGHUP).")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
@@ -19,6 +23,8 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
+const CACHE: &str = ".gearstudy/cache";
+
 /// Where things are.
 #[derive(Args, Debug, Clone)]
 pub struct Places {
@@ -26,8 +32,55 @@ pub struct Places {
     #[arg(long, global = true, value_name = "DIR", default_value = "results")]
     pub results: PathBuf,
     /// Folder of the cache of computed tables.
-    #[arg(long, global = true, value_name = "DIR", env = "GEARSTUDY_CACHE", default_value = ".gearstudy/cache")]
+    #[arg(long, global = true, value_name = "DIR", env = "GEARSTUDY_CACHE", default_value = CACHE, value_parser = Cache)]
     pub cache: PathBuf,
+}
+
+impl Places {
+    /// Whether both folders have names that every library takes: libhdf5, messages and JSON have text in UTF-8.
+    ///
+    /// # Errors
+    /// Which one has not.
+    pub fn check(&self) -> Result<(), String> {
+        let named = |folder: &Path, what: &str, option: &str| match folder.to_str() {
+            Some(_) => Ok(()),
+            None => {
+                Err(format!("the name of the {what} is not UTF-8: `{}`; name another with {option}", folder.display()))
+            }
+        };
+        named(&self.results, "results folder", "--results")?;
+        named(&self.cache, "cache folder", "--cache or GEARSTUDY_CACHE")
+    }
+}
+
+/// The folder of the cache; a variable of the environment that is empty is one that is not set.
+#[derive(Clone)]
+struct Cache;
+
+impl TypedValueParser for Cache {
+    type Value = PathBuf;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&Arg>,
+        value: &OsStr,
+    ) -> Result<PathBuf, clap::Error> {
+        PathBufValueParser::new().parse_ref(command, argument, value)
+    }
+
+    fn parse_ref_(
+        &self,
+        command: &clap::Command,
+        argument: Option<&Arg>,
+        value: &OsStr,
+        source: ValueSource,
+    ) -> Result<PathBuf, clap::Error> {
+        if source == ValueSource::EnvVariable && value.is_empty() {
+            return Ok(PathBuf::from(CACHE));
+        }
+        self.parse_ref(command, argument, value)
+    }
 }
 
 #[derive(Subcommand, Debug)]

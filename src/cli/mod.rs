@@ -14,6 +14,7 @@ mod query;
 mod rights;
 pub mod run;
 pub mod show;
+mod signals;
 mod status;
 mod studies;
 pub mod verify;
@@ -63,8 +64,8 @@ impl Ending {
             Self::Invalid(_) | Self::Query(_) | Self::Unreadable(_) => 2,
             Self::Failed(_) => 3,
             Self::Differs(_) => 4,
-            // 128 + SIGINT, as a shell reports a program that Ctrl-C ended.
-            Self::Stopped => 130,
+            // As a shell reports a program that a signal ended.
+            Self::Stopped => signals::code(),
         }
     }
 }
@@ -97,6 +98,7 @@ pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
 
 fn command(arguments: &Arguments) -> Result<(), Ending> {
     let places = &arguments.places;
+    places.check().map_err(Ending::Usage)?;
     let quiet = arguments.quiet;
     match &arguments.command {
         Command::New { file } => show::new_study(file),

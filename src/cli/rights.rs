@@ -4,6 +4,7 @@
 //! Must not know: what they are put into.
 
 use crate::base::error::nearest;
+use crate::base::text;
 use crate::store::archive::metadata::Author;
 
 const ORCID: &str = "https://orcid.org/";
@@ -26,13 +27,17 @@ pub(super) fn license(text: &str) -> Result<String, String> {
 ///
 /// # Errors
 /// When there is no name, or the last digit of the iD does not fit the others.
-pub(super) fn author(text: &str) -> Result<Author, String> {
-    let (name, orcid) = match text.trim().rsplit_once(' ') {
+pub(super) fn author(given: &str) -> Result<Author, String> {
+    let (name, orcid) = match given.trim().rsplit_once(' ') {
         Some((name, last)) if looks_like_orcid(last) => (name.trim(), Some(last.trim_start_matches(ORCID).to_owned())),
-        _ => (text.trim(), None),
+        _ => (given.trim(), None),
     };
+    if let Some(character) = name.chars().find(|c| text::is_unfit(*c) || matches!(c, '\n' | '\t')) {
+        let number = text::number(character);
+        return Err(format!("`{given}` is no author: a name is one line without the character {number}"));
+    }
     if name.is_empty() || looks_like_orcid(name) {
-        return Err(format!("`{text}` is no author; write a name, or a name and an ORCID iD"));
+        return Err(format!("`{given}` is no author; write a name, or a name and an ORCID iD"));
     }
     if let Some(orcid) = orcid.as_ref().filter(|orcid| !is_orcid(orcid)) {
         return Err(format!("`{orcid}` is no ORCID iD: its last digit does not fit the others; is one mistyped?"));
@@ -74,6 +79,10 @@ mod tests {
         assert_eq!(parsed(" Ada https://orcid.org/0000-0002-1825-0097"), Ok(("Ada".to_owned(), orcid)));
         assert_eq!(parsed("Ada 0000-0002-1694-233X").unwrap().1.as_deref(), Some("0000-0002-1694-233X"));
         assert!(parsed("").is_err() && parsed("0000-0002-1825-0097").is_err());
+        for wrong in ["A\0da", "Ada\nLovelace", "Ada\u{1b}[2J", "Ada\r", "\tAda\tL"] {
+            let refused = parsed(wrong).is_err_and(|error| error.contains("is one line without"));
+            assert_eq!(refused, wrong != "Ada\r", "{wrong:?}");
+        }
         // Any one digit mistyped, and any two neighbours swapped that differ, is found.
         let right = "0000-0002-1825-0097";
         for place in (0..right.len()).filter(|place| right.as_bytes()[*place] != b'-') {

@@ -3,8 +3,7 @@
 //! Must not know: how any of it is decided.
 
 use std::cell::RefCell;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::AtomicBool;
 
 use indicatif::MultiProgress;
 use serde_json::json;
@@ -12,8 +11,9 @@ use serde_json::json;
 use super::Ending;
 use super::arguments::{Places, Selection};
 use super::pages;
-use super::progress::{self, Watcher, aside, duration, out, tell};
+use super::progress::{self, Watcher, duration, out, tell};
 use super::show::none_yet;
+use super::signals::stop_flag;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
 use crate::runner::options::{Force, Options, Wanted};
@@ -78,20 +78,6 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
         }
     }
     if failures.is_empty() { Ok(()) } else { Err(Ending::Failed(failures.join("; "))) }
-}
-
-/// Set by Ctrl-C; pressed twice, the program ends at once.
-pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    let flag = Arc::clone(&stop);
-    // Without a handler Ctrl-C ends the program at once; what is finished is kept in that case too.
-    let _ = ctrlc::set_handler(move || {
-        if flag.swap(true, Ordering::Relaxed) {
-            std::process::exit(130);
-        }
-        aside(bars.as_ref(), "gearstudy: stopping; once more to stop at once");
-    });
-    stop
 }
 
 fn run_one(
@@ -231,7 +217,7 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
             })
         })
         .collect();
-    json!({ "study": study.name, "file": study.path, "up_to_date": plan.is_up_to_date(), "stages": stages })
+    json!({ "study": study.name, "file": study.path.to_string_lossy(), "up_to_date": plan.is_up_to_date(), "stages": stages })
 }
 
 pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {

@@ -158,7 +158,7 @@ fn value(told: &Told) -> Value {
     let stages: Vec<Value> = standing.stages.iter().map(of_stage).collect();
     let tables_here = standing.has_results && standing.absent().is_empty();
     let mut value = json!({
-        "study": study.name, "file": study.path,
+        "study": study.name, "file": study.path.to_string_lossy(),
         // A clone has neither all tables nor the page, and is up to date nevertheless.
         "up_to_date": standing.is_up_to_date() && (*report || !tables_here),
         "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,

@@ -7,7 +7,7 @@ use std::path::Path;
 use serde_json::{Value as Json, json};
 
 use super::progress::{self, Watcher, out};
-use super::run::stop_flag;
+use super::signals::stop_flag;
 use super::{Ending, pages};
 use crate::base::number::with_unit;
 use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};

@@ -1,11 +1,21 @@
 //! Tables as CSV: one header line with the units, then the rows, numbers with every digit that tells them apart.
 //!
-//! An empty cell is a number that does not apply. Must not know: where the text goes.
+//! An empty cell is a number that does not apply. A text that a spreadsheet would take for a formula, or that begins with
+//! an apostrophe, has an apostrophe in front; whoever reads it back drops the first apostrophe of a text. Must not know:
+//! where the text goes.
 
 use std::io;
 
 use crate::table::data::{Cell, Table};
 use crate::table::schema::Column;
+
+/// What makes a formula of a cell, in spreadsheets of any country.
+const FORMULA: [char; 10] = ['=', '+', '-', '@', '\t', '\r', '＝', '＋', '－', '＠'];
+
+/// A text that no spreadsheet computes.
+fn inert(text: String) -> String {
+    if text.starts_with(FORMULA) || text.starts_with('\'') { format!("'{text}") } else { text }
+}
 
 /// A column as a reader sees it: `torque [N m]`.
 #[must_use]
@@ -33,12 +43,13 @@ pub fn write_cells(
     sink: &mut dyn io::Write,
 ) -> io::Result<()> {
     let mut writer = csv::Writer::from_writer(sink);
-    writer.write_record(headings.collect::<Vec<_>>())?;
+    writer.write_record(headings.map(inert).collect::<Vec<_>>())?;
     for row in rows {
         writer.write_record(row.map(|cell| match cell {
             None => String::new(),
             Some(Cell::Float(value)) if value.is_nan() => String::new(),
-            Some(cell) => cell.to_string(),
+            Some(Cell::Text(text)) => inert(text),
+            Some(number) => number.to_string(),
         }))?;
     }
     writer.flush()
@@ -63,6 +74,26 @@ mod tests {
             let te = table.floats("te")[row];
             let read = if record[1].is_empty() { f64::NAN } else { record[1].parse().unwrap() };
             assert!(te.to_bits() == read.to_bits() || (te.is_nan() && read.is_nan()), "{te} {read}");
+        }
+    }
+
+    #[test]
+    fn no_text_is_a_formula_and_every_text_comes_back() {
+        let texts =
+            ["=1+1", "+x", "-5", "@SUM(A1)", "\t=1", "\r=1", "＝1", "'", "'=1", "''", "a=b", " =1", "", "a\n=1"];
+        let rows = texts.iter().map(|text| {
+            [Some(Cell::Text((*text).to_owned())), Some(Cell::Float(-1.5)), Some(Cell::Integer(-2))].into_iter()
+        });
+        let mut bytes = Vec::new();
+        let headings = ["text", "=number", "-"].into_iter().map(str::to_owned);
+        write_cells(headings, rows, &mut bytes).unwrap();
+        let mut reader = csv::Reader::from_reader(bytes.as_slice());
+        assert_eq!(reader.headers().unwrap(), ["text", "'=number", "'-"].as_slice());
+        for (text, record) in texts.iter().zip(reader.records().map(Result::unwrap)) {
+            assert!(!record[0].starts_with(FORMULA), "{text:?}");
+            assert_eq!(record[0].strip_prefix('\'').unwrap_or(&record[0]), *text);
+            // Numbers stay numbers.
+            assert_eq!([&record[1], &record[2]], ["-1.5", "-2"]);
         }
     }
 }

@@ -12,6 +12,7 @@ use super::{Node, Source, Study, links, settings};
 use crate::base::error::{Diagnostic, Place, suggest};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Entry, Record, Value};
+use crate::base::text;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
 
@@ -160,13 +161,20 @@ fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Dia
 }
 
 /// Lower-case letters, digits, `-` and `_`, beginning with a letter or digit: names become files and words of commands.
+/// Those of Windows' devices can be neither there, and a study is to run everywhere.
 fn check_name(what: &str, name: &str, place: Place) -> Result<(), Diagnostic> {
     let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    let message = format!("{} cannot be the name of a {what}", quote(name));
+    if text::is_device(name) {
+        let better = name.split('.').next().unwrap_or(name).to_ascii_lowercase();
+        let help =
+            format!("Windows keeps it for a device, so no file there can have it: for example `{better}-{what}`");
+        return Err(Diagnostic::new(message).at(place).help(help));
+    }
     if name.starts_with(|c: char| c.is_ascii_alphanumeric()) && name.chars().all(allowed) && name.len() <= LONGEST_NAME
     {
         return Ok(());
     }
-    let message = format!("{} cannot be the name of a {what}", quote(name));
     let rule = format!("lower-case letters, digits, `-` and `_` make a name, at most {LONGEST_NAME} of them");
     let better: String =
         name.to_lowercase().chars().map(|c| if allowed(c) { c } else { '-' }).take(LONGEST_NAME).collect();

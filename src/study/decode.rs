@@ -4,13 +4,14 @@
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
 use super::document::{Content, Node, Pair, nothing, parse};
+use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::Measure;
 use super::words::{self, alternatives, quote};
 use crate::base::error::{Diagnostic, Place, suggest};
 use crate::base::parameter::{Field, Member, Presence, Shape};
 use crate::base::record::{Entry, Record, Value, Variant};
-use crate::base::units::{parse_quantity, split_quantity};
+use crate::base::units::{parse_quantity, parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -291,16 +292,23 @@ fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagno
     let text = scalar(name, node, &Shape::Integer { least, most })?;
     let shown = quote(text);
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
-    if plain(node).is_none() || digits.is_empty() || !digits.bytes().all(|byte| byte.is_ascii_digit()) {
+    let other = notation::help(text);
+    if plain(node).is_none() || other.is_some() || !is_digits(digits) {
         let (number, unit) = split_quantity(text);
+        let has_unit = !number.is_empty() && !unit.is_empty() && parse_unit(unit).is_ok();
         let how = match plain(node) {
             None => "without quotes",
-            Some(_) if !number.is_empty() && !unit.is_empty() => "without a unit",
+            Some(_) if has_unit && other.is_none() => "without a unit",
             Some(_) => "in digits",
         };
         let wrong =
             Diagnostic::new(format!("{} must be a whole number {how}, not {shown}", quote(name))).at(node.place);
-        let whole = number.parse::<f64>().ok().filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
+        if let Some(help) = other {
+            return Err(wrong.help(help));
+        }
+        // Only where all of the text is understood is it known which number is meant.
+        let whole = number.parse::<f64>().ok().filter(|_| unit.is_empty() || has_unit);
+        let whole = whole.filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
         return Err(match whole {
             Some(value) => wrong.help(format!("write `{value}`")),
             None => wrong,
@@ -318,8 +326,16 @@ fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagno
     Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place))
 }
 
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
 fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
     let text = scalar(name, node, &Shape::AnyQuantity)?;
+    if let Some(help) = notation::help(text) {
+        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
+        return Err(Diagnostic::new(message).at(node.place).help(help));
+    }
     let read = parse_quantity(text).map_err(|_| {
         let message = format!("{} is not a number with a unit that is known; {name} needs one", quote(text));
         Diagnostic::new(message).at(node.place).help("units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`")

@@ -10,8 +10,10 @@ use serde_saphyr::granit_parser::{
     ErrorKind, Event, Marker, Parser, ScalarStyle, ScanError, Span, StructureStyle, options,
 };
 
+use super::characters;
 use super::words::quote;
 use crate::base::error::{Diagnostic, Place};
+use crate::base::text::unfit;
 
 /// Levels of nesting, aliases included.
 const DEEPEST: usize = 64;
@@ -98,6 +100,7 @@ pub fn parse(text: &str) -> Result<Option<Node>, Diagnostic> {
         flow_nesting_limit: DEEPEST,
         block_nesting_limit: DEEPEST,
     };
+    characters::check(text)?;
     let mut tree = Tree::new(text);
     for event in Parser::new_from_str_with_options(text, options) {
         let (event, span) = event.map_err(|error| tree.refused(&error))?;
@@ -162,6 +165,10 @@ impl<'a> Tree<'a> {
                 let place = self.place(span);
                 self.count(1, 1, place)?;
                 let quoted = style != ScalarStyle::Plain;
+                if let Some((_, character)) = unfit(&text) {
+                    let at = characters::escape(self.text, place, self.offset(span.end), character);
+                    return Err(characters::cannot_hold(character).at(at));
+                }
                 // The parser gives a value that is not there a `~` of its own.
                 let text = if span.is_empty() && !quoted { String::new() } else { text.into_owned() };
                 let node = Node { content: Content::Scalar { text, quoted }, place };

@@ -4,10 +4,12 @@
 //! `links` checks what they say of each other. Must not know: execution, the store.
 
 mod assemble;
+mod characters;
 mod decode;
 pub mod describe;
 mod document;
 mod links;
+mod notation;
 mod overrides;
 mod quantity;
 mod read;

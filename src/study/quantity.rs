@@ -4,6 +4,7 @@
 //! an axis given by `from`, `to` and `count` and the same point written out. Results in SI. Must not know: stages.
 
 use super::document::{Content, Node};
+use super::notation;
 use super::words::{self, quote};
 use crate::base::error::{Diagnostic, suggest};
 use crate::base::parameter::Span;
@@ -63,6 +64,10 @@ impl Measure<'_> {
         if self.dimension.is_none() && quoted {
             let message = format!("{shown} is text in quotes; {} is expected", self.expected());
             return Err(Diagnostic::new(message).help("write the number without quotes"));
+        }
+        if let Some(help) = notation::help(text) {
+            let message = format!("{shown} is not a number as a study has it; {} is expected", self.expected());
+            return Err(Diagnostic::new(message).help(help));
         }
         let read = parse_quantity(text).map_err(|error| self.unreadable(text, error))?;
         match self.dimension {
@@ -179,6 +184,9 @@ impl Measure<'_> {
         let Content::Scalar { text, .. } = &count.content else {
             return Err(Diagnostic::new("`count` is a whole number").at(count.place));
         };
+        if let Some(help) = notation::help(text) {
+            return Err(Diagnostic::new("`count` is a whole number in digits").at(count.place).help(help));
+        }
         let points = text.parse::<usize>().ok().filter(|points| (2..=MOST_POINTS).contains(points));
         let Some(points) = points else { return Err(self.too_many(text).at(count.place)) };
         let mut values: Vec<f64> = (0..points).map(|at| between(from, to, first, last, at, points)).collect();

@@ -4,14 +4,16 @@
 //! relations (`rexs_schema_*.xml`) in the reference implementation `fva-net/rexs-api-java`, under Apache-2.0. A stage
 //! relates two gears, a flank relation their flanks, a manufacturing step the tool, a reference the material. What the file
 //! does not say is left out and named, never invented; what a spur gear pair cannot have is refused, with line and column
-//! of the file: the study that comes out is read, so its own limits hold. The file may come from anybody: its size and its
-//! elements are limited, its depth needs no stack (the parser has a counter), components are found by id in one index, and
-//! a document type, which entities come from, is refused.
+//! of the file: the study that comes out is read, so its own limits hold. The file may come from anybody: its size, its
+//! elements and their attributes are limited, its depth needs no stack (the parser has a counter), components and relations
+//! are found by id in indices, and a document type, which entities come from, is refused: time goes with the size of the
+//! file.
 //! Must not know: stages that are run, files.
 
+mod tags;
 mod written;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 use std::path::Path;
 
@@ -77,6 +79,7 @@ pub fn geometry(xml: &str, stage: Option<&str>) -> Result<String, Refusal> {
     if xml.len() > MOST_BYTES {
         return Err(Refusal::new(format!("the file is larger than {} MiB", MOST_BYTES >> 20)));
     }
+    tags::check(xml)?;
     let options = ParsingOptions { allow_dtd: false, nodes_limit: MOST_NODES, ..ParsingOptions::default() };
     let document = Document::parse_with_options(xml, options).map_err(|error| {
         let place = error.pos();
@@ -111,10 +114,26 @@ fn read(document: &Document, stage: Option<&str>) -> Result<String, Refusal> {
     Pair::read(&model, relation)?.text(version)
 }
 
-/// The outermost element of a file, and its components by id.
+/// What relations say: their type, and the role of the component by which they are looked up.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Relation {
+    Flanks,
+    Tools,
+    Materials,
+}
+
+const RELATIONS: [(Relation, &str, &str); 3] = [
+    (Relation::Flanks, "flank", "gear"),
+    (Relation::Tools, "manufacturing_step", "workpiece"),
+    (Relation::Materials, "reference", "origin"),
+];
+
+/// The outermost element of a file, its components by id, and its relations by what they say of whom.
 struct Model<'a> {
     root: Node<'a, 'a>,
     components: BTreeMap<&'a str, Node<'a, 'a>>,
+    /// Sorted; in the order of the file where they say the same of the same component.
+    relations: Vec<(Relation, &'a str, Node<'a, 'a>)>,
 }
 
 /// A component with attributes.
@@ -123,7 +142,15 @@ struct Component<'a>(Node<'a, 'a>);
 
 impl<'a> Model<'a> {
     fn new(root: Node<'a, 'a>) -> Result<Self, Refusal> {
-        let mut model = Self { root, components: BTreeMap::new() };
+        let mut model = Self { root, components: BTreeMap::new(), relations: Vec::new() };
+        for node in model.inside("relations", "relation") {
+            let kind = node.attribute("type").unwrap_or("");
+            let Some((relation, _, role)) = RELATIONS.iter().find(|(_, name, _)| *name == kind) else { continue };
+            if let Some(id) = in_role(node, role) {
+                model.relations.push((*relation, id, node));
+            }
+        }
+        model.relations.sort_by(|one, other| (one.0, one.1).cmp(&(other.0, other.1)));
         for node in model.inside("components", "component") {
             let Some(id) = node.attribute("id") else { continue };
             if let Some(first) = model.components.insert(id, node) {
@@ -146,11 +173,13 @@ impl<'a> Model<'a> {
         self.components.get(id).copied().map(Component)
     }
 
-    /// What stands in the role `wanted` of the relations of a type in which a component has the role `role`.
-    fn related(&self, kind: &str, role: &str, id: &str, wanted: &str) -> Vec<Component<'a>> {
-        let relations = self.inside("relations", "relation").filter(|node| node.attribute("type") == Some(kind));
-        let found = relations.filter(|relation| in_role(*relation, role) == Some(id));
-        found.filter_map(|relation| self.component(in_role(relation, wanted)?)).collect()
+    /// What stands in the role `wanted` of the relations that say something of a component; each component once.
+    fn related(&self, relation: Relation, id: &str, wanted: &str) -> Vec<Component<'a>> {
+        let from = self.relations.partition_point(|(other, of, _)| (*other, *of) < (relation, id));
+        let found = self.relations[from..].iter().take_while(|(other, of, _)| (*other, *of) == (relation, id));
+        let mut seen = BTreeSet::new();
+        let ids = found.filter_map(|(_, _, node)| in_role(*node, wanted)).filter(|id| seen.insert(*id));
+        ids.filter_map(|id| self.component(id)).collect()
     }
 
     /// The relation of the cylindrical stage that is meant.
@@ -314,15 +343,13 @@ impl Gear {
             return Err(Refusal::new(message).at(helix.at));
         }
         let flanks: Vec<Component> =
-            ["left", "right"].iter().flat_map(|side| model.related("flank", "gear", id, side)).collect();
-        let tools: Vec<Component> = flanks
-            .iter()
-            .flat_map(|flank| model.related("manufacturing_step", "workpiece", flank.id(), "tool"))
-            .collect();
+            ["left", "right"].iter().flat_map(|side| model.related(Relation::Flanks, id, side)).collect();
+        let tools: Vec<Component> =
+            flanks.iter().flat_map(|flank| model.related(Relation::Tools, flank.id(), "tool")).collect();
         let of_flank = |name, units| agreed(std::iter::once(gear).chain(flanks.iter().copied()), name, units);
         let of_tool =
             |name, units| agreed(tools.iter().copied().filter(|tool| tool.kind() == "rack_shaped_tool"), name, units);
-        let materials = model.related("reference", "origin", id, "referenced");
+        let materials = model.related(Relation::Materials, id, "referenced");
         let of_material = |name, units| {
             agreed(materials.iter().copied().filter(|component| component.kind() == "material"), name, units)
         };

@@ -92,7 +92,7 @@ const OWNERS: &[(&str, &[&str])] = &[
     ("clap", &["cli/"]),
     ("polars", &["query/frame.rs"]),
     ("sqlparser", &["query/names.rs"]),
-    ("ctrlc", &["cli/"]),
+    ("signal_hook", &["cli/"]),
     ("sha2", &["store/archive.rs"]),
     ("spdx", &["cli/rights.rs"]),
     ("miette", &["cli/"]),

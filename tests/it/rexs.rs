@@ -2,6 +2,7 @@
 //! means harm is refused in one sentence. The file is this project's own, by the public schema.
 
 use std::fs;
+use std::time::{Duration, Instant};
 
 use gearstudy::study::{load_text, rexs};
 use proptest::prelude::*;
@@ -200,6 +201,44 @@ fn a_file_of_a_whole_factory_is_read_in_one_pass() {
     );
     assert!(refused(&large).contains("it has 300001 cylindrical stages; name one of s0, s1, "), "{}", refused(&large));
     assert!(rexs::geometry(&large, Some("1")).is_ok());
+}
+
+/// The parser compares the attributes of an element pairwise and copies namespaces inwards; looking at every relation for
+/// every flank is a square too. Each of these took minutes.
+#[test]
+fn no_part_of_a_file_takes_more_than_its_share() {
+    let began = Instant::now();
+    let attributes: String = (0..500_000).map(|at| format!(" a{at}='1'")).collect();
+    let wide = file().replacen("<component id=\"2\"", &format!("<component{attributes} id=\"2\""), 1);
+    let says = "an element has more than 100 attributes; those of REXS have a few";
+    assert_eq!(refused(&wide), format!("14:5: {says}"));
+    // A sign in a value, in a comment or in a text is no attribute, and 100 are not too many.
+    let values = "=".repeat(200);
+    let quoted = format!("<component note='{values}<' ").replace('<', "&lt;").replacen("&lt;", "<", 1);
+    let text = file().replacen("<component ", &quoted, 1).replace("two gears", &values);
+    let text =
+        text.replacen("  <components>", &format!("{values}<![CDATA[<a {values}>]]><?p <a {values} ?><components>"), 1);
+    assert!(rexs::geometry(&text, None).is_ok(), "{}", refused(&text));
+    let most: String = (0..98).map(|at| format!(" a{at} = '1'")).collect();
+    let text = |more: &str| file().replacen("<component id=\"2\"", &format!("<component{most}{more} id=\"2\""), 1);
+    assert!(rexs::geometry(&text(""), None).is_ok() && refused(&text(" b='1'")).ends_with(says));
+
+    let spaces: String = (0..500_000).map(|at| format!("<a xmlns:n{at}='u'/>")).collect();
+    let spaces = file().replacen("  <components>", &format!("{spaces}<components>"), 1);
+    assert!(refused(&spaces).contains("more than 100 namespaces are declared"), "{}", refused(&spaces));
+
+    let flank = "<relation type=\"flank\"><ref role=\"gear\" id=\"2\"/><ref role=\"left\" id=\"4\"/></relation>";
+    let tool = "<relation type=\"manufacturing_step\"><ref role=\"workpiece\" id=\"4\"/><ref role=\"tool\" id=\"8\"/></relation>";
+    let notes = "<attribute id=\"note\"/>".repeat(100_000);
+    let many = file()
+        .replacen("  <relations>", &format!("<relations>{}{}", flank.repeat(100_000), tool.repeat(100_000)), 1)
+        .replacen("type=\"cylindrical_gear_flank\">", &format!("type=\"cylindrical_gear_flank\">{notes}"), 4)
+        .replacen("type=\"rack_shaped_tool\">", &format!("type=\"rack_shaped_tool\">{notes}"), 1);
+    assert_eq!(rexs::geometry(&many, None), rexs::geometry(&file(), None));
+    let pieces = format!("{}<a/>", "<![CDATA[a]]>b&amp;".repeat(200_000));
+    let pieces = file().replacen("  <components>", &format!("{pieces}<components>"), 1);
+    assert_eq!(rexs::geometry(&pieces, None), rexs::geometry(&file(), None));
+    assert!(began.elapsed() < Duration::from_secs(60), "{:?}", began.elapsed());
 }
 
 #[test]

@@ -72,8 +72,27 @@ pub struct Wanted {
     pub pressure: bool,
 }
 
+impl Point {
+    /// What all pairs carry together \[N\]: the load, but for rounding.
+    #[must_use]
+    pub fn load(&self) -> f64 {
+        self.loads.iter().sum()
+    }
+
+    /// The largest share that one pair has of what all carry: a sum of what is not negative is rounded to no less than any
+    /// of its terms, so no share exceeds 1, and one pair alone has all of it.
+    fn largest_share(&self) -> f64 {
+        let load = self.load();
+        if load > 0.0 { self.loads.iter().copied().fold(0.0, f64::max) / load } else { 0.0 }
+    }
+
+    fn is_at(&self, extremum: &Extremum) -> bool {
+        self.cycle_position.total_cmp(&extremum.position).is_eq() && self.pairs == extremum.pairs
+    }
+}
+
 impl Loading<'_> {
-    /// The curve, by position.
+    /// The curve at the positions of the spans alone.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
         let mut points = self.no_points(wanted);
@@ -88,7 +107,7 @@ impl Loading<'_> {
         self.curve_and_summary(wanted).1
     }
 
-    /// Both, from the same positions.
+    /// Both, from the same positions; the curve has the points of its extrema besides.
     #[must_use]
     pub fn curve_and_summary(&self, wanted: Wanted) -> (Vec<Point>, Summary) {
         let cycle = self.cycle;
@@ -105,14 +124,15 @@ impl Loading<'_> {
             }
             // The loaded pairs are the same all over the span, up to its ends.
             loaded += (span.end - span.start) * here[1].loaded_pairs as f64;
-            for load in here.iter().flat_map(|point| point.loads) {
-                share = share.max(load);
-            }
+            share = here.iter().map(Point::largest_share).fold(share, f64::max);
         });
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         let (largest, smallest) = (error.largest(rows, value), error.smallest(rows, value));
         let nodes = error.nodes(rows);
         let (mean, variance) = harmonics::mean_and_variance(cycle.period(), &nodes);
+        let nominal = self.without_load();
+        let unloaded = nominal.extremes();
+        self.add_extremes(&mut points, [largest, smallest], unloaded, wanted.pressure);
         let summary = Summary {
             mean,
             peak_to_peak: largest.value - smallest.value,
@@ -121,9 +141,9 @@ impl Loading<'_> {
             variance,
             reciprocal_variance: (variance > 0.0).then(|| 1.0 / variance),
             harmonics: harmonics::amplitudes(cycle.period(), &nodes, wanted.harmonics),
-            unloaded_peak_to_peak: self.without_load().peak_to_peak(),
+            unloaded_peak_to_peak: nominal.between(unloaded),
             loaded_contact_ratio: loaded / cycle.period(),
-            largest_load_share: if self.force > 0.0 { share / self.force } else { 0.0 },
+            largest_load_share: share,
             largest_pressure: wanted
                 .pressure
                 .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),
@@ -134,11 +154,39 @@ impl Loading<'_> {
     /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        let trace = self.for_extrema().trace();
+        self.between(self.for_extrema().extremes())
+    }
+
+    /// The largest and the smallest transmission error.
+    fn extremes(&self) -> [Extremum; 2] {
+        let (trace, rows) = (self.trace(), &self.cycle.rows);
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
-        let rows = &self.cycle.rows;
-        let largest = trace.largest(rows, value).value;
-        if self.holds(largest) { largest - trace.smallest(rows, value).value } else { f64::INFINITY }
+        [trace.largest(rows, value), trace.smallest(rows, value)]
+    }
+
+    fn between(&self, [largest, smallest]: [Extremum; 2]) -> f64 {
+        if self.holds(largest.value) { largest.value - smallest.value } else { f64::INFINITY }
+    }
+
+    /// Adds the points of the extrema, under load and without, so that a curve spans what its summary says.
+    #[allow(clippy::float_cmp)] // asks whether a point is there, not whether numbers agree
+    fn add_extremes(&self, points: &mut Vec<Point>, loaded: [Extremum; 2], unloaded: [Extremum; 2], pressure: bool) {
+        let at = |extremum: &Extremum| {
+            let state = self.state(extremum.position, extremum.pairs);
+            self.point(extremum.position, extremum.pairs, &state, pressure)
+        };
+        // At an end of a span the extremum may be the limit from inside, of which rounding has lost sight at the end itself.
+        for extremum in loaded {
+            if !points.iter().any(|point| point.is_at(&extremum) && point.transmission_error == extremum.value) {
+                insert(points, Point { transmission_error: extremum.value, ..at(&extremum) });
+            }
+        }
+        for extremum in unloaded {
+            if !points.iter().any(|point| point.is_at(&extremum) && point.unloaded_transmission_error == extremum.value)
+            {
+                insert(points, Point { unloaded_transmission_error: extremum.value, ..at(&extremum) });
+            }
+        }
     }
 
     /// The variance of the transmission error over the cycle \[m²\], an integral mean, infinite beyond what is modelled:
@@ -199,6 +247,14 @@ impl Loading<'_> {
             })
             .fold(0.0, f64::max)
     }
+}
+
+/// Puts a point where it belongs by its position, among those with as many pairs.
+fn insert(points: &mut Vec<Point>, new: Point) {
+    let zone = points.iter().position(|point| point.pairs == new.pairs).unwrap_or(points.len());
+    let before = |point: &&Point| point.pairs == new.pairs && point.cycle_position <= new.cycle_position;
+    let behind = points[zone..].iter().take_while(before).count();
+    points.insert(zone + behind, new);
 }
 
 /// Where two spans join smoothly their common point is taken once.

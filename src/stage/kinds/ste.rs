@@ -156,7 +156,7 @@ fn summary_schema() -> Schema {
 fn curve_schema() -> Schema {
     let mut columns = keys();
     columns.extend([
-        Column::integer("point", "Counts the positions, from 1.").key(),
+        Column::integer("point", "Counts the positions, from 1; those of the extrema are among them.").key(),
         Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
             .tolerance(1e-9, 1e-9),
         Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
@@ -180,7 +180,8 @@ fn curve_schema() -> Schema {
     ]);
     Schema::new(
         "curve",
-        "Transmission error over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.",
+        "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are two rows, one \
+         for each side.",
         columns,
     )
 }
@@ -425,8 +426,8 @@ fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Ve
         shown("um", |point| point.transmission_error),
         shown("um", |point| point.unloaded_transmission_error),
         shown("", |point| {
-            let total: f64 = point.loads.iter().sum();
-            if total > 0.0 { point.newest_load / total } else { 0.0 }
+            let load = point.load();
+            if load > 0.0 { point.newest_load / load } else { 0.0 }
         }),
         shown("N/m", |point| point.secant_stiffness),
         shown("N/m", |point| point.tangent_stiffness),

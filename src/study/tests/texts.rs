@@ -65,7 +65,55 @@ const TEXTS: &[(&str, &str)] = &[
     ),
     (
         "a: \0",
-        "1:4: `\\u{0}` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
+        "1:4: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "study: a # \0\nstages: {}",
+        "1:12: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "µ: 'a\0b'\n",
+        "1:6: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "\u{feff}µ: \u{1b}[2J",
+        "1:4: no text of a study can hold the character U+001B (escape)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: |\n  b\n  c\u{c}\n",
+        "3:4: no text of a study can hold the character U+000C\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \u{85}",
+        "1:4: no text of a study can hold the character U+0085\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \u{ffff}",
+        "1:4: no text of a study can hold the character U+FFFF\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \"µ\\\\0 \\0\"",
+        "1:10: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \"b\n  c\\x00\"",
+        "2:4: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \"\\u0000\"",
+        "1:5: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: \"\\U00000000\"",
+        "1:5: no text of a study can hold the character U+0000 (NUL)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "\"\\e\": b",
+        "1:2: no text of a study can hold the character U+001B (escape)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
+    ),
+    (
+        "a: [b, {\"c\": \"d\\r\\n\"}]",
+        "1:16: no text of a study can hold the character U+000D (carriage return)\n  help: leave it out: of control characters, files of every format hold only line breaks and tabs",
     ),
     (
         "a: @b",

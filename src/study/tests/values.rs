@@ -141,3 +141,13 @@ fn the_title_may_be_left_out_and_the_seed_may_be_large() {
     let study = valid(&changed("title: A small study of 5 µm\n", "").replace("seed: 7", "seed: 9223372036854775807"));
     assert_eq!((study.title.as_str(), study.seed), ("small", u64::MAX / 2));
 }
+
+#[test]
+fn numbers_that_every_reader_takes_alike_are_read() {
+    let teeth = |text: &str| record(&valid(&changed("teeth: 19", text)), "pair").group("pinion").integer("teeth");
+    assert_eq!((teeth("teeth: +30"), teeth("teeth: 5")), (30, 5));
+    let addendum = |text: &str| record(&valid(&changed("1.25", text)), "pair").group("rack").number("addendum");
+    for (text, value) in [(".5", 0.5), ("1.", 1.0), ("+1.5", 1.5), ("15e-1", 1.5), ("0.75", 0.75)] {
+        assert_eq!(addendum(text).to_bits(), f64::to_bits(value), "{text}");
+    }
+}

@@ -1,4 +1,4 @@
-//! Runs that are killed, stopped by Ctrl-C, or not alone.
+//! Runs that are killed, stopped by Ctrl-C or another signal, or not alone.
 
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
@@ -89,6 +89,62 @@ fn an_interrupted_run_keeps_what_is_finished() {
     let undisturbed = long();
     undisturbed.run(&["run", "quick.yaml"], 0);
     assert_eq!(undisturbed.contents("quick"), desk.contents("quick"));
+}
+
+#[cfg(unix)]
+fn send(child: &Child, signals: &[&str]) {
+    for signal in signals {
+        let sent = Command::new("kill").args([*signal, &child.id().to_string()]).status().unwrap();
+        assert!(sent.success(), "{signal}");
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn the_exit_code_says_which_signal_stopped_a_run() {
+    for (signal, code) in [("-TERM", 143), ("-HUP", 129)] {
+        let desk = long();
+        let mut child = start(&desk);
+        wait_for(&desk, &mut child, 4);
+        send(&child, &[signal]);
+        let output = child.wait_with_output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert_eq!(output.status.code(), Some(code), "{error}");
+        assert!(error.contains("what was finished is kept"), "{error}");
+    }
+}
+
+/// Both are waiting when the program goes on: it is at its end before any stage has looked up.
+#[cfg(unix)]
+#[test]
+fn a_second_signal_ends_a_run_at_once() {
+    let desk = long();
+    let mut child = start(&desk);
+    wait_for(&desk, &mut child, 4);
+    send(&child, &["-STOP", "-TERM", "-INT", "-CONT"]);
+    let output = child.wait_with_output().unwrap();
+    let error = String::from_utf8_lossy(&output.stderr);
+    assert!(matches!(output.status.code(), Some(130 | 143)), "{:?}: {error}", output.status);
+    assert!(error.contains("once more to stop at once") && !error.contains("is kept"), "{error}");
+}
+
+/// As `nohup` does it.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_signal_that_is_ignored_from_the_start_stays_ignored() {
+    let desk = long();
+    let mut child = Command::new("sh")
+        .args(["-c", "trap '' HUP; exec \"$0\" run quick.yaml", env!("CARGO_BIN_EXE_gearstudy")])
+        .current_dir(desk.path("."))
+        .env_remove("GEARSTUDY_CACHE")
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    wait_for(&desk, &mut child, 1);
+    send(&child, &["-HUP"]);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
 }
 
 #[test]

@@ -103,3 +103,44 @@ fn damage_in_the_cache_or_the_results_is_mended() {
     desk.run(&["table", "quick.yaml", "ste.curve"], 0);
     assert!(desk.run(&["run", "quick.yaml"], 0).0.contains("nothing to do"));
 }
+
+#[test]
+fn an_empty_variable_is_one_that_is_not_set() {
+    let desk = Desk::with("quick.yaml");
+    let words = ["run", "quick.yaml", "--only", "pair", "--quiet"];
+    desk.command(&words).env("GEARSTUDY_CACHE", "").assert().code(0);
+    assert!(desk.path(".gearstudy/cache/entries").is_dir());
+    desk.command(&words).env("GEARSTUDY_CACHE", "elsewhere").assert().code(0);
+    assert!(desk.path("elsewhere/entries").is_dir());
+    // On the command line an empty name is a slip.
+    desk.command(&[&words[..], &["--cache", ""]].concat()).assert().code(1);
+}
+
+#[cfg(unix)]
+#[test]
+fn folders_whose_names_are_not_utf8_are_refused_before_anything_runs() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+
+    let desk = Desk::with("quick.yaml");
+    let odd = OsStr::from_bytes(b"w\xf6rter");
+    for option in ["--results", "--cache"] {
+        for command in ["run", "plan", "status", "report"] {
+            let output = desk.command(&[command, "quick.yaml", option]).arg(odd).output().unwrap();
+            let error = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert_eq!(output.status.code(), Some(1), "{command}: {error}");
+            one_message(&error, "is not UTF-8: `w\u{fffd}rter`; name another with --");
+        }
+    }
+    let output = desk.command(&["run", "quick.yaml"]).env("GEARSTUDY_CACHE", odd).output().unwrap();
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--cache or GEARSTUDY_CACHE"));
+    assert!(!desk.path(".gearstudy").exists() && !desk.path("results").exists());
+    // A study itself may be called as it likes.
+    let study = OsStr::from_bytes(b"\xf6.yaml");
+    fs::copy(desk.path("quick.yaml"), desk.path(".").join(study)).unwrap();
+    for words in [&["run", "--only", "pair"][..], &["plan", "--json"], &["status", "--json"], &["check"]] {
+        let output = desk.command(words).arg(study).output().unwrap();
+        let error = String::from_utf8_lossy(&output.stderr);
+        assert!(matches!(output.status.code(), Some(0 | 4)), "{words:?} {:?}: {error}", output.status);
+    }
+}

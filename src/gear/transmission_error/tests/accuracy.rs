@@ -7,6 +7,7 @@ use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::modification::Design;
 use crate::gear::random::Random;
+use crate::gear::transmission_error::curve::{Point, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
@@ -25,6 +26,10 @@ struct Case {
 
 impl Case {
     fn random(random: &mut Random) -> Self {
+        Self::random_with(random, TRUTH)
+    }
+
+    fn random_with(random: &mut Random, settings: Settings) -> Self {
         let pair = random.pair();
         let entry = |value| Entry { value, place: Place::default() };
         let fields = vec![
@@ -37,9 +42,9 @@ impl Case {
         let coupled = random.share() < 0.2;
         let assumptions = Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None, accuracy: None };
         let Ok(found) = (method("energy").unwrap().tabulate)(&options, &pair, assumptions) else {
-            return Self::random(random);
+            return Self::random_with(random, settings);
         };
-        let base = MeshCycle::new(&pair, &found.compliance, TRUTH).unwrap();
+        let base = MeshCycle::new(&pair, &found.compliance, settings).unwrap();
         let (design, torque) = (random.design(&pair), random.torque(&pair));
         Self { base, design, torque }
     }
@@ -125,4 +130,37 @@ fn the_estimate_from_a_finer_sampling_holds() {
     }
     peaks.check("peak-to-peak", 200);
     variances.check("variance", 200);
+}
+
+/// Tier: invariant. What a curve spans is the summary's peak-to-peak, under load and without, also where corners touch; its
+/// points are in order, and no share of the load exceeds 1.
+#[test]
+fn a_curve_spans_its_summary_s_peak_to_peak() {
+    let mut random = Random::new(13);
+    let mut added = 0;
+    for case in 0..200 {
+        let corner_contact = random.of(&[CornerContact::None, CornerContact::Exact]);
+        let settings = Settings { positions: random.of(&[8, 16, 24]), slices: 5, corner_contact, ..TRUTH };
+        let case = (case, Case::random_with(&mut random, settings));
+        let loading = Loading::new(&case.1.base, &case.1.design, case.1.torque);
+        let (points, summary) = loading.curve_and_summary(Wanted::default());
+        let spanned = |value: &dyn Fn(&Point) -> f64| {
+            let values = || points.iter().map(value);
+            values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min)
+        };
+        let loaded = spanned(&|point| point.transmission_error);
+        assert!((loaded - summary.peak_to_peak).abs() <= 1e-15 * summary.largest.value, "{}: {loaded:e}", case.0);
+        let unloaded = spanned(&|point| point.unloaded_transmission_error);
+        assert!((unloaded - summary.unloaded_peak_to_peak).abs() <= 1e-12 * unloaded.abs(), "{}: {unloaded:e}", case.0);
+        for two in points.windows(2).filter(|two| two[0].pairs == two[1].pairs) {
+            assert!(two[0].cycle_position <= two[1].cycle_position, "{}", case.0);
+        }
+        let share = summary.largest_load_share;
+        assert!(share <= 1.0 && share >= 1.0 / 6.0, "{}: {share}", case.0);
+        for point in &points {
+            assert!(point.loads.iter().all(|load| *load <= point.load()), "{}: {point:?}", case.0);
+        }
+        added += usize::from(points.len() > loading.curve(Wanted::default()).len());
+    }
+    assert!(added > 100, "extrema between nodes: {added}");
 }

@@ -6,6 +6,7 @@
 use crate::base::error::{Diagnostic, Place as TextPlace};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
+use crate::base::text::is_device;
 use crate::base::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
 use crate::stage::Inputs;
 use crate::table::data::{Data, Row, Table};
@@ -105,6 +106,11 @@ impl Figure {
         if name.is_empty() || name.len() > 60 || !name.chars().all(fits) {
             let message = format!("`{name}` is no name for a file; use up to 60 letters, digits, - and _");
             return Err(Diagnostic::new(message).at(record.place_of("name")));
+        }
+        if is_device(&name) {
+            let message = format!("`{name}` is no name for a file: Windows keeps it for a device");
+            let help = format!("for example `{name}-figure`");
+            return Err(Diagnostic::new(message).at(record.place_of("name")).help(help));
         }
         let mut tables = Vec::new();
         for (table, place) in texts(record, "table") {

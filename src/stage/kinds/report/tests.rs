@@ -359,6 +359,7 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         ),
         (("published", list(vec![group(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
         (("name", text("../x")), "no name for a file"),
+        (("name", text("NUL")), "`NUL` is no name for a file: Windows keeps it for a device"),
         (("table", list(vec![text("ste")])), "is no table"),
         (("reference", text("ste")), "is no table"),
         (("reference", text("ste.summary")), "the reference must be one row; table `summary` has"),

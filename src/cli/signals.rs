@@ -1,0 +1,76 @@
+//! Signals that ask a run to stop: Ctrl-C, what `kill` sends, and a terminal that is closed.
+//!
+//! The first one sets a flag, which stages look at; the second one ends the program at once. A signal that was ignored
+//! when the program was started stays ignored: so `nohup` and the background of a script do it. Must not know: what is
+//! stopped.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+
+use indicatif::MultiProgress;
+
+use super::progress::aside;
+
+/// The number of the first signal, 0 before.
+static RECEIVED: AtomicI32 = AtomicI32::new(0);
+
+/// What a shell adds to the number of the signal that ended a program.
+const ENDED_BY_SIGNAL: i32 = 128;
+/// Ctrl-C.
+const INTERRUPT: i32 = 2;
+
+/// The exit code of a program that was asked to stop: 130 for Ctrl-C, 143 for `kill`, 129 for a closed terminal.
+#[must_use]
+pub fn code() -> i32 {
+    match RECEIVED.load(Ordering::Relaxed) {
+        0 => ENDED_BY_SIGNAL + INTERRUPT,
+        signal => ENDED_BY_SIGNAL + signal,
+    }
+}
+
+/// Set by the first signal. Without a handler any signal ends the program at once; what is finished is kept in that case
+/// too.
+pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
+    let stop = Arc::new(AtomicBool::new(false));
+    watch(&stop, bars);
+    stop
+}
+
+#[cfg(unix)]
+fn watch(stop: &Arc<AtomicBool>, bars: Option<MultiProgress>) {
+    use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
+
+    let ignored = ignored();
+    let heard = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|signal| ignored >> (signal - 1) & 1 == 0);
+    let Ok(mut signals) = signal_hook::iterator::Signals::new(heard) else { return };
+    let flag = Arc::clone(stop);
+    std::thread::spawn(move || {
+        for signal in signals.forever() {
+            if RECEIVED.compare_exchange(0, signal, Ordering::Relaxed, Ordering::Relaxed).is_err() {
+                std::process::exit(code());
+            }
+            flag.store(true, Ordering::Release);
+            aside(bars.as_ref(), "gearstudy: stopping; once more to stop at once");
+        }
+    });
+}
+
+/// Elsewhere nobody says what is to be done before the end.
+#[cfg(not(unix))]
+fn watch(stop: &Arc<AtomicBool>, _bars: Option<MultiProgress>) {
+    use signal_hook::consts::{SIGINT, SIGTERM};
+
+    for signal in [SIGINT, SIGTERM] {
+        // In this order: the second signal finds the flag set.
+        let _ = signal_hook::flag::register_conditional_shutdown(signal, ENDED_BY_SIGNAL + signal, Arc::clone(stop));
+        let _ = signal_hook::flag::register(signal, Arc::clone(stop));
+    }
+}
+
+/// The signals that are ignored, a bit each, the first for signal 1. Linux says it; elsewhere none is known.
+#[cfg(unix)]
+fn ignored() -> u64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
+}
