@@ -115,7 +115,7 @@ pub(super) fn table(
 
 /// The results folder of a study and the manifest in it.
 pub(super) fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
-    let folder = Folder::new(&places.results, &study.name);
+    let folder = Folder::new(&places.results, &study.name).telling(super::progress::told);
     let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
     let manifest = read.ok_or_else(|| {
         let (path, file) = (folder.path().display(), study.path.display());

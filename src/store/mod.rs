@@ -13,6 +13,7 @@ pub mod file;
 #[cfg(feature = "hdf5")]
 pub mod hdf5;
 pub mod journal;
+pub mod lock;
 pub mod manifest;
 pub mod parquet;
 pub mod results;

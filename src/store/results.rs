@@ -9,7 +9,7 @@
 #[cfg(test)]
 mod tests;
 
-use std::fs::{self, File};
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::StoreError;
@@ -17,6 +17,7 @@ use super::facts::Facts;
 use super::file::{self, Durability};
 #[cfg(feature = "hdf5")]
 use super::hdf5;
+use super::lock::{self, Lock, Told};
 use super::manifest::{FORMAT, FileRecord, Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
 use super::parquet;
 use crate::table::data::{Data, Table};
@@ -28,6 +29,7 @@ pub const MANIFEST: &str = "manifest.json";
 pub struct Folder {
     path: PathBuf,
     study: String,
+    told: Told,
 }
 
 /// Gives the Parquet file of (stage, table).
@@ -59,7 +61,13 @@ impl Folder {
     /// The folder of `study` under `results`; nothing is made yet.
     #[must_use]
     pub fn new(results: &Path, study: &str) -> Self {
-        Self { path: results.join(study), study: study.to_owned() }
+        Self { path: results.join(study), study: study.to_owned(), told: |_| {} }
+    }
+
+    /// Who hears why a lock is waited for.
+    #[must_use]
+    pub fn telling(self, told: Told) -> Self {
+        Self { told, ..self }
     }
 
     #[must_use]
@@ -187,17 +195,12 @@ impl Folder {
         Ok(Published { manifest: new, changes })
     }
 
-    /// One publisher at a time; a folder can be locked itself, so nothing is left behind.
+    /// One publisher at a time, on this computer or another; nothing is left behind.
     ///
     /// # Errors
-    /// When the folder cannot be opened or locked.
-    pub fn lock(&self) -> Result<Option<File>, StoreError> {
-        if !cfg!(unix) {
-            return Ok(None);
-        }
-        let folder = File::open(&self.path).map_err(StoreError::io("open", &self.path))?;
-        file::lock(&folder, &self.path, false)?;
-        Ok(Some(folder))
+    /// As [`lock::publisher`].
+    pub fn lock(&self) -> Result<Lock, StoreError> {
+        lock::publisher(&self.path, self.told)
     }
 
     /// Stages without tables of their own take those of the earlier manifest that are still there.
