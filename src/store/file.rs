@@ -5,7 +5,8 @@
 
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use tempfile::{Builder, NamedTempFile};
 
@@ -50,13 +51,40 @@ pub fn persist(file: NamedTempFile, path: &Path, durability: Durability) -> Resu
 
 /// Writes a whole file.
 ///
+/// Every step is a call of the standard library, so that tests can make the n-th one fail.
+///
 /// # Errors
-/// As [`temporary`] and [`persist`].
+/// When a step fails; what was at `path` before is still there, and nothing beside it.
 pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), StoreError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut file = temporary(folder)?;
-    file.write_all(bytes).map_err(StoreError::io("write", path))?;
-    persist(file, path, durability)
+    let (mut file, partial) = begin(folder).map_err(StoreError::io("write into", folder))?;
+    let written = file
+        .write_all(bytes)
+        .and_then(|()| if durability == Durability::Synced { file.sync_all() } else { Ok(()) })
+        .and_then(|()| fs::rename(&partial, path));
+    if written.is_err() {
+        // A leftover that cannot be removed does no harm.
+        let _ = fs::remove_file(&partial);
+    }
+    written.map_err(StoreError::io("write", path))
+}
+
+/// A new file under a temporary name that anybody may read once it has its own.
+fn begin(folder: &Path) -> io::Result<(File, PathBuf)> {
+    static NUMBER: AtomicU64 = AtomicU64::new(0);
+    let mut options = File::options();
+    options.write(true).create_new(true);
+    #[cfg(unix)]
+    std::os::unix::fs::OpenOptionsExt::mode(&mut options, 0o644);
+    loop {
+        let number = NUMBER.fetch_add(1, Ordering::Relaxed);
+        let path = folder.join(format!("{TEMPORARY}{}-{number}", std::process::id()));
+        match options.open(&path) {
+            // Left behind by a killed process of the same number, or one of another host's.
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
+            opened => return Ok((opened?, path)),
+        }
+    }
 }
 
 /// Bytes of a manifest; the largest known has less than one million.
@@ -112,6 +140,17 @@ mod tests {
             let mode = std::os::unix::fs::PermissionsExt::mode(&std::fs::metadata(&path).unwrap().permissions());
             assert_eq!(mode & 0o777, 0o644);
         }
+        // A folder cannot be replaced by a file: the last step fails, and nothing is left of those before it.
+        fs::create_dir_all(folder.path().join("b/c")).unwrap();
+        let refused = write(&folder.path().join("b"), b"", Durability::Lazy).unwrap_err().to_string();
+        assert!(refused.contains("cannot write `") && refused.contains("b`"), "{refused}");
+        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 2);
+        // What another process of the same number left behind is passed over.
+        for number in 0..1000 {
+            fs::write(folder.path().join(format!("{TEMPORARY}{}-{number}", std::process::id())), "left").unwrap();
+        }
+        write(&path, b"three", Durability::Lazy).unwrap();
+        assert_eq!(std::fs::read(&path).unwrap(), b"three");
         let missing = write(&folder.path().join("no/such"), b"", Durability::Lazy).unwrap_err().to_string();
         assert!(missing.contains("no"), "{missing}");
     }
