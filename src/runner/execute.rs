@@ -80,7 +80,8 @@ pub fn warnings(cache: &Cache, outcome: &Outcome) -> Vec<String> {
         };
         format!("the cache `{}` does not keep what was computed: {problem}{again}", cache.root().display())
     });
-    let journal = journal.map(|problem| format!("{problem}; until a run writes it, none says why it computes"));
+    let journal =
+        journal.map(|problem| format!("{problem}; until one can be written, runs cannot say why they compute"));
     entries.into_iter().chain(journal).collect()
 }
 
