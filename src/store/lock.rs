@@ -217,7 +217,7 @@ impl Drop for Lock {
         };
         if let Err(error) = removed {
             (self.told)(&format!(
-                "warning: cannot remove the lock `{}`: {error}; on this computer the next run does",
+                "warning: cannot remove the lock `{}`: {error}; the next run that publishes from this computer does",
                 path.display()
             ));
         }

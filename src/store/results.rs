@@ -182,16 +182,8 @@ impl Folder {
                 Manifest { program, study_folder, machine, written, ..new }
             }
         };
+        self.remove(&changes.remove)?;
         self.write_manifest(&new)?;
-        for name in &changes.remove {
-            let path = self.path.join(name);
-            match fs::remove_file(&path) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(StoreError::io("remove", &path)(error));
-                }
-                _ => {}
-            }
-        }
         Ok(Published { manifest: new, changes })
     }
 
@@ -292,6 +284,26 @@ impl Folder {
     #[cfg(not(feature = "hdf5"))]
     #[allow(clippy::unused_self, clippy::unnecessary_wraps)] // the same shape with and without the feature
     fn write_hdf5(&self, _manifest: &mut Manifest, _changed: bool) -> Result<(), StoreError> {
+        Ok(())
+    }
+
+    /// Removes files before the manifest is written that does not list them: should this run not get so far, the next one
+    /// finds them in the list that is there. A file that is in no list stays for ever, so the folder must know that they
+    /// are gone before it knows the new manifest: the one place where a folder has to be written through.
+    fn remove(&self, files: &[String]) -> Result<(), StoreError> {
+        for name in files {
+            let path = self.path.join(name);
+            match fs::remove_file(&path) {
+                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
+                    return Err(StoreError::io("remove", &path)(error));
+                }
+                _ => {}
+            }
+        }
+        if cfg!(unix) && !files.is_empty() {
+            let folder = fs::File::open(&self.path).and_then(|folder| folder.sync_all());
+            folder.map_err(StoreError::io("write", &self.path))?;
+        }
         Ok(())
     }
 

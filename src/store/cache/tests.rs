@@ -5,6 +5,7 @@ use crate::base::digest::Writer;
 use crate::store::journal::JournalStage;
 use crate::store::manifest::KeyRecord;
 use crate::store::parquet::tests::{assert_identical, everything};
+use crate::table::schema::Schema;
 
 fn key(name: &str) -> Digest {
     Writer::new("test").text(name).finish()
@@ -93,16 +94,19 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     let busy = Cache::clean(folder.path(), Remove::All, false).unwrap_err();
     assert!(matches!(busy, StoreError::InUse { .. }));
     drop(cache);
-    let counts = |removed: Removed| (removed.entries, removed.kept);
-    assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, true).unwrap()), (2, 1));
-    assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, false).unwrap()), (2, 1));
-    assert_eq!(counts(Cache::clean(folder.path(), Remove::OlderThan(Duration::from_hours(1)), false).unwrap()), (0, 1));
+    let counts = |removed: Removed| (removed.entries, removed.leftovers, removed.kept);
+    assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, true).unwrap()), (1, 1, 1));
+    assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, false).unwrap()), (1, 1, 1));
+    assert_eq!(
+        counts(Cache::clean(folder.path(), Remove::OlderThan(Duration::from_hours(1)), false).unwrap()),
+        (0, 0, 1)
+    );
     let cache = Cache::open(folder.path()).unwrap();
     assert!(matches!(cache.look_up(key("a")), Lookup::Found(_)));
     assert_eq!(cache.look_up(key("b")), Lookup::Missing);
     drop(cache);
-    assert_eq!(counts(Cache::clean(folder.path(), Remove::All, false).unwrap()), (1, 0));
-    assert_eq!(counts(Cache::clean(&folder.path().join("none"), Remove::All, false).unwrap()), (0, 0));
+    assert_eq!(counts(Cache::clean(folder.path(), Remove::All, false).unwrap()), (1, 0, 0));
+    assert_eq!(counts(Cache::clean(&folder.path().join("none"), Remove::All, false).unwrap()), (0, 0, 0));
 }
 
 #[test]
@@ -111,4 +115,52 @@ fn a_folder_that_cannot_be_made_is_one_clear_error() {
     fs::write(folder.path().join("file"), "").unwrap();
     let error = Cache::open(&folder.path().join("file/cache")).err().unwrap().to_string();
     assert!(error.contains("cannot make the cache folder"), "{error}");
+}
+
+/// What cannot be written is kept in memory, whatever the reason, and is as good as what was written.
+#[test]
+fn what_the_disk_does_not_take_is_there_all_the_same() {
+    let folder = tempfile::tempdir().unwrap();
+    let entry = |cache: &Cache| {
+        let Lookup::Found(entry) = cache.look_up(key("a")) else { panic!() };
+        assert_identical(&cache.table(key("a"), "curve").unwrap(), &everything(20));
+        assert!(cache.table(key("a"), "absent").is_err());
+        entry
+    };
+    let root = folder.path().join("cache");
+    let kept = filled(&root);
+    assert!(!kept.is_unkept(key("a")) && kept.problems() == (None, None));
+    let on_disk = entry(&kept);
+    let path = kept.path(key("a"));
+    let bytes = fs::read(&path).unwrap();
+    let put = |cache: &Cache, rows: usize| {
+        let schema = Schema { name: "empty".to_owned(), ..everything(0).schema().clone() };
+        let empty = Table::from_rows(schema, vec![]).unwrap();
+        cache.put(key("a"), &[&everything(rows), &empty], on_disk.of_run.clone())
+    };
+    let spoiled = folder.path().join("spoiled");
+    drop(Cache::open(&spoiled).unwrap());
+    fs::write(spoiled.join("entries"), "no folder").unwrap();
+    for cache in [Cache::open(&spoiled).unwrap(), Cache::open_if_possible(&spoiled.join("entries"))] {
+        put(&cache, 20).unwrap();
+        assert_eq!(entry(&cache), on_disk);
+        assert!(cache.is_unkept(key("a")) && cache.problems().0.is_some());
+        cache.forget(key("a"));
+        assert_eq!(entry(&cache), on_disk);
+        // Still an error: it is no fault of the disk.
+        assert!(matches!(put(&cache, 21), Err(StoreError::NotDeterministic { .. })));
+        assert_eq!(cache.journal("study"), Journal::default());
+        cache.put_journal("study", &Journal::default());
+    }
+    // A folder in the place of an entry: an empty one goes, another one stays.
+    fs::remove_file(&path).unwrap();
+    fs::create_dir(&path).unwrap();
+    assert_eq!(kept.look_up(key("a")), Lookup::Damaged("it is no regular file".to_owned()));
+    put(&kept, 20).unwrap();
+    assert!(!kept.is_unkept(key("a")) && fs::read(&path).unwrap() == bytes);
+    fs::remove_file(&path).unwrap();
+    fs::create_dir_all(path.join("mine")).unwrap();
+    put(&kept, 20).unwrap();
+    assert!(kept.is_unkept(key("a")) && path.join("mine").is_dir());
+    entry(&kept);
 }

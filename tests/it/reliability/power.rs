@@ -179,7 +179,7 @@ impl Trace {
             contents.insert(name, self.content(file, done, chance));
         }
         // Folders without files, as names that end in a stroke.
-        contents.extend(folders.into_iter().filter(|name| whole(name)).map(|name| (name + "/", Vec::new())));
+        contents.extend(folders.iter().filter(|name| whole(name)).map(|name| (format!("{name}/"), Vec::new())));
         contents
     }
 
