@@ -172,6 +172,22 @@ fn a_run_with_nothing_to_do_survives_the_failure_of_any_operation() {
     }
 }
 
+/// Whether these tests would see it: a disk that says of lost bytes that it has them is as a program that looks at no result.
+#[test]
+fn a_write_whose_failure_nobody_hears_of_is_seen_here() {
+    if disk::library().is_none() {
+        return;
+    }
+    let (before, expected) = (Before::of(&[]), undisturbed(TINY));
+    let (operations, _) = counted(&before, TINY);
+    let lie = |at: usize| {
+        let orders = [("SHIM_AT", at), ("SHIM_ERROR", 5), ("SHIM_LASTING", 1), ("SHIM_LIES", 1)];
+        tried(&before, TINY, &expected, &orders.map(|(name, value)| (name, value.to_string())), false)
+    };
+    let seen = (operations / 3..operations).step_by(operations / 12).filter(|at| !lie(*at).is_empty()).count();
+    assert!(seen >= 4, "only {seen} were seen");
+}
+
 /// The program ends at once when it gets no memory; that is as good as being killed.
 #[test]
 fn publishing_survives_the_failure_of_an_allocation() {

@@ -5,6 +5,7 @@
  * SHIM_AT       which operation fails, counted from 1; none without it
  * SHIM_LASTING  whether those after it fail too
  * SHIM_ERROR    with which errno; 0: a write takes half of its bytes, and nothing else fails; -9: the run is killed
+ * SHIM_LIES     a write that fails is said to have succeeded
  * SHIM_COUNT    a file that gets the number of operations, and what the failed one was
  * SHIM_TRACE    a file that gets every change, with its data
  * SHIM_NO_FLOCK flock is not supported
@@ -34,7 +35,7 @@
 /* A call that is interrupted over and over is tried again over and over. */
 #define INTERRUPTIONS 20
 
-static int on, lasting, error_number, no_flock, armed;
+static int on, lies, lasting, error_number, no_flock, armed;
 static long fail_at, count, memory_at, memory_count, next_id;
 static const char *folder, *host, *boot;
 static size_t folder_length;
@@ -78,7 +79,7 @@ __attribute__((constructor)) static void begin(void)
     if (strcmp(program_invocation_short_name, "gearstudy") != 0 || !asked("SHIM_FOLDER")) return;
     folder = asked("SHIM_FOLDER"), folder_length = strlen(folder);
     fail_at = number("SHIM_AT"), lasting = (int)number("SHIM_LASTING"), error_number = (int)number("SHIM_ERROR");
-    memory_at = number("SHIM_MEMORY"), no_flock = (int)number("SHIM_NO_FLOCK");
+    lies = (int)number("SHIM_LIES"), memory_at = number("SHIM_MEMORY"), no_flock = (int)number("SHIM_NO_FLOCK");
     host = asked("SHIM_HOST"), boot = asked("SHIM_BOOT");
     count_file = opened("SHIM_COUNT"), trace_file = opened("SHIM_TRACE");
     on = 1;
@@ -219,7 +220,7 @@ ssize_t pread64(int file, void *bytes, size_t length, off64_t offset) { return r
 static ssize_t write_any(int file, const void *bytes, size_t length, off_t offset)
 {
     int watched = known(file);
-    if (watched && fails("write", files[file].path)) return -1;
+    if (watched && fails("write", files[file].path)) return lies ? (ssize_t)length : -1;
     if (watched) length = shortened(files[file].path, length);
     off_t at = offset >= 0 ? offset : (watched && trace_file >= 0 ? lseek(file, 0, SEEK_CUR) : 0);
     long written = offset >= 0 ? syscall(SYS_pwrite64, file, bytes, length, offset) : syscall(SYS_write, file, bytes, length);
