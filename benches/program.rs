@@ -27,7 +27,7 @@ fn runner(criterion: &mut Criterion) {
     let cache = Cache::open(&folder.path().join("cache")).expect("the folder is ours");
     let results = Folder::new(&folder.path().join("results"), &study.name);
     let (options, stop) = (Options::default(), AtomicBool::new(false));
-    let run = || execute::run(&study, &cache, &options, &Silent, &stop, &results);
+    let run = || execute::run(&study, &cache, &options, &Silent, &stop, &results, None);
     run().unwrap_or_else(|error| panic!("{error}"));
     group.bench_function("plan of nothing to do", |bencher| bencher.iter(|| plan::plan(&study, &cache, &options)));
     group.bench_function("run of nothing to do", |bencher| bencher.iter(run));

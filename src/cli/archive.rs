@@ -4,21 +4,22 @@
 
 use std::fs;
 use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use super::arguments::Places;
 use super::progress::{self, out};
-use super::{Ending, pages, rights};
+use super::{Ending, rights};
 use crate::runner::graph::Graph;
-use crate::runner::standing::{self, standing};
+use crate::runner::standing::{self, standing_of};
 use crate::stage::{self, kinds::KINDS};
 use crate::store::archive::metadata::{Author, Description, Step, metadata};
 use crate::store::archive::open::MOST_BYTES;
 use crate::store::archive::pack::{Entries, pack};
 use crate::store::archive::{self, METADATA, about};
 use crate::store::file::{self, Durability};
+use crate::store::index::{self, INDEX};
 use crate::store::manifest::Manifest;
-use crate::store::results::{Folder, MANIFEST, held_text};
+use crate::store::results::{Folder, Known, MANIFEST, here};
 use crate::study::{Study, schema};
 
 /// What only the user knows.
@@ -44,7 +45,9 @@ pub(super) fn archive(
     let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     // So that nobody publishes while the files are read.
     let _lock = folder.path().is_dir().then(|| folder.lock()).transpose().map_err(|error| usage(error.to_string()))?;
-    let standing = standing(study, &folder, stage::code_digest).map_err(|error| usage(error.message))?;
+    // Stamps are for those who look often; what goes out is read.
+    let known = folder.known().map_err(|error| usage(error.to_string()))?.map(Known::without_stamps);
+    let standing = standing_of(study, known.as_ref(), stage::code_digest).map_err(|error| usage(error.message))?;
     let first = |command: &str| format!("first: gearstudy {command} {}", study.path.display());
     if let Some(problem) = standing.problem() {
         return Err(usage(format!("{problem}; {}", first("run"))));
@@ -52,25 +55,18 @@ pub(super) fn archive(
     if let Some(file) = standing.absent().first() {
         return Err(usage(format!("`{file}` is not here; {}", first("run"))));
     }
-    let manifest = folder
-        .read_manifest()
-        .map_err(|error| usage(error.to_string()))?
-        .ok_or_else(|| usage(format!("there are no results; {}", first("run"))))?;
-    let Some(pages) = pages::current(&folder) else {
+    let known = known.ok_or_else(|| usage(format!("there are no results; {}", first("run"))))?;
+    if !standing.report {
         return Err(usage(format!("the report is not that of the last run; {}", first("report"))));
-    };
-    let mut entries = results(&folder, &manifest, &pages).map_err(usage)?;
+    }
+    let manifest = &known.manifest;
+    let mut entries = results(&folder, &known).map_err(|problem| usage(format!("{problem}; {}", first("run"))))?;
     entries.insert(archive::study(&study.name), study.text.clone().into_bytes());
     entries.insert(archive::SCHEMA.to_owned(), schema::schema_text(KINDS).into_bytes());
     entries.insert(archive::CITATION.to_owned(), about::CITATION.as_bytes().to_vec());
-    let steps = steps(study, &manifest).map_err(usage)?;
-    let description = Description {
-        manifest: &manifest,
-        entries: &entries,
-        steps: &steps,
-        license: license.as_deref(),
-        authors: &authors,
-    };
+    let steps = steps(study, manifest).map_err(usage)?;
+    let description =
+        Description { manifest, entries: &entries, steps: &steps, license: license.as_deref(), authors: &authors };
     let described = metadata(&description).map_err(usage)?;
     entries.insert(METADATA.to_owned(), described);
     let bytes = pack(&entries).map_err(usage)?;
@@ -108,40 +104,29 @@ fn is_archive(path: &Path) -> std::io::Result<bool> {
     Ok(start == *b"PK\x03\x04")
 }
 
-/// The files of the last run, by their names in the archive.
-fn results(folder: &Folder, manifest: &Manifest, pages: &[PathBuf]) -> Result<Entries, String> {
-    let inside = archive::results(&manifest.study);
-    let mut entries = Entries::new();
-    let mut put = |name: &str| -> Result<(), String> {
+/// The files of the last run, by their names in the archive; every one as it was written.
+fn results(folder: &Folder, known: &Known) -> Result<Entries, String> {
+    let inside = archive::results(&known.manifest.study);
+    let read = |name: &str| {
         let path = folder.path().join(name);
-        let bytes =
-            file::read(&path, MOST_BYTES).map_err(|error| format!("cannot read {}: {error}", path.display()))?;
-        entries.insert(format!("{inside}{name}"), bytes);
-        Ok(())
+        file::read(&path, MOST_BYTES).map_err(|error| format!("cannot read {}: {error}", path.display()))
     };
-    put(MANIFEST)?;
-    for record in &manifest.files {
-        // A manifest from elsewhere may name anything; only files right here are ours.
-        if Path::new(&record.file).file_name().is_none_or(|name| *name != *record.file) {
-            return Err(format!("the manifest names a file elsewhere: {}", record.file));
+    let mut entries = Entries::new();
+    for record in &known.manifest.files {
+        let name = &record.file;
+        // A manifest from elsewhere may name anything.
+        if !here(name) {
+            return Err(format!("the manifest names a file elsewhere: {name}"));
         }
-        put(&record.file)?;
-    }
-    for page in pages {
-        put(&page.to_string_lossy())?;
-    }
-    for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
-        let table = folder.table(record).map_err(|error| error.to_string())?;
-        for file in &record.files {
-            let packed = entries.get(&format!("{inside}{file}")).map(Vec::as_slice);
-            if packed != held_text(&table, file).as_deref().map(str::as_bytes) {
-                return Err(format!(
-                    "`{file}` is not what the table `{}` says; delete it, and the next run writes it anew",
-                    record.name
-                ));
-            }
+        let bytes = read(name)?;
+        if known.expected(name).is_none_or(|(_, digest)| index::digest(&bytes) != digest) {
+            return Err(format!("`{name}` is not as the last run wrote it"));
         }
+        entries.insert(format!("{inside}{name}"), bytes);
     }
+    let bytes = known.index().clone().without_stamps().bytes().map_err(|error| error.to_string())?;
+    entries.insert(format!("{inside}{INDEX}"), bytes);
+    entries.insert(format!("{inside}{MANIFEST}"), read(MANIFEST)?);
     Ok(entries)
 }
 

@@ -76,6 +76,9 @@ pub enum Command {
     Status {
         /// Without any, those in the folder `studies`.
         studies: Vec<PathBuf>,
+        /// Read every byte of results and cache; what is damaged ends with code 4.
+        #[arg(long)]
+        check: bool,
         /// As JSON.
         #[arg(long)]
         json: bool,

@@ -2,6 +2,7 @@
 //!
 //! Must not know: what is compared.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use super::Ending;
@@ -15,7 +16,7 @@ use crate::diff::{html, markdown, pretty};
 use crate::history::git::Repository;
 use crate::history::side::Side;
 use crate::store::cache::Cache;
-use crate::store::results::MANIFEST;
+use crate::store::results::{Folder, MANIFEST};
 use crate::study;
 use crate::table::tolerance::Allowance;
 
@@ -50,7 +51,12 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         leaves_out: Some(&ignored),
         not_kept: Some(&not_kept),
     };
-    let comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
+    let mut comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
+    if !comparison.damaged.is_empty() || !comparison.problems.is_empty() {
+        // While a run publishes, its files and its manifest do not belong together: once more when none does.
+        let _locks = locks(&[&before, &after]);
+        comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
+    }
     if !quiet {
         out(&shown(&comparison, asked.format)?);
     }
@@ -58,6 +64,18 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         return Err(Ending::Usage(comparison.problems.join("; ")));
     }
     if comparison.state.differs() { Err(Ending::Differs(String::new())) } else { Ok(()) }
+}
+
+/// Keeps runs from publishing; in one order, so that two comparisons never wait for each other.
+fn locks(sides: &[&Side]) -> Vec<Option<std::fs::File>> {
+    let folders = |side: &&Side| -> Vec<PathBuf> {
+        let Some(path) = side.path() else { return Vec::new() };
+        let studies = side.studies().unwrap_or_default();
+        studies.iter().filter_map(|study| path.join(study).canonicalize().ok()).collect()
+    };
+    let all: BTreeSet<PathBuf> = sides.iter().flat_map(folders).collect();
+    let folder = |path: &PathBuf| Some(Folder::new(path.parent()?, &path.file_name()?.to_string_lossy()));
+    all.iter().filter_map(|path| folder(path)?.lock().ok()).collect()
 }
 
 fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {

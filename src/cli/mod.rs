@@ -110,7 +110,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let how = run::How { explain: *explain, keep_going: *keep_going, jobs: jobs.map(usize::from), quiet };
             run::run(&load_all(studies)?, places, selection, &how)
         }
-        Command::Status { studies: words, json } => status::status(words, places, *json),
+        Command::Status { studies: words, json, check } => status::status(words, places, *json, *check),
         Command::Archive { study, output, license, authors } => {
             let about = archive::About { license: license.as_deref(), authors };
             archive::archive(&load_all(std::slice::from_ref(study))?[0], places, output, &about, quiet)

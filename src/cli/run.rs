@@ -2,6 +2,7 @@
 //!
 //! Must not know: how any of it is decided.
 
+use std::cell::RefCell;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
@@ -12,7 +13,7 @@ use super::Ending;
 use super::arguments::{Places, Selection};
 use super::pages;
 use super::progress::{self, Watcher, aside, duration, out, tell};
-use super::show::last_run;
+use super::show::none_yet;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
 use crate::runner::options::{Force, Options, Wanted};
@@ -21,7 +22,8 @@ use crate::runner::plan::{self, Action, Plan};
 use crate::stage::{Omission, Want, omission};
 use crate::store::cache::{Cache, Remove};
 use crate::store::error::StoreError;
-use crate::store::results::{Changes, Folder};
+use crate::store::manifest::Manifest;
+use crate::store::results::{Folder, Published, Tables};
 use crate::study::Study;
 
 /// How to run.
@@ -109,17 +111,32 @@ fn run_one(
     }
     let width = study.nodes.iter().map(|node| node.name.chars().count()).max().unwrap_or(0);
     let watcher = Watcher::new(how.quiet, width, bars.cloned());
+    // Tables are read while the folder is locked; afterwards they may be those of another run.
+    let verdicts = RefCell::new(None);
+    let draw = |manifest: &Manifest, tables: Tables<'_>| {
+        let drawn = pages::draw(manifest, tables)?;
+        verdicts.replace(Some(pages::summary(manifest, tables)));
+        Ok(drawn)
+    };
     let (outcome, published) =
-        execute::run(study, &cache, &options, &watcher, stop, &folder).map_err(|error| match error {
+        execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw)).map_err(|error| match error {
             RunError::Study(diagnostic) => unknown(&diagnostic),
             other => Ending::Usage(other.to_string()),
         })?;
-    let page = if published.changes == Changes::default() && pages::are_current(&folder) {
-        None
-    } else {
-        Some(pages::write(&folder, &published.manifest).map_err(Ending::Usage)?)
-    };
-    ended(study, &outcome, &folder, page.as_deref(), how.quiet)
+    if !how.quiet {
+        tell(&rewritten(study, &published));
+    }
+    if let Some(problem) = published.undrawn {
+        return Err(Ending::Usage(problem));
+    }
+    ended(study, &outcome, &folder, verdicts.take().as_deref(), how.quiet)
+}
+
+/// What somebody else had changed.
+fn rewritten(study: &Study, published: &Published) -> String {
+    let line =
+        |file: &String| format!("{}: `{file}` was not what the last run wrote; it is written anew\n", study.name);
+    published.changes.foreign.iter().map(line).collect()
 }
 
 fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&str>, quiet: bool) -> Result<(), Ending> {
@@ -225,12 +242,22 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
 
 pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
     for study in studies {
-        let (folder, manifest) = last_run(study, places)?;
-        let text = pages::write(&folder, &manifest).map_err(Ending::Usage)?;
+        let folder = Folder::new(&places.results, &study.name).telling(progress::told);
+        let told = RefCell::new(String::new());
+        let draw = |manifest: &Manifest, tables: Tables<'_>| {
+            let drawn = pages::draw(manifest, tables)?;
+            let summary = pages::summary(manifest, tables);
+            let summary = if summary.is_empty() { "no verdicts" } else { &summary };
+            let line = format!("{}: {summary}; {}\n", study.name, pages::path(&folder).display());
+            told.replace(pages::verdicts(manifest, tables)? + &line);
+            Ok(drawn)
+        };
+        let published = folder.redraw(&draw).map_err(|error| stored(&error))?;
+        if let Some(problem) = published.ok_or_else(|| none_yet(study, &folder))?.undrawn {
+            return Err(Ending::Usage(problem));
+        }
         if !quiet {
-            out(&pages::verdicts(&folder, &manifest).map_err(Ending::Usage)?);
-            let text = if text.is_empty() { "no verdicts" } else { &text };
-            out(&format!("{}: {text}; {}\n", study.name, pages::path(&folder).display()));
+            out(&told.take());
         }
     }
     Ok(())

@@ -12,7 +12,7 @@ use super::progress::out;
 use super::{draw, print};
 use crate::base::error::suggest;
 use crate::stage::{self, kinds::KINDS};
-use crate::store::manifest::{Manifest, TableRecord};
+use crate::store::manifest::TableRecord;
 use crate::store::results::Folder;
 use crate::study::{Study, describe, load, load_text, rexs, schema as studies};
 use crate::table::data::Table;
@@ -94,14 +94,28 @@ pub(super) fn table(
     columns: &[String],
     format: Format,
 ) -> Result<(), Ending> {
-    let (folder, manifest) = last_run(study, places)?;
+    let folder = Folder::new(&places.results, &study.name);
+    out(&folder.settled(|| shown(study, &folder, name, conditions, columns, format))?);
+    Ok(())
+}
+
+fn shown(
+    study: &Study,
+    folder: &Folder,
+    name: Option<&str>,
+    conditions: &[String],
+    columns: &[String],
+    format: Format,
+) -> Result<String, Ending> {
+    let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
+    let manifest = read.ok_or_else(|| none_yet(study, folder))?;
     let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
     let Some(name) = name else {
         let width = records.iter().map(|record| record.name.len()).max().unwrap_or(0);
-        for record in records {
-            out(&format!("{:width$}  {:>8} rows  {}\n", record.name, record.rows, record.description));
-        }
-        return Ok(());
+        let line = |record: &&TableRecord| {
+            format!("{:width$}  {:>8} rows  {}\n", record.name, record.rows, record.description)
+        };
+        return Ok(records.iter().map(line).collect());
     };
     let found = records.iter().find(|record| record.name == name);
     let Some(record) = found else {
@@ -109,17 +123,11 @@ pub(super) fn table(
         return Err(Ending::Usage(format!("there is no table `{name}`; {}", suggest(name, known.iter().copied()))));
     };
     let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
-    out(&print::table(&table, conditions, columns, format).map_err(Ending::Usage)?);
-    Ok(())
+    print::table(&table, conditions, columns, format).map_err(Ending::Usage)
 }
 
-/// The results folder of a study and the manifest in it.
-pub(super) fn last_run(study: &Study, places: &Places) -> Result<(Folder, Manifest), Ending> {
-    let folder = Folder::new(&places.results, &study.name).telling(super::progress::told);
-    let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
-    let manifest = read.ok_or_else(|| {
-        let (path, file) = (folder.path().display(), study.path.display());
-        Ending::Usage(format!("there are no results in {path}; first: gearstudy run {file}"))
-    })?;
-    Ok((folder, manifest))
+/// That a study has no results.
+pub(super) fn none_yet(study: &Study, folder: &Folder) -> Ending {
+    let (path, file) = (folder.path().display(), study.path.display());
+    Ending::Usage(format!("there are no results in {path}; first: gearstudy run {file}"))
 }

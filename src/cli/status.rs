@@ -8,21 +8,32 @@ use serde_json::{Value, json};
 
 use super::arguments::Places;
 use super::progress::out;
-use super::{Ending, pages, studies};
-use crate::runner::standing::{StageStanding, Standing, State, standing};
+use super::{Ending, studies};
+use crate::base::error::Diagnostic;
+use crate::runner::standing::{StageStanding, Standing, State, standing_of};
 use crate::stage;
 use crate::store::cache::{Cache, Lookup};
-use crate::store::results::Folder;
+use crate::store::results::{FileState, Folder, Known};
 use crate::study::{self, Study};
 
 /// A study and where it stands.
 struct Told {
     study: Study,
     standing: Standing,
-    /// Whether page and figures are those of the last run.
-    report: bool,
+    /// What reading every file found.
+    read: Option<Read>,
     /// Stages that are up to date, but whose tables the cache does not have: a run computes them again.
     uncached: usize,
+}
+
+/// Files that were read.
+struct Read {
+    files: usize,
+    bytes: u64,
+    /// Not as they were written.
+    damaged: Vec<String>,
+    /// Nobody knows what they should be.
+    unknown: Vec<String>,
 }
 
 /// Why nothing can be said of a study.
@@ -31,22 +42,26 @@ enum Fault {
     Other(String),
 }
 
-/// Says it of every study; one that cannot be read silences no other.
-pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool) -> Result<(), Ending> {
+/// Says it of every study; one that cannot be read silences no other. `check`: every byte is read, of the cache too.
+pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: bool) -> Result<(), Ending> {
     let files = studies::named_or_all(words)?;
     // Only looked into: a missing one is not made.
     let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
+    let mut damaged = Vec::new();
     for file in &files {
-        match told(file, places, cache.as_ref()) {
+        match told(file, places, cache.as_ref(), check) {
             Ok(told) => {
                 studies::distinct(&all, &told.study)?;
                 if as_json {
                     values.push(value(&told));
                 } else {
-                    out(&text(&told));
+                    out(&(text(&told) + &read_text(&told)));
                 }
+                let names = told.read.iter().flat_map(|read| &read.damaged);
+                let folder = Folder::new(&places.results, &told.study.name);
+                damaged.extend(names.map(|name| folder.path().join(name).display().to_string()));
                 all.push(told.study);
             }
             Err(fault) => {
@@ -67,9 +82,17 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool) -> Resul
     if as_json {
         out(&format!("{:#}\n", Value::Array(values)));
     }
+    if let Some(cache) = cache.as_ref().filter(|_| check) {
+        let found = cache.verify().map_err(|error| Ending::Usage(error.to_string()))?;
+        damaged.extend(found.into_iter().map(|(path, problem)| format!("{}: {problem}", path.display())));
+    }
     let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
     match faults.pop() {
-        None => Ok(()),
+        None if damaged.is_empty() => Ok(()),
+        None => {
+            let lines: String = damaged.iter().map(|file| format!("\n  {file}")).collect();
+            Err(Ending::Differs(format!("damaged; `gearstudy run` writes it anew:{lines}")))
+        }
         Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
         Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
         Some(_) => {
@@ -79,22 +102,54 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool) -> Resul
     }
 }
 
-fn told(file: &Path, places: &Places, cache: Option<&Cache>) -> Result<Told, Fault> {
+fn told(file: &Path, places: &Places, cache: Option<&Cache>, check: bool) -> Result<Told, Fault> {
     let study = study::load(file).map_err(Fault::Study)?;
     let folder = Folder::new(&places.results, &study.name);
-    let standing = standing(&study, &folder, stage::code_digest)
+    // What is odd while a run publishes need not be so.
+    let look = || match standing_now(&study, &folder, check) {
+        Ok((standing, read)) if is_odd(&standing) => Err(Ok((standing, read))),
+        Ok(found) => Ok(found),
+        Err(error) => Err(Err(error)),
+    };
+    let (standing, read) = folder
+        .settled(look)
+        .or_else(|odd| odd)
         .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
-    let report = pages::are_current(&folder);
     let kept = |stage: &&StageStanding| {
         let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
         stage.state != State::UpToDate || stage.keys.iter().all(|key| kept(*key))
     };
     let uncached = standing.stages.iter().filter(|stage| !kept(stage)).count();
-    Ok(Told { study, standing, report, uncached })
+    Ok(Told { study, standing, read, uncached })
+}
+
+fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing, Option<Read>), Diagnostic> {
+    let known = folder.known().map_err(|error| Diagnostic::new(error.to_string()))?;
+    let known = if check { known.map(Known::without_stamps) } else { known };
+    let read = known.as_ref().filter(|_| check).map(|known| {
+        let damaged = known.changed_in_parallel();
+        let (mut files, mut bytes, mut unknown) = (0, 0, Vec::new());
+        for record in &known.manifest.files {
+            match (known.state(&record.file), known.expected(&record.file)) {
+                (FileState::Intact, Some((size, _))) => (files, bytes) = (files + 1, bytes + size),
+                (FileState::Unknown, _) => unknown.push(record.file.clone()),
+                _ => {}
+            }
+        }
+        Read { files, bytes, damaged, unknown }
+    });
+    Ok((standing_of(study, known.as_ref(), stage::code_digest)?, read))
+}
+
+/// Whether something is not as a run leaves it.
+fn is_odd(standing: &Standing) -> bool {
+    let damaged = standing.stages.iter().any(|stage| matches!(stage.state, State::Damaged(_)));
+    damaged || !standing.foreign.is_empty() || (!standing.report && standing.has_results)
 }
 
 fn value(told: &Told) -> Value {
-    let Told { study, standing, report, uncached } = told;
+    let Told { study, standing, read, uncached } = told;
+    let report = &standing.report;
     let of_stage = |stage: &StageStanding| {
         json!({
             "name": stage.name, "state": stage.state.word(), "why": stage.state.why(), "not_here": stage.absent,
@@ -102,17 +157,34 @@ fn value(told: &Told) -> Value {
     };
     let stages: Vec<Value> = standing.stages.iter().map(of_stage).collect();
     let tables_here = standing.has_results && standing.absent().is_empty();
-    json!({
+    let mut value = json!({
         "study": study.name, "file": study.path,
         // A clone has neither all tables nor the page, and is up to date nevertheless.
         "up_to_date": standing.is_up_to_date() && (*report || !tables_here),
         "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,
         "text_changed": standing.text_changed, "gone": standing.gone, "report_up_to_date": report, "stages": stages,
-    })
+        "foreign": standing.foreign,
+    });
+    if let Some(read) = read {
+        value["damaged"] = json!(read.damaged);
+        value["unknown"] = json!(read.unknown);
+    }
+    value
+}
+
+/// What reading every file found.
+fn read_text(told: &Told) -> String {
+    let Some(Read { files, bytes, damaged, unknown }) = &told.read else { return String::new() };
+    #[allow(clippy::cast_precision_loss)]
+    let mut text = format!("  {files} files as they were written ({:.1} MB)\n", *bytes as f64 / 1e6);
+    for (files, what) in [(damaged, "damaged"), (unknown, "not known what it was; a run tells")] {
+        files.iter().for_each(|file| text += &format!("  {file}: {what}\n"));
+    }
+    text
 }
 
 fn text(told: &Told) -> String {
-    let Told { study, standing, report, uncached } = told;
+    let Told { study, standing, uncached, .. } = told;
     let next = |command: &str| format!("next: gearstudy {command} {}", study.path.display());
     if !standing.has_results {
         return format!("{}: no results; {}\n", study.name, next("run"));
@@ -128,8 +200,16 @@ fn text(told: &Told) -> String {
     if parts.is_empty() && standing.text_changed {
         parts.push("the study's file has changed, but no stage of it".to_owned());
     }
+    match &standing.foreign[..] {
+        [] => {}
+        [one] => parts.push(format!("`{one}` is not as the last run wrote it")),
+        [first, ..] => {
+            let more = standing.foreign.len() - 1;
+            parts.push(format!("`{first}` and {more} more are not as the last run wrote them"));
+        }
+    }
     if parts.is_empty() {
-        return format!("{}: {}\n", study.name, up_to_date(standing, *report, *uncached, next));
+        return format!("{}: {}\n", study.name, up_to_date(standing, *uncached, next));
     }
     let mut text = format!("{}: {}; {}\n", study.name, parts.join("; "), next("run"));
     let width = others.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
@@ -140,13 +220,13 @@ fn text(told: &Told) -> String {
 }
 
 /// Every stage is; what is not here, and what a run would do all the same.
-fn up_to_date(standing: &Standing, report: bool, uncached: usize, next: impl Fn(&str) -> String) -> String {
+fn up_to_date(standing: &Standing, uncached: usize, next: impl Fn(&str) -> String) -> String {
     let absent = standing.absent().len();
     let again = match uncached {
         0 => "takes them from the cache".to_owned(),
         some => format!("computes {some} of {} stages again", standing.stages.len()),
     };
-    match (absent, report, uncached) {
+    match (absent, standing.report, uncached) {
         (0, false, _) => format!("the report is not that of the last run; {}", next("report")),
         (0, true, 0) => "up to date".to_owned(),
         (0, true, some) => {

@@ -6,14 +6,14 @@ use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
-use super::Ending;
 use super::progress::{self, Watcher, out};
 use super::run::stop_flag;
+use super::{Ending, pages};
 use crate::base::number::with_unit;
 use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
 use crate::diff::words;
 use crate::runner::options::Options;
-use crate::runner::verify::{Verification, Verified, VerifyError, verify as run};
+use crate::runner::verify::{Agreement, Verification, Verified, VerifiedFile, VerifyError, verify as run};
 use crate::store::archive::about;
 use crate::store::archive::open::open;
 
@@ -26,23 +26,54 @@ pub(super) fn verify(file: &Path, jobs: Option<usize>, as_json: bool, quiet: boo
     // Names of stages are not known before the study is read; they are seldom longer.
     let watcher = Watcher::new(quiet || as_json, 12, bars);
     let options = Options { jobs: jobs.unwrap_or(0), ..Options::default() };
-    let verification = run(&mut archive, work.path(), &options, &watcher, &stop).map_err(|error| match error {
-        VerifyError::Study(error) => Ending::Invalid(error),
-        VerifyError::Stopped => Ending::Stopped,
-        VerifyError::Failed(_) => Ending::Failed(format!("{}: {error}", file.display())),
-        other => Ending::Usage(other.to_string()),
-    })?;
+    let verification =
+        run(&mut archive, work.path(), &options, &watcher, &stop, &pages::draw).map_err(|error| match error {
+            VerifyError::Study(error) => Ending::Invalid(error),
+            VerifyError::Stopped => Ending::Stopped,
+            VerifyError::Failed(_) => Ending::Failed(format!("{}: {error}", file.display())),
+            other => Ending::Usage(other.to_string()),
+        })?;
     if as_json {
         out(&format!("{:#}\n", as_value(file, &verification)));
     } else if !quiet {
         out(&as_text(&verification));
     }
     let [_, _, different] = verification.counts();
-    if different == 0 {
+    let others = of_files(&verification)[2];
+    if different == 0 && others == 0 {
         return Ok(());
     }
-    let (tables, study) = (verification.tables.len(), &verification.study);
-    Err(Ending::Differs(format!("{study}: {different} of {tables} tables came out different")))
+    let (tables, files) = (verification.tables.len(), verification.files.len());
+    let mut parts = Vec::new();
+    if different > 0 {
+        parts.push(format!("{different} of {tables} tables came out different"));
+    }
+    if others > 0 {
+        parts.push(format!("{others} of {files} other files are not what the tables hold"));
+    }
+    Err(Ending::Differs(format!("{}: {}", verification.study, parts.join("; "))))
+}
+
+/// Identical, made otherwise, different: how many files that are no tables.
+fn of_files(verification: &Verification) -> [usize; 3] {
+    let mut counts = [0; 3];
+    for file in &verification.files {
+        counts[match file.agreement {
+            Agreement::Identical => 0,
+            Agreement::Otherwise(_) => 1,
+            Agreement::Different(_) => 2,
+        }] += 1;
+    }
+    counts
+}
+
+/// One word for a file that is no table, and why it is not identical.
+fn word_of(file: &VerifiedFile) -> (&'static str, &str) {
+    match &file.agreement {
+        Agreement::Identical => ("identical", ""),
+        Agreement::Otherwise(why) => ("otherwise", why),
+        Agreement::Different(why) => ("different", why),
+    }
 }
 
 /// One word for a table.
@@ -60,15 +91,22 @@ fn as_text(verification: &Verification) -> String {
         text += &format!("  note: {note}\n");
     }
     let width = verification.tables.iter().map(|table| table.name.chars().count()).max().unwrap_or(0);
+    for file in verification.files.iter().filter(|file| file.agreement != Agreement::Identical) {
+        let (word, why) = word_of(file);
+        text += &format!("  {}: {word}: {why}\n", file.file);
+    }
     for Verified { name, diff, .. } in &verification.tables {
         text += format!("  {name:width$}  {:16}  {}", word(diff), sentence(diff)).trim_end();
         text += "\n";
     }
     let [identical, within, different] = verification.counts();
+    let [same, otherwise, other] = of_files(verification);
     text + &format!(
-        "{}: {} tables: {identical} identical, {within} within tolerance, {different} different\n",
+        "{0}: {1} tables: {identical} identical, {within} within tolerance, {different} different\n\
+         {0}: {2} other files: {same} identical, {otherwise} made otherwise, {other} different\n",
         verification.study,
-        verification.tables.len()
+        verification.tables.len(),
+        verification.files.len()
     )
 }
 
@@ -128,11 +166,23 @@ fn as_value(file: &Path, verification: &Verification) -> Json {
             value
         })
         .collect();
+    let files: Vec<Json> = verification
+        .files
+        .iter()
+        .map(|file| {
+            let (word, why) = word_of(file);
+            if why.is_empty() {
+                json!({ "file": file.file, "agreement": word })
+            } else {
+                json!({ "file": file.file, "agreement": word, "why": why })
+            }
+        })
+        .collect();
     let [identical, within, different] = verification.counts();
     json!({
         "file": file, "study": verification.study, "made_by": verification.version, "verified_by": about::VERSION,
         "notes": verification.notes, "identical": identical, "within_tolerance": within, "different": different,
-        "tables": tables,
+        "tables": tables, "files": files,
     })
 }
 

@@ -81,13 +81,22 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
         };
         comparison.studies.push(study);
     }
+    tell_once(&mut comparison.damaged);
     verdict::sort(&mut comparison.verdicts);
     let damaged = (!comparison.damaged.is_empty()).then_some(State::Changed);
     comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
     Ok(comparison)
 }
 
-/// Files that are not what their manifests say, but for tables whose values will be compared.
+/// Of a table that is compared, its values tell more than its bytes, and later.
+fn tell_once(damaged: &mut Vec<Damage>) {
+    let mut told = BTreeSet::new();
+    damaged.reverse();
+    damaged.retain(|one| told.insert((one.at.clone(), one.study.clone(), one.file.clone())));
+    damaged.reverse();
+}
+
+/// Files that are not what their manifests say, but for values of tables that will be compared.
 fn damaged(pair: &Pair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
     let tables = |side: &Option<(String, Manifest)>| -> BTreeSet<(String, String)> {
         let manifest = side.iter().flat_map(|(_, manifest)| &manifest.stages);

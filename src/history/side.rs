@@ -12,13 +12,11 @@ use super::git::{Commit, Files, Repository};
 use crate::base::digest::Digest;
 use crate::store::cache::Cache;
 use crate::store::file;
-use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
+use crate::store::index;
+use crate::store::manifest::{FORMAT, FileRecord, Manifest, StageRecord, TableRecord};
 use crate::store::parquet;
-use crate::store::results::{MANIFEST, held_text};
+use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
-
-/// A pointer of Git LFS has some 130 bytes.
-const SMALL: u64 = 1 << 10;
 
 /// Where the files come from.
 enum Source {
@@ -212,8 +210,7 @@ impl Side {
     }
 
     /// What is wrong with the files that a manifest lists, but for tables that are `read` anyway: each file, and a phrase
-    /// that follows its name. Of a file that is no table only the size is known. What is not there is for the caller to
-    /// judge: git seldom keeps all.
+    /// that follows its name. What is not there is for the caller to judge: git seldom keeps all.
     #[must_use]
     pub fn damage(
         &self,
@@ -229,27 +226,35 @@ impl Side {
         };
         let looked_at = |record: &&&TableRecord| !read(record) || !record.files.is_empty();
         let mut found: Vec<(String, String)> = tables.par_iter().filter(looked_at).flat_map_iter(of_table).collect();
-        let known: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
-        let others = manifest
-            .files
-            .iter()
-            .filter(|listed| !known.contains(&listed.file) && tables.iter().all(|record| record.file != listed.file));
-        found.extend(others.filter_map(|listed| {
-            let Source::Folder(folder) = &self.source else { return None };
-            let path = folder.join(study).join(&listed.file);
-            let metadata = path.metadata().ok()?;
-            let problem = match metadata.len() {
-                _ if !metadata.is_file() => "cannot be read: it is no regular file".to_owned(),
-                // Of a pointer of Git LFS the contents are elsewhere.
-                size if size < SMALL && file::read(&path, SMALL).is_ok_and(|bytes| pointer(&bytes).is_some()) => {
-                    return None;
-                }
-                size if size != listed.bytes => format!("has {size} bytes; its manifest says {}", listed.bytes),
-                _ => return None,
-            };
-            Some((listed.file.clone(), problem))
-        }));
+        let known = match &self.source {
+            Source::Folder(folder) => Folder::new(folder, study).known().ok().flatten(),
+            Source::Commit(_) => None,
+        };
+        let others = manifest.files.par_iter().filter(|listed| here(&listed.file));
+        let others: Vec<(String, String)> = others
+            .filter_map(|listed| Some((listed.file.clone(), self.changed(study, listed, known.as_ref())?)))
+            .collect();
+        // What is wrong with a table's values says more than that its bytes are other ones.
+        let told: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
+        found.extend(others.into_iter().filter(|(file, _)| !told.contains(file)));
         found
+    }
+
+    /// Why a listed file that is there is not the one that was written.
+    fn changed(&self, study: &str, listed: &FileRecord, known: Option<&Known>) -> Option<String> {
+        let bytes = match self.read(&Path::new(study).join(&listed.file), file::MOST_TABLE) {
+            Err(problem) => return Some(problem),
+            Ok(bytes) => bytes.filter(|bytes| pointer(bytes).is_none())?,
+        };
+        let expected = known.and_then(|known| known.expected(&listed.file)).map(|(_, digest)| digest);
+        let size = bytes.len() as u64;
+        match (listed.bytes, expected.or(listed.digest.as_deref())) {
+            (Some(expected), _) if size != expected => Some(format!("has {size} bytes; its manifest says {expected}")),
+            (_, Some(digest)) if index::digest(&bytes) != digest => {
+                Some("has other bytes than were written".to_owned())
+            }
+            _ => None,
+        }
     }
 }
 

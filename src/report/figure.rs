@@ -72,8 +72,9 @@ fn figure(
             };
             let first = drawing.series.len();
             let volatile = |name: &str| table.schema().column(name).is_some_and(|column| column.volatile);
-            varies |= volatile(x) || volatile(y);
-            drawing.add(&table, &rows, kind, [x, y, text("series")?, text("segments")?], &prefix)?;
+            let read = [x, y, text("series")?, text("segments")?];
+            varies |= read.into_iter().chain(conditions.iter().map(|(column, _)| column.as_str())).any(volatile);
+            drawing.add(&table, &rows, kind, read, &prefix)?;
             x_unit.clone_from(&unit(&table, x));
             y_unit.clone_from(&unit(&table, y));
             if let Some(reference) = &reference {

@@ -21,8 +21,16 @@ use crate::table::data::{Data, Table};
 pub struct Rendered {
     /// One file that needs no other.
     pub html: String,
-    /// Name (without `.svg`) and contents of each figure.
-    pub figures: Vec<(String, String)>,
+    pub figures: Vec<RenderedFigure>,
+}
+
+/// A figure as a file by itself.
+pub struct RenderedFigure {
+    /// Without `.svg`.
+    pub name: String,
+    pub svg: String,
+    /// Whether it shows what differs from run to run.
+    pub varies: bool,
 }
 
 /// Why there is no report.
@@ -61,8 +69,11 @@ pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Re
         }
     }
     let html = page::html(manifest, &parts, tables)?;
-    let figures =
-        parts.iter().flat_map(|part| &part.figures).map(|figure| (figure.name.clone(), figure.plot.svg(true)));
+    let figures = parts.iter().flat_map(|part| &part.figures).map(|figure| RenderedFigure {
+        name: figure.name.clone(),
+        svg: figure.plot.svg(true),
+        varies: figure.varies,
+    });
     Ok(Rendered { html, figures: figures.collect() })
 }
 

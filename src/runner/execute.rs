@@ -24,7 +24,7 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::results::{Folder, Published};
+use crate::store::results::{Draw, Folder, Published};
 use crate::study::Study;
 use crate::table::data::Table;
 
@@ -39,7 +39,7 @@ pub enum RunError {
     Threads { threads: usize, problem: String },
 }
 
-/// Runs a study and brings its results folder up to date.
+/// Runs a study and brings its results folder up to date; `draw` draws the report.
 ///
 /// # Errors
 /// As [`execute`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
@@ -50,10 +50,11 @@ pub fn run(
     observer: &dyn Observer,
     stop: &AtomicBool,
     folder: &Folder,
+    draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
     let facts = || Facts::collect(study.path.parent().unwrap_or(Path::new("")), options.threads());
     let publish = |outcome: &Outcome| {
-        folder.publish(outcome.manifest(study), facts, &|stage, table| outcome.bytes(cache, stage, table))
+        folder.publish(outcome.manifest(study), facts, &|stage, table| outcome.bytes(cache, stage, table), draw)
     };
     let mut outcome = execute(study, cache, options, observer, stop)?;
     let mut published = publish(&outcome);

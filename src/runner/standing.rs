@@ -12,7 +12,7 @@ use crate::base::error::Diagnostic;
 use crate::stage::Want;
 use crate::store::entry::StoredTable;
 use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
-use crate::store::results::Folder;
+use crate::store::results::{FileState, Folder, Known, PAGE, is_drawn};
 use crate::study::Study;
 
 /// All stages of a study, every one after all it reads.
@@ -25,6 +25,10 @@ pub struct Standing {
     pub text_changed: bool,
     /// Stages that only the results have.
     pub gone: Vec<String>,
+    /// Page, figures and HDF5 file that are here, but not as the last run wrote them.
+    pub foreign: Vec<String>,
+    /// Whether page and figures are those of the last run.
+    pub report: bool,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -81,6 +85,7 @@ impl Standing {
         self.has_results
             && !self.text_changed
             && self.gone.is_empty()
+            && self.foreign.is_empty()
             && self.stages.iter().all(|stage| stage.state == State::UpToDate)
     }
 
@@ -102,18 +107,28 @@ impl Standing {
         });
         let gone = || self.gone.first().map(|name| format!("the results have a stage `{name}`, the study has none"));
         let changed = || self.text_changed.then(|| "the study's file has changed since".to_owned());
-        of_stage.or_else(gone).or_else(changed)
+        let foreign = || self.foreign.first().map(|file| format!("`{file}` is not as the last run wrote it"));
+        of_stage.or_else(gone).or_else(changed).or_else(foreign)
     }
 }
 
 /// Compares a study with its results. What the manifest says of tables that are not here is taken for granted: a clone
-/// has only those that git keeps. Files that are here must have their size.
+/// has only those that git keeps. Files that are here must be as they were written.
 ///
 /// # Errors
 /// What is wrong with the study's graph; a manifest that cannot be read.
 pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Result<Standing, Diagnostic> {
-    let manifest = folder.read_manifest().map_err(|error| Diagnostic::new(error.to_string()))?;
-    let graph = Graph::new(study, &manifest.as_ref().map(|manifest| demand(study, manifest)).unwrap_or_default())?;
+    let known = folder.known().map_err(|error| Diagnostic::new(error.to_string()))?;
+    standing_of(study, known.as_ref(), code)
+}
+
+/// The same where manifest and files were looked at already.
+///
+/// # Errors
+/// What is wrong with the study's graph.
+pub fn standing_of(study: &Study, known: Option<&Known>, code: fn(&str) -> String) -> Result<Standing, Diagnostic> {
+    let manifest = known.map(|known| &known.manifest);
+    let graph = Graph::new(study, &manifest.map(|manifest| demand(study, manifest)).unwrap_or_default())?;
     let mut tables: Vec<Option<Vec<StoredTable>>> = vec![None; study.nodes.len()];
     let mut stages = Vec::new();
     for &node in &graph.order {
@@ -122,9 +137,9 @@ pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Res
         unknown.sort_unstable();
         unknown.dedup();
         unknown.retain(|&input| tables[input].is_none());
-        let record = manifest.as_ref().and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
+        let record = manifest.and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
         let (mut absent, mut keys) = (Vec::new(), Vec::new());
-        let state = match (&manifest, record) {
+        let state = match (known, record) {
             (None, _) => State::Missing("there are no results".to_owned()),
             (Some(_), None) => State::Missing("never ran".to_owned()),
             (Some(_), Some(record)) if record.keys.is_empty() || record.tables.is_empty() => {
@@ -133,7 +148,7 @@ pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Res
             _ if !unknown.is_empty() => {
                 State::Waits(unknown.iter().map(|&input| study.nodes[input].name.clone()).collect())
             }
-            (Some(manifest), Some(record)) => {
+            (Some(known), Some(record)) => {
                 let seen = |input: usize| tables[input].as_deref().unwrap_or_default();
                 let parts = key::parts(study, &graph, node, code, seen);
                 let axis = parts.first().and_then(|part| part.axis.as_ref()).map(|(field, _)| *field);
@@ -144,7 +159,7 @@ pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Res
                         tables[node] = record.tables.iter().map(TableRecord::stored).collect();
                         keys = parts.iter().map(|part| part.key).collect();
                         let damaged;
-                        (absent, damaged) = files(folder, manifest, record);
+                        (absent, damaged) = files(known, record);
                         damaged.map_or(State::UpToDate, State::Damaged)
                     }
                 }
@@ -152,14 +167,30 @@ pub fn standing(study: &Study, folder: &Folder, code: fn(&str) -> String) -> Res
         };
         stages.push(StageStanding { name: name.clone(), state, absent, keys });
     }
-    let known = |stage: &&StageRecord| study.nodes.iter().any(|node| node.name == stage.name);
+    let in_study = |stage: &&StageRecord| study.nodes.iter().any(|node| node.name == stage.name);
     let of_manifest = manifest.iter().flat_map(|manifest| &manifest.stages);
     let digest = blake3::hash(study.text.as_bytes()).to_string();
+    let of_table = |file: &str| {
+        let mut tables = manifest.iter().flat_map(|manifest| &manifest.stages).flat_map(|stage| &stage.tables);
+        tables.any(|table| table.file == file || table.files.iter().any(|held| held == file))
+    };
+    let others: Vec<(&str, FileState)> = known
+        .iter()
+        .flat_map(|known| known.manifest.files.iter().map(|record| (record.file.as_str(), known.state(&record.file))))
+        .filter(|(file, _)| !of_table(file))
+        .collect();
+    let drawn = || others.iter().filter(|(file, _)| is_drawn(file));
     Ok(Standing {
         stages,
         has_results: manifest.is_some(),
-        text_changed: manifest.as_ref().is_some_and(|manifest| manifest.study_digest != digest),
-        gone: of_manifest.filter(|stage| !known(stage)).map(|stage| stage.name.clone()).collect(),
+        text_changed: manifest.is_some_and(|manifest| manifest.study_digest != digest),
+        gone: of_manifest.filter(|stage| !in_study(stage)).map(|stage| stage.name.clone()).collect(),
+        foreign: others
+            .iter()
+            .filter(|(_, state)| *state == FileState::Changed)
+            .map(|(file, _)| (*file).to_owned())
+            .collect(),
+        report: drawn().any(|(file, _)| *file == PAGE) && drawn().all(|(_, state)| *state == FileState::Intact),
     })
 }
 
@@ -204,15 +235,24 @@ fn stale(record: &StageRecord, kind: &str, now: &[&KeyRecord], axis: Option<&'st
     (record.keys.len() != now.len()).then(|| format!("config changed: fewer values of {}", axis.unwrap_or("an axis")))
 }
 
-/// The files of a stage's tables that are not here, and those that are, but not as the manifest lists them.
-fn files(folder: &Folder, manifest: &Manifest, record: &StageRecord) -> (Vec<String>, Option<String>) {
-    let tables = record.tables.iter().flat_map(|table| [&table.file].into_iter().chain(&table.files));
-    let odd = tables.filter(|file| !folder.intact(manifest, file));
-    let (here, absent): (Vec<&String>, _) = odd.partition(|file| folder.path().join(file).symlink_metadata().is_ok());
-    let damaged = match here[..] {
+/// The files of a stage's tables that are not here, and those that are, but not as they were written.
+fn files(known: &Known, record: &StageRecord) -> (Vec<String>, Option<String>) {
+    let (mut absent, mut odd) = (Vec::new(), Vec::new());
+    let of_table = |table: &TableRecord| {
+        let held = table.files.iter().map(|file| (file.clone(), known.state(file)));
+        [(table.file.clone(), known.table_state(table))].into_iter().chain(held).collect::<Vec<_>>()
+    };
+    for (file, state) in record.tables.iter().flat_map(of_table) {
+        match state {
+            FileState::Intact => {}
+            FileState::Absent => absent.push(file),
+            FileState::Changed | FileState::Unknown | FileState::Unlisted => odd.push(file),
+        }
+    }
+    let damaged = match &odd[..] {
         [] => None,
         [one] => Some(format!("`{one}` is not as the manifest lists it")),
-        [first, ..] => Some(format!("`{first}` and {} more are not as the manifest lists them", here.len() - 1)),
+        [first, ..] => Some(format!("`{first}` and {} more are not as the manifest lists them", odd.len() - 1)),
     };
-    (absent.into_iter().cloned().collect(), damaged)
+    (absent, damaged)
 }

@@ -1,7 +1,10 @@
-//! Verifying an archive: its study is run again from nothing, and every table is compared with the archived one.
+//! Verifying an archive: its study is run again from nothing, and every table is compared with the archived one; page,
+//! figures, drawings and HDF5 are made again from the archived tables (`files.rs`).
 //!
 //! What is run is what this program makes of the study in the archive; tables and columns on demand are asked for as the
 //! archived manifest shows them. Must not know: how it is shown.
+
+mod files;
 
 use std::io::{Read, Seek};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -20,7 +23,7 @@ use crate::store::archive::{self, ArchiveError, about};
 use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, TableRecord};
 use crate::store::parquet;
-use crate::store::results::MANIFEST;
+use crate::store::results::{Draw, MANIFEST};
 use crate::study::{self, LoadError};
 use crate::table::data::Table;
 
@@ -51,6 +54,25 @@ pub struct Verification {
     /// What is not the same about the program, a sentence each.
     pub notes: Vec<String>,
     pub tables: Vec<Verified>,
+    /// All files of the results that are no tables.
+    pub files: Vec<VerifiedFile>,
+}
+
+/// A file that is made from tables.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct VerifiedFile {
+    pub file: String,
+    pub agreement: Agreement,
+}
+
+/// What came of making a file again.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Agreement {
+    Identical,
+    /// Other bytes, and nothing wrong with them: why.
+    Otherwise(String),
+    /// Not what the tables say: why.
+    Different(String),
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -118,7 +140,7 @@ pub fn unpack<R: Read + Seek>(archive: &mut Archive<R>, work: &Path) -> Result<U
     }
 }
 
-/// Runs the study of an archive in the empty folder `work` and compares.
+/// Runs the study of an archive in the empty folder `work` and compares; `draw` draws the report.
 ///
 /// # Errors
 /// [`VerifyError`].
@@ -128,6 +150,7 @@ pub fn verify<R: Read + Seek>(
     options: &Options,
     observer: &dyn Observer,
     stop: &AtomicBool,
+    draw: Draw<'_>,
 ) -> Result<Verification, VerifyError> {
     archive.intact()?;
     let Unpacked { study, manifest } = unpack(archive, work)?;
@@ -139,6 +162,7 @@ pub fn verify<R: Read + Seek>(
         let bytes = archive.bytes(&entry)?;
         archived(archive, &entry, record, bytes)?;
     }
+    let made = files::check(archive, &manifest, draw, work)?;
     let cache = Cache::open(&work.join("cache")).map_err(RunError::from)?;
     let options = Options { wanted: standing::demand(&study, &manifest), ..options.clone() };
     let outcome = execute::execute(&study, &cache, &options, observer, stop)?;
@@ -167,7 +191,14 @@ pub fn verify<R: Read + Seek>(
         tables.push(Verified { name: record.name.clone(), rows: record.rows, diff });
     }
     let notes = notes(&manifest);
-    Ok(Verification { study: study.name, title: study.title, version: manifest.program.version, notes, tables })
+    Ok(Verification {
+        study: study.name,
+        title: study.title,
+        version: manifest.program.version,
+        notes,
+        tables,
+        files: made,
+    })
 }
 
 /// Compares by the tolerances of the computed table.

@@ -8,8 +8,6 @@ use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
 
-use tempfile::{Builder, NamedTempFile};
-
 use super::error::StoreError;
 
 /// How temporary files begin; whatever is left of a killed run is told by it.
@@ -22,31 +20,6 @@ pub enum Durability {
     Synced,
     /// For what can be made again from synced files.
     Lazy,
-}
-
-/// A temporary file in `folder` that anybody may read once it has its name.
-///
-/// # Errors
-/// When the folder cannot be written to.
-pub fn temporary(folder: &Path) -> Result<NamedTempFile, StoreError> {
-    let mut builder = Builder::new();
-    builder.prefix(TEMPORARY);
-    #[cfg(unix)]
-    let permissions = std::os::unix::fs::PermissionsExt::from_mode(0o644);
-    #[cfg(unix)]
-    builder.permissions(permissions);
-    builder.tempfile_in(folder).map_err(StoreError::io("write into", folder))
-}
-
-/// Gives a temporary file its name.
-///
-/// # Errors
-/// When it cannot be written through or renamed.
-pub fn persist(file: NamedTempFile, path: &Path, durability: Durability) -> Result<(), StoreError> {
-    if durability == Durability::Synced {
-        file.as_file().sync_all().map_err(StoreError::io("write", path))?;
-    }
-    file.persist(path).map(drop).map_err(|error| StoreError::io("write", path)(error.error))
 }
 
 /// Writes a whole file.

@@ -4,36 +4,44 @@
 //! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
 //! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,
 //! `relative_tolerance`. Words are UTF-8 of variable length, flags the enumeration that h5py reads as bool. No times are
-//! kept, so the same tables give the same bytes. Files are written only here: libhdf5 has one lock for all. Must
-//! not know: studies, where tables come from.
+//! kept, so the same tables give the same bytes. A file is built in memory and written by whoever wants it: libhdf5 goes on
+//! after a write that failed, and what it could not write is zeros then. It has one lock for all. Must not know: studies,
+//! where tables come from.
+
+mod raw;
 
 use std::path::Path;
 use std::str::FromStr;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use hdf5_metno::types::VarLenUnicode;
-use hdf5_metno::{File, FileBuilder, Group, H5Type, Location};
+use hdf5_metno::{Dataset, File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
-use super::file::{self, Durability};
 use super::parquet::flags;
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Schema, Tolerance, Type};
 
-/// A file that is being written; it has its name only once it is finished.
+/// A file that is being built in memory.
 pub struct Writer {
     file: File,
-    temporary: tempfile::NamedTempFile,
+    /// For messages.
+    name: String,
 }
 
 impl Writer {
-    /// Begins a file that will be at `path`.
+    /// Begins a file; `name` is for messages.
     ///
     /// # Errors
-    /// When the folder cannot be written to.
-    pub fn create(path: &Path) -> Result<Self, StoreError> {
-        let temporary = file::temporary(path.parent().unwrap_or(Path::new(".")))?;
-        let file = unlocked().create(temporary.path()).map_err(|error| format(path.display().to_string(), &error))?;
-        Ok(Self { file, temporary })
+    /// When there is no memory for it.
+    pub fn new(name: &str) -> Result<Self, StoreError> {
+        static NUMBER: AtomicU64 = AtomicU64::new(0);
+        let mut builder = FileBuilder::new();
+        // Nothing of this name is opened or made, but libhdf5 takes two open files of one name for one.
+        builder.access_plist().file_locking(false).core_filebacked(false);
+        let unique = format!("{name} {}", NUMBER.fetch_add(1, Ordering::Relaxed));
+        let file = builder.create(unique).map_err(|error| format(name.to_owned(), &error))?;
+        Ok(Self { file, name: name.to_owned() })
     }
 
     /// Adds the table of a stage.
@@ -47,11 +55,15 @@ impl Writer {
         write_table(&group, table).map_err(failed)
     }
 
+    /// The bytes of the file.
+    ///
     /// # Errors
-    /// When it cannot be written through or renamed.
-    pub fn finish(self, path: &Path) -> Result<(), StoreError> {
-        self.file.close().map_err(|error| format(path.display().to_string(), &error))?;
-        file::persist(self.temporary, path, Durability::Lazy)
+    /// When libhdf5 could not write all of it, be it on closing.
+    pub fn finish(self) -> Result<Vec<u8>, StoreError> {
+        let failed = |error: hdf5_metno::Error| format(self.name.clone(), &error);
+        let bytes = raw::image(&self.file).map_err(failed)?;
+        self.file.close().map_err(|error| format(self.name.clone(), &error))?;
+        Ok(bytes)
     }
 }
 
@@ -63,8 +75,7 @@ pub fn read(path: &Path, stage: &str, table: &str) -> Result<Table, String> {
     read_table(path, stage, table).map_err(|error| error.to_string())?
 }
 
-/// Without libhdf5's own lock (1.10.7 or later): a file is written under a name nobody else knows, the lock fails on
-/// some network disks, and a process started meanwhile would go on holding it.
+/// Without libhdf5's own lock (1.10.7 or later): no file is written in place, and the lock fails on some network disks.
 fn unlocked() -> FileBuilder {
     let mut builder = FileBuilder::new();
     builder.access_plist().file_locking(false);
@@ -94,34 +105,40 @@ fn write_table(group: &Group, table: &Table) -> hdf5_metno::Result<()> {
     group.new_attr_builder().with_data(&names).create("columns")?;
     for (column, data) in table.schema().columns.iter().zip(table.columns()) {
         match data {
-            Data::Float(values) => write_column(group, column, values)?,
-            Data::Integer(values) => write_column(group, column, values)?,
-            Data::Flag(values) => write_column(group, column, values)?,
+            Data::Float(values) => numbers(group, column, values)?,
+            Data::Integer(values) => numbers(group, column, values)?,
+            Data::Flag(values) => numbers(group, column, values)?,
             Data::Text(values) => {
                 let words = values.iter().map(|value| word(value)).collect::<Result<Vec<_>, _>>()?;
-                write_column(group, column, &words)?;
+                let builder = group.new_dataset::<VarLenUnicode>().obj_track_times(false).shape(words.len());
+                let dataset = builder.create(column.name.as_str())?;
+                raw::write_words(&dataset, &words)?;
+                describe(&dataset, column)?;
             }
         }
     }
     Ok(())
 }
 
-fn write_column<T: H5Type>(group: &Group, column: &Column, values: &[T]) -> hdf5_metno::Result<()> {
+fn numbers<T: H5Type>(group: &Group, column: &Column, values: &[T]) -> hdf5_metno::Result<()> {
     let builder = group.new_dataset_builder().obj_track_times(false);
-    let dataset = builder.with_data(values).create(column.name.as_str())?;
-    set(&dataset, "unit", &word(&column.unit)?)?;
-    set(&dataset, "description", &word(&column.description)?)?;
-    set(&dataset, "type", &word(column.kind.name())?)?;
+    describe(&builder.with_data(values).create(column.name.as_str())?, column)
+}
+
+fn describe(dataset: &Dataset, column: &Column) -> hdf5_metno::Result<()> {
+    set(dataset, "unit", &word(&column.unit)?)?;
+    set(dataset, "description", &word(&column.description)?)?;
+    set(dataset, "type", &word(column.kind.name())?)?;
     for (name, flag) in flags(column) {
         if flag {
-            set(&dataset, name, &true)?;
+            set(dataset, name, &true)?;
         }
     }
     let tolerances =
         [("absolute_tolerance", column.tolerance.absolute), ("relative_tolerance", column.tolerance.relative)];
     for (name, tolerance) in tolerances {
         if tolerance != 0.0 {
-            set(&dataset, name, &tolerance)?;
+            set(dataset, name, &tolerance)?;
         }
     }
     Ok(())
@@ -195,48 +212,47 @@ mod tests {
     use super::*;
     use crate::store::parquet::tests::{assert_identical, everything};
 
+    /// The tables as a file; where it lies goes with it.
+    fn written(tables: &[(&str, Table)]) -> (tempfile::TempDir, std::path::PathBuf, Vec<u8>) {
+        let mut writer = Writer::new("study.h5").unwrap();
+        for (stage, table) in tables {
+            writer.add(stage, table).unwrap();
+        }
+        let bytes = writer.finish().unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("other.h5");
+        std::fs::write(&path, &bytes).unwrap();
+        (folder, path, bytes)
+    }
+
     #[test]
     fn every_table_comes_back_identical() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("study.h5");
-        let mut writer = Writer::create(&path).unwrap();
-        for rows in [0, 1, 7, 3000] {
-            writer.add(&format!("stage{rows}"), &everything(rows)).unwrap();
+        // 70,000 words take two rounds of the library's largest buffer.
+        let rows = [0, 1, 7, 3000, 70_000];
+        let tables: Vec<_> = rows.iter().map(|rows| (format!("stage{rows}"), everything(*rows))).collect();
+        let named: Vec<_> = tables.iter().map(|(stage, table)| (stage.as_str(), table.clone())).collect();
+        let (_folder, path, _) = written(&named);
+        for (stage, table) in &tables {
+            assert_identical(table, &read(&path, stage, "curve").unwrap());
         }
-        writer.finish(&path).unwrap();
-        for rows in [0, 1, 7, 3000] {
-            assert_identical(&everything(rows), &read(&path, &format!("stage{rows}"), "curve").unwrap());
-        }
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 1);
         assert!(read(&path, "stage0", "absent").is_err());
+        assert!(!std::path::Path::new("study.h5").exists(), "it is in memory alone");
     }
 
     #[test]
     fn the_same_tables_give_the_same_bytes() {
-        let folder = tempfile::tempdir().unwrap();
-        let bytes = |name: &str| {
-            let path = folder.path().join(name);
-            let mut writer = Writer::create(&path).unwrap();
-            writer.add("ste", &everything(300)).unwrap();
-            writer.finish(&path).unwrap();
-            std::fs::read(&path).unwrap()
-        };
-        let first = bytes("a");
+        let first = written(&[("ste", everything(300))]).2;
         // Times in HDF5 count seconds.
         std::thread::sleep(std::time::Duration::from_millis(1100));
-        assert!(first == bytes("b"));
+        assert!(first == written(&[("ste", everything(300))]).2);
     }
 
     #[test]
     fn two_tables_of_one_stage_lie_side_by_side() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("study.h5");
         let mut schema = everything(0).schema().clone();
         schema.name = "summary".to_owned();
-        let mut writer = Writer::create(&path).unwrap();
-        writer.add("ste", &everything(2)).unwrap();
-        writer.add("ste", &Table::from_rows(schema, vec![]).unwrap()).unwrap();
-        writer.finish(&path).unwrap();
+        let summary = Table::from_rows(schema, vec![]).unwrap();
+        let (_folder, path, _) = written(&[("ste", everything(2)), ("ste", summary)]);
         assert_eq!(read(&path, "ste", "summary").unwrap().rows(), 0);
         assert_eq!(read(&path, "ste", "curve").unwrap().rows(), 2);
     }
@@ -250,14 +266,10 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_hdf5_cannot_hold_is_an_error_and_leaves_no_file() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("study.h5");
+    fn a_word_that_hdf5_cannot_hold_is_an_error() {
         let schema = Schema::new("t", "", vec![Column::text("word", "")]);
         let table = Table::from_rows(schema, vec![vec!["a\0b".into()]]).unwrap();
-        let mut writer = Writer::create(&path).unwrap();
-        assert!(writer.add("s", &table).is_err());
-        drop(writer);
-        assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0);
+        let mut writer = Writer::new("study.h5").unwrap();
+        assert!(writer.add("s", &table).unwrap_err().to_string().contains("s.t"));
     }
 }

@@ -44,7 +44,16 @@ pub struct Manifest {
 pub struct FileRecord {
     /// Relative to the manifest.
     pub file: String,
-    pub bytes: u64,
+    /// None where `varies`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bytes: Option<u64>,
+    /// BLAKE3 of its bytes, in hexadecimal; none where `varies`, and in manifests of earlier versions.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub digest: Option<String>,
+    /// Set where the bytes do not follow from study and program alone: what they are in this folder stands in
+    /// `files.json`, which is not kept under version control.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub varies: bool,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -204,6 +213,12 @@ impl TableRecord {
             files: schema.files.iter().map(|name| format!("{stage}.{name}")).collect(),
             parts: (!table.columns.is_empty()).then_some(parts),
         }
+    }
+
+    /// Whether its file holds what differs from run to run.
+    #[must_use]
+    pub fn varies(&self) -> bool {
+        self.columns.iter().any(|column| column.volatile)
     }
 
     /// The table's own name, without its stage's.

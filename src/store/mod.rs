@@ -1,4 +1,4 @@
-//! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with its manifest, the facts of a run,
+//! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with manifest and index, the facts of a run,
 //! archives.
 //!
 //! Must not know: stages, the graph.
@@ -12,6 +12,7 @@ pub mod facts;
 pub mod file;
 #[cfg(feature = "hdf5")]
 pub mod hdf5;
+pub mod index;
 pub mod journal;
 pub mod lock;
 pub mod manifest;

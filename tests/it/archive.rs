@@ -9,6 +9,7 @@ use std::path::Path;
 use gearstudy::store::archive::open::open;
 use gearstudy::store::archive::pack::{Entries, pack};
 use gearstudy::store::archive::{METADATA, sha256};
+use gearstudy::store::index::digest;
 use gearstudy::store::manifest::Manifest;
 use gearstudy::store::parquet;
 use gearstudy::table::data::{Data, Table};
@@ -128,7 +129,10 @@ fn verify_says_what_came_out_other_than_archived() {
         let row = table.rows() - 1;
         let table = moved(&table, column, row, by);
         record.content = table.content_hash().to_string();
-        entries.insert(file, parquet::write(&table).unwrap());
+        let (bytes, name) = (parquet::write(&table).unwrap(), record.file.clone());
+        let listed = manifest.files.iter_mut().find(|listed| listed.file == name).unwrap();
+        listed.digest = listed.digest.as_ref().map(|_| digest(&bytes));
+        entries.insert(file, bytes);
     }
     put_manifest(&mut entries, &manifest);
     fs::write(desk.path("b.zip"), packed(entries)).unwrap();

@@ -70,7 +70,7 @@ fn files_are_listed_archived_and_gone_when_no_longer_wanted() {
     changed[last] = b'8';
     fs::write(desk.path("results/cut/drawing.gear.dxf"), &changed).unwrap();
     let (_, refused) = desk.run(&["archive", "cut.yaml", "-o", "b.zip"], 1);
-    assert!(refused.contains("`drawing.gear.dxf` is not what the table `drawing.files` says"), "{refused}");
+    assert!(refused.contains("`drawing.gear.dxf` is not as the manifest lists it"), "{refused}");
     let (told, _) = desk.run(&["diff", "results", "results"], 4);
     assert!(told.contains("drawing.gear.dxf is not what the table `drawing.files` holds"), "{told}");
     fs::write(desk.path("results/cut/drawing.gear.dxf"), &before).unwrap();

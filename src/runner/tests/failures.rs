@@ -153,7 +153,8 @@ fn a_table_found_damaged_while_running_is_computed_again() {
     // Publishing finds the last one.
     let folder = Folder::new(&bench.folder.path().join("results"), "study");
     let (study, cache, stop) = (bench.study(&specs), bench.cache(), AtomicBool::new(false));
-    let (outcome, _) = crate::runner::execute::run(&study, &cache, &bench.options, &Silent, &stop, &folder).unwrap();
+    let (outcome, _) =
+        crate::runner::execute::run(&study, &cache, &bench.options, &Silent, &stop, &folder, None).unwrap();
     assert_eq!(outcome.stage("d").unwrap().why, "object missing");
     assert!(bench.cache().verify().unwrap().is_empty());
 }

@@ -248,7 +248,7 @@ fn results_are_published_once() {
     specs.push(stage("ste", 2.0).of(&["a"]).cut(&CUT, &[25.0, 50.0]));
     let run = |specs: &[Spec]| {
         let (study, cache, stop) = (bench.study(specs), bench.cache(), AtomicBool::new(false));
-        crate::runner::execute::run(&study, &cache, &bench.options, &Silent, &stop, &folder).unwrap()
+        crate::runner::execute::run(&study, &cache, &bench.options, &Silent, &stop, &folder, None).unwrap()
     };
     let (_, published) = run(&specs);
     assert_eq!(published.changes.tables.len(), 5);

@@ -1,9 +1,15 @@
 //! Publishing: once, only what changed, after failures and kills, in clones.
 
 use std::cell::Cell;
+use std::fs;
 
 use super::*;
 use crate::store::entry::StoredTable;
+use crate::store::facts::Facts;
+#[cfg(feature = "hdf5")]
+use crate::store::hdf5;
+use crate::store::index::{INDEX, Index};
+use crate::store::manifest::{FileRecord, StageRecord};
 use crate::store::parquet::tests::{assert_identical, everything};
 use crate::table::schema::Schema;
 
@@ -45,7 +51,7 @@ fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: Manifest) -> (Pu
         parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
     };
     let facts = Facts::default;
-    (folder.publish(manifest, facts, &bytes).unwrap(), asked.get())
+    (folder.publish(manifest, facts, &bytes, None).unwrap(), asked.get())
 }
 
 fn files(folder: &Folder) -> Vec<String> {
@@ -75,7 +81,7 @@ fn everything_is_written_once_and_reads_back() {
     let stamps: Vec<_> = files(&folder).iter().map(|name| stamp(name)).collect();
     let again = Manifest { seconds: 9.0, ..manifest(&tables) };
     let panics = || panic!("nothing is written, so nobody asks for facts");
-    let second = folder.publish(again, panics, &|_, _| panic!("nothing is read")).unwrap();
+    let second = folder.publish(again, panics, &|_, _| panic!("nothing is read"), None).unwrap();
     assert_eq!(second.changes, Changes::default());
     assert_eq!(stamps, files(&folder).iter().map(|name| stamp(name)).collect::<Vec<_>>());
 }
@@ -92,7 +98,7 @@ fn only_what_changed_is_asked_for() {
     assert_eq!((published.changes.tables, asked), (vec!["ste.summary.parquet".to_owned()], 1));
     // A file that was lost or cut comes back.
     fs::write(folder.path().join("ste.curve.parquet"), "x").unwrap();
-    assert_eq!(folder.changes(&manifest(&tables)).tables, ["ste.curve.parquet"]);
+    assert_eq!(folder.changes(&manifest(&tables), false).tables, ["ste.curve.parquet"]);
     assert_eq!(publish(&folder, &tables, manifest(&tables)).1, 1);
     // A table that is no more takes its file along; what was never listed stays.
     tables.remove(0);
@@ -135,10 +141,10 @@ fn missing_files_come_back_without_a_new_manifest() {
         let (_, table) = tables.iter().find(|(_, table)| table.name() == name).unwrap();
         parquet::write(table)
     };
-    let again = folder.publish(manifest(&tables), panics, &bytes).unwrap();
+    let again = folder.publish(manifest(&tables), panics, &bytes, None).unwrap();
     assert_eq!(again.changes.tables, ["ste.curve.parquet"]);
     assert_eq!(before, fs::read(folder.path().join(MANIFEST)).unwrap());
-    assert_eq!(folder.changes(&manifest(&tables)), Changes::default());
+    assert_eq!(folder.changes(&manifest(&tables), false), Changes::default());
 }
 
 #[test]
@@ -155,10 +161,10 @@ fn after_a_kill_no_new_file_passes_for_the_old_one() {
     let length = fs::metadata(folder.path().join("ste.curve.parquet")).unwrap().len();
     let bytes = |_: &str, name: &str| match name {
         "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
-        _ => Err(StoreError::InUse { path: "killed".to_owned() }),
+        _ => Err(StoreError::InUse { path: "killed".to_owned(), who: String::new() }),
     };
-    assert!(folder.publish(manifest(&new), || unreachable!(), &bytes).is_err());
-    assert_eq!(folder.changes(&manifest(&old)).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
+    assert!(folder.publish(manifest(&new), || unreachable!(), &bytes, None).is_err());
+    assert_eq!(folder.changes(&manifest(&old), false).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
     publish(&folder, &old, manifest(&old));
     for record in &folder.manifest().unwrap().stages[1].tables {
         folder.table(record).unwrap();
@@ -173,8 +179,9 @@ fn a_manifest_from_elsewhere_removes_nothing_outside() {
     publish(&folder, &tables, manifest(&tables));
     fs::write(root.path().join("precious"), "").unwrap();
     let mut wicked = folder.manifest().unwrap();
-    wicked.files.push(FileRecord { file: "../precious".into(), bytes: 0 });
-    folder.write_manifest(&wicked).unwrap();
+    let (bytes, digest) = (Some(0), Some(crate::store::index::digest(b"")));
+    wicked.files.push(FileRecord { file: "../precious".into(), bytes, digest, varies: false });
+    fs::write(folder.path().join(MANIFEST), serde_json::to_vec(&wicked).unwrap()).unwrap();
     publish(&folder, &tables, Manifest { title: "new".into(), ..manifest(&tables) });
     assert!(root.path().join("precious").exists());
 }
@@ -202,17 +209,20 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
         assert!(hdf5::read(&path, "ste", "files").is_err() && hdf5::read(&path, "pair", "curve").is_ok());
     }
     let listed = |published: &Published, name: &str| {
-        published.manifest.files.iter().find(|record| record.file == name).map(|record| record.bytes)
+        published.manifest.files.iter().find(|record| record.file == name).and_then(|record| record.bytes)
     };
     assert_eq!((listed(&first, "ste.a.csv"), listed(&first, "ste.b.dxf")), (Some(4), Some(6)));
     let nothing = |_: &str, _: &str| panic!("nothing is read");
-    assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"]))), Changes::default());
+    assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"])), false), Changes::default());
     let facts = Facts::default;
-    assert_eq!(folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing).unwrap().changes, Changes::default());
+    assert_eq!(
+        folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing, None).unwrap().changes,
+        Changes::default()
+    );
 
     // A file that was cut short comes back from its table.
     fs::write(folder.path().join("ste.b.dxf"), "0").unwrap();
-    let again = folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing).unwrap();
+    let again = folder.publish(manifest(&with(&["0", "EOF"])), facts, &nothing, None).unwrap();
     assert_eq!((again.changes.files.len(), read("ste.b.dxf").as_str()), (1, "0\nEOF\n"));
 
     let (second, _) = publish(&folder, &with(&["0", "EOF", "9"]), manifest(&with(&["0", "EOF", "9"])));
@@ -220,4 +230,140 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     let (last, _) = publish(&folder, &[("pair", everything(1))], manifest(&[("pair", everything(1))]));
     assert_eq!(last.changes.remove, ["ste.files.parquet", "ste.a.csv", "ste.b.dxf"]);
     assert!(!files(&folder).iter().any(|name| name.starts_with("ste.")), "{:?}", files(&folder));
+}
+
+/// A page and a figure that say how many rows there are, and a figure that differs from run to run.
+fn draw(manifest: &Manifest, tables: Tables<'_>) -> Result<Vec<Drawn>, String> {
+    let rows = tables("ste.curve").ok_or("no curve")?.rows();
+    let drawn = |file: &str, varies| Drawn { file: file.to_owned(), bytes: format!("{rows}").into_bytes(), varies };
+    assert!(manifest.files.is_empty(), "they are listed when all is drawn");
+    Ok(vec![drawn("figures/a.svg", false), drawn("figures/measured/b.svg", true), drawn(PAGE, true)])
+}
+
+fn publish_drawn(folder: &Folder, tables: &[(&str, Table)]) -> Published {
+    let bytes = |stage: &str, name: &str| {
+        parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
+    };
+    folder.publish(manifest(tables), Facts::default, &bytes, Some(&draw)).unwrap()
+}
+
+/// All files of a folder but the manifest and the index.
+fn listed(folder: &Folder) -> Vec<String> {
+    folder.manifest().unwrap().files.into_iter().map(|record| record.file).collect()
+}
+
+#[test]
+fn every_published_file_is_listed_and_a_changed_byte_is_noticed_and_mended() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::new(root.path(), "s");
+    let tables = tables();
+    let first = publish_drawn(&folder, &tables);
+    assert!(first.changes.drawn && first.undrawn.is_none());
+    assert!(
+        ["figures/a.svg", "figures/measured/b.svg", PAGE].iter().all(|file| listed(&folder).contains(&(*file).into()))
+    );
+    assert_eq!(listed(&folder).len(), if cfg!(feature = "hdf5") { 7 } else { 6 });
+    assert_eq!(publish_drawn(&folder, &tables).changes, Changes::default());
+    let text = fs::read(folder.path().join(MANIFEST)).unwrap();
+    for file in listed(&folder) {
+        let path = folder.path().join(&file);
+        let before = fs::read(&path).unwrap();
+        let mut changed = before.clone();
+        *changed.last_mut().unwrap() ^= 1;
+        fs::write(&path, &changed).unwrap();
+        assert_eq!(folder.known().unwrap().unwrap().changed(), [file.as_str()]);
+        let mended = publish_drawn(&folder, &tables);
+        assert_eq!(mended.changes.foreign, [file.as_str()]);
+        assert!(before == fs::read(&path).unwrap(), "{file}");
+        assert!(text == fs::read(folder.path().join(MANIFEST)).unwrap(), "{file}");
+        assert_eq!(publish_drawn(&folder, &tables).changes, Changes::default(), "{file}");
+    }
+}
+
+/// What differs from run to run is in the index alone: two folders have one manifest.
+#[test]
+fn the_manifest_of_the_same_results_is_the_same_whatever_was_measured() {
+    let root = tempfile::tempdir().unwrap();
+    let texts: Vec<Vec<u8>> = [1.0, 2.0]
+        .into_iter()
+        .map(|seconds| {
+            let folder = Folder::new(&root.path().join(seconds.to_string()), "s");
+            let mut tables = tables();
+            for (_, table) in &mut tables {
+                let mut columns = table.columns().to_vec();
+                *columns.last_mut().unwrap() = Data::Float(vec![seconds; table.rows()]);
+                *table = Table::from_columns(table.schema().clone(), columns).unwrap();
+            }
+            publish_drawn(&folder, &tables);
+            fs::read(folder.path().join(MANIFEST)).unwrap()
+        })
+        .collect();
+    assert_eq!(String::from_utf8_lossy(&texts[0]), String::from_utf8_lossy(&texts[1]));
+}
+
+/// Times that tell nothing are not trusted: the same size, times and inode, other bytes.
+#[test]
+fn stamps_are_trusted_only_where_they_tell() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::new(root.path(), "s");
+    publish_drawn(&folder, &tables());
+    let wait = || std::thread::sleep(std::time::Duration::from_millis(20));
+    let path = folder.path().join(PAGE);
+    let edit = |change: &dyn Fn(&mut Index)| {
+        let (mut index, _) = Index::read(folder.path()).unwrap();
+        change(&mut index);
+        wait();
+        index.write(folder.path()).unwrap();
+    };
+    // As if the stamp of a changed page had been noted: nobody would look.
+    wait();
+    fs::write(&path, "31").unwrap();
+    let now = crate::store::index::look(&path, PAGE).unwrap();
+    let note = |index: &mut Index| index.files.iter_mut().find(|seen| seen.file == PAGE).unwrap().stamp = now.stamp;
+    edit(&note);
+    let state = || folder.known().unwrap().unwrap().state(PAGE);
+    assert_eq!(state(), FileState::Intact, "its stamp is trusted");
+    assert_eq!(folder.known().unwrap().unwrap().without_stamps().state(PAGE), FileState::Changed);
+    // Written in the same moment as the index: its times would not have told.
+    let handle = fs::File::options().write(true).open(folder.path().join(INDEX)).unwrap();
+    handle.set_modified(std::time::UNIX_EPOCH).unwrap();
+    assert_eq!(state(), FileState::Changed);
+    handle.set_modified(std::time::SystemTime::now()).unwrap();
+    assert_eq!(state(), FileState::Intact);
+    // Another start of the machine.
+    edit(&|index| index.boot = "another".to_owned());
+    assert_eq!(state(), FileState::Changed);
+}
+
+/// Losing the index costs reading: tables are judged by their values, the rest is made again.
+#[test]
+fn without_an_index_nothing_is_lost() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::new(root.path(), "s");
+    let tables = tables();
+    publish_drawn(&folder, &tables);
+    let text = fs::read(folder.path().join(MANIFEST)).unwrap();
+    fs::remove_file(folder.path().join(INDEX)).unwrap();
+    let again = publish_drawn(&folder, &tables).changes;
+    assert!(again.tables.is_empty() && again.foreign.is_empty() && again.drawn, "{again:?}");
+    assert!(text == fs::read(folder.path().join(MANIFEST)).unwrap());
+    assert_eq!(publish_drawn(&folder, &tables).changes, Changes::default());
+}
+
+#[test]
+fn a_page_that_cannot_be_drawn_keeps_no_table_back() {
+    let root = tempfile::tempdir().unwrap();
+    let folder = Folder::new(root.path(), "s");
+    let tables = tables();
+    let bytes = |_: &str, name: &str| parquet::write(&tables.iter().find(|(_, table)| table.name() == name).unwrap().1);
+    let fails: Draw<'_> = &|_, _| Err("no ink".to_owned());
+    let published = folder.publish(manifest(&tables), Facts::default, &bytes, Some(fails)).unwrap();
+    assert_eq!(published.undrawn.as_deref(), Some("no ink"));
+    assert!(listed(&folder).contains(&"ste.curve.parquet".to_owned()) && !listed(&folder).contains(&PAGE.to_owned()));
+    fs::create_dir_all(folder.path().join(FIGURES)).unwrap();
+    fs::write(folder.path().join("figures/old.svg"), "").unwrap();
+    let redrawn = folder.redraw(&draw).unwrap().unwrap();
+    assert!(redrawn.undrawn.is_none() && listed(&folder).contains(&PAGE.to_owned()));
+    assert!(!folder.path().join("figures/old.svg").exists(), "a figure that nobody drew");
+    assert_eq!(publish_drawn(&folder, &tables).changes, Changes::default());
 }

@@ -4,6 +4,9 @@ use std::fs;
 use std::process::Child;
 use std::time::Duration;
 
+use gearstudy::store::index::Stamp;
+use serde_json::Value;
+
 use super::cache::TINY;
 use super::disk::{self, Place};
 use super::faults::{earlier, undisturbed};
@@ -95,6 +98,35 @@ fn who_is_waited_for_is_named() {
         assert!(error.contains(words), "{error}");
     }
     assert!(differences(&undisturbed(TINY), &published(&place.results())).is_empty());
+}
+
+/// What the index says of a file counts until the computer is started anew: a power cut can take the bytes and leave size,
+/// times and inode, which is put together here.
+#[test]
+fn stamps_of_before_a_power_cut_are_not_trusted() {
+    if disk::library().is_none() {
+        return;
+    }
+    let folder = disk::folder();
+    let place = Place::new(folder.path());
+    let (expected, before, after) = (undisturbed(TINY), host(&place, "before"), host(&place, "after"));
+    assert!(place.run(TINY, &before).status.success());
+    let table = place.results().join("pair.pair.parquet");
+    let length = fs::metadata(&table).unwrap().len();
+    fs::write(&table, vec![0; usize::try_from(length).unwrap()]).unwrap();
+    std::thread::sleep(Duration::from_millis(50));
+    let index = place.results().join("files.json");
+    let mut noted: Value = serde_json::from_slice(&fs::read(&index).unwrap()).unwrap();
+    let files = noted["files"].as_array_mut().unwrap();
+    let stamp = files.iter_mut().find(|file| file["file"] == "pair.pair.parquet").unwrap();
+    let now = Stamp::of(&fs::metadata(&table).unwrap());
+    stamp["stamp"] = serde_json::to_value(now).unwrap();
+    fs::write(&index, noted.to_string()).unwrap();
+    // In the same start a stamp is as good as a look: that is what makes a run with nothing to do quick.
+    assert!(place.run(TINY, &before).status.success());
+    assert_eq!(differences(&expected, &published(&place.results())), ["pair.pair.parquet"]);
+    assert!(place.run(TINY, &after).status.success());
+    assert_eq!(differences(&expected, &published(&place.results())), Vec::<String>::new());
 }
 
 /// Of this computer before it was started anew, or of a process that is no more; a run that was killed at any step of it.

@@ -14,7 +14,7 @@ const FACTS: &str = "<!-- run:";
 /// Every published file by name.
 pub type Published = BTreeMap<String, Vec<u8>>;
 
-/// Names that begin with a dot are no results: locks, and leftovers of killed runs.
+/// Names that begin with a dot are no results: locks, and leftovers of killed runs; nor is the index, which has times.
 pub fn published(folder: &Path) -> Published {
     let mut files = Published::new();
     collect(folder, "", &mut files);
@@ -28,7 +28,7 @@ fn collect(folder: &Path, prefix: &str, files: &mut Published) {
         let whole = format!("{prefix}{name}");
         if path.is_dir() {
             collect(&path, &format!("{whole}/"), files);
-        } else if !name.starts_with('.') {
+        } else if !name.starts_with('.') && name != "files.json" {
             files.insert(whole, essence(&name, fs::read(&path).unwrap()));
         }
     }
@@ -57,10 +57,6 @@ fn manifest(bytes: &[u8]) -> Vec<u8> {
         for name in ["seconds", "status", "why", "left_out"] {
             stage[name] = Value::Null;
         }
-    }
-    // The page has the facts of its run.
-    for file in manifest["files"].as_array_mut().unwrap().iter_mut().filter(|file| file["file"] == "report.html") {
-        *file = Value::Null;
     }
     serde_json::to_vec(&manifest).unwrap()
 }

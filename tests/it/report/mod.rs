@@ -60,8 +60,8 @@ fn the_page_shows_every_verdict_and_every_figure() {
         let folder = std::path::PathBuf::from(folder);
         std::fs::create_dir_all(folder.join("figures")).unwrap();
         std::fs::write(folder.join("report.html"), &html).unwrap();
-        for (name, svg) in &figures {
-            std::fs::write(folder.join(format!("figures/{name}.svg")), svg).unwrap();
+        for figure in &figures {
+            std::fs::write(folder.join(format!("figures/{}.svg", figure.name)), &figure.svg).unwrap();
         }
         let text = report::text::verdicts(&tables["report.verdicts"], 120).unwrap();
         std::fs::write(folder.join("verdicts.txt"), text).unwrap();

@@ -1,0 +1,187 @@
+//! Which files of a results folder are as its manifest lists them.
+//!
+//! A file whose stamp is as noted in the index is not read; any other one is, once. Must not know: what is done about it.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use rayon::prelude::*;
+
+use super::{Folder, here};
+use crate::store::index::{self, Index, Seen};
+use crate::store::manifest::{FileRecord, Manifest, TableRecord};
+
+/// What became of a published file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileState {
+    /// Byte for byte as it was written.
+    Intact,
+    Absent,
+    /// There, with other bytes than were written; or no file at all.
+    Changed,
+    /// There, and listed, but nobody knows its digest: the manifest is of an earlier version, or the index is lost.
+    Unknown,
+    /// There, and not listed.
+    Unlisted,
+}
+
+/// A manifest and what is known of its files.
+pub struct Known {
+    pub manifest: Manifest,
+    folder: Folder,
+    /// Of the manifest's bytes.
+    pub(super) digest: String,
+    index: Index,
+    /// Whether the digests in the index are those of this manifest.
+    belongs: bool,
+    /// Stamps tell something of files that were not touched since this moment; none when they tell nothing.
+    moment: Option<i64>,
+    /// What had to be read.
+    looked: Mutex<BTreeMap<String, Option<Seen>>>,
+    /// Tables without a digest whose values were read: whether they are those of the manifest.
+    values: Mutex<BTreeMap<String, bool>>,
+}
+
+impl Known {
+    pub(super) fn new(folder: Folder, manifest: Manifest, bytes: &[u8]) -> Self {
+        let (index, moment) = Index::read(folder.path()).unwrap_or_default();
+        let digest = index::digest(bytes);
+        let belongs = index.manifest == digest;
+        let moment = index.is_of_this_boot().then_some(moment);
+        Self { manifest, folder, digest, index, belongs, moment, looked: Mutex::default(), values: Mutex::default() }
+    }
+
+    /// The same, but every file is going to be read.
+    #[must_use]
+    pub fn without_stamps(self) -> Self {
+        Self { moment: None, ..self }
+    }
+
+    /// What the index says; empty where there is none.
+    #[must_use]
+    pub fn index(&self) -> &Index {
+        &self.index
+    }
+
+    /// Digest of the sources of the program that drew page and figures; empty where that is not known.
+    #[must_use]
+    pub fn drawn_by(&self) -> &str {
+        &self.index.drawn_by
+    }
+
+    /// Whether the index does not say what it should.
+    pub(super) fn is_outdated(&self) -> bool {
+        !self.belongs || !held(&self.looked).is_empty()
+    }
+
+    /// Size and digest that a file should have.
+    #[must_use]
+    pub fn expected(&self, file: &str) -> Option<(u64, &str)> {
+        let record = self.record(file)?;
+        if record.varies {
+            let seen = self.index.find(file).filter(|_| self.belongs)?;
+            return Some((seen.bytes, &seen.digest));
+        }
+        Some((record.bytes?, record.digest.as_deref()?))
+    }
+
+    #[must_use]
+    pub fn state(&self, file: &str) -> FileState {
+        let path = self.folder.path().join(file);
+        let Ok(metadata) = fs::metadata(&path) else {
+            // A link that leads nowhere is something, but not what was written.
+            let there = path.symlink_metadata().is_ok();
+            return if there { FileState::Changed } else { FileState::Absent };
+        };
+        if self.record(file).is_none() {
+            return FileState::Unlisted;
+        }
+        if !metadata.is_file() || !here(file) {
+            return FileState::Changed;
+        }
+        let Some((bytes, digest)) = self.expected(file) else { return FileState::Unknown };
+        if metadata.len() != bytes {
+            return FileState::Changed;
+        }
+        match self.seen(file) {
+            Some(seen) if seen.digest == digest => FileState::Intact,
+            _ => FileState::Changed,
+        }
+    }
+
+    /// The same for a table: where no digest is known, its values tell.
+    #[must_use]
+    pub fn table_state(&self, record: &TableRecord) -> FileState {
+        let state = self.state(&record.file);
+        if state != FileState::Unknown {
+            return state;
+        }
+        let known = held(&self.values).get(&record.file).copied();
+        let good = known.unwrap_or_else(|| self.folder.table(record).is_ok());
+        held(&self.values).insert(record.file.clone(), good);
+        if good { FileState::Intact } else { FileState::Changed }
+    }
+
+    /// Listed files that are there, but not as they were written, whatever they are.
+    #[must_use]
+    pub fn changed(&self) -> Vec<String> {
+        let files = self.manifest.files.iter();
+        files.filter(|record| self.is_changed(record)).map(|record| record.file.clone()).collect()
+    }
+
+    /// The same, with all threads: for many bytes.
+    #[must_use]
+    pub fn changed_in_parallel(&self) -> Vec<String> {
+        let files = self.manifest.files.par_iter();
+        files.filter(|record| self.is_changed(record)).map(|record| record.file.clone()).collect()
+    }
+
+    fn is_changed(&self, record: &FileRecord) -> bool {
+        let mut tables = self.manifest.stages.iter().flat_map(|stage| &stage.tables);
+        let table = tables.find(|table| table.file == record.file);
+        table.map_or_else(|| self.state(&record.file), |table| self.table_state(table)) == FileState::Changed
+    }
+
+    /// A file as a new manifest and a new index list it when nobody writes it. `values`: whether it varies, of a table
+    /// whose values were found good without a digest.
+    pub(super) fn kept(&self, file: &str, values: Option<bool>) -> Option<(FileRecord, Option<Seen>)> {
+        let record = self.record(file)?.clone();
+        match (self.state(file), values) {
+            (FileState::Intact, _) => Some((record, self.seen(file))),
+            (FileState::Unknown, Some(varies)) => {
+                let seen = self.seen(file)?;
+                let (bytes, digest) = if varies { (None, None) } else { (Some(seen.bytes), Some(seen.digest.clone())) };
+                Some((FileRecord { bytes, digest, varies, ..record }, Some(seen)))
+            }
+            // What it should be is known still.
+            _ => Some((record, self.index.find(file).filter(|_| self.belongs).cloned())),
+        }
+    }
+
+    fn record(&self, file: &str) -> Option<&FileRecord> {
+        self.manifest.files.iter().find(|record| record.file == file)
+    }
+
+    /// What a file is now; from the index where its stamp is as noted.
+    fn seen(&self, file: &str) -> Option<Seen> {
+        let path = self.folder.path().join(file);
+        if let (Some(moment), Some(noted)) = (self.moment, self.index.find(file))
+            && let (Some(stamp), Ok(metadata)) = (noted.stamp, fs::metadata(&path))
+            && stamp.is_before(moment)
+            && (stamp, noted.bytes) == (index::Stamp::of(&metadata), metadata.len())
+        {
+            return Some(noted.clone());
+        }
+        if let Some(known) = held(&self.looked).get(file) {
+            return known.clone();
+        }
+        let seen = index::look(&path, file).ok();
+        held(&self.looked).insert(file.to_owned(), seen.clone());
+        seen
+    }
+}
+
+fn held<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
