@@ -7,7 +7,7 @@ use std::io::Read;
 use std::path::Path;
 
 use super::arguments::Places;
-use super::progress::out;
+use super::progress::{self, out};
 use super::{Ending, rights};
 use crate::runner::graph::Graph;
 use crate::runner::standing::{self, standing_of};
@@ -42,9 +42,9 @@ pub(super) fn archive(
     let license = about.license.map(rights::license).transpose().map_err(Ending::Usage)?;
     let authors: Vec<Author> =
         about.authors.iter().map(|text| rights::author(text)).collect::<Result<_, _>>().map_err(Ending::Usage)?;
-    let folder = Folder::new(&places.results, &study.name);
+    let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     // So that nobody publishes while the files are read.
-    let _lock = if folder.path().is_dir() { folder.lock().map_err(|error| usage(error.to_string()))? } else { None };
+    let _lock = folder.path().is_dir().then(|| folder.lock()).transpose().map_err(|error| usage(error.to_string()))?;
     // Stamps are for those who look often; what goes out is read.
     let known = folder.known().map_err(|error| usage(error.to_string()))?.map(Known::without_stamps);
     let standing = standing_of(study, known.as_ref(), stage::code_digest).map_err(|error| usage(error.message))?;

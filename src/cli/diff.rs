@@ -16,6 +16,7 @@ use crate::diff::{html, markdown, pretty};
 use crate::history::git::Repository;
 use crate::history::side::Side;
 use crate::store::cache::Cache;
+use crate::store::lock::Lock;
 use crate::store::results::{Folder, MANIFEST};
 use crate::study;
 use crate::table::tolerance::Allowance;
@@ -67,7 +68,7 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
 }
 
 /// Keeps runs from publishing; in one order, so that two comparisons never wait for each other.
-fn locks(sides: &[&Side]) -> Vec<Option<std::fs::File>> {
+fn locks(sides: &[&Side]) -> Vec<Lock> {
     let folders = |side: &&Side| -> Vec<PathBuf> {
         let Some(path) = side.path() else { return Vec::new() };
         let studies = side.studies().unwrap_or_default();

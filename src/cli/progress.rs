@@ -88,6 +88,7 @@ impl Observer for Watcher {
                 // A failure is told even to those who want to hear nothing else.
                 aside(self.bars.as_ref(), &format!("  {stage}: failed: {fault}"));
             }
+            Event::Warning { message } => aside(self.bars.as_ref(), &format!("gearstudy: warning: {message}")),
             Event::Skipped { stage, why } => {
                 self.end(stage);
                 self.stage(stage, "skipped", why);
@@ -108,6 +109,11 @@ pub fn aside(bars: Option<&MultiProgress>, text: &str) {
         Some(bars) => bars.suspend(|| eprintln!("{}", plain(text))),
         None => eprintln!("{}", plain(text)),
     }
+}
+
+/// What a lock says, which may be waited for.
+pub fn told(message: &str) {
+    aside(None, &format!("gearstudy: {message}"));
 }
 
 /// A text that no terminal takes for more than text: what would move the cursor, colour, hide or turn round is written as

@@ -88,8 +88,8 @@ fn run_one(
     bars: Option<&MultiProgress>,
     stop: &AtomicBool,
 ) -> Result<(), Ending> {
-    let cache = Cache::open(&places.cache).map_err(|error| stored(&error))?;
-    let folder = Folder::new(&places.results, &study.name);
+    let cache = Cache::open_if_possible(&places.cache);
+    let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection)? };
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
@@ -161,8 +161,14 @@ fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, En
         elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
         elsewhere.path()
     };
-    let cache = Cache::open(root).map_err(|error| stored(&error))?;
-    plan::plan(study, &cache, options).map_err(|error| unknown(&error))
+    // As a run, which does without one that cannot be opened.
+    let cache = Cache::open_if_possible(root);
+    let plan = plan::plan(study, &cache, options).map_err(|error| unknown(&error));
+    let (entries, journal) = cache.problems();
+    for problem in entries.into_iter().chain(journal) {
+        progress::told(&format!("warning: {problem}"));
+    }
+    plan
 }
 
 pub(super) fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
@@ -222,7 +228,7 @@ fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
 
 pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
     for study in studies {
-        let folder = Folder::new(&places.results, &study.name);
+        let folder = Folder::new(&places.results, &study.name).telling(progress::told);
         let told = RefCell::new(String::new());
         let draw = |manifest: &Manifest, tables: Tables<'_>| {
             let drawn = pages::draw(manifest, tables)?;
@@ -249,12 +255,20 @@ pub(super) fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending
     let word = if dry_run { "would delete" } else { "deleted" };
     #[allow(clippy::cast_precision_loss)]
     let megabytes = |bytes: u64| bytes as f64 / 1e6;
+    let leftovers = match removed.leftovers {
+        0 => String::new(),
+        1 => ", 1 leftover of a killed run".to_owned(),
+        many => format!(", {many} leftovers of killed runs"),
+    };
     out(&format!(
-        "{word} {} entries ({:.1} MB), kept {} ({:.1} MB)\n",
+        "{word} {} entries ({:.1} MB){leftovers}, kept {} ({:.1} MB)\n",
         removed.entries,
         megabytes(removed.bytes),
         removed.kept,
         megabytes(removed.kept_bytes)
     ));
+    for path in &removed.foreign {
+        progress::told(&format!("left alone, since it is no file of the cache: {}", path.display()));
+    }
     Ok(())
 }

@@ -44,6 +44,10 @@ pub enum Event<'a> {
         stage: &'a str,
         why: &'a str,
     },
+    /// At the end: what the run did not need, and the next one may miss.
+    Warning {
+        message: &'a str,
+    },
 }
 
 /// Whoever watches a run.

@@ -42,7 +42,7 @@ pub enum RunError {
 /// Runs a study and brings its results folder up to date; `draw` draws the report.
 ///
 /// # Errors
-/// As [`execute`] and [`Folder::publish`].
+/// As [`execute`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
 pub fn run(
     study: &Study,
     cache: &Cache,
@@ -56,23 +56,41 @@ pub fn run(
     let publish = |outcome: &Outcome| {
         folder.publish(outcome.manifest(study), facts, &|stage, table| outcome.bytes(cache, stage, table), draw)
     };
-    let outcome = execute(study, cache, options, observer, stop)?;
-    match publish(&outcome) {
+    let mut outcome = execute(study, cache, options, observer, stop)?;
+    let mut published = publish(&outcome);
+    if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
-        Err(StoreError::Damaged { .. }) => {
-            let outcome = execute(study, cache, options, observer, stop)?;
-            let published = publish(&outcome)?;
-            Ok((outcome, published))
-        }
-        published => Ok((outcome, published?)),
+        outcome = execute(study, cache, options, observer, stop)?;
+        published = publish(&outcome);
     }
+    for message in &warnings(cache, &outcome) {
+        observer.event(&Event::Warning { message });
+    }
+    Ok((outcome, published?))
+}
+
+/// What the next run will miss.
+#[must_use]
+pub fn warnings(cache: &Cache, outcome: &Outcome) -> Vec<String> {
+    let (entries, journal) = cache.problems();
+    let entries = entries.map(|problem| {
+        let again = match outcome.unkept(cache) {
+            0 => String::new(),
+            1 => "; the next run computes 1 stage again".to_owned(),
+            many => format!("; the next run computes {many} stages again"),
+        };
+        format!("the cache `{}` does not keep what was computed: {problem}{again}", cache.root().display())
+    });
+    let journal =
+        journal.map(|problem| format!("{problem}; until one can be written, runs cannot say why they compute"));
+    entries.into_iter().chain(journal).collect()
 }
 
 /// Runs a study.
 ///
 /// # Errors
-/// What is wrong with its graph or the options; a cache that cannot be written. Stages that fail are no error here:
-/// the outcome tells.
+/// What is wrong with its graph or the options. Stages that fail are no error here: the outcome tells; nor is a cache that
+/// takes nothing.
 pub fn execute(
     study: &Study,
     cache: &Cache,
@@ -106,7 +124,7 @@ pub fn execute(
     board.close();
     let journal = board.next_journal();
     if journal != board.journal {
-        cache.put_journal(&study.name, &journal)?;
+        cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
     Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))

@@ -161,6 +161,12 @@ impl Outcome {
         }
     }
 
+    /// The number of stages that the cache has not taken.
+    #[must_use]
+    pub fn unkept(&self, cache: &Cache) -> usize {
+        self.stages.iter().filter(|stage| stage.parts.iter().any(|key| cache.is_unkept(*key))).count()
+    }
+
     fn parts(&self, stage: &str) -> &[Digest] {
         self.stage(stage).filter(|stage| stage.state.has_tables()).map_or(&[], |stage| &stage.parts)
     }

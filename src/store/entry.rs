@@ -12,8 +12,8 @@
 //! Must not know: what a key is made of.
 
 use std::collections::BTreeMap;
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::fs::{self, File};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -160,12 +160,11 @@ impl Entry {
         Ok(file)
     }
 
-    /// Reads the header; the file stands where the tables begin.
+    /// Reads the header of `size` bytes; the file stands where the tables begin.
     ///
     /// # Errors
     /// A sentence that says what is damaged.
-    pub fn read(file: &mut File, key: Digest) -> Result<Self, String> {
-        let size = file.metadata().map_err(|error| error.to_string())?.len();
+    pub fn read(file: &mut impl Read, size: u64, key: Digest) -> Result<Self, String> {
         let mut prefix = [0; PREFIX];
         file.read_exact(&mut prefix).map_err(|_| "it is cut short".to_owned())?;
         let (magic, rest) = prefix.split_at(MAGIC.len());
@@ -197,7 +196,7 @@ impl Entry {
     ///
     /// # Errors
     /// A sentence that says what is damaged.
-    pub fn body(&self, file: &mut File, name: &str) -> Result<Option<Vec<u8>>, String> {
+    pub fn body(&self, file: &mut (impl Read + Seek), name: &str) -> Result<Option<Vec<u8>>, String> {
         let mut offset = 0u64;
         for table in &self.tables {
             let Some(body) = &table.body else { continue };
@@ -228,15 +227,26 @@ impl Entry {
 
 /// Opens and reads the entry at `path`; `None` when there is no such file.
 ///
+/// What is no file is not opened: a pipe would be waited for.
+///
 /// # Errors
 /// A sentence that says what is damaged.
 pub fn open(path: &Path, key: Digest) -> Result<Option<(Entry, File)>, String> {
+    match fs::metadata(path) {
+        Ok(metadata) if metadata.is_file() => {}
+        Ok(_) => return Err("it is no regular file".to_owned()),
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(error.to_string()),
+    }
     let mut file = match File::open(path) {
         Ok(file) => file,
-        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(None),
+        // Cleaned up in this moment.
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error.to_string()),
     };
-    let entry = Entry::read(&mut file, key)?;
+    // Another run may have replaced it since.
+    let size = file.metadata().map_err(|error| error.to_string())?.len();
+    let entry = Entry::read(&mut file, size, key)?;
     Ok(Some((entry, file)))
 }
 

@@ -19,8 +19,8 @@ pub enum StoreError {
     NotDeterministic { table: String },
     #[error("table `{table}` cannot be stored: {problem}")]
     Format { table: String, problem: String },
-    #[error("`{path}` is in use by another run")]
-    InUse { path: String },
+    #[error("`{path}` is in use by {who}")]
+    InUse { path: String, who: String },
 }
 
 impl StoreError {

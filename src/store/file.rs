@@ -96,18 +96,6 @@ pub fn sweep(folder: &Path) {
     }
 }
 
-/// Whether locks work here; where they do not (some network disks) a run goes on without.
-///
-/// # Errors
-/// Any other failure.
-pub fn lock(file: &File, path: &Path, shared: bool) -> Result<(), StoreError> {
-    let locked = if shared { file.lock_shared() } else { file.lock() };
-    match locked {
-        Err(error) if error.kind() == std::io::ErrorKind::Unsupported => Ok(()),
-        other => other.map_err(StoreError::io("lock", path)),
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::error::StoreError;
 use super::file::{self, Durability};
+use super::lock::boot;
 
 pub const INDEX: &str = "files.json";
 const FORMAT: u32 = 1;
@@ -186,11 +187,6 @@ pub fn written(path: &Path, name: &str, bytes: &[u8]) -> Result<Seen, StoreError
         digest: digest(bytes),
         stamp: Some(Stamp::of(&metadata)),
     })
-}
-
-/// Which start of the machine this is; empty where the system does not say.
-fn boot() -> String {
-    fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default().trim().to_owned()
 }
 
 #[cfg(test)]

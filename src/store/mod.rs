@@ -14,6 +14,7 @@ pub mod file;
 pub mod hdf5;
 pub mod index;
 pub mod journal;
+pub mod lock;
 pub mod manifest;
 pub mod parquet;
 pub mod results;

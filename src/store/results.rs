@@ -7,10 +7,10 @@
 
 mod known;
 mod publish;
+mod remove;
 #[cfg(test)]
 mod tests;
 
-use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
 pub use known::{FileState, Known};
@@ -20,6 +20,7 @@ pub use publish::{Bytes, Changes, Draw, Drawn, Published, Tables};
 
 use super::error::StoreError;
 use super::file;
+use super::lock::{self, Lock, Told};
 use super::manifest::{FORMAT, Manifest, TableRecord};
 use super::parquet;
 use crate::table::data::{Data, Table};
@@ -35,13 +36,20 @@ pub const MEASURED: &str = "figures/measured";
 pub struct Folder {
     path: PathBuf,
     study: String,
+    told: Told,
 }
 
 impl Folder {
     /// The folder of `study` under `results`; nothing is made yet.
     #[must_use]
     pub fn new(results: &Path, study: &str) -> Self {
-        Self { path: results.join(study), study: study.to_owned() }
+        Self { path: results.join(study), study: study.to_owned(), told: |_| {} }
+    }
+
+    /// Who hears why a lock is waited for.
+    #[must_use]
+    pub fn telling(self, told: Told) -> Self {
+        Self { told, ..self }
     }
 
     #[must_use]
@@ -125,17 +133,12 @@ impl Folder {
         })
     }
 
-    /// One publisher at a time; a folder can be locked itself, so nothing is left behind.
+    /// One publisher at a time, on this computer or another; nothing is left behind.
     ///
     /// # Errors
-    /// When the folder cannot be opened or locked.
-    pub fn lock(&self) -> Result<Option<File>, StoreError> {
-        if !cfg!(unix) {
-            return Ok(None);
-        }
-        let folder = File::open(&self.path).map_err(StoreError::io("open", &self.path))?;
-        file::lock(&folder, &self.path, false)?;
-        Ok(Some(folder))
+    /// As [`lock::publisher`].
+    pub fn lock(&self) -> Result<Lock, StoreError> {
+        lock::publisher(&self.path, self.told)
     }
 }
 

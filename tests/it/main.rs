@@ -19,6 +19,7 @@ mod properties;
 mod python;
 mod reference;
 mod registry;
+mod reliability;
 mod report;
 mod results;
 mod rexs;

@@ -8,6 +8,7 @@
 
 use std::cell::RefCell;
 use std::fs;
+use std::io::ErrorKind;
 
 use super::{FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, complete, held_text, here, is_drawn, split};
 use crate::store::archive::about;
@@ -104,8 +105,14 @@ impl Folder {
         }
         fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
         let _lock = self.lock()?;
-        // Another run may have published while this one waited.
-        let old = self.known().ok().flatten();
+        // Another run may have published while this one waited. A damaged manifest is written anew; one that cannot be
+        // read at the moment lists files that nobody would know of afterwards.
+        let old = match self.known() {
+            Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
+                return Err(StoreError::Io { action, path, source });
+            }
+            known => known.ok().flatten(),
+        };
         let new = with_earlier_tables(old.as_ref(), manifest);
         let changes = compare(old.as_ref(), &new, draw.is_some(), self);
         match old {
@@ -126,7 +133,7 @@ impl Folder {
         let Some(old) = self.known()? else { return Ok(None) };
         let new = old.manifest.clone();
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
-        let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new() });
+        let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
         self.write(Some(&old), new, changes, None::<fn() -> Facts>, &nothing, Some(draw)).map(Some)
     }
 
@@ -195,19 +202,13 @@ impl Folder {
                 Err(problem) => undrawn = Some(problem),
             },
         }
-        for name in &changes.remove {
-            let path = self.path().join(name);
-            match fs::remove_file(&path) {
-                Err(error) if error.kind() != std::io::ErrorKind::NotFound => {
-                    return Err(StoreError::io("remove", &path)(error));
-                }
-                _ => {}
-            }
-        }
+        self.remove(&changes.remove)?;
         new.files = listed.files;
         let text = manifest_bytes(&new)?;
         Index::new(index::digest(&text), drawn_by, listed.seen).write(self.path())?;
-        file::write(&self.path().join(MANIFEST), &text, Durability::Lazy)?;
+        // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
+        let durability = if old.is_some() { Durability::Synced } else { Durability::Lazy };
+        file::write(&self.path().join(MANIFEST), &text, durability)?;
         Ok(Published { manifest: new, changes, undrawn })
     }
 
@@ -225,7 +226,7 @@ impl Folder {
             return Ok(());
         }
         let text = manifest_bytes(&Manifest { files, ..old.clone() })?;
-        file::write(&self.path().join(MANIFEST), &text, Durability::Lazy)
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
     fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
@@ -269,10 +270,16 @@ impl Folder {
         let fault = RefCell::new(None);
         let table = |name: &str| {
             let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == name)?;
-            self.table(record).map_err(|error| fault.replace(Some(error.to_string()))).ok()
+            self.table(record).map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
         };
-        // What is wrong with a file says more than that its table is missing.
-        let drawn = draw(manifest, &table).map_err(|problem| fault.take().unwrap_or(problem))?;
+        let drawn = draw(manifest, &table);
+        let drawn = match (drawn, fault.take()) {
+            // A clone has only the tables that git keeps, and a page may be drawn without.
+            (Ok(drawn), Some(fault)) if is_absent(&fault) => drawn,
+            // What is wrong with a file says more than that its table is missing. A page that leaves it out would stay.
+            (_, Some(fault)) => return Err(fault.to_string()),
+            (drawn, None) => drawn?,
+        };
         let mut listed = Listed::default();
         for Drawn { file, bytes, varies } in drawn {
             let folder = self.path().join(&file);
@@ -319,6 +326,17 @@ impl Listed {
         let Some((record, seen)) = old.and_then(|old| old.kept(file, values)) else { return };
         self.files.push(record);
         self.seen.extend(seen);
+    }
+}
+
+fn is_absent(fault: &StoreError) -> bool {
+    matches!(fault, StoreError::Io { source, .. } if source.kind() == ErrorKind::NotFound)
+}
+
+/// Keeps the first fault; that a file is not there gives way to any other.
+fn worse(fault: &mut Option<StoreError>, other: StoreError) {
+    if fault.as_ref().is_none_or(is_absent) {
+        *fault = Some(other);
     }
 }
 

@@ -1,6 +1,7 @@
 //! Publishing: once, only what changed, after failures and kills, in clones.
 
 use std::cell::Cell;
+use std::fs;
 
 use super::*;
 use crate::store::entry::StoredTable;
@@ -160,7 +161,7 @@ fn after_a_kill_no_new_file_passes_for_the_old_one() {
     let length = fs::metadata(folder.path().join("ste.curve.parquet")).unwrap().len();
     let bytes = |_: &str, name: &str| match name {
         "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
-        _ => Err(StoreError::InUse { path: "killed".to_owned() }),
+        _ => Err(StoreError::InUse { path: "killed".to_owned(), who: String::new() }),
     };
     assert!(folder.publish(manifest(&new), || unreachable!(), &bytes, None).is_err());
     assert_eq!(folder.changes(&manifest(&old), false).tables, ["ste.curve.parquet", "ste.summary.parquet"]);

@@ -55,30 +55,6 @@ fn a_table_that_cannot_be_put_in_place_is_named() {
 }
 
 #[test]
-fn a_cache_that_cannot_be_made_or_written_is_one_message() {
-    let desk = Desk::with("quick.yaml");
-    fs::write(desk.path("file"), "").unwrap();
-    for cache in ["file", "file/below"] {
-        let (_, error) = desk.run(&["run", "quick.yaml", "--cache", cache], 1);
-        one_message(&error, cache);
-        assert!(!desk.path("results").exists());
-    }
-    // Where there is no folder yet a plan asks for none; a file is no cache for it either.
-    desk.run(&["plan", "quick.yaml", "--cache", "file/below"], 0);
-    one_message(&desk.run(&["plan", "quick.yaml", "--cache", "file"], 1).1, "file");
-    // The cache can be opened, but nothing can be kept in it.
-    desk.run(&["run", "quick.yaml", "--only", "pair", "--cache", "kept"], 0);
-    fs::remove_dir_all(desk.path("kept/entries")).unwrap();
-    fs::create_dir(desk.path("kept/entries")).unwrap();
-    for byte in 0..=255_u8 {
-        fs::write(desk.path(&format!("kept/entries/{byte:02x}")), "").unwrap();
-    }
-    let (_, error) = desk.run(&["run", "quick.yaml", "--cache", "kept"], 3);
-    one_message(&error, "pair failed");
-    assert!(error.contains("pair: failed: cannot make the cache folder `kept/entries/"), "{error}");
-}
-
-#[test]
 fn damage_in_the_cache_or_the_results_is_mended() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["run", "quick.yaml"], 0);

@@ -1,0 +1,16 @@
+//! What is promised when a disk is full, read-only or broken, when the power fails, and when two computers share a folder.
+//!
+//! `docs/reliability.md` has the promises, each with the test that holds it.
+
+mod cache;
+mod cleaning;
+#[cfg(target_os = "linux")]
+mod disk;
+#[cfg(target_os = "linux")]
+mod faults;
+#[cfg(target_os = "linux")]
+mod hosts;
+#[cfg(target_os = "linux")]
+mod power;
+#[cfg(target_os = "linux")]
+mod published;
