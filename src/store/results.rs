@@ -10,7 +10,7 @@ mod publish;
 #[cfg(test)]
 mod tests;
 
-use std::fs::{self, File};
+use std::fs::File;
 use std::path::{Path, PathBuf};
 
 pub use known::{FileState, Known};

@@ -1,6 +1,7 @@
 //! Publishing: once, only what changed, after failures and kills, in clones.
 
 use std::cell::Cell;
+use std::fs;
 
 use super::*;
 use crate::store::entry::StoredTable;
