@@ -10,6 +10,7 @@ mod readme;
 mod status;
 mod stubborn;
 mod texts;
+mod trust;
 mod work;
 
 use std::fs;
