@@ -4,6 +4,8 @@
 
 mod samples;
 
+use std::time::Instant;
+
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
@@ -150,6 +152,19 @@ fn summary_schema() -> Schema {
     Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
 }
 
+/// By itself, since a table with measured times differs from run to run.
+fn cost_schema() -> Schema {
+    let mut columns = keys();
+    columns.extend([
+        Column::float("peak_to_peak", "um", "As in the table `summary`.").tolerance(1e-12, 1e-9),
+        Column::integer("positions", "As in the table `summary`."),
+        Column::integer("slices", "As in the table `summary`."),
+        Column::float("error_estimate", "", "As in the table `summary`.").tolerance(1e-9, 0.0),
+        Column::float("seconds", "s", "Time for this row.").volatile(),
+    ]);
+    Schema::new("cost", "Error of each curve against the time it took.", columns).on_demand()
+}
+
 fn curve_schema() -> Schema {
     let mut columns = keys();
     columns.extend([
@@ -198,6 +213,7 @@ struct Answer {
     summary: Summary,
     settings: Settings,
     error: f64,
+    seconds: f64,
 }
 
 impl Ste {
@@ -208,6 +224,7 @@ impl Ste {
         torque: f64,
         wanted: Wanted,
     ) -> Result<Answer, Failure> {
+        let began = Instant::now();
         let sliced = Loading::new(base, design, torque).uses_slices();
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
             Loading::new(&base.sampled(settings), design, torque).peak_to_peak()
@@ -227,7 +244,8 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
-        Ok(Answer { points, summary, settings, error })
+        let seconds = began.elapsed().as_secs_f64();
+        Ok(Answer { points, summary, settings, error, seconds })
     }
 }
 
@@ -242,7 +260,7 @@ impl Stage for Ste {
 
     fn outputs(&self) -> Vec<Schema> {
         let [samples, sample_summary] = samples::schemas();
-        vec![summary_schema(), curve_schema(), harmonics_schema(), samples, sample_summary]
+        vec![summary_schema(), curve_schema(), harmonics_schema(), cost_schema(), samples, sample_summary]
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -304,7 +322,7 @@ impl Stage for Ste {
         let tasks: Vec<(usize, f64)> =
             (0..designs.len()).flat_map(|design| self.torques.iter().map(move |torque| (design, *torque))).collect();
         // Equidistant samples alone need no curve.
-        let of_curves = ["summary", "curve", "harmonics"].iter().any(|table| context.demand.table(table));
+        let of_curves = ["summary", "curve", "harmonics", "cost"].iter().any(|table| context.demand.table(table));
         let answered = if of_curves { tasks.as_slice() } else { &[] };
         let answers: Vec<Answer> = answered
             .par_iter()
@@ -315,10 +333,11 @@ impl Stage for Ste {
             })
             .collect::<Result<_, Failure>>()?;
 
-        let (mut summaries, mut harmonics): (Vec<Row>, Vec<Row>) = Default::default();
+        let (mut summaries, mut harmonics, mut costs): (Vec<Row>, Vec<Row>, Vec<Row>) = Default::default();
         for (&(design, torque), answer) in answered.iter().zip(&answers) {
             let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
             summaries.push([key(), summary_row(answer, summary_pressure)].concat());
+            costs.push([key(), cost_row(answer)].concat());
             for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
                 harmonics.push([key(), vec![(index + 1).into(), in_unit(*amplitude, "um").into()]].concat());
             }
@@ -354,6 +373,9 @@ impl Stage for Ste {
             Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
             Table::from_rows(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
         ];
+        if context.demand.table("cost") {
+            tables.push(Table::from_rows(cost_schema(), costs).map_err(failed)?);
+        }
         if samples::schemas().iter().any(|schema| context.demand.table(&schema.name)) {
             let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
             for &(design, torque) in &tasks {
@@ -395,6 +417,17 @@ fn summary_row(answer: &Answer, pressure: bool) -> Row {
     let Settings { positions, slices, .. } = answer.settings;
     row.extend([positions.into(), slices.into(), answer.error.into()]);
     row
+}
+
+fn cost_row(answer: &Answer) -> Row {
+    let Settings { positions, slices, .. } = answer.settings;
+    vec![
+        in_unit(answer.summary.peak_to_peak, "um").into(),
+        positions.into(),
+        slices.into(),
+        answer.error.into(),
+        answer.seconds.into(),
+    ]
 }
 
 /// By columns, not rows: curves are by far the longest tables.

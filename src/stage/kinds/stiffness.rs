@@ -2,6 +2,8 @@
 //!
 //! Must not know: how any method works. Stiffness is F/δ along the line of action.
 
+use std::time::Instant;
+
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, count, joined};
 use crate::base::record::Record;
@@ -141,6 +143,16 @@ fn summary_schema() -> Schema {
     )
 }
 
+/// By itself, since a table with measured times differs from run to run.
+fn cost_schema() -> Schema {
+    let columns = vec![
+        Column::float("mean", "N/m", "As in the table `summary`."),
+        Column::float("error_estimate", "%", "As in the table `summary`.").tolerance(1e-9, 1e-2),
+        Column::float("seconds", "s", "Time for tabulating the compliances.").volatile(),
+    ];
+    Schema::new("cost", "Error of the compliances against the time they took.", columns).on_demand()
+}
+
 fn iso_schema() -> Schema {
     let column = |name: &str, description: &str| Column::float(name, "N/(mm um)", description);
     Schema::new(
@@ -246,6 +258,7 @@ impl Stage for Stiffness {
             summary_schema(),
             mesh_schema(),
             iso_schema(),
+            cost_schema(),
         ];
         if self.method.root_stress.is_some() {
             schemas.push(root_stress_schema());
@@ -277,9 +290,11 @@ impl Stage for Stiffness {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let began = Instant::now();
         let Tabulated { compliance, warnings, error_estimate, meshes, work } =
             (self.method.tabulate)(&self.options, &pair, self.assumptions)
                 .map_err(|error| Failure::new(error.to_string()))?;
+        let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
             (context.warn)(warning);
@@ -319,6 +334,10 @@ impl Stage for Stiffness {
         row.extend([summary.mean.into(), summary.fewest.pairs.into(), in_unit(error_estimate, "%").into()]);
         tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
         tables.push(mesh_table(&meshes).map_err(failed)?);
+        if context.demand.table("cost") {
+            let row: Row = vec![summary.mean.into(), in_unit(error_estimate, "%").into(), seconds.into()];
+            tables.push(Table::from_rows(cost_schema(), vec![row]).map_err(failed)?);
+        }
         if context.demand.table("iso6336") {
             tables.push(iso_table(&pair, &self.options).map_err(failed)?);
         }
