@@ -233,7 +233,7 @@ pub fn damages(comparison: &Comparison) -> String {
     let files = &comparison.damaged;
     let (is, its, it) = if files.len() == 1 { ("is", "its", "it") } else { ("are", "their", "them") };
     let number = count(files.len(), "file");
-    format!("{number} {is} not what {its} manifest says; delete {it}, and `gearstudy run` writes {it} anew")
+    format!("{number} {is} not what {its} manifest says; `gearstudy run` writes {it} anew")
 }
 
 /// What a table's rows did: `25 rows`, `25 → 26 rows: 1 added`.

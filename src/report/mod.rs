@@ -25,6 +25,7 @@ pub struct Rendered {
 }
 
 /// A figure as a file by itself.
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderedFigure {
     /// Without `.svg`.
     pub name: String,

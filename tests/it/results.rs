@@ -87,3 +87,26 @@ fn stale_results_are_found() {
     let found = standing(&study, &folder, |_| "other".to_owned()).unwrap().problem().unwrap();
     assert!(found.contains("stage `pair` is not up to date: stale: code changed"), "{found}");
 }
+
+/// What git keeps of the results follows from study and program: nothing in it was measured.
+#[test]
+fn nothing_committed_varies_from_run_to_run() {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let mut found = Vec::new();
+    for (name, files) in committed(top) {
+        let folder = Folder::new(&top.join("results"), &name);
+        let manifest = folder.manifest().unwrap();
+        let tables: Vec<_> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+        for file in files {
+            let inside =
+                file.strip_prefix(Path::new("results").join(&name)).unwrap().to_string_lossy().replace('\\', "/");
+            let listed = manifest.files.iter().find(|record| record.file == inside);
+            let is_digested = listed.is_some_and(|record| record.digest.is_some());
+            let measured = tables.iter().any(|table| table.file == inside && table.varies());
+            if inside != "manifest.json" && (!is_digested || measured) {
+                found.push(file.display().to_string());
+            }
+        }
+    }
+    assert!(found.is_empty(), "without a digest in their manifest, or measured: {found:#?}");
+}

@@ -4,8 +4,6 @@
 
 mod samples;
 
-use std::time::Instant;
-
 use rayon::prelude::*;
 
 use crate::base::error::{Diagnostic, Failure};
@@ -148,7 +146,6 @@ fn summary_schema() -> Schema {
         Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
         Column::float("error_estimate", "", "Estimated relative error of the peak-to-peak from positions and slices.")
             .tolerance(1e-9, 0.0),
-        Column::float("seconds", "s", "Time for this row.").volatile(),
     ]);
     Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
 }
@@ -200,7 +197,6 @@ struct Answer {
     summary: Summary,
     settings: Settings,
     error: f64,
-    seconds: f64,
 }
 
 impl Ste {
@@ -211,7 +207,6 @@ impl Ste {
         torque: f64,
         wanted: Wanted,
     ) -> Result<Answer, Failure> {
-        let began = Instant::now();
         let sliced = Loading::new(base, design, torque).uses_slices();
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
             Loading::new(&base.sampled(settings), design, torque).peak_to_peak()
@@ -231,8 +226,7 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
-        let seconds = began.elapsed().as_secs_f64();
-        Ok(Answer { points, summary, settings, error, seconds })
+        Ok(Answer { points, summary, settings, error })
     }
 }
 
@@ -398,7 +392,7 @@ fn summary_row(answer: &Answer, pressure: bool) -> Row {
         row.push(in_unit(summary.largest_pressure.map_or(f64::NAN, |largest| largest.value), "MPa").into());
     }
     let Settings { positions, slices, .. } = answer.settings;
-    row.extend([positions.into(), slices.into(), answer.error.into(), answer.seconds.into()]);
+    row.extend([positions.into(), slices.into(), answer.error.into()]);
     row
 }
 

@@ -2,8 +2,6 @@
 //!
 //! Must not know: how any method works. Stiffness is F/δ along the line of action.
 
-use std::time::Instant;
-
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, count, joined};
 use crate::base::record::Record;
@@ -139,7 +137,6 @@ fn summary_schema() -> Schema {
                 "Estimated numerical error of the compliances, in units of a tooth's own.",
             )
             .tolerance(1e-9, 1e-2),
-            Column::float("seconds", "s", "Time for tabulating the compliances.").volatile(),
         ],
     )
 }
@@ -280,11 +277,9 @@ impl Stage for Stiffness {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let began = Instant::now();
         let Tabulated { compliance, warnings, error_estimate, meshes, work } =
             (self.method.tabulate)(&self.options, &pair, self.assumptions)
                 .map_err(|error| Failure::new(error.to_string()))?;
-        let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
             (context.warn)(warning);
@@ -321,12 +316,7 @@ impl Stage for Stiffness {
             found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
         };
         let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
-        row.extend([
-            summary.mean.into(),
-            summary.fewest.pairs.into(),
-            in_unit(error_estimate, "%").into(),
-            seconds.into(),
-        ]);
+        row.extend([summary.mean.into(), summary.fewest.pairs.into(), in_unit(error_estimate, "%").into()]);
         tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
         tables.push(mesh_table(&meshes).map_err(failed)?);
         if context.demand.table("iso6336") {

@@ -131,10 +131,18 @@ impl Folder {
         }
         let _lock = self.lock()?;
         let Some(old) = self.known()? else { return Ok(None) };
-        let new = old.manifest.clone();
+        let new = Manifest { files: Vec::new(), ..old.manifest.clone() };
+        // Before anything is touched: the page that is there may be all that can be had.
+        let drawn = match self.drawings(&new, draw) {
+            Ok(drawn) => drawn,
+            Err(problem) => {
+                let changes = Changes::default();
+                return Ok(Some(Published { manifest: old.manifest, changes, undrawn: Some(problem) }));
+            }
+        };
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
         let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
-        self.write(Some(&old), new, changes, None::<fn() -> Facts>, &nothing, Some(draw)).map(Some)
+        self.write(Some(&old), new, changes, None::<fn() -> Facts>, &nothing, Some(&|_, _| Ok(drawn.clone()))).map(Some)
     }
 
     /// The folder is locked.
@@ -266,22 +274,25 @@ impl Folder {
         Ok(())
     }
 
-    fn put_drawn(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Listed, String> {
+    fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
         let fault = RefCell::new(None);
         let table = |name: &str| {
             let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == name)?;
             self.table(record).map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
         };
         let drawn = draw(manifest, &table);
-        let drawn = match (drawn, fault.take()) {
+        match (drawn, fault.take()) {
             // A clone has only the tables that git keeps, and a page may be drawn without.
-            (Ok(drawn), Some(fault)) if is_absent(&fault) => drawn,
+            (Ok(drawn), Some(fault)) if is_absent(&fault) => Ok(drawn),
             // What is wrong with a file says more than that its table is missing. A page that leaves it out would stay.
-            (_, Some(fault)) => return Err(fault.to_string()),
-            (drawn, None) => drawn?,
-        };
+            (_, Some(fault)) => Err(fault.to_string()),
+            (drawn, None) => drawn,
+        }
+    }
+
+    fn put_drawn(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Listed, String> {
         let mut listed = Listed::default();
-        for Drawn { file, bytes, varies } in drawn {
+        for Drawn { file, bytes, varies } in self.drawings(manifest, draw)? {
             let folder = self.path().join(&file);
             let folder = folder.parent().unwrap_or(self.path());
             fs::create_dir_all(folder).map_err(|error| StoreError::io("make", folder)(error).to_string())?;

@@ -9,6 +9,7 @@ mod python;
 mod readme;
 mod status;
 mod stubborn;
+mod trust;
 mod work;
 
 use std::fs;

@@ -9,7 +9,7 @@ mod tables;
 use std::collections::{BTreeMap, BTreeSet};
 
 use gearstudy::base::record::Value;
-use gearstudy::report::{self, Rendered};
+use gearstudy::report::{self, Rendered, RenderedFigure};
 use gearstudy::store::manifest::OmissionRecord;
 use gearstudy::table::data::{Row, Table};
 
@@ -87,7 +87,7 @@ fn the_page_shows_every_verdict_and_every_figure() {
         assert!(html.contains(shown), "{shown}");
     }
     assert_eq!(figures.len(), 6);
-    for (name, svg) in &figures {
+    for RenderedFigure { name, svg, .. } in &figures {
         assert!(check_tags(svg) > 5 && html.contains(&format!("id=\"figure-{name}\"")), "{name}");
         assert!(svg.starts_with("<svg xmlns=\"http://www.w3.org/2000/svg\"") && !svg.contains("NaN"), "{name}");
     }
@@ -100,7 +100,8 @@ fn the_page_shows_every_verdict_and_every_figure() {
 #[test]
 fn jumps_stay_jumps() {
     let (manifest, tables) = study(published(), figures());
-    let figures: BTreeMap<String, String> = render(&manifest, &tables).figures.into_iter().collect();
+    let figures: BTreeMap<String, String> =
+        render(&manifest, &tables).figures.into_iter().map(|figure| (figure.name, figure.svg)).collect();
     // Declared by a column, and found by two points at one place: one interruption each in the unmodified curve.
     assert_eq!(figures["stiffness"].matches("class=\"jump\"").count(), 1);
     assert_eq!(figures["transmission_error"].matches("class=\"jump\"").count(), 1);
@@ -170,7 +171,7 @@ fn hostile_text_stays_text() {
     manifest.stages[3].tables[0].description = HOSTILE.to_owned();
     manifest.stages[3].tables[0].columns[0].description = HOSTILE.to_owned();
     let Rendered { html, figures } = render(&manifest, &tables);
-    for markup in figures.iter().map(|(_, svg)| svg).chain([&html]) {
+    for markup in figures.iter().map(|figure| &figure.svg).chain([&html]) {
         check_tags(markup);
         assert!(
             !markup.contains("<script>alert") && !markup.contains("<img") && !markup.contains("2469134"),
