@@ -168,9 +168,15 @@ impl Trace {
                         names.remove(from);
                     }
                 }
-                Change::Take { name } => drop(names.remove(name)),
-                Change::MakeFolder { name } => drop(folders.insert(name.clone())),
-                Change::TakeFolder { name } => drop(folders.remove(name)),
+                Change::Take { name } => {
+                    names.remove(name);
+                }
+                Change::MakeFolder { name } => {
+                    folders.insert(name.clone());
+                }
+                Change::TakeFolder { name } => {
+                    folders.remove(name);
+                }
             }
         }
         let whole = |name: &str| name.match_indices('/').all(|(at, _)| folders.contains(&name[..at]));
