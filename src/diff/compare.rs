@@ -67,7 +67,7 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
                 let task = Task { before, after, old, new, own, options };
                 let (study, found) = task.study(&pair.name);
                 comparison.verdicts.extend(found.flips);
-                comparison.damaged.extend(found.damaged);
+                replace(&mut comparison.damaged, found.damaged);
                 study
             }
             (Some((folder, only)), None) => {
@@ -81,19 +81,21 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
         };
         comparison.studies.push(study);
     }
-    tell_once(&mut comparison.damaged);
     verdict::sort(&mut comparison.verdicts);
     let damaged = (!comparison.damaged.is_empty()).then_some(State::Changed);
     comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
     Ok(comparison)
 }
 
-/// Of a table that is compared, its values tell more than its bytes, and later.
-fn tell_once(damaged: &mut Vec<Damage>) {
-    let mut told = BTreeSet::new();
-    damaged.reverse();
-    damaged.retain(|one| told.insert((one.at.clone(), one.study.clone(), one.file.clone())));
-    damaged.reverse();
+/// Of a table that is compared, its values tell more than its bytes.
+fn replace(told: &mut Vec<Damage>, found: Vec<Damage>) {
+    for damage in found {
+        let same = |one: &Damage| (&one.at, &one.study, &one.file) == (&damage.at, &damage.study, &damage.file);
+        if let Some(position) = told.iter().position(same) {
+            told.remove(position);
+        }
+        told.push(damage);
+    }
 }
 
 /// Files that are not what their manifests say, but for values of tables that will be compared.

@@ -279,10 +279,12 @@ fn other_program(desk: &Desk, folder: &str, change: impl Fn(&mut Value)) {
 }
 
 fn copied(desk: &Desk, to: &str) {
-    fs::create_dir_all(desk.path(to).join("quick")).unwrap();
-    for entry in fs::read_dir(desk.path("results/quick")).unwrap().map(Result::unwrap) {
-        if entry.path().is_file() {
-            fs::copy(entry.path(), desk.path(to).join("quick").join(entry.file_name())).unwrap();
+    for folder in ["quick", "quick/figures"] {
+        fs::create_dir_all(desk.path(to).join(folder)).unwrap();
+        for entry in fs::read_dir(desk.path("results").join(folder)).unwrap().map(Result::unwrap) {
+            if entry.path().is_file() {
+                fs::copy(entry.path(), desk.path(to).join(folder).join(entry.file_name())).unwrap();
+            }
         }
     }
 }
