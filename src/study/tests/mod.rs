@@ -4,6 +4,7 @@ mod bad;
 mod declared;
 mod files;
 mod messages;
+mod notation;
 mod properties;
 mod texts;
 mod values;

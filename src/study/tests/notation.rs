@@ -1,0 +1,81 @@
+//! Numbers in other notations and names that no file can have: refused with what to write instead.
+
+use super::{changed, refused};
+
+/// What stands in the valid study, what stands there instead, and the whole message after the file's name.
+const CHANGES: &[(&str, &str, &str)] = &[
+    (
+        "teeth: 19",
+        "teeth: 0x18",
+        "10:22: `teeth` must be a whole number in digits, not `0x18`\n  help: `0x18` in decimal digits is `24`",
+    ),
+    (
+        "teeth: 19",
+        "teeth: 0o30",
+        "10:22: `teeth` must be a whole number in digits, not `0o30`\n  help: `0o30` in decimal digits is `24`",
+    ),
+    (
+        "teeth: 19",
+        "teeth: 030",
+        "10:22: `teeth` must be a whole number in digits, not `030`\n  help: write `30`, without zeros in front",
+    ),
+    (
+        "teeth: 19",
+        "teeth: 1:30",
+        "10:22: `teeth` must be a whole number in digits, not `1:30`\n  help: nothing is counted in sixties: write one number in decimal digits, `1.5` for `1:30`",
+    ),
+    (
+        "teeth: 19",
+        "teeth: 1_000",
+        "10:22: `teeth` must be a whole number in digits, not `1_000`\n  help: nothing parts thousands: write `1000`",
+    ),
+    ("teeth: 19", "teeth: 3e1", "10:22: `teeth` must be a whole number in digits, not `3e1`\n  help: write `30`"),
+    ("teeth: 19", "teeth: 19x", "10:22: `teeth` must be a whole number in digits, not `19x`"),
+    (
+        "addendum: 1.25",
+        "addendum: 01.25",
+        "9:23: `01.25` is not a number as a study has it; a plain number is expected\n  help: write `1.25`, without zeros in front",
+    ),
+    (
+        "module: 3 mm",
+        "module: 0x3 mm",
+        "8:13: `0x3 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: `0x3` in decimal digits is `3`",
+    ),
+    (
+        "module: 3 mm",
+        "module: 3,5 mm",
+        "8:13: `3,5 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: the decimal sign is a point, and nothing parts thousands",
+    ),
+    (
+        "value: 2.316 um",
+        "value: 1_000 um",
+        "34:12: `1_000 um` is not a number as a study has it; value needs one\n  help: nothing parts thousands: write `1000 um`",
+    ),
+    (
+        "count: 16",
+        "count: 016",
+        "30:49: `count` is a whole number in digits\n  help: write `16`, without zeros in front",
+    ),
+    (
+        "study: small",
+        "study: con",
+        "1:8: `con` cannot be the name of a study\n  help: Windows keeps it for a device, so no file there can have it: for example `con-study`",
+    ),
+    (
+        "study: small",
+        "study: NUL",
+        "1:8: `NUL` cannot be the name of a study\n  help: Windows keeps it for a device, so no file there can have it: for example `nul-study`",
+    ),
+    (
+        "  report:\n",
+        "  lpt9:\n",
+        "31:3: `lpt9` cannot be the name of a stage\n  help: Windows keeps it for a device, so no file there can have it: for example `lpt9-stage`",
+    ),
+];
+
+#[test]
+fn other_notations_and_names_of_devices_are_refused_with_what_to_write() {
+    for (old, new, expected) in CHANGES {
+        assert_eq!(refused(&changed(old, new)), format!("t.yaml:{expected}"), "{new}");
+    }
+}
