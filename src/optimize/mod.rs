@@ -144,9 +144,7 @@ pub fn optimizer(name: &str, record: &Record, bounds: Bounds, seed: Seed) -> Res
 fn method(name: &str, record: &Record) -> Result<&'static Method, Diagnostic> {
     METHODS.iter().copied().find(|method| method.member.name == name).ok_or_else(|| {
         let known = METHODS.iter().map(|method| method.member.name);
-        Diagnostic::new(format!("there is no optimisation method `{name}`"))
-            .at(record.place)
-            .help(suggest(name, known))
+        Diagnostic::new(format!("there is no optimisation method `{name}`")).at(record.place).help(suggest(name, known))
     })
 }
 

@@ -2,8 +2,8 @@
 //!
 //! Must not know: how the points were laid out.
 
-use super::{Foreseen, Strategy, points_held};
 use super::search::Reason;
+use super::{Foreseen, Strategy, points_held};
 use crate::base::error::Diagnostic;
 
 /// More points than this are refused: nobody waits for them, and a slip (`levels: 1000` on five variables) is likelier.

@@ -31,6 +31,7 @@ pub const METHOD: Method = Method {
     needs_fillet: false,
     tabulate,
     root_stress: None,
+    foresee: super::integrated,
 };
 
 /// E_St, what the standard measured its factors on \[Pa\].

@@ -46,6 +46,7 @@ pub const METHOD: Method = Method {
     needs_fillet: false,
     tabulate,
     root_stress: None,
+    foresee: super::integrated,
 };
 
 fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
