@@ -48,16 +48,20 @@ fn taken(plan: &Plan, width: usize) -> String {
             format!("~ {}", rough(expected.seconds)),
         ]
     };
-    let running = plan.stages.iter().filter_map(|stage| Some((&stage.name, stage.expected.as_ref()?)));
-    lines.extend(running.map(|(name, expected)| (name.clone(), line(expected))));
-    match lines.len() {
-        1 => return String::new(),
-        2 => {}
-        _ => lines.push(("in all".to_owned(), line(&plan.total))),
+    let running = || plan.stages.iter().filter_map(|stage| Some((&stage.name, stage.expected.as_ref()?)));
+    let count = running().count();
+    let shown = |expected: &Expected| count <= FEW || matters(expected, &plan.total);
+    lines.extend(
+        running().filter(|(_, expected)| shown(expected)).map(|(name, expected)| (name.clone(), line(expected))),
+    );
+    match count {
+        0 => return String::new(),
+        1 => {}
+        _ => lines.push((format!("all {count}"), line(&plan.total))),
     }
     let widest = |column: usize| lines.iter().map(|(_, cells)| cells[column].chars().count()).max().unwrap_or(0);
     let widths: [usize; 4] = std::array::from_fn(widest);
-    let width = width.max("in all".len());
+    let width = lines.iter().map(|(name, _)| name.chars().count()).fold(width, usize::max);
     let mut text = String::new();
     for (name, cells) in &lines {
         text += &format!("  {name:width$}");
@@ -67,6 +71,17 @@ fn taken(plan: &Plan, width: usize) -> String {
         text += "\n";
     }
     text
+}
+
+/// So many stages are all shown.
+const FEW: usize = 5;
+
+/// Whether it takes a tenth of anything.
+fn matters(expected: &Expected, total: &Expected) -> bool {
+    rows(expected).count * 10 >= rows(total).count
+        || expected.memory >= total.memory / 10
+        || expected.bytes >= total.bytes / 10
+        || 10.0 * expected.seconds >= total.seconds
 }
 
 /// Of all tables.

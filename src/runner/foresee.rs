@@ -21,6 +21,8 @@ pub struct Expected {
     pub memory: u64,
     /// About how long it takes on so many threads as there are.
     pub seconds: f64,
+    /// Whether a thread that waits for its parts may begin another stage meanwhile.
+    pub parallel: bool,
 }
 
 /// All stages of a run.
@@ -40,7 +42,7 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
     let mut stages: Vec<Option<Expected>> = vec![None; board.nodes.len()];
     let mut processor = 0.0;
     if board.nodes.iter().all(|progress| progress.state.is_final()) {
-        let total = Expected { tables: Vec::new(), bytes: 0, memory: 0, seconds: 0.0 };
+        let total = Expected { tables: Vec::new(), bytes: 0, memory: 0, seconds: 0.0, parallel: false };
         return Foresight { stages, total };
     }
     for &node in &board.graph.order {
@@ -83,7 +85,7 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
         stages[node] = Some(expected);
         wholes[node] = whole;
     }
-    let total = total(board, &stages, &wholes, processor / threads as f64);
+    let total = total(board, &stages, &wholes, processor, threads);
     Foresight { stages, total }
 }
 
@@ -110,11 +112,12 @@ fn together(whole: &Estimate, parts: &[Estimate], read: u64, threads: usize) -> 
         bytes: cached.saturating_add(whole.bytes.saturating_mul(2)),
         memory: at_once.saturating_add(joining).saturating_add(read),
         seconds: seconds / shared as f64,
+        parallel: whole.parallel,
     };
     (expected, seconds)
 }
 
-fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], shared: f64) -> Expected {
+fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], processor: f64, threads: usize) -> Expected {
     let running = || stages.iter().flatten();
     let rows = running().flat_map(|stage| &stage.tables).fold(Rows::NONE, |total, (_, rows)| total.and(*rows));
     let held = wholes.iter().fold(0_u64, |sum, whole| sum.saturating_add(whole.bytes));
@@ -123,14 +126,15 @@ fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], shared
     Expected {
         tables: vec![(String::new(), rows)],
         bytes: running().fold(0, |sum, stage| sum.saturating_add(stage.bytes)),
-        memory: at_once(board, stages).max(if running().next().is_some() { publishing } else { 0 }),
-        seconds: running().map(|stage| stage.seconds).fold(shared, f64::max),
+        memory: at_once(board, stages, threads).max(if running().next().is_some() { publishing } else { 0 }),
+        seconds: running().map(|stage| stage.seconds).fold(processor / threads as f64, f64::max),
+        parallel: true,
     }
 }
 
 /// The most memory of stages that may run at the same time: whatever set that is, for any of its stages it is among those
-/// that neither read from it nor are read by it, near or far.
-fn at_once(board: &Board, stages: &[Option<Expected>]) -> u64 {
+/// that neither read from it nor are read by it, near or far. Of those that take one thread there are no more than threads.
+fn at_once(board: &Board, stages: &[Option<Expected>], threads: usize) -> u64 {
     let count = stages.len();
     let mut above = vec![vec![false; count]; count];
     for &node in &board.graph.order {
@@ -145,8 +149,15 @@ fn at_once(board: &Board, stages: &[Option<Expected>]) -> u64 {
     let beside = |node: usize| {
         let alone = board.study.nodes[node].stage.runs_alone();
         let others = (0..count).filter(move |&other| !alone && !board.study.nodes[other].stage.runs_alone());
-        others.filter(move |&other| other != node && !above[node][other] && !above[other][node]).map(memory)
+        others.filter(move |&other| other != node && !above[node][other] && !above[other][node])
     };
-    let all = |node: usize| beside(node).fold(memory(node), u64::saturating_add);
+    let all = |node: usize| {
+        let parallel = |node: usize| stages[node].as_ref().is_some_and(|stage| stage.parallel);
+        let (shared, mut single): (Vec<usize>, Vec<usize>) =
+            beside(node).chain([node]).partition(|node| parallel(*node));
+        single.sort_unstable_by_key(|node| std::cmp::Reverse(memory(*node)));
+        let together = shared.into_iter().chain(single.into_iter().take(threads));
+        together.map(memory).fold(0, u64::saturating_add)
+    };
     (0..count).filter(|&node| memory(node) > 0).map(all).max().unwrap_or(0)
 }

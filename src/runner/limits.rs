@@ -117,26 +117,54 @@ pub fn refusal(board: &Board, foresight: &Foresight, limits: &Limits, threads: u
         of_study.name,
         limited.shown(most(&node)),
     );
-    let fits = |record: &Record| {
-        (of_study.kind.build)(record).is_ok()
-            && limited.of(&foresee(board, threads, Some((node, record))).total) <= limit
-    };
-    let mut remedies = Vec::new();
-    gather(of_study.kind.fields, &of_study.record, &mut Vec::new(), &mut |path, entry_place, try_out| {
-        let put = |value: Value| with(&of_study.record, path, value);
-        if let Some(text) = try_out(&|value| fits(&put(value))) {
-            remedies.push((format!("`{}{text}`", path.join(".")), entry_place));
+    let remedied = above(board, node).into_iter().find_map(|near| {
+        let fits = |record: &Record| limited.of(&foresee(board, threads, Some((near, record))).total) <= limit;
+        let found = remedies(board, near, &fits);
+        (!found.is_empty()).then_some((near, found))
+    });
+    let option = format!("`{}`", limited.option(total));
+    Some(match remedied {
+        Some((near, found)) => {
+            let written: Vec<&str> = found.iter().map(|(text, _)| text.as_str()).collect();
+            let stage = &board.study.nodes[near].name;
+            let help = format!("in stage `{stage}` write {}, or allow more with {option}", written.join(" or "));
+            Diagnostic::new(message).at(found[0].1).help(help)
+        }
+        None => Diagnostic::new(message).at(of_study.place).help(format!("ask for less, or allow more with {option}")),
+    })
+}
+
+/// A stage and those with something to compute that it reads, near ones first.
+fn above(board: &Board, node: usize) -> Vec<usize> {
+    let mut found = vec![node];
+    let mut next = 0;
+    while let Some(&reader) = found.get(next) {
+        for input in &board.graph.inputs[reader] {
+            if !found.contains(&input.node) && !board.nodes[input.node].state.is_final() {
+                found.push(input.node);
+            }
+        }
+        next += 1;
+    }
+    found
+}
+
+/// What may be written in a stage so that the run fits, each with its place; a few will do.
+fn remedies(board: &Board, node: usize, fits: &dyn Fn(&Record) -> bool) -> Vec<(String, Place)> {
+    let of_study = &board.study.nodes[node];
+    let mut found = Vec::new();
+    gather(of_study.kind.fields, &of_study.record, &mut Vec::new(), &mut |path, place, find| {
+        let fits = |value: Value| {
+            let record = with(&of_study.record, path, value);
+            (of_study.kind.build)(&record).is_ok() && fits(&record)
+        };
+        if found.len() < MOST_REMEDIES
+            && let Some(text) = find(&fits)
+        {
+            found.push((format!("`{}{text}`", path.join(".")), place));
         }
     });
-    remedies.truncate(MOST_REMEDIES);
-    let place = remedies.first().map_or(of_study.place, |(_, place)| *place);
-    let written: Vec<&str> = remedies.iter().map(|(text, _)| text.as_str()).collect();
-    let option = format!("`{}`", limited.option(total));
-    let help = match written[..] {
-        [] => format!("ask for less, or allow more with {option}"),
-        _ => format!("in stage `{}` write {}, or allow more with {option}", of_study.name, written.join(" or ")),
-    };
-    Some(Diagnostic::new(message).at(place).help(help))
+    found
 }
 
 type Fits<'a> = &'a dyn Fn(Value) -> bool;

@@ -66,16 +66,16 @@ const MESH_BYTES: usize = 100_000;
 
 fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
     let told = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
-    // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones follow.
-    let (across, rounds) = if assumptions.accuracy.is_some() { (MOST, 2) } else { (even(told), 1) };
+    // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones may follow.
+    let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST, 2) } else { (even(told), 1) };
     let meshes = 4 * rounds;
     let neighbours = if assumptions.coupled { 6 * ROLLS * ROLLS } else { 0 };
     Foreseen {
         nodes: 48,
         neighbours,
         work: Work::of(Counter::MeshFactorisations, meshes).with(Counter::ComplianceEvaluations, meshes * ROLLS),
-        times: across as f64 / USUAL,
-        memory: (across * across * MESH_BYTES) as u64,
+        times: even(told) as f64 / USUAL,
+        memory: (finest * finest * MESH_BYTES) as u64,
     }
 }
 

@@ -63,7 +63,7 @@ pub struct Foreseen {
 pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
     Foreseen {
         nodes: 128,
-        neighbours: if assumptions.coupled { 6000 } else { 0 },
+        neighbours: if assumptions.coupled { 3000 } else { 0 },
         work: Work::of(Counter::ComplianceEvaluations, 224),
         times: if assumptions.coupled { 4.0 } else { 1.0 },
         memory: 4 << 20,

@@ -95,10 +95,10 @@ const VALUES: &[Field] = &[
 
 /// The named traps, about; what is checked of each case, and the most quantities of one that are computed twice.
 const TRAPS: usize = 40;
-const CHECKS: usize = 20;
+const CHECKS: usize = 12;
 const QUANTITIES: usize = 16;
 /// About how long a case takes on one thread.
-const CASE_SECONDS: f64 = 0.1;
+const CASE_SECONDS: f64 = 0.15;
 
 struct Stability {
     pair: String,
