@@ -73,7 +73,8 @@ pub enum Presence {
 pub enum Span {
     /// One.
     Single,
-    /// One, a list, or `{ from, to, count }`: an axis of the stage's tables. The stage is run in chunks of this many.
+    /// One, a list, or `{ from, to, count }`: an axis of the stage's tables. The stage is run in chunks of about this many,
+    /// or of more where there would be too many chunks.
     Axis { chunk: usize },
     /// One, or, where an optimiser chooses, `[least, most]`.
     Range,

@@ -33,6 +33,20 @@ const COUNTERS: [Counter; 6] = [
 ];
 
 impl Counter {
+    /// Seconds that a unit takes on one thread, as `make bench` has it on a quiet machine; a slice costs as part of its
+    /// solve.
+    #[must_use]
+    pub fn seconds(self) -> f64 {
+        match self {
+            Self::ComplianceEvaluations => 2e-5,
+            Self::MeshFactorisations => 2e-2,
+            Self::ContactSolves => 3e-7,
+            Self::ContactPressures => 6e-8,
+            Self::Outlines => 3e-5,
+            Self::Slices => 0.0,
+        }
+    }
+
     /// As manifests and pages write it.
     #[must_use]
     pub fn name(self) -> &'static str {
@@ -82,6 +96,12 @@ impl Work {
             *mine = if counter.adds() { *mine + theirs } else { theirs.max(*mine) };
         }
         self
+    }
+
+    /// About how many seconds it takes on one thread of a quiet machine.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        COUNTERS.iter().map(|counter| counter.seconds() * self.count(*counter) as f64).sum()
     }
 
     /// By name, without those that are 0.

@@ -10,8 +10,9 @@ use clap::{Arg, Args, Parser, Subcommand, ValueEnum};
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
-#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, 3 a stage failed, \
-    4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C \
+#[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, or a study beyond the \
+    limits, 3 a stage failed, \
+    4 differences or damage found, 70 a bug of this program, 130 stopped by Ctrl-C \
     (143 by SIGTERM, 129 by SIGHUP).")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -95,12 +96,14 @@ pub enum Command {
         #[arg(required = true)]
         studies: Vec<PathBuf>,
     },
-    /// Say what a run would do, and why, and what it would leave out.
+    /// Say what a run would do, and why, what it would leave out, and what it would take.
     Plan {
         #[arg(required = true)]
         studies: Vec<PathBuf>,
         #[command(flatten)]
         selection: Selection,
+        #[command(flatten)]
+        limits: Limits,
         /// As JSON.
         #[arg(long)]
         json: bool,
@@ -112,6 +115,8 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         selection: Selection,
+        #[command(flatten)]
+        limits: Limits,
         /// Say for every stage why it runs or not.
         #[arg(long)]
         explain: bool,
@@ -175,6 +180,8 @@ pub enum Command {
     /// Run the study of an archive again, from nothing, and compare every table.
     Verify {
         file: PathBuf,
+        #[command(flatten)]
+        limits: Limits,
         /// As JSON.
         #[arg(long)]
         json: bool,
@@ -216,6 +223,33 @@ pub struct Selection {
     /// Compute even what is in the cache: everything, or `--force=STAGE,…` only these stages.
     #[arg(long, value_name = "STAGE,…", value_delimiter = ',', num_args = 0.., require_equals = true)]
     pub force: Option<Vec<String>>,
+}
+
+/// What a run may take. What would take more is refused before anything runs.
+#[derive(Args, Debug, Clone, Copy, Default)]
+pub struct Limits {
+    /// The most memory, as 800MB or 4GB [default: half of the machine's].
+    #[arg(long, value_name = "SIZE", env = "GEARSTUDY_LIMIT_MEMORY", value_parser = bytes)]
+    pub limit_memory: Option<u64>,
+    /// The most rows of all tables that are computed [default: 20000000].
+    #[arg(long, value_name = "N", env = "GEARSTUDY_LIMIT_ROWS")]
+    pub limit_rows: Option<u64>,
+}
+
+/// A number of bytes with its unit.
+fn bytes(text: &str) -> Result<u64, String> {
+    const UNITS: [(&str, u64); 6] =
+        [("kB", 1_000), ("MB", 1_000_000), ("GB", 1_000_000_000), ("KiB", 1 << 10), ("MiB", 1 << 20), ("GiB", 1 << 30)];
+    let help = || "write a number and kB, MB, GB, KiB, MiB or GiB, for example 4GB".to_owned();
+    let unit = UNITS.iter().find(|(name, _)| text.to_lowercase().ends_with(&name.to_lowercase()));
+    let (name, factor) = unit.ok_or_else(help)?;
+    let number: f64 = text[..text.len() - name.len()].trim().parse().map_err(|_| help())?;
+    if !(number.is_finite() && number > 0.0) {
+        return Err(help());
+    }
+    // Above 2^64 it is as good as no limit.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    Ok((number * *factor as f64) as u64)
 }
 
 #[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
@@ -268,4 +302,20 @@ pub enum Shown {
     Json,
     Markdown,
     Html,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::bytes;
+
+    #[test]
+    fn sizes_have_units() {
+        assert_eq!(
+            ["800MB", "4 GB", "1.5GiB", "7kb"].map(|text| bytes(text).unwrap()),
+            [800_000_000, 4_000_000_000, 3 << 29, 7000]
+        );
+        for wrong in ["", "4", "GB", "-1GB", "0MB", "nanGB", "4 gigabytes"] {
+            assert!(bytes(wrong).is_err(), "{wrong}");
+        }
+    }
 }

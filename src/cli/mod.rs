@@ -7,6 +7,7 @@ pub mod arguments;
 mod diff;
 pub mod draw;
 pub mod pages;
+mod plan;
 pub mod print;
 pub mod progress;
 #[cfg(feature = "frames")]
@@ -45,6 +46,9 @@ pub enum Ending {
     /// Some of several studies are none; what is wrong with them was printed.
     #[error("{0}")]
     Unreadable(String),
+    /// A study that would take more than it may.
+    #[error("{0}")]
+    Beyond(String),
     /// A stage failed; what it said was printed where it happened.
     #[error("{0}")]
     Failed(String),
@@ -61,7 +65,7 @@ impl Ending {
     pub fn code(&self) -> i32 {
         match self {
             Self::Usage(_) => 1,
-            Self::Invalid(_) | Self::Query(_) | Self::Unreadable(_) => 2,
+            Self::Invalid(_) | Self::Beyond(_) | Self::Query(_) | Self::Unreadable(_) => 2,
             Self::Failed(_) => 3,
             Self::Differs(_) => 4,
             // As a shell reports a program that a signal ended.
@@ -103,13 +107,20 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     match &arguments.command {
         Command::New { file } => show::new_study(file),
         Command::Check { studies: words } => show::check(&studies::named_or_all(words)?, quiet),
-        Command::Plan { studies, selection, json } => run::plan(&load_all(studies)?, places, selection, *json),
-        Command::Run { studies, selection, explain, dry_run: true, .. } => {
-            let _ = explain;
-            run::plan(&load_all(studies)?, places, selection, false)
+        Command::Plan { studies, selection, limits, json } => run::plan(
+            &load_all(studies)?,
+            places,
+            selection,
+            &run::How { limits: *limits, ..run::How::default() },
+            *json,
+        ),
+        Command::Run { studies, selection, limits, jobs, dry_run: true, .. } => {
+            let how = run::How { limits: *limits, jobs: jobs.map(usize::from), ..run::How::default() };
+            run::plan(&load_all(studies)?, places, selection, &how, false)
         }
-        Command::Run { studies, selection, explain, keep_going, jobs, .. } => {
-            let how = run::How { explain: *explain, keep_going: *keep_going, jobs: jobs.map(usize::from), quiet };
+        Command::Run { studies, selection, limits, explain, keep_going, jobs, .. } => {
+            let (explain, keep_going) = (*explain, *keep_going);
+            let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
             run::run(&load_all(studies)?, places, selection, &how)
         }
         Command::Status { studies: words, json, check } => status::status(words, places, *json, *check),
@@ -117,7 +128,9 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let about = archive::About { license: license.as_deref(), authors };
             archive::archive(&load_all(std::slice::from_ref(study))?[0], places, output, &about, quiet)
         }
-        Command::Verify { file, jobs, json } => verify::verify(file, jobs.map(usize::from), *json, quiet),
+        Command::Verify { file, limits, jobs, json } => {
+            verify::verify(file, jobs.map(usize::from), limits, *json, quiet)
+        }
         Command::Report { studies } => run::report(&load_all(studies)?, places, quiet),
         Command::Table { study, table, conditions, columns, format } => show::table(
             &load_all(std::slice::from_ref(study))?[0],

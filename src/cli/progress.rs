@@ -6,6 +6,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
 use std::sync::Mutex;
+use std::sync::mpsc::{self, RecvTimeoutError};
+use std::time::{Duration, Instant};
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
@@ -17,13 +19,71 @@ pub struct Watcher {
     /// Width of the longest stage name.
     width: usize,
     bars: Option<MultiProgress>,
-    running: Mutex<BTreeMap<String, (Option<ProgressBar>, String)>>,
+    running: Mutex<BTreeMap<String, Running>>,
 }
+
+/// A stage that is being computed.
+#[derive(Default)]
+struct Running {
+    bar: Option<ProgressBar>,
+    why: String,
+    /// Nothing of one that was never begun.
+    since: Option<Instant>,
+    share: f64,
+}
+
+impl Running {
+    /// How far it is, and how long still.
+    fn standing(&self, now: Instant) -> String {
+        let elapsed = self.since.map_or(0.0, |since| now.saturating_duration_since(since).as_secs_f64());
+        let left = left(self.share, elapsed).map_or_else(String::new, |left| format!(", about {} left", rough(left)));
+        format!("{:.0} % after {}{left}", 100.0 * self.share, rough(elapsed))
+    }
+}
+
+/// Seconds left where a share was done in some; nothing before that tells anything.
+fn left(share: f64, elapsed: f64) -> Option<f64> {
+    (share >= 0.02 && share < 1.0 && elapsed >= 2.0).then(|| elapsed * (1.0 - share) / share)
+}
+
+/// How often those are told how it stands who have no bars to look at.
+const EVERY: Duration = Duration::from_secs(10);
 
 impl Watcher {
     #[must_use]
     pub fn new(quiet: bool, width: usize, bars: Option<MultiProgress>) -> Self {
         Self { quiet, width, bars, running: Mutex::default() }
+    }
+
+    /// Does the work; while it goes on, and there are no bars, a line every ten seconds says what is running.
+    pub fn telling<T>(&self, work: impl FnOnce() -> T) -> T {
+        if self.quiet || self.bars.is_some() {
+            return work();
+        }
+        self.telling_every(EVERY, work)
+    }
+
+    fn telling_every<T>(&self, every: Duration, work: impl FnOnce() -> T) -> T {
+        std::thread::scope(|scope| {
+            let (ended, wait) = mpsc::channel::<()>();
+            scope.spawn(move || {
+                // The other end is dropped when the work has ended, also by a panic.
+                while wait.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
+                    self.stand(Instant::now()).iter().for_each(|line| self.line(line));
+                }
+            });
+            let result = work();
+            drop(ended);
+            result
+        })
+    }
+
+    /// What is running, how far it is, and how long still.
+    fn stand(&self, now: Instant) -> Option<String> {
+        let running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let stages: Vec<String> =
+            running.iter().map(|(stage, running)| format!("{stage} {}", running.standing(now))).collect();
+        (!stages.is_empty()).then(|| format!("  running: {}", stages.join("; ")))
     }
 
     fn line(&self, text: &str) {
@@ -45,7 +105,8 @@ impl Watcher {
     fn bar(&self, stage: &str) -> Option<ProgressBar> {
         let bars = self.bars.as_ref()?;
         let width = self.width;
-        let style = ProgressStyle::with_template("  {prefix}  {bar:30.cyan/blue}  {percent:>3} %  {elapsed}").ok()?;
+        let style =
+            ProgressStyle::with_template("  {prefix}  {bar:30.cyan/blue}  {percent:>3} %  {elapsed}{msg}").ok()?;
         let bar = bars.add(ProgressBar::new(1000).with_style(style));
         bar.set_prefix(format!("{stage:width$}"));
         Some(bar)
@@ -53,7 +114,7 @@ impl Watcher {
 
     fn end(&self, stage: &str) -> String {
         let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let (bar, why) = running.remove(stage).unwrap_or_default();
+        let Running { bar, why, .. } = running.remove(stage).unwrap_or_default();
         if let Some(bar) = bar {
             bar.finish_and_clear();
         }
@@ -68,14 +129,19 @@ impl Observer for Watcher {
             Event::Started { stage, why, .. } => {
                 let bar = self.bar(stage);
                 let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                running.insert((*stage).to_owned(), (bar, (*why).to_owned()));
+                let since = Some(Instant::now());
+                running.insert((*stage).to_owned(), Running { bar, why: (*why).to_owned(), since, share: 0.0 });
             }
             Event::Progressed { stage, share } => {
-                let running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                if let Some((Some(bar), _)) = running.get(*stage) {
+                let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+                let Some(running) = running.get_mut(*stage) else { return };
+                running.share = *share;
+                if let Some(bar) = &running.bar {
                     // A share is from 0 to 1.
                     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
                     bar.set_position((share * 1000.0) as u64);
+                    let left = left(*share, bar.elapsed().as_secs_f64());
+                    bar.set_message(left.map_or_else(String::new, |left| format!("  about {} left", rough(left))));
                 }
             }
             Event::Warned { stage, message } => self.stage(stage, "warning", message),
@@ -152,6 +218,20 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
+/// A time that is estimated, or of which nobody wants to know more: one or two digits, minutes and hours.
+#[must_use]
+pub fn rough(seconds: f64) -> String {
+    match seconds {
+        ..0.0095 => "10 ms".to_owned(),
+        ..0.0995 => format!("{:.0} ms", (seconds * 100.0).round() * 10.0),
+        ..0.95 => format!("{:.0} ms", (seconds * 10.0).round() * 100.0),
+        ..99.5 => format!("{seconds:.0} s"),
+        ..5970.0 => format!("{:.0} min", seconds / 60.0),
+        ..172_800.0 => format!("{:.0} h", seconds / 3600.0),
+        _ => format!("{:.0} days", seconds / 86_400.0),
+    }
+}
+
 /// Writes to standard output what was asked for; a reader that has closed it (`| head`) ends the program quietly.
 pub fn out(text: &str) {
     match write(text) {
@@ -177,7 +257,49 @@ fn write(text: &str) -> std::io::Result<()> {
 
 #[cfg(test)]
 mod tests {
-    use super::plain;
+    use super::*;
+
+    /// A clock that stands where the test puts it.
+    #[test]
+    fn the_time_left_follows_the_share_that_is_done() {
+        let watcher = Watcher::new(false, 4, None);
+        let began = Instant::now();
+        let after = |seconds| began + Duration::from_secs(seconds);
+        assert_eq!(watcher.stand(after(10)), None, "nothing runs");
+        let running = Running { since: Some(began), ..Running::default() };
+        watcher.running.lock().unwrap().insert("ste".to_owned(), running);
+        assert_eq!(watcher.stand(after(10)).unwrap(), "  running: ste 0 % after 10 s");
+        watcher.event(&Event::Progressed { stage: "ste", share: 0.25 });
+        assert_eq!(watcher.stand(after(20)).unwrap(), "  running: ste 25 % after 20 s, about 60 s left");
+        watcher.event(&Event::Started { stage: "pair", why: "never ran", chunks: 1 });
+        let both = watcher.stand(after(1000)).unwrap();
+        assert!(
+            both.contains("pair 0 % after ") && both.contains("; ste 25 % after 17 min, about 50 min left"),
+            "{both}"
+        );
+        for stage in ["ste", "pair"] {
+            watcher.event(&Event::Finished { stage, seconds: 1.0 });
+        }
+        assert_eq!(watcher.stand(after(2000)), None);
+        assert_eq!([left(0.01, 100.0), left(0.5, 1.0), left(1.0, 9.0), left(0.2, 8.0)], [None, None, None, Some(32.0)]);
+    }
+
+    #[test]
+    fn whoever_has_no_bars_is_told_until_the_work_has_ended() {
+        let watcher = Watcher::new(false, 4, None);
+        watcher.event(&Event::Started { stage: "ste", why: "", chunks: 1 });
+        let waited = watcher.telling_every(Duration::from_millis(1), || {
+            std::thread::sleep(Duration::from_millis(20));
+            7
+        });
+        assert_eq!(waited, 7);
+    }
+
+    #[test]
+    fn estimates_have_few_digits() {
+        let shown = [0.0, 0.034, 0.26, 4.4, 61.0, 600.0, 9000.0, 400_000.0].map(rough);
+        assert_eq!(shown, ["10 ms", "30 ms", "300 ms", "4 s", "61 s", "10 min", "2 h", "5 days"]);
+    }
 
     #[test]
     fn no_text_steers_a_terminal() {

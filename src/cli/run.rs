@@ -6,44 +6,52 @@ use std::cell::RefCell;
 use std::sync::atomic::AtomicBool;
 
 use indicatif::MultiProgress;
-use serde_json::json;
 
 use super::Ending;
-use super::arguments::{Places, Selection};
+use super::arguments::{self, Places, Selection};
 use super::pages;
+use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
 use super::show::none_yet;
 use super::signals::stop_flag;
 use crate::base::error::Diagnostic;
 use crate::runner::execute::{self, RunError};
+use crate::runner::limits::{Limits, MOST_ROWS};
 use crate::runner::options::{Force, Options, Wanted};
 use crate::runner::outcome::Outcome;
-use crate::runner::plan::{self, Action, Plan};
-use crate::stage::{Omission, Want, omission};
+use crate::runner::plan::{self, Plan};
+use crate::stage::Want;
 use crate::store::cache::{Cache, Remove};
 use crate::store::error::StoreError;
 use crate::store::manifest::Manifest;
 use crate::store::results::{Folder, Published, Tables};
-use crate::study::Study;
+use crate::study::{LoadError, Study};
 
 /// How to run.
+#[derive(Default)]
 pub(super) struct How {
+    pub(super) limits: arguments::Limits,
     pub(super) explain: bool,
     pub(super) keep_going: bool,
     pub(super) jobs: Option<usize>,
     pub quiet: bool,
 }
 
+pub(super) fn limits(given: &arguments::Limits) -> Limits {
+    Limits { memory: given.limit_memory, rows: given.limit_rows.unwrap_or(MOST_ROWS) }
+}
+
 /// # Errors
 /// A name that is neither `stage.table` nor `stage.table.column`.
-fn options(selection: &Selection) -> Result<Options, Ending> {
+fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     let force = match &selection.force {
         None => Force::Nothing,
         Some(names) if names.is_empty() => Force::All,
         Some(names) => Force::Stages(names.iter().cloned().collect()),
     };
     let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
-    Ok(Options { only: selection.only.clone(), force, wanted, ..Options::default() })
+    let (jobs, keep_going, limits) = (how.jobs.unwrap_or(0), how.keep_going, limits(&how.limits));
+    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits, ..Options::default() })
 }
 
 fn wanted(name: &str) -> Result<Wanted, Ending> {
@@ -90,7 +98,7 @@ fn run_one(
 ) -> Result<(), Ending> {
     let cache = Cache::open_if_possible(&places.cache);
     let folder = Folder::new(&places.results, &study.name).telling(progress::told);
-    let options = Options { jobs: how.jobs.unwrap_or(0), keep_going: how.keep_going, ..options(selection)? };
+    let options = options(selection, how)?;
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
         tell(&plan_text(study, &plan));
@@ -104,11 +112,15 @@ fn run_one(
         verdicts.replace(Some(pages::summary(manifest, tables)));
         Ok(drawn)
     };
-    let (outcome, published) =
-        execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw)).map_err(|error| match error {
-            RunError::Study(diagnostic) => unknown(&diagnostic),
-            other => Ending::Usage(other.to_string()),
-        })?;
+    let run = || execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw));
+    let (outcome, published) = watcher.telling(run).map_err(|error| match error {
+        RunError::Study(diagnostic) => unknown(&diagnostic),
+        RunError::Beyond(diagnostic) => {
+            let (path, text) = (study.path.clone(), study.text.clone());
+            Ending::Invalid(Box::new(LoadError { path, text, diagnostic }))
+        }
+        other => Ending::Usage(other.to_string()),
+    })?;
     if !how.quiet {
         tell(&rewritten(study, &published));
     }
@@ -171,10 +183,16 @@ fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, En
     plan
 }
 
-pub(super) fn plan(studies: &[Study], places: &Places, selection: &Selection, as_json: bool) -> Result<(), Ending> {
+pub(super) fn plan(
+    studies: &[Study],
+    places: &Places,
+    selection: &Selection,
+    how: &How,
+    as_json: bool,
+) -> Result<(), Ending> {
     let mut all = Vec::new();
     for study in studies {
-        let plan = plan_of(study, places, &options(selection)?)?;
+        let plan = plan_of(study, places, &options(selection, how)?)?;
         if as_json {
             all.push(plan_json(study, &plan));
         } else {
@@ -185,45 +203,6 @@ pub(super) fn plan(studies: &[Study], places: &Places, selection: &Selection, as
         out(&format!("{:#}\n", serde_json::Value::Array(all)));
     }
     Ok(())
-}
-
-fn plan_text(study: &Study, plan: &Plan) -> String {
-    let width = plan.stages.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);
-    let mut text = format!("{}: {}\n", study.name, study.title);
-    for stage in &plan.stages {
-        let mut action = stage.action.phrase();
-        if stage.chunks > 1 && matches!(stage.action, Action::Run(_)) {
-            action += &format!(" ({} of {} chunks)", stage.missing, stage.chunks);
-        }
-        text += format!("  {:width$}  {action}", stage.name).trim_end();
-        text += "\n";
-        for omission in omission::together(&stage.left_out) {
-            let saved = omission
-                .seconds(&stage.work, stage.seconds)
-                .map_or_else(String::new, |seconds| format!("; saves about {}", duration(seconds)));
-            text += &format!("  {:width$}    left out: {}: {}{saved}\n", "", omission.what, omission.why);
-        }
-    }
-    text
-}
-
-fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
-    let stages: Vec<_> = plan
-        .stages
-        .iter()
-        .map(|stage| {
-            let omission = |omission: &Omission| {
-                let saved = omission.seconds(&stage.work, stage.seconds);
-                json!({ "what": omission.what, "why": omission.why, "saved_seconds": saved })
-            };
-            let left_out: Vec<_> = stage.left_out.iter().map(omission).collect();
-            json!({
-                "name": stage.name, "kind": stage.kind, "action": stage.action.phrase(),
-                "chunks": stage.chunks, "missing_chunks": stage.missing, "work": stage.work.named(), "left_out": left_out,
-            })
-        })
-        .collect();
-    json!({ "study": study.name, "file": study.path.to_string_lossy(), "up_to_date": plan.is_up_to_date(), "stages": stages })
 }
 
 pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {

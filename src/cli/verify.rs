@@ -6,30 +6,41 @@ use std::path::Path;
 
 use serde_json::{Value as Json, json};
 
+use super::arguments::Limits;
 use super::progress::{self, Watcher, out};
 use super::signals::stop_flag;
-use super::{Ending, pages};
+use super::{Ending, pages, run};
 use crate::base::number::with_unit;
 use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
 use crate::diff::words;
+use crate::runner::execute::RunError;
 use crate::runner::options::Options;
-use crate::runner::verify::{Agreement, Verification, Verified, VerifiedFile, VerifyError, verify as run};
+use crate::runner::verify::{Agreement, Verification, Verified, VerifiedFile, VerifyError, verify as verified};
 use crate::store::archive::about;
 use crate::store::archive::open::open;
 
 /// Says per table whether it came out as archived; differences end with code 4.
-pub(super) fn verify(file: &Path, jobs: Option<usize>, as_json: bool, quiet: bool) -> Result<(), Ending> {
+pub(super) fn verify(
+    file: &Path,
+    jobs: Option<usize>,
+    limits: &Limits,
+    as_json: bool,
+    quiet: bool,
+) -> Result<(), Ending> {
     let mut archive = open(file).map_err(|error| Ending::Usage(error.to_string()))?;
     let work = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
     let bars = progress::bars(quiet || as_json);
     let stop = stop_flag(bars.clone());
     // Names of stages are not known before the study is read; they are seldom longer.
     let watcher = Watcher::new(quiet || as_json, 12, bars);
-    let options = Options { jobs: jobs.unwrap_or(0), ..Options::default() };
+    let options = Options { jobs: jobs.unwrap_or(0), limits: run::limits(limits), ..Options::default() };
     let verification =
-        run(&mut archive, work.path(), &options, &watcher, &stop, &pages::draw).map_err(|error| match error {
+        verified(&mut archive, work.path(), &options, &watcher, &stop, &pages::draw).map_err(|error| match error {
             VerifyError::Study(error) => Ending::Invalid(error),
             VerifyError::Stopped => Ending::Stopped,
+            VerifyError::Run(RunError::Beyond(found)) => Ending::Beyond(
+                found.help.iter().fold(found.message.clone(), |all, help| format!("{all}\n  help: {help}")),
+            ),
             VerifyError::Failed(_) => Ending::Failed(format!("{}: {error}", file.display())),
             other => Ending::Usage(other.to_string()),
         })?;

@@ -10,7 +10,7 @@ use super::nelder_mead::NelderMead;
 use super::random::{below, chance};
 use super::restarts::Restarted;
 use super::search::Reason;
-use super::{Method, Strategy, count};
+use super::{Foreseen, Method, Strategy, count, points_held};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
@@ -22,6 +22,7 @@ pub const METHOD: Method = Method {
         summary: "global search by differences within a population",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
@@ -71,15 +72,33 @@ struct DifferentialEvolution {
     polishing: Option<Restarted<NelderMead>>,
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let population = latin_hypercube::points(count(record, "population"), dimension, &mut seed.generator(0));
-    let polish = (record.choice("polish") == "nelder_mead").then(|| count(record, "polish_evaluations"));
+/// Evaluations of the polish, where there is one.
+fn polish(record: &Record) -> Option<usize> {
+    (record.choice("polish") == "nelder_mead").then(|| count(record, "polish_evaluations"))
+}
+
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    let polish = polish(record);
     if polish.is_some_and(|evaluations| evaluations < dimension) {
         return Err(Diagnostic::new(format!("too few evaluations to polish {dimension} variables"))
             .at(record.place_of("polish_evaluations"))
             .help(format!("give at least {dimension}")));
     }
-    Ok(Box::new(DifferentialEvolution {
+    let (size, generations) = (count(record, "population"), count(record, "generations"));
+    let polishing = polish.unwrap_or(0);
+    Ok(Foreseen {
+        evaluations: size.saturating_mul(generations).saturating_add(polishing),
+        batches: generations.saturating_add(polishing),
+        exact: false,
+        // Population, trials, and these in the box; the first time as a hypercube.
+        memory: points_held(4 * size, dimension),
+    })
+}
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+    let population = latin_hypercube::points(count(record, "population"), dimension, &mut seed.generator(0));
+    let polish = polish(record);
+    Box::new(DifferentialEvolution {
         seed,
         generations: count(record, "generations"),
         towards_best: record.choice("mutant") == "current_to_best",
@@ -93,7 +112,7 @@ fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strate
         told: 0,
         ended: None,
         polishing: None,
-    }))
+    })
 }
 
 impl Strategy for DifferentialEvolution {

@@ -14,7 +14,7 @@ use rand_chacha::ChaCha8Rng;
 
 use super::random::{below, chance, uniform};
 use super::search::Reason;
-use super::{Method, Strategy, count};
+use super::{Foreseen, Method, Strategy, count, points_held};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Choice, Field, Member};
 use crate::base::record::Record;
@@ -22,6 +22,7 @@ use crate::base::seed::Seed;
 
 pub const METHOD: Method = Method {
     member: Member { name: "genetic", summary: "genetic algorithm on binary chromosomes", fields: FIELDS },
+    foresee,
     build,
 };
 
@@ -80,7 +81,7 @@ struct Genetic {
     stalled: usize,
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
     let (size, elite, bits) = (count(record, "population"), count(record, "elite"), count(record, "bits"));
     if elite >= size {
         let message = format!("an elite of {elite} leaves no room for offspring in a population of {size}");
@@ -88,6 +89,15 @@ fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strate
             .at(record.place_of("elite"))
             .help(format!("the elite may be 0 to {} here", size - 1)));
     }
+    let generations = count(record, "generations");
+    // Two generations of chromosomes, one decoded twice: here and in the box.
+    let memory = size * 2 * (bits * dimension + 40) + points_held(2 * size, dimension);
+    let exact = record.maybe_integer("converged_after").is_none();
+    Ok(Foreseen { evaluations: size.saturating_mul(generations), batches: generations, exact, memory })
+}
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+    let (size, elite, bits) = (count(record, "population"), count(record, "elite"), count(record, "bits"));
     let mut generator = seed.generator(0);
     let population = (0..size).map(|_| (0..bits * dimension).map(|_| chance(&mut generator, 0.5)).collect()).collect();
     let mut genetic = Genetic {
@@ -109,7 +119,7 @@ fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strate
         stalled: 0,
     };
     genetic.decode_all();
-    Ok(Box::new(genetic))
+    Box::new(genetic)
 }
 
 impl Strategy for Genetic {

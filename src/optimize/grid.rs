@@ -2,8 +2,8 @@
 //!
 //! Must not know: seeds.
 
-use super::sampling::Sample;
-use super::{Method, Strategy};
+use super::sampling::{self, Sample};
+use super::{Foreseen, Method, Strategy};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member, Shape};
 use crate::base::record::{Record, Value};
@@ -15,6 +15,7 @@ pub const METHOD: Method = Method {
         summary: "every combination of equally spaced levels, bounds included",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
@@ -25,7 +26,8 @@ const FIELDS: &[Field] = &[Field::new(
 )
 .default("11")];
 
-fn build(record: &Record, dimension: usize, _: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
+/// The levels of each variable.
+fn levels(record: &Record, dimension: usize) -> Result<Vec<usize>, Diagnostic> {
     let given: Vec<usize> = record
         .list("levels")
         .iter()
@@ -34,20 +36,31 @@ fn build(record: &Record, dimension: usize, _: Seed) -> Result<Box<dyn Strategy>
             _ => None,
         })
         .collect();
-    let levels = match given[..] {
-        [all] => vec![all; dimension],
-        _ if given.len() == dimension => given,
+    match given[..] {
+        [all] => Ok(vec![all; dimension]),
+        _ if given.len() == dimension => Ok(given),
         _ => {
             let message = format!("{} levels are given for {dimension} variables", given.len());
-            return Err(Diagnostic::new(message)
+            Err(Diagnostic::new(message)
                 .at(record.place_of("levels"))
-                .help("give one number for all variables, or one for each"));
+                .help("give one number for all variables, or one for each"))
         }
-    };
-    let count = levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(*levels));
-    let layout = Box::new(move |index| point(&levels, index));
-    let sample = Sample::new(count, layout).map_err(|wrong| wrong.at(record.place_of("levels")))?;
-    Ok(Box::new(sample))
+    }
+}
+
+fn combinations(levels: &[usize]) -> Option<usize> {
+    levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(*levels))
+}
+
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    let count = combinations(&levels(record, dimension)?);
+    sampling::foreseen(count, dimension, 0).map_err(|wrong| wrong.at(record.place_of("levels")))
+}
+
+fn build(record: &Record, dimension: usize, _: Seed) -> Box<dyn Strategy> {
+    let levels = levels(record, dimension).unwrap_or_default();
+    let count = combinations(&levels).unwrap_or(0);
+    Box::new(Sample::new(count, Box::new(move |index| point(&levels, index))))
 }
 
 /// The digits of `index` in the mixed radix of `levels`, as shares of the highest digit.

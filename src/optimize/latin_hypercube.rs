@@ -5,8 +5,8 @@
 use rand_core::Rng;
 
 use super::random::{permutation, uniform};
-use super::sampling::{MOST_POINTS, Sample};
-use super::{Method, Strategy, count};
+use super::sampling::{self, MOST_POINTS, Sample};
+use super::{Foreseen, Method, Strategy, count};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
@@ -18,28 +18,37 @@ pub const METHOD: Method = Method {
         summary: "random points, one in each stratum of every variable",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
 const FIELDS: &[Field] = &[Field::integer("points", 1, MOST_POINTS, "number of points").default("256")];
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let points = points(count(record, "points"), dimension, &mut seed.generator(0));
-    let sample = Sample::new(Some(points.len()), Box::new(move |index| points[index].clone()))?;
-    Ok(Box::new(sample))
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    // A number for each variable, and while one is drawn its strata.
+    sampling::foreseen(Some(count(record, "points")), dimension, 8 * (dimension + 1))
+}
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+    let count = count(record, "points");
+    let columns = columns(count, dimension, &mut seed.generator(0));
+    Box::new(Sample::new(count, Box::new(move |index| columns.iter().map(|column| column[index]).collect())))
 }
 
 /// `count` points of the unit cube, coordinates in 0..1.
 pub fn points(count: usize, dimension: usize, generator: &mut impl Rng) -> Vec<Vec<f64>> {
-    let mut points = vec![Vec::with_capacity(dimension); count];
-    for _ in 0..dimension {
+    let columns = columns(count, dimension, generator);
+    (0..count).map(|index| columns.iter().map(|column| column[index]).collect()).collect()
+}
+
+/// The same, variable by variable: a point by itself takes as much again as its numbers.
+fn columns(count: usize, dimension: usize, generator: &mut impl Rng) -> Vec<Vec<f64>> {
+    let column = |_| {
         let strata = permutation(generator, count);
-        for (point, stratum) in points.iter_mut().zip(strata) {
-            // Rounding may lift the topmost point of the last stratum to 1, which is still in the cube.
-            point.push(((stratum as f64 + uniform(generator)) / count as f64).min(1.0));
-        }
-    }
-    points
+        // Rounding may lift the topmost point of the last stratum to 1, which is still in the cube.
+        strata.into_iter().map(|stratum| ((stratum as f64 + uniform(generator)) / count as f64).min(1.0)).collect()
+    };
+    (0..dimension).map(column).collect()
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 //!
 //! Lengths are shares of each variable's range. Must not know: how any of them searches.
 
-use super::count;
 use super::random::uniform;
+use super::{Foreseen, count, points_held};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Choice, Field};
 use crate::base::record::Record;
@@ -57,32 +57,37 @@ pub struct Limits {
     pub evaluations: usize,
 }
 
-/// Start and limits, from [`START`], [`tolerance`], [`restarts`] and [`EVALUATIONS`]; `least` evaluations are needed for
-/// `what`.
+/// What a local search will ask for; `least` evaluations are needed for `what`.
 ///
 /// # Errors
 /// With too few evaluations to begin.
-pub fn read(
-    record: &Record,
-    dimension: usize,
-    seed: Seed,
-    (least, what): (usize, &str),
-) -> Result<(Vec<f64>, Limits), Diagnostic> {
+pub fn foresee(record: &Record, dimension: usize, (least, what): (usize, &str)) -> Result<Foreseen, Diagnostic> {
+    let evaluations = count(record, "evaluations");
+    if evaluations < least {
+        let message = format!("{evaluations} evaluations are too few for {what} {dimension} variables");
+        return Err(Diagnostic::new(message).at(record.place_of("evaluations")).help(format!("give at least {least}")));
+    }
+    // Simplex or directions, and the gradients of all looks at a kink.
+    let memory = points_held(MOST_HELD * (dimension + 1), dimension);
+    Ok(Foreseen { evaluations, batches: evaluations, exact: false, memory })
+}
+
+/// Points that a local search keeps for each variable, at most.
+const MOST_HELD: usize = 64;
+
+/// Start and limits, from [`START`], [`tolerance`], [`restarts`] and [`EVALUATIONS`].
+pub fn read(record: &Record, dimension: usize, seed: Seed) -> (Vec<f64>, Limits) {
     let limits = Limits {
         tolerance: record.number("tolerance"),
         restarts: count(record, "restarts"),
         evaluations: count(record, "evaluations"),
     };
-    if limits.evaluations < least {
-        let message = format!("{} evaluations are too few for {what} {dimension} variables", limits.evaluations);
-        return Err(Diagnostic::new(message).at(record.place_of("evaluations")).help(format!("give at least {least}")));
-    }
     let mut generator = seed.generator(0);
     let start = match record.choice("start") {
         "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
         _ => vec![0.5; dimension],
     };
-    Ok((start, limits))
+    (start, limits)
 }
 
 /// Onto the range.

@@ -39,12 +39,30 @@ use crate::base::parameter::Member;
 use crate::base::record::Record;
 use crate::base::seed::Seed;
 
-/// Builds a method for a number of variables; refuses what no declaration can express.
-pub type Build = fn(&Record, usize, Seed) -> Result<Box<dyn Strategy>, Diagnostic>;
+/// Sets a method up for a number of variables.
+pub type Build = fn(&Record, usize, Seed) -> Box<dyn Strategy>;
+
+/// What a method will ask for, known from its parameters and the number of variables, before a point is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Foreseen {
+    /// The most evaluations.
+    pub evaluations: usize,
+    /// The most batches.
+    pub batches: usize,
+    /// Whether it asks for exactly as many, or may converge before.
+    pub exact: bool,
+    /// Bytes that it holds at once, at most.
+    pub memory: usize,
+}
+
+/// Looks ahead; refuses what no declaration can express.
+pub type Foresee = fn(&Record, usize) -> Result<Foreseen, Diagnostic>;
 
 /// A method as registered.
 pub struct Method {
     pub member: Member,
+    pub foresee: Foresee,
+    /// Never called with what [`Method::foresee`] refuses.
     pub build: Build,
 }
 
@@ -105,19 +123,34 @@ pub fn members() -> &'static [Member] {
     &MEMBERS
 }
 
-/// The method `name`, set up as `record` says, ready to search `bounds`.
+/// What the method `name`, set up as `record` says, will ask for with `dimension` variables.
 ///
 /// # Errors
 /// When there is no such method, or its parameters make no sense together or for this number of variables.
+pub fn foreseen(name: &str, record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    (method(name, record)?.foresee)(record, dimension).map_err(|wrong| wrong.or_at(record.place))
+}
+
+/// The method `name`, set up as `record` says, ready to search `bounds`.
+///
+/// # Errors
+/// As [`foreseen`].
 pub fn optimizer(name: &str, record: &Record, bounds: Bounds, seed: Seed) -> Result<Optimizer, Diagnostic> {
-    let Some(method) = METHODS.iter().find(|method| method.member.name == name) else {
-        let known = METHODS.iter().map(|method| method.member.name);
-        return Err(Diagnostic::new(format!("there is no optimisation method `{name}`"))
-            .at(record.place)
-            .help(suggest(name, known)));
-    };
-    let strategy = (method.build)(record, bounds.dimension(), seed).map_err(|wrong| wrong.or_at(record.place))?;
+    foreseen(name, record, bounds.dimension())?;
+    let strategy = (method(name, record)?.build)(record, bounds.dimension(), seed);
     Ok(Optimizer::new(strategy, bounds))
+}
+
+fn method(name: &str, record: &Record) -> Result<&'static Method, Diagnostic> {
+    METHODS.iter().copied().find(|method| method.member.name == name).ok_or_else(|| {
+        let known = METHODS.iter().map(|method| method.member.name);
+        Diagnostic::new(format!("there is no optimisation method `{name}`")).at(record.place).help(suggest(name, known))
+    })
+}
+
+/// Bytes of so many points as vectors of coordinates, with what the allocator keeps of each.
+fn points_held(count: usize, dimension: usize) -> usize {
+    count.saturating_mul(8 * dimension + 40)
 }
 
 /// A field declared as an integer from zero or one upwards.

@@ -10,7 +10,7 @@
 
 use super::local::{self, Search, clip};
 use super::restarts::Restarted;
-use super::{Method, Strategy};
+use super::{Foreseen, Method, Strategy};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
@@ -22,6 +22,7 @@ pub const METHOD: Method = Method {
         summary: "local search by a moving simplex, without derivatives",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
@@ -33,10 +34,14 @@ const FIELDS: &[Field] = &[
     local::EVALUATIONS,
 ];
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let (start, limits) = local::read(record, dimension, seed, (dimension + 1, "a simplex in"))?;
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    local::foresee(record, dimension, (dimension + 1, "a simplex in"))
+}
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+    let (start, limits) = local::read(record, dimension, seed);
     let edge = record.number("edge");
-    Ok(Box::new(Restarted::new(NelderMead::new(start, None, edge, limits.tolerance), edge, limits)))
+    Box::new(Restarted::new(NelderMead::new(start, None, edge, limits.tolerance), edge, limits))
 }
 
 #[derive(Clone, Debug)]

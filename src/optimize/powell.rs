@@ -10,7 +10,7 @@
 use super::line::Line;
 use super::local::{self, Search, clip, ends, moved};
 use super::restarts::Restarted;
-use super::{Method, Strategy};
+use super::{Foreseen, Method, Strategy};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
@@ -22,6 +22,7 @@ pub const METHOD: Method = Method {
         summary: "local search along directions that become conjugate, without derivatives",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
@@ -33,11 +34,14 @@ const FIELDS: &[Field] = &[
     local::EVALUATIONS,
 ];
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
-    let least = (2 * dimension + 1, "a line along each of");
-    let (start, limits) = local::read(record, dimension, seed, least)?;
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    local::foresee(record, dimension, (2 * dimension + 1, "a line along each of"))
+}
+
+fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+    let (start, limits) = local::read(record, dimension, seed);
     let step = record.number("step");
-    Ok(Box::new(Restarted::new(Powell::new(start, step, limits.tolerance), step, limits)))
+    Box::new(Restarted::new(Powell::new(start, step, limits.tolerance), step, limits))
 }
 
 /// A direction whose largest component is 1, and the length of the first step along it.

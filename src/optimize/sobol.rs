@@ -3,8 +3,8 @@
 //! Source: Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, primitive polynomials and initial direction numbers of
 //! their set D6; the order is that of the Gray code (Antonov and Saleev 1979). Must not know: seeds.
 
-use super::sampling::{MOST_POINTS, Sample};
-use super::{Method, Strategy, count};
+use super::sampling::{self, MOST_POINTS, Sample};
+use super::{Foreseen, Method, Strategy, count};
 use crate::base::error::Diagnostic;
 use crate::base::parameter::{Field, Member};
 use crate::base::record::Record;
@@ -16,6 +16,7 @@ pub const METHOD: Method = Method {
         summary: "evenly spread points, best when their number is a power of two",
         fields: FIELDS,
     },
+    foresee,
     build,
 };
 
@@ -43,7 +44,7 @@ const DIRECTIONS: &[(u32, &[u32])] = &[
     (16, &[1, 3, 1, 13, 27, 49]),
 ];
 
-fn build(record: &Record, dimension: usize, _: Seed) -> Result<Box<dyn Strategy>, Diagnostic> {
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
     let most = DIRECTIONS.len() + 1;
     if dimension > most {
         return Err(Diagnostic::new(format!(
@@ -51,9 +52,13 @@ fn build(record: &Record, dimension: usize, _: Seed) -> Result<Box<dyn Strategy>
         ))
         .help("use `latin_hypercube`"));
     }
+    sampling::foreseen(Some(count(record, "points")), dimension, 0)
+}
+
+fn build(record: &Record, dimension: usize, _: Seed) -> Box<dyn Strategy> {
     let columns: Vec<[u32; BITS as usize]> = (0..dimension).map(directions).collect();
     let layout = Box::new(move |index| columns.iter().map(|column| coordinate(column, index)).collect());
-    Ok(Box::new(Sample::new(Some(count(record, "points")), layout)?))
+    Box::new(Sample::new(count(record, "points"), layout))
 }
 
 /// v₁ … v₃₂ of one variable, as fractions of 2³².

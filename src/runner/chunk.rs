@@ -1,13 +1,18 @@
 //! Cutting a stage along an axis into chunks that are computed and kept by themselves.
 //!
 //! Where one chunk ends is decided by the value that ends it, not by counting: a value put in between changes the
-//! chunk it falls into and no other. Chunks hold as many values as declared on average, at most four times that.
-//! Must not know: what the axis is.
+//! chunk it falls into and no other. Chunks hold as many values as declared on average, at most four times that; on a long
+//! axis, where a file for each would cost more than what is in it, twice, four times … as many. Must not know: what the
+//! axis is.
 
 use crate::base::digest::Writer;
 use crate::base::parameter::Span;
 use crate::base::record::{Record, Value};
 use crate::stage::Kind;
+
+/// From about so many chunks on, they hold twice as many values. A value that takes the axis over such a step changes all
+/// chunks; any other changes one.
+const MOST_CHUNKS: usize = 128;
 
 /// The axis along which a stage is cut, and the values of each chunk, ascending.
 #[derive(Clone, Debug, PartialEq)]
@@ -24,7 +29,13 @@ pub fn chunks(kind: &Kind, record: &Record) -> Option<Chunks> {
         _ => None,
     })?;
     let Value::Axis(values) = &record.entry(field)?.value else { return None };
-    Some(Chunks { field, values: cut(values, chunk) })
+    Some(Chunks { field, values: cut(values, size(values.len(), chunk)) })
+}
+
+/// How many values a chunk holds on average, of `count` in all: `least`, or as many times that as a power of two says.
+fn size(count: usize, least: usize) -> usize {
+    let times = count.div_ceil(least).div_ceil(MOST_CHUNKS).max(1);
+    least.saturating_mul(times.next_power_of_two())
 }
 
 fn cut(values: &[f64], chunk: usize) -> Vec<Vec<f64>> {
@@ -72,5 +83,21 @@ mod tests {
         }
         assert_eq!(cut(&values, usize::MAX).len(), 1);
         assert_eq!(cut(&[7.0], 4), [[7.0]]);
+    }
+
+    /// A file for each of ten thousand values took forty seconds of waiting for the disk.
+    #[test]
+    fn a_long_axis_has_about_a_hundred_chunks() {
+        let count = |values: usize| {
+            let values: Vec<f64> = (0..values).map(|index| 1.0 + index as f64 * 0.01).collect();
+            cut(&values, size(values.len(), 1)).len()
+        };
+        assert_eq!([1, 2, 64, 128].map(count), [1, 2, 64, 128], "each value by itself");
+        for values in [129, 200, 1000, 10_000, 100_000] {
+            let chunks = count(values);
+            assert!((40..=160).contains(&chunks), "{values}: {chunks}");
+        }
+        assert_eq!([size(128, 1), size(129, 1), size(256, 1), size(257, 1)], [1, 2, 2, 4]);
+        assert_eq!([size(9, usize::MAX), size(1000, 16), size(100_000, 16)], [usize::MAX, 16, 16 * 8]);
     }
 }

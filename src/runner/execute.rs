@@ -33,6 +33,9 @@ use crate::table::data::Table;
 pub enum RunError {
     #[error(transparent)]
     Study(#[from] Diagnostic),
+    /// It would take more than it may.
+    #[error("{}", .0.message)]
+    Beyond(Box<Diagnostic>),
     #[error(transparent)]
     Store(#[from] StoreError),
     #[error("cannot start {threads} threads: {problem}")]
@@ -102,7 +105,11 @@ pub fn execute(
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
     board.observer = observer;
-    observer.event(&Event::Planned { plan: &plan::of(&board) });
+    let plan = plan::of(&board, options);
+    if let Some(refused) = plan.refused {
+        return Err(RunError::Beyond(Box::new(refused)));
+    }
+    observer.event(&Event::Planned { plan: &plan });
     if !queued.is_empty() {
         let threads = options.threads();
         let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("stage {index}")).build();

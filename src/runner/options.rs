@@ -4,6 +4,7 @@
 
 use std::collections::BTreeSet;
 
+use super::limits::Limits;
 use crate::stage::{self, Want};
 
 /// How to run a study.
@@ -18,6 +19,8 @@ pub struct Options {
     pub only: Vec<String>,
     /// Tables and columns on demand that the user wants to see.
     pub wanted: Vec<Wanted>,
+    /// What is beyond them is refused.
+    pub limits: Limits,
     /// The digest of a kind's code; another one only in tests.
     pub code: fn(&str) -> String,
 }
@@ -30,6 +33,7 @@ impl Default for Options {
             force: Force::Nothing,
             only: Vec::new(),
             wanted: Vec::new(),
+            limits: Limits::default(),
             code: stage::code_digest,
         }
     }

@@ -5,7 +5,9 @@
 
 use super::board::{Board, State};
 use super::events::Silent;
+use super::foresee::{Expected, foresee};
 use super::key::{Why, phrase};
+use super::limits;
 use super::options::Options;
 use crate::base::error::Diagnostic;
 use crate::base::work::Work;
@@ -17,6 +19,10 @@ use crate::study::Study;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
     pub stages: Vec<Planned>,
+    /// What all stages take together.
+    pub total: Expected,
+    /// Why it is not run: it would take more than it may.
+    pub refused: Option<Diagnostic>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -27,6 +33,8 @@ pub struct Planned {
     /// Chunks in all, and those that must be computed; 1 of 1 for a stage that is not cut. 0 while it waits.
     pub chunks: usize,
     pub missing: usize,
+    /// What it will take; nothing where nothing is to be computed.
+    pub expected: Option<Expected>,
     /// What it does not compute, and why.
     pub left_out: Vec<Omission>,
     /// Work that was counted in what is known.
@@ -74,11 +82,14 @@ impl Plan {
 pub fn plan(study: &Study, cache: &Cache, options: &Options) -> Result<Plan, Diagnostic> {
     let mut board = Board::new(study, cache, options, &Silent)?;
     board.settle();
-    Ok(of(&board))
+    Ok(of(&board, options))
 }
 
 /// The plan that a settled board shows.
-pub fn of(board: &Board) -> Plan {
+pub fn of(board: &Board, options: &Options) -> Plan {
+    let threads = options.threads();
+    let mut foresight = foresee(board, threads, None);
+    let refused = limits::refusal(board, &foresight, &options.limits, threads);
     let stages = board.graph.order.iter().map(|&node| {
         let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
         let action = match progress.state {
@@ -100,12 +111,13 @@ pub fn of(board: &Board) -> Plan {
             action,
             chunks: progress.parts.len(),
             missing: progress.missing.len(),
+            expected: foresight.stages[node].take(),
             left_out: left_out(board, node),
             seconds: progress.seconds(),
             work: progress.work(),
         }
     });
-    Plan { stages: stages.collect() }
+    Plan { stages: stages.collect(), total: foresight.total, refused }
 }
 
 /// What a stage itself leaves out, and what nobody asks it for.

@@ -22,7 +22,7 @@ use super::plan::{Plan, plan};
 use crate::base::error::{Diagnostic, Failure, Place};
 use crate::base::parameter::{Field, Presence, Shape, Span};
 use crate::base::record::{Entry, Record, Value};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, Want};
 use crate::store::cache::Cache;
 use crate::study::{Node, Study};
 use crate::table::data::{Row, Table};
@@ -117,6 +117,11 @@ impl Stage for Probe {
         ];
         let detail = vec![Column::float("torque", "N m", "").key(), Column::float("value", "um", "")];
         vec![Schema::new("values", "", values), Schema::new("detail", "", detail).on_demand()]
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let rows = Rows::exact(self.record.maybe_axis("torque").map_or(1, <[f64]>::len));
+        self.outputs().into_iter().fold(Estimate::new(false), |all, schema| all.rows(demand, schema, rows))
     }
 
     fn uses_seed(&self) -> bool {

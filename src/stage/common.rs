@@ -11,6 +11,7 @@ use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, 
 use crate::gear::geometry::Pair;
 use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::trace::NODES;
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
 
 /// How the teeth of a pair deflect; read by [`teeth`].
@@ -122,6 +123,29 @@ pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(Pair, MeshCycl
     let compliance = codec::read(read("compliance")?, read("neighbours")?, read("model")?)?;
     let cycle = MeshCycle::new(&pair, &compliance, settings)?;
     Ok((pair, cycle))
+}
+
+/// About how many rows the curve of one design under one torque has.
+///
+/// Spans hold as many positions as were asked for, or are as many as there are harmonics; those at zone ends, reliefs and
+/// first touches come on top, and where pairs take up load.
+#[must_use]
+pub fn curve_rows(settings: Settings, harmonics: usize) -> usize {
+    (NODES - 1) * (settings.positions.div_ceil(NODES - 1).max(harmonics) + 12)
+}
+
+/// Time of a solve of teeth that move each other over that of teeth that do not, as studies have them.
+const OF_STUDIES: f64 = 2.5;
+
+/// How many times as long as usual a solve takes with these settings.
+#[must_use]
+pub fn solve_times(settings: Settings) -> f64 {
+    match (settings.slice_coupling, settings.corner_contact) {
+        // Slices that hold each other are one system of equations.
+        (SliceCoupling::Plate, _) => (settings.slices * settings.slices) as f64,
+        (SliceCoupling::None, CornerContact::None) => OF_STUDIES,
+        (SliceCoupling::None, _) => OF_STUDIES * CORNER_SOLVES,
+    }
 }
 
 /// Time of a solve with corner contact over that of one without.

@@ -100,6 +100,19 @@ pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
     Ok([Table::from_rows(designs_schema(), names)?, Table::from_rows(elements_schema(), rows)?])
 }
 
+/// How many rows of the table of elements a modification takes, ranges among its parameters included.
+#[must_use]
+pub fn rows_of(element: &Element) -> usize {
+    fn rows(record: &Record) -> usize {
+        let row = |(_, entry): &(&'static str, Entry)| match &entry.value {
+            Value::Group(record) => rows(record),
+            _ => 1,
+        };
+        record.fields.iter().map(row).sum()
+    }
+    rows(&element.record)
+}
+
 fn flattened(prefix: &str, record: &Record) -> Vec<(String, f64, String)> {
     let mut flat = Vec::new();
     for (name, entry) in &record.fields {

@@ -6,10 +6,12 @@
 pub mod common;
 pub mod compliance;
 pub mod designs;
+pub mod estimate;
 pub mod kinds;
 pub mod memory;
 pub mod omission;
 pub mod pair;
+pub mod steps;
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -22,6 +24,7 @@ use crate::base::work::Tally;
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
+pub use self::estimate::{Ahead, Estimate, Rows};
 pub use self::omission::{Omission, Saved};
 
 /// A kind of stage as registered.
@@ -61,6 +64,9 @@ pub trait Stage: Send + Sync {
     fn runs_alone(&self) -> bool {
         false
     }
+
+    /// What it will take, as far as that is known before it runs.
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate;
 
     /// What it does not compute for this demand, and why.
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {

@@ -41,10 +41,10 @@ impl Omission {
             Saved::Fixed(counter, count) => (counter, count),
             Saved::For { done, saved, times } => (saved, times * work.count(done) as f64),
         };
-        let usual: f64 = UNITS.iter().map(|(counter, unit)| unit * work.count(*counter) as f64).sum();
+        let usual = work.seconds();
         // A stage that did next to nothing tells nothing of the machine.
         let pace = if usual > LEAST { (seconds / usual).clamp(1.0 / MOST_PACE, MOST_PACE) } else { 1.0 };
-        let unit = UNITS.iter().find(|(known, _)| *known == counter).map_or(0.0, |(_, unit)| *unit);
+        let unit = counter.seconds();
         (count > 0.0 && unit > 0.0).then_some(pace * unit * count)
     }
 }
@@ -62,14 +62,6 @@ pub fn together(omissions: &[Omission]) -> Vec<Omission> {
     found
 }
 
-/// Seconds that a unit takes, as `make bench` has it on a quiet machine; a slice costs as part of its solve.
-const UNITS: [(Counter, f64); 5] = [
-    (Counter::ComplianceEvaluations, 2e-5),
-    (Counter::MeshFactorisations, 2e-2),
-    (Counter::ContactSolves, 3e-7),
-    (Counter::ContactPressures, 6e-8),
-    (Counter::Outlines, 3e-5),
-];
 /// Seconds of counted work below which the measured time is that of other things.
 const LEAST: f64 = 1e-4;
 /// By how much a machine may be faster or slower.

@@ -5,6 +5,7 @@
 //! the same bytes: no time, no host, one row-group size, metadata in sorted order. Must not know: where files lie.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -22,22 +23,29 @@ use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Schema, Tolerance, Type};
 
 const LEVEL: i32 = 3;
+/// Rows of a group, as the format suggests.
+const ROW_GROUP: usize = 1 << 20;
 
 /// # Errors
 /// [`StoreError::Format`]; no table known makes it fail.
 pub fn write(table: &Table) -> Result<Vec<u8>, StoreError> {
     let failed = |problem: String| StoreError::Format { table: table.name().to_owned(), problem };
     let schema = Arc::new(arrow_schema(table.schema()));
-    let columns = table.columns().iter().map(array).collect();
-    let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(table.rows()));
-    let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), columns, &options)
-        .map_err(|error| failed(error.to_string()))?;
     let level = ZstdLevel::try_new(LEVEL).map_err(|error| failed(error.to_string()))?;
-    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level)).build();
+    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
+    let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
     let mut bytes = Vec::new();
-    let mut writer =
-        ArrowWriter::try_new(&mut bytes, schema, Some(properties)).map_err(|error| failed(error.to_string()))?;
-    writer.write(&batch).map_err(|error| failed(error.to_string()))?;
+    let mut writer = ArrowWriter::try_new(&mut bytes, Arc::clone(&schema), Some(properties))
+        .map_err(|error| failed(error.to_string()))?;
+    // Of a long table no more than a row group is there twice.
+    for first in (0..table.rows()).step_by(ROW_GROUP) {
+        let rows = first..table.rows().min(first + ROW_GROUP);
+        let columns = table.columns().iter().map(|data| array(data, rows.clone())).collect();
+        let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
+        let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), columns, &options)
+            .map_err(|error| failed(error.to_string()))?;
+        writer.write(&batch).map_err(|error| failed(error.to_string()))?;
+    }
     writer.close().map_err(|error| failed(error.to_string()))?;
     Ok(bytes)
 }
@@ -57,12 +65,12 @@ pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
     Table::from_columns(schema, columns).map_err(|error| error.to_string())
 }
 
-fn array(data: &Data) -> ArrayRef {
+fn array(data: &Data, rows: Range<usize>) -> ArrayRef {
     match data {
-        Data::Float(values) => Arc::new(Float64Array::from(values.clone())),
-        Data::Integer(values) => Arc::new(Int64Array::from(values.clone())),
-        Data::Text(values) => Arc::new(StringArray::from_iter_values(values)),
-        Data::Flag(values) => Arc::new(BooleanArray::from(values.clone())),
+        Data::Float(values) => Arc::new(Float64Array::from(values[rows].to_vec())),
+        Data::Integer(values) => Arc::new(Int64Array::from(values[rows].to_vec())),
+        Data::Text(values) => Arc::new(StringArray::from_iter_values(&values[rows])),
+        Data::Flag(values) => Arc::new(BooleanArray::from(values[rows].to_vec())),
     }
 }
 

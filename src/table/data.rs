@@ -4,7 +4,7 @@ use std::cmp::Ordering;
 
 use crate::base::digest::{Digest, Writer};
 
-use super::schema::{Schema, Type};
+use super::schema::{Column, Schema, Type};
 
 /// The values of one column.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +23,17 @@ impl Data {
             Type::Integer => Self::Integer(Vec::new()),
             Type::Text => Self::Text(Vec::new()),
             Type::Flag => Self::Flag(Vec::new()),
+        }
+    }
+
+    /// Empty, with room for so many values.
+    #[must_use]
+    pub fn with_room(kind: Type, rows: usize) -> Self {
+        match kind {
+            Type::Float => Self::Float(Vec::with_capacity(rows)),
+            Type::Integer => Self::Integer(Vec::with_capacity(rows)),
+            Type::Text => Self::Text(Vec::with_capacity(rows)),
+            Type::Flag => Self::Flag(Vec::with_capacity(rows)),
         }
     }
 
@@ -65,7 +76,9 @@ impl Data {
         }
     }
 
-    fn push(&mut self, cell: Cell) -> Result<(), Cell> {
+    /// # Errors
+    /// The cell again, when it is of another type.
+    pub fn push(&mut self, cell: Cell) -> Result<(), Cell> {
         match (self, cell) {
             (Self::Float(values), Cell::Float(value)) => values.push(value),
             (Self::Integer(values), Cell::Integer(value)) => values.push(value),
@@ -173,7 +186,8 @@ impl Table {
     /// # Errors
     /// When a row does not fit the schema, a number is not finite where it must be, or a key repeats.
     pub fn from_rows(schema: Schema, rows: Vec<Row>) -> Result<Self, TableError> {
-        let mut columns: Vec<Data> = schema.columns.iter().map(|column| Data::empty(column.kind)).collect();
+        let room = |column: &Column| Data::with_room(column.kind, rows.len());
+        let mut columns: Vec<Data> = schema.columns.iter().map(room).collect();
         for row in rows {
             if row.len() != columns.len() {
                 return Err(TableError::Width { table: schema.name, found: row.len(), expected: columns.len() });
@@ -235,7 +249,10 @@ impl Table {
                 let key: Vec<String> = keys.iter().map(|&key| self.columns[key].cell(pair[0]).to_string()).collect();
                 return Err(TableError::RepeatedKey { table: self.schema.name, key: key.join(", ") });
             }
-            self.columns = self.columns.iter().map(|column| column.reordered(&order)).collect();
+            // One after the other: two of a column are held, not two of the table.
+            for column in &mut self.columns {
+                *column = column.reordered(&order);
+            }
         }
         Ok(self)
     }

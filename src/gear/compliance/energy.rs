@@ -60,6 +60,7 @@ pub const METHOD: Method = Method {
     needs_fillet: false,
     tabulate,
     root_stress: None,
+    foresee: super::integrated,
 };
 
 fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {

@@ -31,6 +31,7 @@ pub const METHOD: Method = Method {
     needs_fillet: false,
     tabulate,
     root_stress: None,
+    foresee: |options, assumptions| super::Foreseen { neighbours: 0, ..super::integrated(options, assumptions) },
 };
 
 /// E_St, what the standard measured its factors on \[Pa\].

@@ -19,7 +19,7 @@ use super::geometry::root::RootShape;
 use super::geometry::{Pair, Side};
 use crate::base::parameter::{Choice, Member};
 use crate::base::record::Record;
-use crate::base::work::Work;
+use crate::base::work::{Counter, Work};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
@@ -40,6 +40,34 @@ pub struct Method {
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
     /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
     pub root_stress: Option<RootStresses>,
+    /// What it takes to tabulate a pair.
+    pub foresee: fn(&Record, Assumptions) -> Foreseen,
+}
+
+/// What a method takes, before it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foreseen {
+    /// Nodes of the series of both teeth, about.
+    pub nodes: usize,
+    /// Nodes of the tables of neighbours of both, at most about; 0 where there are none.
+    pub neighbours: usize,
+    pub work: Work,
+    /// How many times as long as usual a unit of work takes.
+    pub times: f64,
+    /// The most bytes that it holds.
+    pub memory: u64,
+}
+
+/// What methods take that integrate along a tooth: series of some dozens of nodes, and where teeth are coupled a table of
+/// every pair of them for up to three neighbours.
+pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
+    Foreseen {
+        nodes: 128,
+        neighbours: if assumptions.coupled { 3000 } else { 0 },
+        work: Work::of(Counter::ComplianceEvaluations, 224),
+        times: if assumptions.coupled { 4.0 } else { 1.0 },
+        memory: 4 << 20,
+    }
 }
 
 /// The largest stress at the root of both gears' teeth, for loads along the flank, and what it took.

@@ -46,6 +46,8 @@ pub const METHOD: Method = Method {
     needs_fillet: false,
     tabulate,
     root_stress: None,
+    // Neighbours turn with the body: one number each.
+    foresee: |options, assumptions| super::Foreseen { neighbours: 12, ..super::integrated(options, assumptions) },
 };
 
 fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {

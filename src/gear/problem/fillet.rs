@@ -28,6 +28,9 @@ pub const FAMILY: Family = Family {
         fields: FIELDS,
     },
     dimension: RATIO,
+    most: [1, 2],
+    // Assembling and solving grow with the square of the elements across; at a dozen it is a fiftieth of a second.
+    seconds: |record| 0.02 * (record.integer("elements_across") as f64 / 12.0).powi(2),
     build: |record, pair, side| {
         let across = usize::try_from(record.integer("elements_across")).unwrap_or(MOST_ACROSS);
         let tip = record.choice("load") == "tip";

@@ -48,6 +48,10 @@ pub struct Family {
     pub member: Member,
     /// The dimension of the objective.
     pub dimension: Dimension,
+    /// The most variables that are free, and the most constraints.
+    pub most: [usize; 2],
+    /// About how many seconds a point of the box takes.
+    pub seconds: fn(&Record) -> f64,
     pub build: Build,
 }
 

@@ -21,6 +21,8 @@ use crate::gear::geometry::outline::roots::optimised_arc;
 pub const FAMILY: Family = Family {
     member: Member { name: "root_arc", summary: "The root arc of zhai2020, equations 26 to 30.", fields: FIELDS },
     dimension: LENGTH,
+    most: [2, 3],
+    seconds: |_| 1e-6,
     build: |record, pair, side| {
         let arc = RootArc::new(pair.side(side))?;
         Ok(match record.choice("formulas") {

@@ -13,7 +13,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::{Entry, Record, Value};
 use crate::base::units::RATIO;
-use crate::stage::{Context, Demand, Inputs, Kind, Port, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
@@ -152,6 +152,31 @@ impl Stage for Accuracy {
 
     fn outputs(&self) -> Vec<Schema> {
         tables::schemas()
+    }
+
+    fn estimate(&self, asked: &Demand, ahead: &Ahead) -> Estimate {
+        let variants = self.variants();
+        let (ports, demand) = (variant::ports(&variants), self.demand());
+        let steps = variants.len() - 1;
+        let compared = Rows::exact(steps * self.quantities.len());
+        let mut all = Estimate::new(true);
+        let mut most = 0;
+        for (index, variant) in variants.iter().enumerate() {
+            let runs = if index == 0 { 1 } else { self.plan.runs(variant.stage.as_ref()) };
+            let one = variant.stage.estimate(&demand, &variant::ahead(&ports, index, ahead));
+            most = most.max(one.memory);
+            all.seconds += runs as f64 * one.seconds;
+        }
+        for schema in tables::schemas() {
+            let rows = match schema.name.as_str() {
+                "spread" if !self.uses_seed() || self.plan.seeds == 1 => Rows::NONE,
+                "choice" => Rows::exact(self.quantities.len() * self.wanted.len()),
+                "reference" => Rows::exact(1),
+                _ => compared,
+            };
+            all = all.rows(asked, schema, rows);
+        }
+        all.holding(most)
     }
 
     fn uses_seed(&self) -> bool {

@@ -18,7 +18,7 @@ use contour::{Contour, contours};
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
-use crate::stage::{Context, Inputs, Kind, Port, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -53,6 +53,13 @@ const FORMATS: &[Choice] = &[
     Choice { name: "svg", summary: "SVG, true to scale in mm" },
     Choice { name: "csv", summary: "the points, in mm" },
 ];
+
+/// Lines of a file for each point, where they are more than one, and beside the points.
+const DXF_LINES: usize = 4;
+const HEAD: usize = 200;
+/// Bytes of a point while its contour is drawn, and of a line that is longer than a word.
+const CONTOUR_POINT: u64 = 160;
+const LINE: u64 = 80;
 
 struct Export {
     pair: String,
@@ -131,6 +138,17 @@ impl Stage for Export {
 
     fn outputs(&self) -> Vec<Schema> {
         vec![contours_schema(), self.files_schema()]
+    }
+
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
+        // Both gears have about as many points.
+        let points = ahead.rows("pair", "outline").index().saturating_mul(self.gears.len()) / 2;
+        let per_point: usize = self.formats.iter().map(|format| if *format == "dxf" { DXF_LINES } else { 1 }).sum();
+        let lines = points.saturating_mul(per_point).saturating_add(HEAD * self.gears.len() * self.formats.len());
+        Estimate::new(false)
+            .holding((points as u64).saturating_mul(CONTOUR_POINT).saturating_add(lines as u64 * LINE))
+            .rows(demand, contours_schema(), Rows::exact(self.gears.len()))
+            .rows(demand, self.files_schema(), Rows::about(lines))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

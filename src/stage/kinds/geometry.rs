@@ -15,7 +15,7 @@ use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS};
 use crate::base::work::{Counter, Work};
 use crate::gear::geometry::error::GeometryError;
-use crate::gear::geometry::outline::sample::Density;
+use crate::gear::geometry::outline::sample::{Density, Point};
 use crate::gear::geometry::outline::tip::{self, Tip};
 use crate::gear::geometry::outline::{Outline, roots};
 use crate::gear::geometry::validity::Mating;
@@ -25,7 +25,7 @@ use crate::gear::modification::Design;
 use crate::gear::modification::template::Template;
 use crate::stage::designs;
 use crate::stage::pair::{self, gears_schema, pair_schema};
-use crate::stage::{Context, Demand, Inputs, Kind, Port, Saved, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Saved, Stage};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::Schema;
 
@@ -239,6 +239,44 @@ impl Stage for Geometry {
         OF_OUTLINES.contains(&table).then_some(Saved::Fixed(Counter::Outlines, self.gears.len() as f64))
     }
 
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let mut estimate = Estimate::new(false);
+        for schema in self.outputs() {
+            let name = schema.name.clone();
+            // Counting the points of an outline that nobody asks for would cost more than all the rest.
+            if !demand.table(&name) {
+                continue;
+            }
+            let halves = || self.gears.iter().map(|drawn| drawn.outline.points_of_half(self.density));
+            let rows = match name.as_str() {
+                "outline" => {
+                    let rows = |drawn: &Drawn| drawn.outline_rows(self.density, self.teeth(drawn));
+                    Rows::exact(self.gears.iter().map(rows).sum())
+                }
+                "junctions" => Rows::exact(self.gears.iter().map(|drawn| drawn.outline.junctions().len()).sum()),
+                "mesh_drawing" => Rows::exact(match halves().collect::<Vec<_>>()[..] {
+                    [pinion, gear] => meshing::count([pinion, gear]),
+                    _ => 0,
+                }),
+                "root_arc" => Rows::at_most(self.gears.len()),
+                "arc_drawing" => Rows::at_most(halves().map(construction::most).sum()),
+                "pair" => Rows::exact(1),
+                _ => Rows::exact(self.gears.len()),
+            };
+            estimate = if name == "outline" {
+                // The points of one tooth of one gear.
+                let points = halves().max().unwrap_or(0) as u64;
+                estimate.columns(demand, schema, rows).holding(4 * points * size_of::<Point>() as u64)
+            } else {
+                estimate.rows(demand, schema, rows)
+            };
+            if OF_OUTLINES.contains(&name.as_str()) {
+                estimate = estimate.work(&Work::of(Counter::Outlines, self.gears.len()), 1.0);
+            }
+        }
+        estimate
+    }
+
     fn run(&self, context: &Context, _inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let failed = |error: TableError| Failure::new(error.to_string());
         let gears: Vec<_> = self.gears.iter().map(|drawn| (drawn.side, &drawn.gear)).collect();
@@ -259,15 +297,24 @@ impl Stage for Geometry {
                 (context.warn)(text);
             }
         }
-        let teeth = |drawn: &Drawn| if self.whole { drawn.outline.teeth } else { 1 };
         for schema in schemas {
             if OF_OUTLINES.contains(&schema.name.as_str()) {
                 context.work.add(&Work::of(Counter::Outlines, self.gears.len()));
             }
+            if schema.name == "outline" {
+                let columns = drawn::outline_columns(
+                    &self.gears,
+                    self.density,
+                    |drawn| self.teeth(drawn),
+                    |share| {
+                        (context.progress)(share);
+                        context.check_stop()
+                    },
+                )?;
+                tables.push(Table::from_columns(schema, columns).map_err(failed)?);
+                continue;
+            }
             let rows: Vec<Row> = match (schema.name.as_str(), &self.pair) {
-                ("outline", _) => {
-                    self.gears.iter().flat_map(|drawn| drawn.outline_rows(self.density, teeth(drawn))).collect()
-                }
                 ("junctions", _) => self.gears.iter().flat_map(Drawn::junction_rows).collect(),
                 ("validity", _) => mated.iter().map(|(drawn, mate)| valid::row(drawn, *mate)).collect(),
                 ("mesh_drawing", Some(pair)) => meshing::rows(pair, &self.gears, self.density),
@@ -281,6 +328,11 @@ impl Stage for Geometry {
 }
 
 impl Geometry {
+    /// How many teeth of it are drawn.
+    fn teeth(&self, drawn: &Drawn) -> u32 {
+        if self.whole { drawn.outline.teeth } else { 1 }
+    }
+
     fn mating(&self, drawn: &Drawn) -> Option<(&Pair, Mating)> {
         let pair = self.pair.as_ref()?;
         let mate = self.gears.iter().find(|other| other.side != drawn.side)?;

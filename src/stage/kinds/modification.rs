@@ -11,7 +11,7 @@ use crate::gear::geometry::Side;
 use crate::gear::modification::Design;
 use crate::gear::modification::template::Template;
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
 use crate::table::data::{Row, Table};
 use crate::table::schema::{Column, Schema};
 
@@ -74,6 +74,9 @@ const RESOLVED: &[(&str, &str, &str)] = &[
     ("start_roll_angle", "deg", "Roll angle where a relief starts."),
     ("start_diameter", "mm", "Diameter where a relief starts."),
 ];
+
+/// The most parameters that a modification comes to.
+const MOST_RESOLVED: usize = 24;
 
 fn resolved_schema() -> Schema {
     let mut columns = vec![
@@ -143,6 +146,17 @@ impl Stage for Modification {
 
     fn outputs(&self) -> Vec<Schema> {
         vec![designs::designs_schema(), designs::elements_schema(), resolved_schema(), parameters_schema()]
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let elements = || self.designs.iter().flat_map(|design| &design.elements);
+        // A modification of both gears is one of each.
+        let resolved = 2 * elements().count();
+        Estimate::new(false)
+            .rows(demand, designs::designs_schema(), Rows::exact(self.designs.len()))
+            .rows(demand, designs::elements_schema(), Rows::exact(elements().map(designs::rows_of).sum()))
+            .rows(demand, resolved_schema(), Rows::at_most(resolved))
+            .rows(demand, parameters_schema(), Rows::at_most(resolved * MOST_RESOLVED))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

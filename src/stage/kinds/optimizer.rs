@@ -2,6 +2,7 @@
 //!
 //! Every value of the designs that is given as `[least, most]` is a variable. Must not know: how any method searches.
 
+mod ahead;
 mod sampling;
 
 use rayon::prelude::*;
@@ -18,8 +19,8 @@ use crate::optimize::bounds::Bounds;
 use crate::optimize::search::{Optimizer as Search, Reason};
 use crate::optimize::{self};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Stage, common};
-use crate::table::data::{Row, Table, TableError};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Stage, common};
+use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -136,8 +137,10 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         settings: common::settings(record)?,
         accuracy: record.maybe_quantity("accuracy"),
     };
-    // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's.
-    optimizer.search(crate::base::seed::Seed::of_stage(0, "")).map(drop)?;
+    // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's. Its
+    // points are drawn when the stage runs.
+    optimizer.bounds()?;
+    optimize::foreseen(method, options, optimizer.template.variables().len())?;
     Ok(Box::new(optimizer))
 }
 
@@ -156,9 +159,12 @@ fn column(variable: &Variable) -> String {
 }
 
 impl Optimizer {
+    fn bounds(&self) -> Result<Bounds, Diagnostic> {
+        Bounds::new(self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect())
+    }
+
     fn search(&self, seed: crate::base::seed::Seed) -> Result<Search, Diagnostic> {
-        let bounds = self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect();
-        optimize::optimizer(self.method.0, &self.method.1, Bounds::new(bounds)?, seed)
+        optimize::optimizer(self.method.0, &self.method.1, self.bounds()?, seed)
     }
 
     fn objective_unit(&self) -> &'static str {
@@ -226,17 +232,18 @@ impl Optimizer {
         Schema::new("evaluations", "Every design that was tried.", columns).on_demand()
     }
 
-    fn evaluation_rows(&self, tried: &[(Vec<f64>, f64)]) -> Vec<Row> {
-        let variables = self.template.variables();
-        let row = |(index, (point, value)): (usize, &(Vec<f64>, f64))| -> Row {
-            let value = if value.is_finite() { in_unit(*value, self.objective_unit()) } else { f64::NAN };
-            let values = variables.iter().zip(point).map(|(variable, value)| in_unit(*value, unit(variable)).into());
-            let mut row: Row = vec![(index + 1).into()];
-            row.extend(values);
-            row.extend([value.into(), (if value > 0.0 { 1.0 / value } else { f64::NAN }).into()]);
-            row
-        };
-        tried.iter().enumerate().map(row).collect()
+    /// By columns, not rows: a sample may have millions of designs.
+    fn evaluation_columns(&self, tried: &[(Vec<f64>, f64)]) -> Vec<Data> {
+        let counted = (1..).take(tried.len()).collect();
+        let mut columns = vec![Data::Integer(counted)];
+        columns.extend(self.template.variables().iter().enumerate().map(|(at, variable)| {
+            Data::Float(tried.iter().map(|(point, _)| in_unit(point[at], unit(variable))).collect())
+        }));
+        let shown = |value: f64| if value.is_finite() { in_unit(value, self.objective_unit()) } else { f64::NAN };
+        let fitness = |value: f64| if value > 0.0 { 1.0 / value } else { f64::NAN };
+        columns.push(Data::Float(tried.iter().map(|(_, value)| shown(*value)).collect()));
+        columns.push(Data::Float(tried.iter().map(|(_, value)| fitness(shown(*value))).collect()));
+        columns
     }
 
     /// The objective \[m or m²\]; infinite where the design cannot be built.
@@ -361,6 +368,10 @@ impl Stage for Optimizer {
         ]
     }
 
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
+        self.ahead(demand, ahead)
+    }
+
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         common::corner_contact_left_out(self.settings).into_iter().collect()
     }
@@ -392,8 +403,8 @@ impl Stage for Optimizer {
         }
         let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
         if context.demand.table("evaluations") {
-            let rows = self.evaluation_rows(&found.tried);
-            let table = Table::from_rows(self.evaluations_schema(), rows);
+            let columns = self.evaluation_columns(&found.tried);
+            let table = Table::from_columns(self.evaluations_schema(), columns);
             tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
         }
         context.work.add(&base.work());

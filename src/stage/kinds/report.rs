@@ -19,7 +19,7 @@ use std::collections::BTreeSet;
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape};
 use crate::base::record::Record;
-use crate::stage::{Context, Inputs, Kind, Port, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, Want};
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
 
@@ -125,6 +125,16 @@ impl Stage for Report {
     fn outputs(&self) -> Vec<Schema> {
         let [figures, published] = figure::schemas();
         vec![verdicts(), verdict_counts(), figures, published]
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let [figures, published] = figure::schemas();
+        Estimate::new(false)
+            .holding(self.entries.len() as u64 * 1000)
+            .rows(demand, verdicts(), Rows::exact(self.entries.len()))
+            .rows(demand, verdict_counts(), Rows::exact(Verdict::ALL.len()))
+            .rows(demand, figures, Rows::exact(self.figures.len()))
+            .rows(demand, published, Rows::exact(self.figures.iter().map(Figure::marks).sum()))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

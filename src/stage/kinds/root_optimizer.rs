@@ -16,7 +16,7 @@ use crate::optimize;
 use crate::optimize::bounds::Bounds;
 use crate::optimize::constraints::{Evaluation, KEPT};
 use crate::optimize::search::{Candidate, Reason};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -207,6 +207,23 @@ impl Stage for RootOptimizer {
 
     fn outputs(&self) -> Vec<Schema> {
         vec![self.best_schema(), variables_schema(), constraints_schema(), self.evaluations_schema()]
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let (family, options) = &self.problem;
+        let [variables, constraints] = family.most;
+        let Ok(foreseen) = optimize::foreseen(self.method.0, &self.method.1, variables) else {
+            return Estimate::new(true);
+        };
+        let kept = (foreseen.evaluations as u64).saturating_mul(120);
+        let tried = Rows::at_most(foreseen.evaluations.saturating_mul(variables));
+        Estimate::new(true)
+            .taking((family.seconds)(options) * foreseen.evaluations as f64)
+            .holding((foreseen.memory as u64).saturating_add(kept))
+            .rows(demand, self.best_schema(), Rows::exact(1))
+            .rows(demand, variables_schema(), Rows::at_most(variables))
+            .rows(demand, constraints_schema(), Rows::at_most(constraints))
+            .rows(demand, self.evaluations_schema(), tried)
     }
 
     fn uses_seed(&self) -> bool {

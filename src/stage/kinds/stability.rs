@@ -13,7 +13,8 @@ use crate::base::record::Record;
 use crate::base::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use crate::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use crate::optimize::latin_hypercube;
-use crate::stage::{Context, Inputs, Kind, Port, Stage, common, pair};
+use crate::stage::steps::Steps;
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, common, pair};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
@@ -92,6 +93,13 @@ const VALUES: &[Field] = &[
     Field::number("contact_ratio", 0.5, 4.0, "Contact ratio, by the addendum of the rack.").axis(usize::MAX).optional(),
 ];
 
+/// The named traps, about; what is checked of each case, and the most quantities of one that are computed twice.
+const TRAPS: usize = 40;
+const CHECKS: usize = 12;
+const QUANTITIES: usize = 16;
+/// About how long a case takes on one thread.
+const CASE_SECONDS: f64 = 0.15;
+
 struct Stability {
     pair: String,
     /// Torque, relief, its length, crowning.
@@ -154,6 +162,22 @@ impl Stage for Stability {
         tables::schemas()
     }
 
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let on_axes: usize = self.axes.iter().map(|(_, values)| values.len()).sum();
+        let cases = on_axes + self.samples + if self.traps { TRAPS } else { 0 };
+        let mut estimate = Estimate::new(true).taking(CASE_SECONDS * cases as f64);
+        for schema in tables::schemas() {
+            let rows = match schema.name.as_str() {
+                "checks" => Rows::about(CHECKS * cases),
+                "digits" => Rows::at_most(QUANTITIES * cases),
+                "summary" => Rows::at_most(self.axes.len() + 2),
+                _ => Rows::at_most(QUANTITIES),
+            };
+            estimate = estimate.rows(demand, schema, rows);
+        }
+        estimate
+    }
+
     fn uses_seed(&self) -> bool {
         self.samples > 0
     }
@@ -164,8 +188,14 @@ impl Stage for Stability {
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;
         let cases = self.cases(&base, context);
         let rules = Rules::new();
-        let reports: Vec<Option<Report>> =
-            cases.par_iter().map(|case| context.check_stop().is_ok().then(|| stability::check(case, &rules))).collect();
+        let steps = Steps::new(context, cases.len());
+        let check = |case: &Case| {
+            context.check_stop().ok()?;
+            let report = stability::check(case, &rules);
+            steps.done();
+            Some(report)
+        };
+        let reports: Vec<Option<Report>> = cases.par_iter().map(check).collect();
         context.check_stop()?;
         let reports = reports.into_iter().flatten();
         let mut checked: Vec<(String, &'static str, f64, Report)> = cases

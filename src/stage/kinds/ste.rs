@@ -1,7 +1,8 @@
 //! `kind: ste`: static transmission error of designs under torques: curves, summaries, harmonics.
 //!
-//! One chunk per torque, so an added torque computes only itself. Must not know: who made the designs.
+//! Up to 128 torques are a chunk each, so an added one computes only itself. Must not know: who made the designs.
 
+mod ahead;
 mod samples;
 
 use std::time::Instant;
@@ -19,7 +20,8 @@ use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::loading::Loading;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
+use crate::stage::steps::Steps;
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use crate::table::data::{Data, Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -263,6 +265,10 @@ impl Stage for Ste {
         vec![summary_schema(), curve_schema(), harmonics_schema(), cost_schema(), samples, sample_summary]
     }
 
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
+        self.ahead(demand, ahead)
+    }
+
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let slices = match self.settings.slice_coupling {
             SliceCoupling::None => {
@@ -324,12 +330,15 @@ impl Stage for Ste {
         // Equidistant samples alone need no curve.
         let of_curves = ["summary", "curve", "harmonics", "cost"].iter().any(|table| context.demand.table(table));
         let answered = if of_curves { tasks.as_slice() } else { &[] };
+        let steps = Steps::new(context, answered.len());
         let answers: Vec<Answer> = answered
             .par_iter()
             .map(|&(design, torque)| {
                 context.check_stop()?;
                 let (design, name) = &designs[design];
-                self.answer(&base, (design, name.as_str()), torque, wanted)
+                let answer = self.answer(&base, (design, name.as_str()), torque, wanted);
+                steps.done();
+                answer
             })
             .collect::<Result<_, Failure>>()?;
 
@@ -379,6 +388,7 @@ impl Stage for Ste {
         if samples::schemas().iter().any(|schema| context.demand.table(&schema.name)) {
             let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
             for &(design, torque) in &tasks {
+                context.check_stop()?;
                 let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
                 let loading = Loading::new(&base, &designs[design].0, torque);
                 let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);

@@ -8,14 +8,14 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, count, joined};
 use crate::base::record::Record;
 use crate::base::units::{RATIO, TORQUE, in_unit};
-use crate::base::work::Counter;
+use crate::base::work::{Counter, Work};
 use crate::gear::compliance::iso6336;
 use crate::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use crate::gear::geometry::Pair;
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::stiffness::stiffness;
 use crate::stage::compliance as codec;
-use crate::stage::{Context, Demand, Inputs, Kind, Omission, Port, Saved, Stage, common, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Rows, Saved, Stage, common, pair};
 use crate::table::data::{Row, Table, TableError};
 use crate::table::schema::{Column, Schema};
 
@@ -264,6 +264,31 @@ impl Stage for Stiffness {
             schemas.push(root_stress_schema());
         }
         schemas
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let foreseen = (self.method.foresee)(&self.options, self.assumptions);
+        let curve = common::curve_rows(self.settings, 0);
+        let meshed = self.method.root_stress.is_some();
+        let solves = Work::of(Counter::ContactSolves, 2 * curve);
+        let mut estimate =
+            Estimate::new(false).work(&foreseen.work, foreseen.times).work(&solves, 1.0).holding(foreseen.memory);
+        for schema in self.outputs() {
+            let rows = match schema.name.as_str() {
+                "compliance" => Rows::about(foreseen.nodes),
+                "neighbours" => Rows::about(foreseen.neighbours),
+                "curve" => Rows::about(curve),
+                "mesh" => Rows::exact(if meshed { 2 } else { 0 }),
+                "root_stress" => Rows::about(32),
+                _ => Rows::exact(1),
+            };
+            estimate = estimate.rows(demand, schema, rows);
+        }
+        if demand.table("root_stress") {
+            let meshes = if self.assumptions.accuracy.is_some() { 6 } else { 2 };
+            estimate = estimate.work(&Work::of(Counter::MeshFactorisations, meshes), foreseen.times);
+        }
+        estimate
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {

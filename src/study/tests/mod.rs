@@ -16,7 +16,7 @@ use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Choice, Field, Member, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::units::{ANGLE, LENGTH, RATIO, STRESS, TORQUE};
-use crate::stage::{Context, Inputs, Kind, Port, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Stage, Want};
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
 
@@ -124,6 +124,10 @@ impl Stage for Part {
             all.push(Schema::new("flank", "The flank.", peak()));
         }
         all
+    }
+
+    fn estimate(&self, _: &Demand, _: &Ahead) -> Estimate {
+        Estimate::default()
     }
 
     fn run(&self, _: &Context, _: &Inputs) -> Result<Vec<Table>, Failure> {

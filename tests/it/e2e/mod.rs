@@ -4,6 +4,7 @@ mod bad;
 mod diff;
 mod disk;
 mod ended;
+mod limits;
 mod places;
 mod python;
 mod readme;

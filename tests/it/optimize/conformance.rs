@@ -8,7 +8,7 @@ use gearstudy::base::record::{Entry, Value};
 use gearstudy::base::seed::Seed;
 use gearstudy::optimize::bounds::Bounds;
 use gearstudy::optimize::search::{Optimizer, Reason};
-use gearstudy::optimize::{METHODS, members, optimizer};
+use gearstudy::optimize::{METHODS, foreseen, members, optimizer};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
@@ -102,6 +102,22 @@ proptest! {
             prop_assert_eq!(met.len(), done.evaluations());
             prop_assert!(done.evaluations() <= done.budget(), "{}: {} of {}", method, done.evaluations(), done.budget());
         }
+    }
+}
+
+#[test]
+fn what_a_method_asks_for_is_foreseen() {
+    let bounds = [(0.0, 8e-6), (0.0, 6e-3), (-1.0, 1.0)];
+    for (method, given) in variants() {
+        let fields = METHODS.iter().find(|entry| entry.member.name == method).unwrap().member.fields;
+        let foreseen = foreseen(method, &record(fields, &given), bounds.len()).unwrap();
+        let (met, done) = points(search(method, &given, &bounds, 5), noise);
+        let asked = (met.len(), done.history().len());
+        assert_eq!(foreseen.evaluations, done.budget(), "{method}");
+        if foreseen.exact {
+            assert_eq!((foreseen.evaluations, foreseen.batches), asked, "{method}");
+        }
+        assert!(foreseen.evaluations >= asked.0 && foreseen.batches >= asked.1 && foreseen.memory > 0, "{method}");
     }
 }
 

@@ -8,6 +8,7 @@ use std::sync::atomic::AtomicBool;
 
 use gearstudy::base::seed::Seed;
 use gearstudy::base::work::Tally;
+use gearstudy::stage::estimate::{Ahead, Certainty, Rows};
 use gearstudy::stage::{Context, Demand, Inputs, Stage};
 use gearstudy::study::{self, Study};
 use gearstudy::table::data::Table;
@@ -67,6 +68,26 @@ fn sources(study: &Study, stage: &dyn Stage) -> BTreeMap<String, String> {
     stage.inputs().into_iter().map(|port| (port.name.clone(), resolve(&port.stage, port.through))).collect()
 }
 
+/// Holds a stage to the rows that it foresaw: exact, a bound, or right to a factor of two and a half.
+fn foreseen(name: &str, stage: &dyn Stage, demand: &Demand, inputs: &Inputs, tables: &[Table]) {
+    let mut ahead = Ahead::default();
+    for (port, tables) in &inputs.ports {
+        tables.iter().for_each(|table| ahead.know(port, table.name(), Rows::exact(table.rows())));
+    }
+    let estimate = stage.estimate(demand, &ahead);
+    assert_eq!(estimate.tables.len(), tables.len(), "`{name}` foresees other tables than it gives");
+    for table in tables {
+        let rows = estimate.of_table(table.name()).unwrap();
+        let (said, given) = (rows.count as f64, table.rows() as f64);
+        let kept = match rows.certainty {
+            Certainty::Exact => rows.index() == table.rows(),
+            Certainty::AtMost => said >= given,
+            Certainty::About => (said + 20.0) * 2.5 >= given && said <= 2.5 * (given + 20.0),
+        };
+        assert!(kept, "`{name}.{}` has {given} rows, foreseen were {rows:?}", table.name());
+    }
+}
+
 /// Runs one stage, and holds it to giving exactly what it was asked for.
 fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bool) -> Ran {
     let demand = demand(stage, everything);
@@ -89,6 +110,7 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bo
     let wanted: Vec<_> = wanted.into_iter().map(|schema| demand.narrowed(schema)).collect();
     let given: Vec<_> = tables.iter().map(|table| table.schema().clone()).collect();
     assert_eq!(given, wanted, "`{name}` gives other tables than it was asked for");
+    foreseen(name, stage, &demand, inputs, &tables);
     let mut warnings = warnings.into_inner().unwrap();
     warnings.sort();
     warnings.dedup();

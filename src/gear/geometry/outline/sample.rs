@@ -89,6 +89,19 @@ impl Outline {
         curves
     }
 
+    /// How many points [`Outline::half`] has, without making them.
+    #[must_use]
+    pub fn points_of_half(&self, density: Density) -> usize {
+        self.chords(density).iter().sum::<usize>() + 1
+    }
+
+    /// How many points [`Outline::tooth_by_curves`] has on all its curves, without making them.
+    #[must_use]
+    pub fn points_by_curves(&self, density: Density) -> usize {
+        // Every curve has both its ends, the tip land in the middle its middle once.
+        2 * (self.points_of_half(density) - 1 + self.segments.len()) - 1
+    }
+
     /// The whole gear, counterclockwise from the middle of the space to the right of the tooth on the y axis; closed,
     /// without a repeated point.
     #[must_use]

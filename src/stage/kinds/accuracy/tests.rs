@@ -7,7 +7,7 @@ use super::trial::quantile;
 use super::variant::{Variant, inputs, ports};
 use crate::base::error::{Failure, Place};
 use crate::base::record::{self, Entry, Record};
-use crate::stage::{Context, Inputs, Port, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Port, Stage};
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 
@@ -49,6 +49,10 @@ impl Stage for Reader {
 
     fn outputs(&self) -> Vec<Schema> {
         Vec::new()
+    }
+
+    fn estimate(&self, _: &Demand, _: &Ahead) -> Estimate {
+        Estimate::default()
     }
 
     fn run(&self, _: &Context, _: &Inputs) -> Result<Vec<Table>, Failure> {

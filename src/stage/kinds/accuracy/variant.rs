@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 
 use crate::base::error::Diagnostic;
 use crate::base::record::{self, Record, Value};
-use crate::stage::{self, Inputs, Port, Stage};
+use crate::stage::{self, Ahead, Inputs, Port, Stage};
 
 /// A stage as it is tried.
 pub struct Variant {
@@ -107,6 +107,15 @@ pub fn ports(variants: &[&Variant]) -> Vec<(Port, Vec<(usize, String)>)> {
         }
     }
     found
+}
+
+/// What is known ahead of what variant `index` reads, under the names it knows.
+pub fn ahead(ports: &[(Port, Vec<(usize, String)>)], index: usize, ahead: &Ahead) -> Ahead {
+    let own = |name: &str| {
+        let (_, readers) = ports.iter().find(|(port, _)| port.name == name)?;
+        readers.iter().find(|(reader, _)| *reader == index).map(|(_, name)| name.clone())
+    };
+    ahead.renamed(own)
 }
 
 /// What variant `index` reads, under the names it knows.

@@ -34,6 +34,13 @@ pub fn schema() -> Schema {
     .on_demand()
 }
 
+/// The most rows of a gear with so many points on half a tooth.
+#[must_use]
+pub fn most(half: usize) -> usize {
+    // Eight arcs or less, and a few points.
+    half + 8 * (ARC as usize + 1)
+}
+
 struct Line {
     curve: &'static str,
     step: &'static str,

@@ -4,13 +4,14 @@
 
 use std::f64::consts::PI;
 
+use crate::base::error::Failure;
 use crate::base::units::in_unit;
 use crate::gear::geometry::outline::Outline;
 use crate::gear::geometry::outline::curve::Local;
 use crate::gear::geometry::outline::junction::Place;
 use crate::gear::geometry::outline::sample::{Density, Point};
 use crate::gear::geometry::{Gear, Side};
-use crate::table::data::Row;
+use crate::table::data::{Data, Row};
 use crate::table::schema::{Column, Schema};
 
 /// A gear with its full profile.
@@ -53,19 +54,36 @@ pub fn outline_schema() -> Schema {
 }
 
 impl Drawn {
+    /// How many rows the outline of so many teeth has.
     #[must_use]
-    pub fn outline_rows(&self, density: Density, teeth: u32) -> Vec<Row> {
+    pub fn outline_rows(&self, density: Density, teeth: u32) -> usize {
+        self.outline.points_by_curves(density) * teeth as usize
+    }
+
+    /// Adds the outline to the columns of its table, tooth by tooth; `begin` is called before each and may end it.
+    ///
+    /// By columns, not rows: of all points of a whole gear these would be several times as large.
+    fn outline(
+        &self,
+        density: Density,
+        teeth: u32,
+        columns: &mut [Data],
+        begin: &mut impl FnMut() -> Result<(), Failure>,
+    ) -> Result<(), Failure> {
         let curves = self.outline.tooth_by_curves(density);
-        let mut rows = Vec::new();
         for number in 0..teeth {
+            begin()?;
             let (sine, cosine) = libm::sincos(2.0 * PI * f64::from(number) / f64::from(self.outline.teeth));
             let points = curves.iter().enumerate().flat_map(|(at, curve)| curve.iter().map(move |point| (at, point)));
-            rows.extend(points.enumerate().map(|(place, (stretch, point))| {
+            for (place, (stretch, point)) in points.enumerate() {
                 let local = turned(point.local, sine, cosine);
-                self.outline_row([number as usize, place, stretch].map(|index| index + 1), point, local)
-            }));
+                let row = self.outline_row([number as usize, place, stretch].map(|index| index + 1), point, local);
+                for (column, cell) in columns.iter_mut().zip(row) {
+                    column.push(cell).map_err(|cell| Failure::new(format!("`{cell}` does not fit its column")))?;
+                }
+            }
         }
-        rows
+        Ok(())
     }
 
     fn outline_row(&self, numbers: [usize; 3], point: &Point, local: Local) -> Row {
@@ -124,6 +142,33 @@ fn turned(local: Local, sine: f64, cosine: f64) -> Local {
 
 fn per_millimetre(curvature: f64) -> f64 {
     if curvature.is_finite() { in_unit(curvature, "1/mm") } else { f64::NAN }
+}
+
+/// The outlines of gears, so many teeth of each; `begin` is told the share that is done, tooth by tooth, and may end it.
+///
+/// # Errors
+/// Those of `begin`.
+pub fn outline_columns(
+    gears: &[Drawn],
+    density: Density,
+    teeth: impl Fn(&Drawn) -> u32,
+    mut begin: impl FnMut(f64) -> Result<(), Failure>,
+) -> Result<Vec<Data>, Failure> {
+    let rows = gears.iter().map(|drawn| drawn.outline_rows(density, teeth(drawn))).sum();
+    let room = |column: &Column| Data::with_room(column.kind, rows);
+    let mut columns: Vec<Data> = outline_schema().columns.iter().map(room).collect();
+    // In the order of the table, which need not be sorted then.
+    let mut sorted: Vec<&Drawn> = gears.iter().collect();
+    sorted.sort_by_key(|drawn| drawn.side.name());
+    let all: u32 = gears.iter().map(&teeth).sum();
+    let mut done = 0_u32;
+    for drawn in sorted {
+        drawn.outline(density, teeth(drawn), &mut columns, &mut || {
+            done += 1;
+            begin(f64::from(done - 1) / f64::from(all))
+        })?;
+    }
+    Ok(columns)
 }
 
 #[must_use]

@@ -76,6 +76,13 @@ pub fn rows(pair: &Pair, gears: &[Drawn], density: Density) -> Vec<Row> {
     rows
 }
 
+/// How many rows [`rows`] gives, where the profiles have so many points on half a tooth.
+#[must_use]
+pub fn count(halves: [usize; 2]) -> usize {
+    let teeth = |number: usize, half: usize| number * 2 * (half - 1) + 1;
+    teeth(3, halves[0]) + teeth(4, halves[1]) + 2 * 2 + 6 * (ARC + 1)
+}
+
 /// From the gear's own frame, y towards the pinion, to the pair's.
 fn opposite(pair: &Pair, [x, y]: [f64; 2]) -> [f64; 2] {
     [-x, pair.centre_distance - y]

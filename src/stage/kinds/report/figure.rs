@@ -174,6 +174,11 @@ impl Figure {
         )
     }
 
+    /// How many published points and lines it shows.
+    pub fn marks(&self) -> usize {
+        self.published.len()
+    }
+
     /// The rows of the tables `figures` and `figure_published`.
     ///
     /// # Errors

@@ -1,0 +1,39 @@
+//! What a stage of the kind `optimizer` will take: so much per evaluation that its method may ask for.
+//!
+//! Must not know: how any method searches.
+
+use super::Optimizer;
+use crate::base::work::{Counter, Work};
+use crate::optimize;
+use crate::stage::designs::{designs_schema, elements_schema, rows_of};
+use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+
+/// Solves for the objective under one torque: so many, and so many for each position.
+const SOLVES: f64 = 50.0;
+const SOLVES_PER_POSITION: f64 = 0.8;
+/// Bytes of a pair with its compliances, ready to be loaded.
+const CYCLE: u64 = 4 << 20;
+
+impl Optimizer {
+    pub fn ahead(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let dimension = self.template.variables().len();
+        // What the method refuses was refused when the stage was built.
+        let Ok(foreseen) = optimize::foreseen(self.method.0, &self.method.1, dimension) else {
+            return Estimate::new(true);
+        };
+        let as_many = |count| if foreseen.exact { Rows::exact(count) } else { Rows::at_most(count) };
+        let each = SOLVES + SOLVES_PER_POSITION * self.settings.positions as f64;
+        // Far below 2^53, or the estimate is beyond any limit.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let solves = (foreseen.evaluations as f64 * self.torques.len() as f64 * each) as usize;
+        let kept = if demand.table("evaluations") { foreseen.evaluations as u64 } else { 0 };
+        Estimate::new(true)
+            .work(&Work::of(Counter::ContactSolves, solves), common::solve_times(self.settings))
+            .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
+            .rows(demand, self.best_schema(), Rows::exact(1))
+            .rows(demand, self.history_schema(), as_many(foreseen.batches))
+            .rows(demand, designs_schema(), Rows::exact(1))
+            .rows(demand, elements_schema(), Rows::exact(self.elements.iter().map(rows_of).sum()))
+            .columns(demand, self.evaluations_schema(), as_many(foreseen.evaluations))
+    }
+}

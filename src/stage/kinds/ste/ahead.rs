@@ -1,0 +1,42 @@
+//! What a stage of the kind `ste` will take: so much per design and torque.
+//!
+//! Must not know: how a curve is found.
+
+use super::{Ste, curve_schema, harmonics_schema, samples, summary_schema};
+use crate::base::work::{Counter, Work};
+use crate::gear::transmission_error::curve::Point;
+use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+
+/// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
+const SOLVES_PER_ROW: f64 = 2.3;
+/// Bytes of a pair with its compliances, ready to be loaded.
+const CYCLE: u64 = 4 << 20;
+
+impl Ste {
+    pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
+        let ports = (1..=self.designs.len()).map(|index| format!("designs_{index}"));
+        let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(Rows::NONE, Rows::and);
+        let curves = designs.times(Rows::exact(self.torques.len()));
+        let of_each = common::curve_rows(self.settings, self.harmonics);
+        let of_curves = ["summary", "curve", "harmonics"].iter().any(|table| demand.table(table));
+        let rows = curves.times(Rows::about(if of_curves { of_each } else { 0 }));
+        let pressures = demand.column("summary", "largest_pressure") || demand.column("curve", "pressure");
+        let samples = if demand.table("samples") || demand.table("sample_summary") { self.samples } else { 0 };
+        let sampled = curves.times(Rows::exact(samples)).index();
+        // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
+        let work = Work::of(Counter::ContactSolves, solves.saturating_add(sampled))
+            .with(Counter::ContactPressures, if pressures { rows.index() } else { 0 });
+        let [sample_rows, sample_summary] = samples::schemas();
+        Estimate::new(true)
+            .work(&work, common::solve_times(self.settings))
+            // The points of all curves are there before the table is; their room is as large again.
+            .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
+            .rows(demand, summary_schema(), curves)
+            .columns(demand, curve_schema(), rows)
+            .rows(demand, harmonics_schema(), curves.times(Rows::exact(self.harmonics)))
+            .rows(demand, sample_rows, curves.times(Rows::exact(self.samples)))
+            .rows(demand, sample_summary, curves)
+    }
+}

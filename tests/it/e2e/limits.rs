@@ -1,0 +1,124 @@
+//! What a run would take is said before it runs, and what is beyond the limits is refused.
+
+use std::fs;
+use std::process::Command;
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+const PAIR: &str = "
+  pair:
+    kind: geometry
+    module: 3 mm
+    rack: { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 }
+    pinion: { teeth: 19, face_width: 20 mm, bore_radius: 14.079 mm }
+    gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
+";
+
+fn desk(stages: &str) -> Desk {
+    let desk = Desk::with("quick.yaml");
+    fs::write(desk.path("large.yaml"), format!("study: large\ntitle: Large\nseed: 1\nstages:\n{PAIR}{stages}"))
+        .unwrap();
+    desk
+}
+
+const OUTLINE: &str =
+    "    outline: { points: 100000, teeth: all }\n  files: { kind: export, pair: pair, formats: csv }\n";
+
+const HYPERCUBE: &str = "
+  stiffness: { kind: stiffness, pair: pair }
+  search:
+    kind: optimizer
+    stiffness: stiffness
+    at: { torque: 50 N m }
+    method: { latin_hypercube: { points: 16000000 } }
+    design:
+      - tip_relief: { gear: both, amount: [0 um, 8 um], length: [0 mm, 6 mm], curve: parabolic }
+";
+
+#[test]
+fn what_is_beyond_the_limits_is_refused_with_what_to_change() {
+    let desk = desk(OUTLINE);
+    let (out, error) = desk.run(&["run", "large.yaml", "--limit-memory", "500MB"], 2);
+    assert_eq!(out, "", "nothing ran");
+    assert!(error.starts_with("large.yaml:12:24: this run would take about "), "{error}");
+    for part in [
+        "and may take 500 MB of memory; stage `",
+        "rows of its table `",
+        "\n  help: in stage `",
+        "allow more with `--limit-memory ",
+    ] {
+        assert!(error.contains(part), "{part}: {error}");
+    }
+    assert!(!desk.path("results").exists(), "nothing was written");
+    let (plan, _) = desk.run(&["plan", "large.yaml", "--limit-memory", "500MB"], 0);
+    assert!(plan.contains("`run` refuses it: this run would take about "), "{plan}");
+    // What is advised fits.
+    let points = error.split("`outline.points: ").nth(1).and_then(|rest| rest.split('`').next()).unwrap();
+    let text = fs::read_to_string(desk.path("large.yaml")).unwrap();
+    fs::write(desk.path("large.yaml"), text.replace("points: 100000", &format!("points: {points}"))).unwrap();
+    let (plan, _) = desk.run(&["plan", "large.yaml", "--limit-memory", "500MB"], 0);
+    assert!(!plan.contains("refuses"), "{plan}");
+    fs::write(desk.path("large.yaml"), text.replace("points: 100000, teeth: all", "points: 100000")).unwrap();
+    let (plan, _) = desk.run(&["plan", "large.yaml", "--limit-memory", "500MB"], 0);
+    assert!(!plan.contains("refuses"), "{plan}");
+}
+
+#[test]
+fn rows_are_limited_too_and_the_limits_may_stand_in_the_environment() {
+    let desk = desk(OUTLINE);
+    let (_, error) = desk.run(&["run", "large.yaml", "--limit-rows", "1000000"], 2);
+    assert!(error.contains("and may take 1 000 000 rows") && error.contains("`--limit-rows "), "{error}");
+    let output = Command::new(env!("CARGO_BIN_EXE_gearstudy"))
+        .current_dir(desk.path("."))
+        .env("GEARSTUDY_LIMIT_ROWS", "7")
+        .args(["run", "quick.yaml"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2));
+    assert!(String::from_utf8_lossy(&output.stderr).contains("and may take 7 rows"));
+    let (_, error) = desk.run(&["run", "quick.yaml", "--limit-memory", "7"], 1);
+    assert!(error.contains("write a number and kB, MB, GB"), "{error}");
+}
+
+/// Sixteen million points took 1.3 GB to be drawn, by a command that only reads.
+#[cfg(target_os = "linux")]
+#[test]
+fn checking_draws_nothing() {
+    let desk = desk(HYPERCUBE);
+    let program = env!("CARGO_BIN_EXE_gearstudy");
+    for command in ["check", "plan"] {
+        let script = format!("ulimit -v 1000000; exec '{program}' {command} large.yaml");
+        let output = Command::new("sh").current_dir(desk.path(".")).args(["-c", &script]).output().unwrap();
+        assert!(output.status.success(), "{command}: {output:?}");
+    }
+}
+
+/// The accuracy stage measures what the allocator was asked for while a stage ran.
+#[test]
+fn memory_is_foreseen_from_above() {
+    let desk = desk(concat!(
+        "    outline: { points: 20000, teeth: all }\n",
+        "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 12 } } }\n",
+        "  designs: { kind: modification, pair: pair, designs: { none: [] } }\n",
+        "  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: { from: 1 N m, to: 200 N m, count: 60 } }\n",
+        "  of_pair: { kind: accuracy, of: pair, quantities: [outline.x], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
+        "  of_stiffness: { kind: accuracy, of: stiffness, quantities: [curve.stiffness], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
+        "  of_ste: { kind: accuracy, of: ste, quantities: [curve.pairs], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
+    ));
+    let (plan, _) = desk.run(&["plan", "large.yaml", "--json", "--want", "pair.outline"], 0);
+    let plan: Value = serde_json::from_str(&plan).unwrap();
+    let stages = plan[0]["stages"].as_array().unwrap();
+    desk.run(&["run", "large.yaml", "--want", "pair.outline"], 0);
+    for (stage, least) in [("pair", 0.2), ("stiffness", 0.1), ("ste", 0.05)] {
+        let expected =
+            stages.iter().find(|planned| planned["name"] == stage).unwrap()["expected"]["memory_bytes"].clone();
+        let table = format!("of_{stage}.reference");
+        let (measured, _) = desk.run(&["table", "large.yaml", &table, "--format", "json"], 0);
+        let measured: Value = serde_json::from_str(&measured).unwrap();
+        let measured = 1e6 * measured[0]["megabytes"].as_f64().unwrap();
+        let share = measured / expected.as_f64().unwrap();
+        assert!((least..=1.0).contains(&share), "{stage}: {measured} of {expected} foreseen bytes");
+    }
+}
