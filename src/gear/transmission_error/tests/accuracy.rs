@@ -168,7 +168,7 @@ fn a_curve_spans_its_summary_s_peak_to_peak() {
             assert!(two[0].cycle_position <= two[1].cycle_position, "{}", case.0);
         }
         let share = summary.largest_load_share;
-        assert!(share <= 1.0 && share >= 1.0 / 6.0, "{}: {share}", case.0);
+        assert!((1.0 / 6.0..=1.0).contains(&share), "{}: {share}", case.0);
         for point in &points {
             assert!(point.loads.iter().all(|load| *load <= point.load()), "{}: {point:?}", case.0);
         }
