@@ -111,10 +111,10 @@ fn summaries_agree_with_their_curves() {
         let error = along("transmission_error");
         let [lowest, highest] =
             [(f64::INFINITY, least), (0.0, most)].map(|(from, pick)| error.iter().copied().fold(from, pick));
-        // Extrema between the points are found too, so the summary may go a little further than its rows.
-        let (minimum, maximum, slack) = (value("minimum"), value("maximum"), 1e-3 * value("peak_to_peak"));
-        assert!(minimum <= lowest + 1e-12 && lowest < minimum + slack, "{design} {torque}: {minimum} {lowest}");
-        assert!(maximum >= highest - 1e-12 && highest > maximum - slack, "{design} {torque}: {maximum} {highest}");
+        // The extrema are among the rows.
+        let (minimum, maximum) = (value("minimum"), value("maximum"));
+        assert!((minimum - lowest).abs() < 1e-12, "{design} {torque}: {minimum} {lowest}");
+        assert!((maximum - highest).abs() < 1e-12, "{design} {torque}: {maximum} {highest}");
         assert!((maximum - minimum - value("peak_to_peak")).abs() < 1e-12, "{design} {torque}");
         assert!(minimum < value("mean") && value("mean") < maximum);
         // Popoviciu's bound on a variance.

@@ -143,7 +143,7 @@ impl Loading<'_> {
             harmonics: harmonics::amplitudes(cycle.period(), &nodes, wanted.harmonics),
             unloaded_peak_to_peak: nominal.between(unloaded),
             loaded_contact_ratio: loaded / cycle.period(),
-            largest_load_share: share,
+            largest_load_share: points.iter().map(Point::largest_share).fold(share, f64::max),
             largest_pressure: wanted
                 .pressure
                 .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),

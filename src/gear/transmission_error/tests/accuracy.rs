@@ -73,16 +73,16 @@ impl Ratios {
         self.0.push(estimate / error.clamp(FLOOR, 1.0));
     }
 
-    /// Holds in every case, and is no more than 30 times the error in the median.
+    /// Holds in every case, and is no more than `most` times the error in the median.
     #[track_caller]
-    fn check(&mut self, what: &str, least: usize) {
+    fn check(&mut self, what: &str, least: usize, most: f64) {
         self.0.sort_by(f64::total_cmp);
         let (count, holds) = (self.0.len(), self.0.iter().filter(|ratio| **ratio >= 1.0).count());
         let median = self.0[count / 2];
         println!("{what}: {holds} of {count} hold, median {median:.1}");
         assert!(count >= least, "{what}: only {count}");
         assert!(holds == count, "{what}: holds in {holds} of {count}, by {} of the error", self.0[0]);
-        assert!(median <= 30.0, "{what}: {median} times the error in the median");
+        assert!(median <= most, "{what}: {median} times the error in the median");
     }
 }
 
@@ -118,8 +118,9 @@ fn the_estimate_from_coarser_samplings_holds() {
             coarse += usize::from(chosen.slices <= 33 && chosen.positions == 16);
         }
     }
-    sliced.check("with slices", 150);
-    closed.check("in closed form", 60);
+    // What lies between two slices is added even where nothing does: the price of an estimate that always holds.
+    sliced.check("with slices", 150, 80.0);
+    closed.check("in closed form", 60, 30.0);
     let held = wished.0.iter().filter(|ratio| **ratio >= 1.0).count();
     assert!(wished.0.len() > 250 && held * 100 >= wished.0.len() * 99, "{held} of {}", wished.0.len());
     assert!(coarse > 100, "a coarse sampling is enough for most wishes: {coarse}");
@@ -140,8 +141,8 @@ fn the_estimate_from_a_finer_sampling_holds() {
         of(&mut peaks, &|settings| case.peak_to_peak(settings));
         of(&mut variances, &|settings| case.variance(settings));
     }
-    peaks.check("peak-to-peak", 200);
-    variances.check("variance", 200);
+    peaks.check("peak-to-peak", 200, 30.0);
+    variances.check("variance", 200, 30.0);
 }
 
 /// Tier: invariant. What a curve spans is the summary's peak-to-peak, under load and without, also where corners touch; its
@@ -168,7 +169,7 @@ fn a_curve_spans_its_summary_s_peak_to_peak() {
             assert!(two[0].cycle_position <= two[1].cycle_position, "{}", case.0);
         }
         let share = summary.largest_load_share;
-        assert!(share <= 1.0 && share >= 1.0 / 6.0, "{}: {share}", case.0);
+        assert!((1.0 / 6.0..=1.0).contains(&share), "{}: {share}", case.0);
         for point in &points {
             assert!(point.loads.iter().all(|load| *load <= point.load()), "{}: {point:?}", case.0);
         }
