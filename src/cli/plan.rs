@@ -108,7 +108,7 @@ pub(super) fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
         .collect();
     let refused = plan.refused.as_ref().map(|refused| json!({ "message": refused.message, "help": refused.help }));
     json!({
-        "study": study.name, "file": study.path, "up_to_date": plan.is_up_to_date(), "stages": stages,
+        "study": study.name, "file": study.path.to_string_lossy(), "up_to_date": plan.is_up_to_date(), "stages": stages,
         "expected": expected_json(&plan.total), "refused": refused,
     })
 }
