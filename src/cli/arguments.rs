@@ -8,7 +8,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 #[derive(Parser, Debug)]
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, 3 a stage failed, \
-    4 differences found, 70 a bug of this program, 130 stopped by Ctrl-C.")]
+    4 differences or damage found, 70 a bug of this program, 130 stopped by Ctrl-C.")]
 pub struct Arguments {
     #[command(subcommand)]
     pub command: Command,
