@@ -89,10 +89,7 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: b
     let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
     match faults.pop() {
         None if damaged.is_empty() => Ok(()),
-        None => {
-            let lines: String = damaged.iter().map(|file| format!("\n  {file}")).collect();
-            Err(Ending::Differs(format!("damaged; `gearstudy run` writes it anew:{lines}")))
-        }
+        None => Err(Ending::Differs(format!("damaged; `gearstudy run` writes it anew:\n  {}", damaged.join("\n  ")))),
         Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
         Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
         Some(_) => {
@@ -107,13 +104,13 @@ fn told(file: &Path, places: &Places, cache: Option<&Cache>, check: bool) -> Res
     let folder = Folder::new(&places.results, &study.name);
     // What is odd while a run publishes need not be so.
     let look = || match standing_now(&study, &folder, check) {
-        Ok((standing, read)) if is_odd(&standing) => Err(Ok((standing, read))),
+        Ok((standing, read)) if is_odd(&standing) => Err(Box::new(Ok((standing, read)))),
         Ok(found) => Ok(found),
-        Err(error) => Err(Err(error)),
+        Err(error) => Err(Box::new(Err(error))),
     };
     let (standing, read) = folder
         .settled(look)
-        .or_else(|odd| odd)
+        .or_else(|odd| *odd)
         .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
     let kept = |stage: &&StageStanding| {
         let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
@@ -178,7 +175,9 @@ fn read_text(told: &Told) -> String {
     #[allow(clippy::cast_precision_loss)]
     let mut text = format!("  {files} files as they were written ({:.1} MB)\n", *bytes as f64 / 1e6);
     for (files, what) in [(damaged, "damaged"), (unknown, "not known what it was; a run tells")] {
-        files.iter().for_each(|file| text += &format!("  {file}: {what}\n"));
+        for file in files {
+            text += &format!("  {file}: {what}\n");
+        }
     }
     text
 }

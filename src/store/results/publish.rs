@@ -9,6 +9,7 @@
 use std::cell::RefCell;
 use std::fs;
 use std::io::ErrorKind;
+use std::path::Path;
 
 use super::{FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, complete, held_text, here, is_drawn, split};
 use crate::store::archive::about;
@@ -314,7 +315,8 @@ impl Folder {
         let figures = |folder: &str| -> Vec<String> {
             let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
             let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-            names.filter(|name| name.ends_with(".svg")).map(|name| format!("{folder}/{name}")).collect()
+            let figures = names.filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "svg"));
+            figures.map(|name| format!("{folder}/{name}")).collect()
         };
         [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
     }

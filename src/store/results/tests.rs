@@ -78,12 +78,14 @@ fn everything_is_written_once_and_reads_back() {
         }
     }
     let stamp = |name: &str| fs::metadata(folder.path().join(name)).unwrap().modified().unwrap();
-    let stamps: Vec<_> = files(&folder).iter().map(|name| stamp(name)).collect();
+    // The index notes what was read: files of the same moment as itself.
+    let kept = || files(&folder).into_iter().filter(|name| name != INDEX);
+    let stamps: Vec<_> = kept().map(|name| stamp(&name)).collect();
     let again = Manifest { seconds: 9.0, ..manifest(&tables) };
     let panics = || panic!("nothing is written, so nobody asks for facts");
     let second = folder.publish(again, panics, &|_, _| panic!("nothing is read"), None).unwrap();
     assert_eq!(second.changes, Changes::default());
-    assert_eq!(stamps, files(&folder).iter().map(|name| stamp(name)).collect::<Vec<_>>());
+    assert_eq!(stamps, kept().map(|name| stamp(&name)).collect::<Vec<_>>());
 }
 
 #[test]
