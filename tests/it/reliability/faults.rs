@@ -113,7 +113,7 @@ fn tried(before: &Before, study: &str, expected: &Published, orders: &[(&str, St
 }
 
 /// 0: some operations see one error each; 1: each sees one error once and another one lasting; 2: each sees every error.
-fn thorough() -> u8 {
+pub fn thorough() -> u8 {
     match std::env::var("GEARSTUDY_FAULTS").as_deref() {
         Ok("each") => 1,
         Ok("all") => 2,

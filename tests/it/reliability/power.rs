@@ -15,7 +15,7 @@ use gearstudy::store::results::{Folder, is_drawn};
 
 use super::cache::TINY;
 use super::disk::{self, Place};
-use super::faults::{Before, earlier, undisturbed};
+use super::faults::{Before, earlier, thorough, undisturbed};
 use super::published::{Published, differences, essence, published};
 
 /// One thing that a run did to the disk.
@@ -340,6 +340,7 @@ fn cut_anywhere(first: Option<&str>, study: &str, states: usize, seed: u64) {
     // Nothing lost, nothing wrong: the record is that of the run.
     let mut chance = Chance(seed);
     let mut wrong = Vec::new();
+    let every = if thorough() > 0 { 4 } else { 40 };
     let mut runs = 0;
     for state in 0..states {
         let end = chance.below(trace.steps.len() + 1);
@@ -349,7 +350,7 @@ fn cut_anywhere(first: Option<&str>, study: &str, states: usize, seed: u64) {
         lay_out(&left, &place.disk);
         let told = format!("state {state}, cut at {end} of {}", trace.steps.len());
         wrong.extend(accepted(&place, &whole, &expected, &manifest).into_iter().map(|what| format!("{told}: {what}")));
-        if state % 8 == 0 {
+        if state % every == 0 {
             runs += 1;
             let code = place.good_run(study);
             let found = differences(&expected, &published(&place.results()));

@@ -42,7 +42,7 @@ pub fn essence(name: &str, bytes: Vec<u8>) -> Vec<u8> {
             let text = String::from_utf8_lossy(&bytes).into_owned();
             let (page, facts) = text.split_once(FACTS).unwrap_or((&text, ""));
             // A page that was cut short has no end.
-            format!("{page}{}", facts.trim_end().ends_with("-->")).into_bytes()
+            format!("{page}{}", facts.trim_end().ends_with("</html>")).into_bytes()
         }
         _ => bytes,
     }

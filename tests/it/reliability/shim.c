@@ -5,7 +5,7 @@
  * SHIM_AT       which operation fails, counted from 1; none without it
  * SHIM_LASTING  whether those after it fail too
  * SHIM_ERROR    with which errno; 0: a write takes half of its bytes, and nothing else fails; -9: the run is killed
- * SHIM_LIES     a write that fails is said to have succeeded
+ * SHIM_LIES     only writes fail, and are said to have succeeded
  * SHIM_COUNT    a file that gets the number of operations, and what the failed one was
  * SHIM_TRACE    a file that gets every change, with its data
  * SHIM_NO_FLOCK flock is not supported
@@ -116,7 +116,7 @@ static int known(int file) { return on && file >= 0 && file < MOST && files[file
 static int fails(const char *what, const char *path)
 {
     long now = __atomic_add_fetch(&count, 1, __ATOMIC_RELAXED);
-    if (!fail_at || now < fail_at || error_number == 0) return 0;
+    if (!fail_at || now < fail_at || error_number == 0 || (lies && strcmp(what, "write"))) return 0;
     if (now > fail_at && (!lasting || (error_number == EINTR && now > fail_at + INTERRUPTIONS))) return 0;
     if (error_number < 0) kill(getpid(), -error_number);
     if (now == fail_at) snprintf(failed_at, sizeof failed_at, "%s %s", what, path);
