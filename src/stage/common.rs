@@ -134,17 +134,14 @@ pub fn curve_rows(settings: Settings, harmonics: usize) -> usize {
     (NODES - 1) * (settings.positions.div_ceil(NODES - 1).max(harmonics) + 12)
 }
 
-/// Time of a solve of teeth that move each other over that of teeth that do not, as studies have them.
-const OF_STUDIES: f64 = 2.5;
-
 /// How many times as long as usual a solve takes with these settings.
 #[must_use]
 pub fn solve_times(settings: Settings) -> f64 {
     match (settings.slice_coupling, settings.corner_contact) {
         // Slices that hold each other are one system of equations.
         (SliceCoupling::Plate, _) => (settings.slices * settings.slices) as f64,
-        (SliceCoupling::None, CornerContact::None) => OF_STUDIES,
-        (SliceCoupling::None, _) => OF_STUDIES * CORNER_SOLVES,
+        (SliceCoupling::None, CornerContact::None) => 1.0,
+        (SliceCoupling::None, _) => CORNER_SOLVES,
     }
 }
 

@@ -99,10 +99,10 @@ fn checking_draws_nothing() {
 #[test]
 fn memory_is_foreseen_from_above() {
     let desk = desk(concat!(
-        "    outline: { points: 20000, teeth: all }\n",
-        "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 12 } } }\n",
+        "    outline: { points: 500, teeth: all }\n",
+        "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }\n",
         "  designs: { kind: modification, pair: pair, designs: { none: [] } }\n",
-        "  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: { from: 1 N m, to: 200 N m, count: 60 } }\n",
+        "  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: { from: 1 N m, to: 200 N m, count: 12 } }\n",
         "  of_pair: { kind: accuracy, of: pair, quantities: [outline.x], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
         "  of_stiffness: { kind: accuracy, of: stiffness, quantities: [curve.stiffness], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
         "  of_ste: { kind: accuracy, of: ste, quantities: [curve.pairs], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
