@@ -43,7 +43,7 @@ impl Running {
 
 /// Seconds left where a share was done in some; nothing before that tells anything.
 fn left(share: f64, elapsed: f64) -> Option<f64> {
-    (share >= 0.02 && share < 1.0 && elapsed >= 2.0).then(|| elapsed * (1.0 - share) / share)
+    ((0.02..1.0).contains(&share) && elapsed >= 2.0).then(|| elapsed * (1.0 - share) / share)
 }
 
 /// How often those are told how it stands who have no bars to look at.

@@ -98,6 +98,6 @@ mod tests {
             assert!((40..=160).contains(&chunks), "{values}: {chunks}");
         }
         assert_eq!([size(128, 1), size(129, 1), size(256, 1), size(257, 1)], [1, 2, 2, 4]);
-        assert_eq!([size(9, usize::MAX), size(1000, 16), size(100_000, 16)], [usize::MAX, 16, 16 * 8]);
+        assert_eq!([size(9, usize::MAX), size(1000, 16), size(100_000, 16)], [usize::MAX, 16, 16 * 64]);
     }
 }

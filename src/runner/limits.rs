@@ -155,7 +155,7 @@ fn remedies(board: &Board, node: usize, fits: &dyn Fn(&Record) -> bool) -> Vec<(
     let mut found = Vec::new();
     gather(of_study.kind.fields, &of_study.record, &mut Vec::new(), &mut |path, place, find| {
         let fits = |value: Value| {
-            let record = with(&of_study.record, path, value);
+            let record = with(&of_study.record, path, &value);
             (of_study.kind.build)(&record).is_ok() && fits(&record)
         };
         if found.len() < MOST_REMEDIES
@@ -231,15 +231,15 @@ fn rounded(value: i64, least: i64) -> i64 {
 }
 
 /// The record with another value at a path.
-fn with(record: &Record, path: &[&'static str], value: Value) -> Record {
+fn with(record: &Record, path: &[&'static str], value: &Value) -> Record {
     let mut changed = record.clone();
     let Some((first, rest)) = path.split_first() else { return changed };
     for (_, entry) in changed.fields.iter_mut().filter(|(name, _)| name == first) {
         entry.value = match (&entry.value, rest) {
             (_, []) => value.clone(),
-            (Value::Group(inner), _) => Value::Group(with(inner, rest, value.clone())),
+            (Value::Group(inner), _) => Value::Group(with(inner, rest, value)),
             // A member's name is a step of the path.
-            (Value::Member(name, inner), _) => Value::Member(name, with(inner, &rest[1..], value.clone())),
+            (Value::Member(name, inner), _) => Value::Member(name, with(inner, &rest[1..], value)),
             (other, _) => other.clone(),
         };
     }

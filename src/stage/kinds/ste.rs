@@ -4,15 +4,17 @@
 
 mod ahead;
 mod samples;
+mod tables;
 
 use std::time::Instant;
 
 use rayon::prelude::*;
 
+use self::tables::{cost_row, cost_schema, curve_columns, curve_schema, harmonics_schema, summary_row, summary_schema};
 use crate::base::error::{Diagnostic, Failure};
 use crate::base::parameter::{Field, Shape, count, joined};
 use crate::base::record::{Record, Value};
-use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit, showing};
+use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit};
 use crate::base::work::Counter;
 use crate::gear::contact::SliceCoupling;
 use crate::gear::modification::{self, Design};
@@ -22,8 +24,8 @@ use crate::gear::transmission_error::loading::Loading;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
 use crate::stage::steps::Steps;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
-use crate::table::data::{Data, Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use crate::table::data::{Row, Table, TableError};
+use crate::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
     name: "ste",
@@ -81,6 +83,9 @@ const PER_SLICE: f64 = 0.01;
 /// Solves that a curve takes for each of its positions, with its extrema and first touches.
 const SOLVES_PER_POSITION: f64 = 4.0;
 
+/// The tables that need curves.
+const OF_CURVES: [&str; 4] = ["summary", "curve", "harmonics", "cost"];
+
 struct Ste {
     stiffness: String,
     designs: Vec<String>,
@@ -117,96 +122,6 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         samples: common::whole(record, "samples"),
         first_sample: record.quantity("first_sample"),
     }))
-}
-
-fn keys() -> Vec<Column> {
-    vec![
-        Column::text("design", "Name of the design.").key(),
-        Column::float("torque", "N m", "Torque on the pinion.").key(),
-    ]
-}
-
-fn summary_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::float("mean", "um", "Integral mean of the transmission error over the mesh cycle."),
-        Column::float("peak_to_peak", "um", "Largest less smallest transmission error.").tolerance(1e-12, 1e-9),
-        Column::float("maximum", "um", "Largest transmission error."),
-        Column::float("minimum", "um", "Smallest transmission error."),
-        Column::float("variance", "um^2", "Integral mean of the squared deviation from the mean.")
-            .tolerance(1e-15, 1e-9),
-        Column::float(
-            "reciprocal_variance",
-            "1/um^2",
-            "f = 1/variance (mei2016, equation 16); NaN where nothing varies.",
-        )
-        .allows_nan()
-        .tolerance(0.0, 1e-8),
-        Column::float("unloaded_peak_to_peak", "um", "The same without load.").tolerance(1e-12, 1e-9),
-        Column::float("loaded_contact_ratio", "", "Mean number of pairs that carry load."),
-        Column::float("largest_load_share", "", "Largest share of the load on one pair."),
-        Column::float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.").on_demand(),
-        Column::integer("positions", "Positions per base pitch that were used."),
-        Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
-        Column::float("error_estimate", "", "Estimated relative error of the peak-to-peak from positions and slices.")
-            .tolerance(1e-9, 0.0),
-    ]);
-    Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
-}
-
-/// By itself, since a table with measured times differs from run to run.
-fn cost_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::float("peak_to_peak", "um", "As in the table `summary`.").tolerance(1e-12, 1e-9),
-        Column::integer("positions", "As in the table `summary`."),
-        Column::integer("slices", "As in the table `summary`."),
-        Column::float("error_estimate", "", "As in the table `summary`.").tolerance(1e-9, 0.0),
-        Column::float("seconds", "s", "Time for this row.").volatile(),
-    ]);
-    Schema::new("cost", "Error of each curve against the time it took.", columns).on_demand()
-}
-
-fn curve_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::integer("point", "Counts the positions, from 1; those of the extrema are among them.").key(),
-        Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
-            .tolerance(1e-9, 1e-9),
-        Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
-        Column::integer("pairs", "Pairs inside the path of contact."),
-        Column::integer("loaded_pairs", "Pairs that carry load."),
-        Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
-        Column::float("unloaded_transmission_error", "um", "The same without load.").tolerance(1e-12, 1e-9),
-        Column::float("newest_load_share", "", "Share of the load on the pair that came into contact last.")
-            .tolerance(1e-12, 1e-9),
-        Column::float(
-            "secant_stiffness",
-            "N/m",
-            "Load over loaded less unloaded transmission error; NaN without load.",
-        )
-        .allows_nan(),
-        Column::float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.")
-            // Where a corner begins to touch, the slope goes with the square root of how far it is in.
-            .tolerance(0.0, 1e-5)
-            .allows_nan(),
-        Column::float("pressure", "MPa", "Largest Hertzian pressure of any pair.").on_demand(),
-    ]);
-    Schema::new(
-        "curve",
-        "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are two rows, one \
-         for each side.",
-        columns,
-    )
-}
-
-fn harmonics_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::integer("order", "Multiple of the mesh frequency.").key(),
-        Column::float("amplitude", "um", "Amplitude of the transmission error.").tolerance(1e-12, 1e-9),
-    ]);
-    Schema::new("harmonics", "Harmonics of the transmission error.", columns)
 }
 
 /// One design under one torque.
@@ -328,7 +243,7 @@ impl Stage for Ste {
         let tasks: Vec<(usize, f64)> =
             (0..designs.len()).flat_map(|design| self.torques.iter().map(move |torque| (design, *torque))).collect();
         // Equidistant samples alone need no curve.
-        let of_curves = ["summary", "curve", "harmonics", "cost"].iter().any(|table| context.demand.table(table));
+        let of_curves = OF_CURVES.iter().any(|table| context.demand.table(table));
         let answered = if of_curves { tasks.as_slice() } else { &[] };
         let steps = Steps::new(context, answered.len());
         let answers: Vec<Answer> = answered
@@ -404,73 +319,4 @@ impl Stage for Ste {
         context.work.add(&base.work());
         Ok(tables)
     }
-}
-
-fn summary_row(answer: &Answer, pressure: bool) -> Row {
-    let summary = &answer.summary;
-    let mut row: Row = [
-        in_unit(summary.mean, "um"),
-        in_unit(summary.peak_to_peak, "um"),
-        in_unit(summary.largest.value, "um"),
-        in_unit(summary.smallest.value, "um"),
-        in_unit(summary.variance, "um^2"),
-        summary.reciprocal_variance.map_or(f64::NAN, |value| in_unit(value, "1/um^2")),
-        in_unit(summary.unloaded_peak_to_peak, "um"),
-        summary.loaded_contact_ratio,
-        summary.largest_load_share,
-    ]
-    .map(Into::into)
-    .into();
-    if pressure {
-        row.push(in_unit(summary.largest_pressure.map_or(f64::NAN, |largest| largest.value), "MPa").into());
-    }
-    let Settings { positions, slices, .. } = answer.settings;
-    row.extend([positions.into(), slices.into(), answer.error.into()]);
-    row
-}
-
-fn cost_row(answer: &Answer) -> Row {
-    let Settings { positions, slices, .. } = answer.settings;
-    vec![
-        in_unit(answer.summary.peak_to_peak, "um").into(),
-        positions.into(),
-        slices.into(),
-        answer.error.into(),
-        answer.seconds.into(),
-    ]
-}
-
-/// By columns, not rows: curves are by far the longest tables.
-fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Vec<Data> {
-    let keyed = || keys.iter().zip(answers).flat_map(|(key, answer)| answer.points.iter().map(move |_| *key));
-    let points = || answers.iter().flat_map(|answer| &answer.points);
-    let shown = |unit: &str, value: fn(&Point) -> f64| {
-        let show = showing(unit);
-        Data::Float(points().map(|point| show(value(point))).collect())
-    };
-    let counted = |value: fn(usize, &Point) -> usize| {
-        let values = answers.iter().flat_map(|answer| answer.points.iter().enumerate());
-        Data::Integer(values.map(|(index, point)| i64::try_from(value(index, point)).unwrap_or(i64::MAX)).collect())
-    };
-    let mut columns = vec![
-        Data::Text(keyed().map(|key| key.0.to_owned()).collect()),
-        Data::Float(keyed().map(|key| key.1).collect()),
-        counted(|index, _| index + 1),
-        shown("mm", |point| point.cycle_position),
-        shown("deg", |point| point.roll_angle),
-        counted(|_, point| point.pairs),
-        counted(|_, point| point.loaded_pairs),
-        shown("um", |point| point.transmission_error),
-        shown("um", |point| point.unloaded_transmission_error),
-        shown("", |point| {
-            let load = point.load();
-            if load > 0.0 { point.newest_load / load } else { 0.0 }
-        }),
-        shown("N/m", |point| point.secant_stiffness),
-        shown("N/m", |point| point.tangent_stiffness),
-    ];
-    if pressure {
-        columns.push(shown("MPa", |point| point.pressure.unwrap_or(f64::NAN)));
-    }
-    columns
 }

@@ -257,8 +257,8 @@ impl Stage for Stiffness {
             curve_schema(),
             summary_schema(),
             mesh_schema(),
-            iso_schema(),
             cost_schema(),
+            iso_schema(),
         ];
         if self.method.root_stress.is_some() {
             schemas.push(root_stress_schema());

@@ -72,7 +72,9 @@ fn sources(study: &Study, stage: &dyn Stage) -> BTreeMap<String, String> {
 fn foreseen(name: &str, stage: &dyn Stage, demand: &Demand, inputs: &Inputs, tables: &[Table]) {
     let mut ahead = Ahead::default();
     for (port, tables) in &inputs.ports {
-        tables.iter().for_each(|table| ahead.know(port, table.name(), Rows::exact(table.rows())));
+        for table in tables {
+            ahead.know(port, table.name(), Rows::exact(table.rows()));
+        }
     }
     let estimate = stage.estimate(demand, &ahead);
     assert_eq!(estimate.tables.len(), tables.len(), "`{name}` foresees other tables than it gives");

@@ -137,7 +137,10 @@ fn every_operation(before: &Before, study: &str, step: usize) {
     for (index, at) in (1..=operations).step_by(if thorough() > 0 { 1 } else { step }).enumerate() {
         match thorough() {
             2 => {
-                errors.iter().for_each(|error| [false, true].into_iter().for_each(|lasting| case(at, *error, lasting)))
+                for error in errors {
+                    case(at, error, false);
+                    case(at, error, true);
+                }
             }
             1 => {
                 case(at, errors[index % 5], false);

@@ -2,7 +2,8 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::{Ste, curve_schema, harmonics_schema, samples, summary_schema};
+use super::tables::{cost_schema, curve_schema, harmonics_schema, summary_schema};
+use super::{OF_CURVES, Ste, samples};
 use crate::base::work::{Counter, Work};
 use crate::gear::transmission_error::curve::Point;
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
@@ -18,7 +19,7 @@ impl Ste {
         let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(Rows::NONE, Rows::and);
         let curves = designs.times(Rows::exact(self.torques.len()));
         let of_each = common::curve_rows(self.settings, self.harmonics);
-        let of_curves = ["summary", "curve", "harmonics"].iter().any(|table| demand.table(table));
+        let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
         let rows = curves.times(Rows::about(if of_curves { of_each } else { 0 }));
         let pressures = demand.column("summary", "largest_pressure") || demand.column("curve", "pressure");
         let samples = if demand.table("samples") || demand.table("sample_summary") { self.samples } else { 0 };
@@ -36,6 +37,7 @@ impl Ste {
             .rows(demand, summary_schema(), curves)
             .columns(demand, curve_schema(), rows)
             .rows(demand, harmonics_schema(), curves.times(Rows::exact(self.harmonics)))
+            .rows(demand, cost_schema(), curves)
             .rows(demand, sample_rows, curves.times(Rows::exact(self.samples)))
             .rows(demand, sample_summary, curves)
     }

@@ -3,7 +3,7 @@
 //! A mean, a variance or an extreme of a few samples is not that of the curve; these are here to be put beside printed
 //! ones. Must not know: how a position is solved.
 
-use super::keys;
+use super::tables::keys;
 use crate::base::units::in_unit;
 use crate::gear::transmission_error::loading::Loading;
 use crate::table::data::Row;
