@@ -11,7 +11,7 @@ use crate::stage::{Ahead, Demand, Estimate, Rows, common};
 /// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
 const SOLVES_PER_ROW: f64 = 2.3;
 /// Bytes of a pair with its compliances, ready to be loaded.
-const CYCLE: u64 = 4 << 20;
+const CYCLE: u64 = 1 << 20;
 
 impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
