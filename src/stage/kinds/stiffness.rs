@@ -277,9 +277,8 @@ impl Stage for Stiffness {
             let rows = match schema.name.as_str() {
                 "compliance" => Rows::about(foreseen.nodes),
                 "neighbours" => Rows::about(foreseen.neighbours),
-                // A method of whole pairs may need few nodes.
-                "curve" if self.method.whole_pair => Rows::at_most(curve),
-                "curve" => Rows::about(curve),
+                // Without reliefs there are few spans.
+                "curve" => Rows::at_most(curve),
                 "mesh" => Rows::exact(if meshed { 2 } else { 0 }),
                 "root_stress" => Rows::about(32),
                 _ => Rows::exact(1),

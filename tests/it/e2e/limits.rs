@@ -102,7 +102,7 @@ fn memory_is_foreseen_from_above() {
         "    outline: { points: 500, teeth: all }\n",
         "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }\n",
         "  designs: { kind: modification, pair: pair, designs: { none: [] } }\n",
-        "  ste: { kind: ste, stiffness: stiffness, designs: designs, torque: { from: 1 N m, to: 200 N m, count: 12 } }\n",
+        "  ste: { kind: ste, stiffness: stiffness, designs: designs, positions: 2000, torque: { from: 1 N m, to: 200 N m, count: 12 } }\n",
         "  of_pair: { kind: accuracy, of: pair, quantities: [outline.x], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
         "  of_stiffness: { kind: accuracy, of: stiffness, quantities: [curve.stiffness], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
         "  of_ste: { kind: accuracy, of: ste, quantities: [curve.pairs], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",
