@@ -12,6 +12,9 @@ export GEARSTUDY_PYTHON := $(CURDIR)/.venv/bin/python
 # The random cases of the tests are the same in every run; `cargo test` by itself draws new ones.
 export PROPTEST_RNG_SEED := 20261121
 
+# As `cargo clippy -- -D warnings` has it, for the crate itself in any build.
+LINTED := RUSTC_WORKSPACE_WRAPPER=clippy-driver CLIPPY_ARGS=-D__CLIPPY_HACKERY__warnings__CLIPPY_HACKERY__
+
 # What `make diff` compares the results folder with.
 BASE ?= HEAD
 RELEASE := target/release/gearstudy
@@ -38,9 +41,10 @@ study: release  ## run one study: make study STUDY=energy_ga
 
 test: setup  ## format, lints, all tests, and the quick study run twice
 	cargo fmt --check
-	cargo clippy --locked --all-targets -- -D warnings
-	@# One build for all tests: with another set of features most of the dependencies would be built again.
-	cargo test --locked --features frames
+	@# One build for lints and tests, benches too: a check of its own, or another set of features, would build most of the
+	@# dependencies again.
+	$(LINTED) cargo test --locked --features frames --all-targets --no-run
+	$(LINTED) cargo test --locked --features frames
 	@# The program that the tests were built with: another build would differ in features and take a minute.
 	scripts/run-twice target/debug/gearstudy studies/quick.yaml
 
