@@ -19,7 +19,13 @@ fn long() -> Desk {
 }
 
 fn start(desk: &Desk) -> Child {
-    Command::new(env!("CARGO_BIN_EXE_gearstudy"))
+    let program = env!("CARGO_BIN_EXE_gearstudy");
+    let mut command = Command::new(if cfg!(target_os = "linux") { "env" } else { program });
+    if cfg!(target_os = "linux") {
+        // Tests that a shell started in the background ignore Ctrl-C, and so would what they start.
+        command.args(["--default-signal=INT,TERM,HUP", program]);
+    }
+    command
         .current_dir(desk.path("."))
         .env_remove("GEARSTUDY_CACHE")
         .args(["run", "quick.yaml"])
