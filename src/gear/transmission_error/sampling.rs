@@ -2,9 +2,10 @@
 //!
 //! The number is taken at several samplings. From coarser ones: the error is what halving, quartering … changes, each
 //! halving trusted to cost 2^(3/2) times the error; of several the largest, for on faces that are cut into slices a single
-//! change can be small by chance. Few slices are compared with finer ones too: half of a few sees as little as they do. What
-//! lies between two slices no coarser sampling sees either; it is added. From a finer one, four times as fine: dearer, but
-//! right for means and variances too, which few spans hold as well as half of them. Must not know: what the number is.
+//! change can be small by chance. Slices are compared with twice as many too: where the number is smooth they tell the error
+//! itself, where coarser ones tell that of their own. What lies between two slices no other sampling sees; it is added.
+//! From a finer one, four times as fine: dearer, but right for means and variances too, which few spans hold as well as half
+//! of them. Must not know: what the number is.
 
 use super::cycle::Settings;
 use crate::gear::contact::{MOST_COUPLED_SLICES, SliceCoupling};
@@ -24,8 +25,8 @@ const ROUNDING: f64 = 5e-10;
 const LEAST_POSITIONS: usize = 16;
 const MOST_POSITIONS: usize = 4096;
 const LEAST_SLICES: usize = 9;
-/// Fewer slices are compared with finer ones besides.
-const ENOUGH_SLICES: usize = 17;
+/// From here on slices that hold each other are compared with coarser ones alone: twice as many take eight times as long.
+const ENOUGH_COUPLED_SLICES: usize = 17;
 const MOST_SLICES: usize = 1025;
 
 /// What samplings are compared with.
@@ -104,8 +105,9 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         } else {
             let coarser = halves(slices, HALVINGS_OF_SLICES, 3);
             let changes = self.by_halving(settings, coarser.map(with));
-            if slices < ENOUGH_SLICES && allowed(finer) {
-                changes.max(SAFETY * self.change(settings, with(finer)))
+            if settings.slice_coupling == SliceCoupling::None || slices < ENOUGH_COUPLED_SLICES {
+                // A coarser sampling differs by its own error, which is larger.
+                (changes / FALL).max(SAFETY * self.change(settings, with(finer)))
             } else {
                 changes
             }

@@ -19,6 +19,7 @@ use crate::store::file::{self, Durability};
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::index::{self, Index, Seen};
+use crate::store::lock;
 use crate::store::manifest::{FileRecord, Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
 use crate::table::data::Table;
 
@@ -321,8 +322,12 @@ impl Folder {
         [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
     }
 
-    /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is no fault.
+    /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is no fault,
+    /// and nobody who publishes is waited for.
     fn refresh(&self, known: &Known) {
+        if self.path().join(lock::NAME).exists() {
+            return;
+        }
         let Ok(_lock) = self.lock() else { return };
         if self.known().ok().flatten().is_none_or(|now| now.digest != known.digest) {
             return;

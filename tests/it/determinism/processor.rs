@@ -22,10 +22,10 @@ fn contents(study: &str, jobs: u16, masked: bool) -> Vec<(String, String)> {
     desk.contents(study)
 }
 
-fn the_same_everywhere(study: &str) {
+fn the_same_everywhere(study: &str, threads: &[u16]) {
     let plain = contents(study, 2, false);
     assert!(plain.len() >= 20, "{}", plain.len());
-    for jobs in [1, 2, 3, 8] {
+    for &jobs in threads {
         for ((name, content), (_, masked)) in plain.iter().zip(contents(study, jobs, true)) {
             assert_eq!(*content, masked, "{study}, {name}: {jobs} threads, masked");
         }
@@ -34,28 +34,28 @@ fn the_same_everywhere(study: &str) {
 
 #[test]
 fn the_quick_study_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("quick");
+    the_same_everywhere("quick", &[1, 2, 3, 8]);
 }
 
 #[test]
 fn the_article_energy_ga_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("energy_ga");
+    the_same_everywhere("energy_ga", &[1, 2, 3, 8]);
 }
 
 #[test]
 fn the_article_harris_map_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("harris_map");
+    the_same_everywhere("harris_map", &[1, 8]);
 }
 
 #[test]
 fn the_article_zhai2020_has_the_same_contents_on_a_lesser_processor() {
-    the_same_everywhere("zhai2020");
+    the_same_everywhere("zhai2020", &[1, 2, 3, 8]);
 }
 
 /// Its finite elements are factorised by a library that the mask does not reach: the same processor to it, the same bits.
 #[test]
 fn the_article_mei2016_has_the_same_contents_with_any_number_of_threads() {
-    the_same_everywhere("mei2016");
+    the_same_everywhere("mei2016", &[1, 8]);
 }
 
 /// The mask works: where the processor has FMA, the C library's sine is another one without it. Were it misspelt, the

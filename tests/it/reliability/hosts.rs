@@ -100,6 +100,25 @@ fn who_is_waited_for_is_named() {
     assert!(differences(&undisturbed(TINY), &published(&place.results())).is_empty());
 }
 
+/// With nothing to do there is nothing to wait for, also where a look at the files would be worth noting.
+#[test]
+fn a_run_with_nothing_to_do_waits_for_nobody() {
+    if disk::library().is_none() {
+        return;
+    }
+    let folder = disk::folder();
+    let place = Place::new(folder.path());
+    let orders = host(&place, "one");
+    assert!(place.run(TINY, &orders).status.success());
+    let table = place.results().join("pair.pair.parquet");
+    fs::write(&table, fs::read(&table).unwrap()).unwrap();
+    let lock = place.results().join(".lock");
+    fs::write(&lock, lock_of("elsewhere", "other")).unwrap();
+    let ended = place.run(TINY, &orders);
+    assert!(ended.status.success() && !ended.error.contains("waiting"), "{}", ended.error);
+    assert!(lock.exists() && differences(&undisturbed(TINY), &published(&place.results())).is_empty());
+}
+
 /// What the index says of a file counts until the computer is started anew: a power cut can take the bytes and leave size,
 /// times and inode, which is put together here.
 #[test]

@@ -118,8 +118,7 @@ fn the_estimate_from_coarser_samplings_holds() {
             coarse += usize::from(chosen.slices <= 33 && chosen.positions == 16);
         }
     }
-    // What lies between two slices is added even where nothing does: the price of an estimate that always holds.
-    sliced.check("with slices", 150, 80.0);
+    sliced.check("with slices", 150, 30.0);
     closed.check("in closed form", 60, 30.0);
     let held = wished.0.iter().filter(|ratio| **ratio >= 1.0).count();
     assert!(wished.0.len() > 250 && held * 100 >= wished.0.len() * 99, "{held} of {}", wished.0.len());
