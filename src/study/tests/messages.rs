@@ -1,8 +1,7 @@
 //! Every message: where, what was found, what was expected, what to write instead.
 
-use super::{changed, load, refused};
+use super::{changed, each_is_refused, load, refused};
 
-/// What stands in the valid study, what stands there instead, and the whole message after the file's name.
 const CHANGES: &[(&str, &str, &str)] = &[
     ("module: 3 mm", "module: 3", "8:13: `3` has no unit; a length is expected, for example `3 mm`"),
     ("module: 3 mm", "module: 3 N", "8:13: `3 N` is a force; a length (for example `3 mm`) is expected"),
@@ -364,14 +363,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
 
 #[test]
 fn a_study_with_one_mistake_gets_its_message() {
-    let mut wrong = Vec::new();
-    for (old, new, expected) in CHANGES {
-        let message = refused(&changed(old, new));
-        if message != format!("t.yaml:{expected}") {
-            wrong.push(format!("{new:?}\n expected {expected:?}\n but got  {message:?}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    each_is_refused(CHANGES);
 }
 
 #[test]

@@ -224,3 +224,15 @@ fn refused(text: &str) -> String {
         Err(error) => error.to_string(),
     }
 }
+
+/// What stands in the valid study, what stands there instead, and the whole message after the file's name.
+fn each_is_refused(changes: &[(&str, &str, &str)]) {
+    let mut wrong = Vec::new();
+    for (old, new, expected) in changes {
+        let message = refused(&changed(old, new));
+        if message != format!("t.yaml:{expected}") {
+            wrong.push(format!("{new:?}\n expected {expected:?}\n but got  {message:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}

@@ -1,8 +1,7 @@
 //! Numbers in other notations and names that no file can have: refused with what to write instead.
 
-use super::{changed, refused};
+use super::each_is_refused;
 
-/// What stands in the valid study, what stands there instead, and the whole message after the file's name.
 const CHANGES: &[(&str, &str, &str)] = &[
     (
         "teeth: 19",
@@ -75,7 +74,5 @@ const CHANGES: &[(&str, &str, &str)] = &[
 
 #[test]
 fn other_notations_and_names_of_devices_are_refused_with_what_to_write() {
-    for (old, new, expected) in CHANGES {
-        assert_eq!(refused(&changed(old, new)), format!("t.yaml:{expected}"), "{new}");
-    }
+    each_is_refused(CHANGES);
 }

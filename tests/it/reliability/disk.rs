@@ -24,10 +24,15 @@ pub fn library() -> Option<&'static Path> {
 
 fn build() -> Option<PathBuf> {
     let source = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/it/reliability/shim.c");
-    let library = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("shim-{}.so", std::process::id()));
-    let compiler = Command::new("cc").args(["-shared", "-fPIC", "-O1", "-o"]).arg(&library).arg(source).output();
+    // Made under a name of its own: another process of the tests may have the library in use.
+    let library = Path::new(env!("CARGO_TARGET_TMPDIR")).join("shim.so");
+    let new = library.with_extension(std::process::id().to_string());
+    let compiler = Command::new("cc").args(["-shared", "-fPIC", "-O1", "-o"]).arg(&new).arg(source).output();
     match compiler {
-        Ok(output) if output.status.success() => Some(library),
+        Ok(output) if output.status.success() => {
+            fs::rename(&new, &library).unwrap();
+            Some(library)
+        }
         Ok(output) => panic!("{}", String::from_utf8_lossy(&output.stderr)),
         Err(error) => {
             // Past the test harness, which shows nothing of tests that pass.
