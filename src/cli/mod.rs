@@ -21,12 +21,16 @@ mod studies;
 pub mod verify;
 
 use std::ffi::OsString;
+use std::io::Write;
+
+pub use progress::complain;
 
 /// What the program allocates with.
 pub use crate::stage::memory::Allocator;
 
 use clap::Parser;
 
+use crate::store::parquet;
 use crate::study::LoadError;
 
 use arguments::{Arguments, Command};
@@ -77,14 +81,24 @@ impl Ending {
 /// What `70` in the help means.
 pub const BUG: i32 = 70;
 
+/// A panic says where it was, but for those that become an error elsewhere.
+pub fn tell_panics() {
+    let tell = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !parquet::is_guarded() {
+            tell(panic);
+        }
+    }));
+}
+
 /// Runs the program with these words and gives its exit code.
 pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
             // Help and version are asked for; everything else is a slip. When even this cannot be printed, the code says it.
-            let _ = error.print();
-            return i32::from(error.use_stderr());
+            let printed = error.print().and_then(|()| std::io::stdout().flush());
+            return i32::from(error.use_stderr() || printed.is_err());
         }
     };
     match command(&arguments) {

@@ -69,7 +69,7 @@ impl Watcher {
             scope.spawn(move || {
                 // The other end is dropped when the work has ended, also by a panic.
                 while wait.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
-                    self.stand(Instant::now()).iter().for_each(|line| self.line(line));
+                    self.line(&self.stand(Instant::now()));
                 }
             });
             let result = work();
@@ -79,11 +79,13 @@ impl Watcher {
     }
 
     /// What is running, how far it is, and how long still.
-    fn stand(&self, now: Instant) -> Option<String> {
+    fn stand(&self, now: Instant) -> String {
         let running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
         let stages: Vec<String> =
             running.iter().map(|(stage, running)| format!("{stage} {}", running.standing(now))).collect();
-        (!stages.is_empty()).then(|| format!("  running: {}", stages.join("; ")))
+        let stages =
+            if stages.is_empty() { "no stage; results are read or written".to_owned() } else { stages.join("; ") };
+        format!("  running: {stages}")
     }
 
     fn line(&self, text: &str) {
@@ -172,9 +174,14 @@ pub fn bars(quiet: bool) -> Option<MultiProgress> {
 /// Says something on standard error while bars may be drawn there.
 pub fn aside(bars: Option<&MultiProgress>, text: &str) {
     match bars {
-        Some(bars) => bars.suspend(|| eprintln!("{}", plain(text))),
-        None => eprintln!("{}", plain(text)),
+        Some(bars) => bars.suspend(|| complain(text)),
+        None => complain(text),
     }
+}
+
+/// A line on standard error; when it cannot be written (a full disk, a reader that is gone) there is nobody left to tell.
+pub fn complain(text: &str) {
+    let _ = writeln!(std::io::stderr(), "{}", plain(text));
 }
 
 /// What a lock says, which may be waited for.
@@ -238,7 +245,7 @@ pub fn out(text: &str) {
         Ok(()) => {}
         Err(error) if error.kind() == ErrorKind::BrokenPipe => std::process::exit(0),
         Err(error) => {
-            eprintln!("gearstudy: cannot write to standard output: {error}");
+            complain(&format!("gearstudy: cannot write to standard output: {error}"));
             std::process::exit(1);
         }
     }
@@ -265,14 +272,14 @@ mod tests {
         let watcher = Watcher::new(false, 4, None);
         let began = Instant::now();
         let after = |seconds| began + Duration::from_secs(seconds);
-        assert_eq!(watcher.stand(after(10)), None, "nothing runs");
+        assert_eq!(watcher.stand(after(10)), "  running: no stage; results are read or written");
         let running = Running { since: Some(began), ..Running::default() };
         watcher.running.lock().unwrap().insert("ste".to_owned(), running);
-        assert_eq!(watcher.stand(after(10)).unwrap(), "  running: ste 0 % after 10 s");
+        assert_eq!(watcher.stand(after(10)), "  running: ste 0 % after 10 s");
         watcher.event(&Event::Progressed { stage: "ste", share: 0.25 });
-        assert_eq!(watcher.stand(after(20)).unwrap(), "  running: ste 25 % after 20 s, about 60 s left");
+        assert_eq!(watcher.stand(after(20)), "  running: ste 25 % after 20 s, about 60 s left");
         watcher.event(&Event::Started { stage: "pair", why: "never ran", chunks: 1 });
-        let both = watcher.stand(after(1000)).unwrap();
+        let both = watcher.stand(after(1000));
         assert!(
             both.contains("pair 0 % after ") && both.contains("; ste 25 % after 17 min, about 50 min left"),
             "{both}"
@@ -280,7 +287,7 @@ mod tests {
         for stage in ["ste", "pair"] {
             watcher.event(&Event::Finished { stage, seconds: 1.0 });
         }
-        assert_eq!(watcher.stand(after(2000)), None);
+        assert_eq!(watcher.stand(after(2000)), "  running: no stage; results are read or written");
         assert_eq!([left(0.01, 100.0), left(0.5, 1.0), left(1.0, 9.0), left(0.2, 8.0)], [None, None, None, Some(32.0)]);
     }
 

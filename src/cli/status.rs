@@ -82,14 +82,19 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: b
     if as_json {
         out(&format!("{:#}\n", Value::Array(values)));
     }
-    if let Some(cache) = cache.as_ref().filter(|_| check) {
-        let found = cache.verify().map_err(|error| Ending::Usage(error.to_string()))?;
-        damaged.extend(found.into_iter().map(|(path, problem)| format!("{}: {problem}", path.display())));
+    let mut advice = Vec::new();
+    if !damaged.is_empty() {
+        advice.push(format!("damaged; `gearstudy run` writes it anew:\n  {}", damaged.join("\n  ")));
+    }
+    let of_cache = cache.as_ref().filter(|_| check).map(|cache| cache.verify(true)).unwrap_or_default();
+    if !of_cache.is_empty() {
+        let named: Vec<String> = of_cache.iter().map(|(path, why)| format!("{}: {why}", path.display())).collect();
+        advice.push(format!("damaged in the cache, and gone from it now:\n  {}", named.join("\n  ")));
     }
     let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
     match faults.pop() {
-        None if damaged.is_empty() => Ok(()),
-        None => Err(Ending::Differs(format!("damaged; `gearstudy run` writes it anew:\n  {}", damaged.join("\n  ")))),
+        None if advice.is_empty() => Ok(()),
+        None => Err(Ending::Differs(advice.join("\n"))),
         Some(Fault::Study(error)) if files.len() == 1 => Err(Ending::Invalid(Box::new(error))),
         Some(Fault::Other(problem)) if files.len() == 1 => Err(Ending::Usage(problem)),
         Some(_) => {

@@ -111,7 +111,7 @@ fn figure(
     Ok(Figure {
         name: text("name")?.to_owned(),
         note: text("note")?.to_owned(),
-        plot,
+        plot: plot.thinned(),
         tables: names.join(", "),
         varies,
     })

@@ -12,7 +12,10 @@ mod page;
 mod plot;
 mod scale;
 pub mod text;
+mod thin;
 mod verdict;
+
+use std::cell::RefCell;
 
 use crate::store::manifest::{Manifest, StageRecord};
 use crate::table::data::{Data, Table};
@@ -51,6 +54,15 @@ pub enum ReportError {
 /// # Errors
 /// When a report stage's table, or one that a figure draws, is missing or of another shape.
 pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Rendered, ReportError> {
+    // Figures of one table follow each other: it is read and checked once.
+    let last: RefCell<Option<(String, Table)>> = RefCell::default();
+    let tables = &|name: &str| {
+        let mut last = last.borrow_mut();
+        if last.as_ref().is_none_or(|(known, _)| known != name) {
+            *last = Some((name.to_owned(), tables(name)?));
+        }
+        last.as_ref().map(|(_, table)| table.clone())
+    };
     let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == "report").collect();
     let mut parts = Vec::new();
     for stage in &stages {

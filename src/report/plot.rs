@@ -170,7 +170,7 @@ impl Plot {
         self.series.iter().flat_map(|series| series.runs.iter().flatten().copied())
     }
 
-    fn frame(&self, top: f64) -> Option<Frame> {
+    pub(super) fn frame(&self, top: f64) -> Option<Frame> {
         let xs = self.points().map(|point| point.0).chain(self.marks.iter().filter_map(|mark| mark.x));
         let ys = self.points().map(|point| point.1).chain(self.marks.iter().filter_map(|mark| mark.y));
         let x = if self.kind == Kind::Bar {

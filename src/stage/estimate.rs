@@ -135,7 +135,7 @@ const OF_COLUMN: u64 = 1200;
 /// Bytes in memory while a column is written, however short it is.
 const WHILE_WRITTEN: u64 = 40_000;
 /// Seconds to make a cell, to sort, digest, compress, store and publish it.
-const CELL_SECONDS: f64 = 2.5e-7;
+const CELL_SECONDS: f64 = 6e-7;
 /// How many times as long counted work takes as in a loop of its own on a quiet machine: stages run beside each other, and
 /// what they count is not all they do.
 const PACE: f64 = 4.0;

@@ -4,8 +4,10 @@
 //! of the schema, so pandas, Polars and DuckDB see them; reading back gives the identical table. The same table gives
 //! the same bytes: no time, no host, one row-group size, metadata in sorted order. Must not know: where files lie.
 
+use std::cell::Cell;
 use std::collections::HashMap;
 use std::ops::Range;
+use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 
 use arrow_array::cast::AsArray;
@@ -16,11 +18,34 @@ use bytes::Bytes;
 use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::basic::{Compression, ZstdLevel};
+use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
 
 use super::error::StoreError;
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Schema, Tolerance, Type};
+
+thread_local! {
+    static GUARDED: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Whether a panic of this thread is told as an error, and need not be told by itself.
+#[must_use]
+pub fn is_guarded() -> bool {
+    GUARDED.get()
+}
+
+/// The library trusts its files more than those deserve that a disk, or anybody, may have changed; and it panics where
+/// there is no memory.
+fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
+    let before = GUARDED.replace(true);
+    let done = catch_unwind(AssertUnwindSafe(work));
+    GUARDED.set(before);
+    done.unwrap_or_else(|panic| {
+        let words = panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
+        Err(format!("Parquet error: {}", words.unwrap_or("it cannot be read")))
+    })
+}
 
 const LEVEL: i32 = 3;
 /// Rows of a group, as the format suggests.
@@ -29,30 +54,37 @@ const ROW_GROUP: usize = 1 << 20;
 /// # Errors
 /// [`StoreError::Format`]; no table known makes it fail.
 pub fn write(table: &Table) -> Result<Vec<u8>, StoreError> {
-    let failed = |problem: String| StoreError::Format { table: table.name().to_owned(), problem };
+    guarded(|| encode(table)).map_err(|problem| StoreError::Format { table: table.name().to_owned(), problem })
+}
+
+fn encode(table: &Table) -> Result<Vec<u8>, String> {
+    let failed = |error: ParquetError| error.to_string();
     let schema = Arc::new(arrow_schema(table.schema()));
-    let level = ZstdLevel::try_new(LEVEL).map_err(|error| failed(error.to_string()))?;
+    let level = ZstdLevel::try_new(LEVEL).map_err(failed)?;
     let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
     let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
     let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, Arc::clone(&schema), Some(properties))
-        .map_err(|error| failed(error.to_string()))?;
+    let mut writer = ArrowWriter::try_new(&mut bytes, Arc::clone(&schema), Some(properties)).map_err(failed)?;
     // Of a long table no more than a row group is there twice.
     for first in (0..table.rows()).step_by(ROW_GROUP) {
         let rows = first..table.rows().min(first + ROW_GROUP);
         let columns = table.columns().iter().map(|data| array(data, rows.clone())).collect();
         let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
         let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), columns, &options)
-            .map_err(|error| failed(error.to_string()))?;
-        writer.write(&batch).map_err(|error| failed(error.to_string()))?;
+            .map_err(|error| error.to_string())?;
+        writer.write(&batch).map_err(failed)?;
     }
-    writer.close().map_err(|error| failed(error.to_string()))?;
+    writer.close().map_err(failed)?;
     Ok(bytes)
 }
 
 /// # Errors
 /// A sentence, when the bytes are no table written by [`write`].
 pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
+    guarded(|| decode(bytes))
+}
+
+fn decode(bytes: Vec<u8>) -> Result<Table, String> {
     let builder = ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes)).map_err(|error| error.to_string())?;
     let schema = table_schema(builder.schema())?;
     let mut columns: Vec<Data> = schema.columns.iter().map(|column| Data::empty(column.kind)).collect();

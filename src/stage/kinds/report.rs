@@ -90,6 +90,14 @@ figures:
     build,
 };
 
+/// Points of a figure that its drawing shows at most, about: a few lines, each as fine as the drawing.
+const MOST_DRAWN: u64 = 50_000;
+/// Bytes in memory of a point that is read, and of one that is drawn: the table and its copy; the figure, and the page.
+const BYTES_OF_POINT: u64 = 250;
+const BYTES_OF_DRAWN: u64 = 400;
+const SECONDS_OF_POINT: f64 = 5e-7;
+const SECONDS_OF_DRAWN: f64 = 5e-6;
+
 /// The stage as configured.
 struct Report {
     entries: Vec<Entry>,
@@ -127,9 +135,14 @@ impl Stage for Report {
         vec![verdicts(), verdict_counts(), figures, published]
     }
 
-    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let [figures, published] = figure::schemas();
+        let points: Vec<u64> = self.figures.iter().map(|figure| figure.points(ahead)).collect();
+        let (all, most) = (points.iter().sum::<u64>(), points.iter().copied().max().unwrap_or(0));
+        let drawn = points.iter().map(|points| points.min(&MOST_DRAWN)).sum::<u64>();
         Estimate::new(false)
+            .holding(most.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
+            .taking(all as f64 * SECONDS_OF_POINT + drawn as f64 * SECONDS_OF_DRAWN)
             .holding(self.entries.len() as u64 * 1000)
             .rows(demand, verdicts(), Rows::exact(self.entries.len()))
             .rows(demand, verdict_counts(), Rows::exact(Verdict::ALL.len()))

@@ -52,13 +52,15 @@ struct Content {
 }
 
 impl Cache {
-    /// Reads every byte of every entry, and names the files that are damaged.
-    ///
-    /// # Errors
-    /// When a folder cannot be read.
-    pub fn verify(&self) -> Result<Vec<(PathBuf, String)>, StoreError> {
-        let mut damaged = Vec::new();
-        for (path, key) in content(&self.root)?.entries {
+    /// Reads every byte of every entry; the damaged ones, and folders that cannot be looked into. `remove`: so that a run
+    /// with nothing else to do need not read them all to know.
+    #[must_use]
+    pub fn verify(&self, remove: bool) -> Vec<(PathBuf, String)> {
+        let mut content = Content::default();
+        let unseen = content.add_entries(&self.root);
+        let mut damaged: Vec<(PathBuf, String)> =
+            unseen.into_iter().map(|(path, error)| (path, error.to_string())).collect();
+        for (path, key) in content.entries {
             let problem = match entry::open(&path, key) {
                 Err(problem) => Some(problem),
                 Ok(None) => None,
@@ -68,9 +70,14 @@ impl Cache {
                     .filter(|table| table.body.is_some())
                     .find_map(|table| self.table(entry.key, &table.name).err().map(|error| error.to_string())),
             };
-            damaged.extend(problem.map(|problem| (path, problem)));
+            if let Some(problem) = problem {
+                if remove {
+                    self.forget(key);
+                }
+                damaged.push((path, problem));
+            }
         }
-        Ok(damaged)
+        damaged
     }
 
     /// Removes entries, and what killed runs left behind. The cache must not be open anywhere.
@@ -146,28 +153,45 @@ fn referenced(root: &Path) -> Result<BTreeSet<Digest>, StoreError> {
 
 fn content(root: &Path) -> Result<Content, StoreError> {
     let mut content = Content::default();
-    let is_leftover = |path: &Path, kind: fs::FileType| name(path).starts_with(TEMPORARY) && !kind.is_dir();
     for folder in [root.to_owned(), root.join("journals")] {
         let left = list(&folder)?.into_iter().filter(|(path, kind)| is_leftover(path, *kind));
         content.leftovers.extend(left.map(|(path, _)| path));
     }
-    for (folder, kind) in list(&root.join("entries"))? {
-        let start = name(&folder);
-        if is_leftover(&folder, kind) {
-            content.leftovers.push(folder);
-        } else if !kind.is_dir() || Digest::from_hex(&format!("{start}{:062}", 0)).is_none() {
-            content.foreign.push(folder);
-        } else {
-            for (path, kind) in list(&folder)? {
-                match Digest::from_hex(&format!("{start}{}", name(&path))) {
-                    _ if is_leftover(&path, kind) => content.leftovers.push(path),
-                    Some(key) if kind.is_file() => content.entries.push((path, key)),
-                    _ => content.foreign.push(path),
+    content.add_entries(root).into_iter().next().map_or(Ok(content), |(_, error)| Err(error))
+}
+
+fn is_leftover(path: &Path, kind: fs::FileType) -> bool {
+    name(path).starts_with(TEMPORARY) && !kind.is_dir()
+}
+
+impl Content {
+    /// What lies among the entries; the folders that cannot be looked into, and why.
+    fn add_entries(&mut self, root: &Path) -> Vec<(PathBuf, StoreError)> {
+        let mut unseen = Vec::new();
+        let mut look = |folder: &Path| {
+            list(folder).unwrap_or_else(|error| {
+                unseen.push((folder.to_owned(), error));
+                Vec::new()
+            })
+        };
+        for (folder, kind) in look(&root.join("entries")) {
+            let start = name(&folder);
+            if is_leftover(&folder, kind) {
+                self.leftovers.push(folder);
+            } else if !kind.is_dir() || Digest::from_hex(&format!("{start}{:062}", 0)).is_none() {
+                self.foreign.push(folder);
+            } else {
+                for (path, kind) in look(&folder) {
+                    match Digest::from_hex(&format!("{start}{}", name(&path))) {
+                        _ if is_leftover(&path, kind) => self.leftovers.push(path),
+                        Some(key) if kind.is_file() => self.entries.push((path, key)),
+                        _ => self.foreign.push(path),
+                    }
                 }
             }
         }
+        unseen
     }
-    Ok(content)
 }
 
 fn name(path: &Path) -> String {

@@ -1,6 +1,6 @@
 //! Every message: where, what was found, what was expected, what to write instead.
 
-use super::{changed, each_is_refused, load, refused};
+use super::{changed, each_is_refused, load};
 
 const CHANGES: &[(&str, &str, &str)] = &[
     ("module: 3 mm", "module: 3", "8:13: `3` has no unit; a length is expected, for example `3 mm`"),

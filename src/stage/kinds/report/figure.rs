@@ -8,7 +8,7 @@ use crate::base::parameter::{Choice, Field, Shape};
 use crate::base::record::{Record, Value};
 use crate::base::text::is_device;
 use crate::base::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
-use crate::stage::Inputs;
+use crate::stage::{Ahead, Inputs};
 use crate::table::data::{Data, Row, Table};
 use crate::table::schema::{Column, Schema, Type};
 use crate::table::select::{rows_where, unknown_column};
@@ -172,6 +172,12 @@ impl Figure {
         tables.chain(
             self.reference.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect())),
         )
+    }
+
+    /// How many points it is drawn from, at most: which rows meet its conditions is not known.
+    pub fn points(&self, ahead: &Ahead) -> u64 {
+        let rows = self.tables.iter().map(|(stage, table)| ahead.rows(stage, table).count);
+        rows.fold(0, u64::saturating_add).saturating_mul(self.y.len() as u64)
     }
 
     /// How many published points and lines it shows.
