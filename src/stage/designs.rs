@@ -3,6 +3,8 @@
 //! One row per parameter, so families of any shape share one table and a reader can query it. Values are in SI because
 //! a column of many parameters has no unit of its own. Must not know: what any parameter means.
 
+use std::collections::BTreeMap;
+
 use crate::base::error::{Failure, Place};
 use crate::base::parameter::{Field, Member, Shape};
 use crate::base::record::{Entry, Record, Value};
@@ -131,34 +133,38 @@ fn flattened(prefix: &str, record: &Record) -> Vec<(String, f64, String)> {
     flat
 }
 
+/// The rows of a table of elements by design and place in the design.
+type Index<'a> = BTreeMap<(&'a str, i64), Vec<usize>>;
+
 /// The designs that [`write`] wrote, in their order; `families` says what the parameters are.
 ///
 /// # Errors
 /// When a family or a word is not known any more.
 pub fn read(designs: &Table, elements: &Table, families: &[Member]) -> Result<Vec<NamedDesign>, Failure> {
+    let mut index = Index::new();
+    for (row, key) in elements.texts("design").iter().map(String::as_str).zip(elements.integers("element")).enumerate()
+    {
+        index.entry((key.0, *key.1)).or_default().push(row);
+    }
+    let (names, counts) = (designs.texts("design"), designs.integers("elements"));
     let mut order: Vec<usize> = (0..designs.rows()).collect();
     order.sort_by_key(|&row| designs.integers("order")[row]);
-    order
-        .into_iter()
-        .map(|row| read_one(&designs.texts("design")[row], designs.integers("elements")[row], elements, families))
-        .collect()
+    order.into_iter().map(|row| read_one(&names[row], counts[row], elements, &index, families)).collect()
 }
 
-fn read_one(name: &str, count: i64, table: &Table, families: &[Member]) -> Result<NamedDesign, Failure> {
+fn read_one(name: &str, count: i64, table: &Table, index: &Index, families: &[Member]) -> Result<NamedDesign, Failure> {
+    let (words, parameters) = (table.texts("family"), table.texts("parameter"));
     let mut elements = Vec::new();
-    for index in 1..=count {
-        let rows: Vec<usize> = (0..table.rows())
-            .filter(|&row| table.texts("design")[row] == name && table.integers("element")[row] == index)
-            .collect();
-        let first =
-            *rows.first().ok_or_else(|| Failure::new(format!("design `{name}`: modification {index} has no rows")))?;
-        let word = &table.texts("family")[first];
+    for place in 1..=count {
+        let rows = index
+            .get(&(name, place))
+            .ok_or_else(|| Failure::new(format!("design `{name}`: modification {place} has no rows")))?;
+        let word = &words[rows[0]];
         let family = families.iter().find(|family| family.name == word);
         let family = family.ok_or_else(|| Failure::new(format!("design `{name}`: unknown family `{word}`")))?;
         let lookup = |parameter: &str| {
-            rows.iter()
-                .find(|&&row| table.texts("parameter")[row] == parameter)
-                .map(|&row| (table.floats("value")[row], table.texts("word")[row].as_str()))
+            let row = rows.iter().find(|&&row| parameters[row] == parameter);
+            row.map(|&row| (table.floats("value")[row], table.texts("word")[row].as_str()))
         };
         elements.push(Element { family: family.name, record: rebuilt("", family.fields, &lookup)? });
     }

@@ -29,6 +29,9 @@ const MOST_NAMED: usize = 20;
 /// Versions of the format that are read.
 const VERSIONS: (f64, f64) = (1.0, 2.0);
 
+/// Characters of a message.
+const LONGEST_MESSAGE: usize = 500;
+
 /// Why a file cannot be used: a sentence, behind line and column where it is about a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Refusal {
@@ -44,7 +47,10 @@ impl fmt::Display for Refusal {
         if let Some((line, column)) = self.place {
             write!(formatter, "{line}:{column}: ")?;
         }
-        formatter.write_str(&self.message)
+        // Names in a file from elsewhere may be as long as the file.
+        let mut shown = self.message.chars();
+        formatter.write_str(&shown.by_ref().take(LONGEST_MESSAGE).collect::<String>())?;
+        if shown.next().is_some() { formatter.write_str(" …") } else { Ok(()) }
     }
 }
 

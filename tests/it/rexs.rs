@@ -251,6 +251,8 @@ fn a_hostile_file_is_refused_at_once() {
     for wrong in ["", "<", "<model", "<model>", "\u{feff}", "<model></modem>", "not XML", "<model>&nothing;</model>"] {
         assert!(refused(wrong).contains("not XML"), "{wrong}: {}", refused(wrong));
     }
+    let long = refused(&format!("<{}/>", "m".repeat(1_000_000)));
+    assert!(long.contains("no REXS file") && long.ends_with(" …") && long.len() < 600, "{}", long.len());
     let desk = Desk::with("quick.yaml");
     fs::write(desk.path("bytes.rexs"), [0xFF, 0xFE, 0x00, 0x3C]).unwrap();
     for (name, says) in [("bytes.rexs", "not UTF-8"), ("nothing.rexs", "cannot read"), (".", "cannot read")] {

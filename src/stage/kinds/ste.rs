@@ -6,6 +6,7 @@ mod ahead;
 mod samples;
 mod tables;
 
+use std::collections::BTreeMap;
 use std::time::Instant;
 
 use rayon::prelude::*;
@@ -222,19 +223,18 @@ impl Stage for Ste {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let mut designs: Vec<(Design, String)> = Vec::new();
-        let mut givers: Vec<&str> = Vec::new();
+        let mut givers: BTreeMap<String, &str> = BTreeMap::new();
         for (index, giver) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
             let (names, elements) = (inputs.table(&port, "designs")?, inputs.table(&port, "elements")?);
             for named in designs::read(names, elements, modification::members())? {
-                if let Some(earlier) = designs.iter().position(|(_, name)| *name == named.name) {
+                if let Some(earlier) = givers.insert(named.name.clone(), giver) {
                     return Err(Failure::new(format!(
-                        "`{}` and `{giver}` both give a design called `{}`; one of them needs another name",
-                        givers[earlier], named.name
+                        "`{earlier}` and `{giver}` both give a design called `{}`; one of them needs another name",
+                        named.name
                     )));
                 }
                 designs.push((named.built(&pair)?, named.name));
-                givers.push(giver);
             }
         }
         let summary_pressure = context.demand.column("summary", "largest_pressure");
