@@ -75,8 +75,7 @@ fn locks(sides: &[&Side]) -> Vec<Lock> {
         studies.iter().filter_map(|study| path.join(study).canonicalize().ok()).collect()
     };
     let all: BTreeSet<PathBuf> = sides.iter().flat_map(folders).collect();
-    let folder = |path: &PathBuf| Some(Folder::new(path.parent()?, &path.file_name()?.to_string_lossy()));
-    all.iter().filter_map(|path| folder(path)?.lock().ok()).collect()
+    all.iter().filter_map(|path| Folder::at(path)?.lock().ok()).collect()
 }
 
 fn shown(comparison: &Comparison, format: Shown) -> Result<String, Ending> {

@@ -56,7 +56,8 @@ fn taken(plan: &Plan, width: usize) -> String {
     );
     match count {
         0 => return String::new(),
-        1 => {}
+        // More memory than the stage: the program itself, and what publishing takes.
+        1 => lines.push(("the run".to_owned(), line(&plan.total))),
         _ => lines.push((format!("all {count}"), line(&plan.total))),
     }
     let widest = |column: usize| lines.iter().map(|(_, cells)| cells[column].chars().count()).max().unwrap_or(0);
@@ -78,7 +79,7 @@ const FEW: usize = 5;
 
 /// Whether it takes a tenth of anything.
 fn matters(expected: &Expected, total: &Expected) -> bool {
-    rows(expected).count * 10 >= rows(total).count
+    rows(expected).count.saturating_mul(10) >= rows(total).count
         || expected.memory >= total.memory / 10
         || expected.bytes >= total.bytes / 10
         || 10.0 * expected.seconds >= total.seconds

@@ -6,6 +6,7 @@ use crate::base::error::suggest;
 use crate::history::side::{Got, Side};
 use crate::store::cache::Cache;
 use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::store::results::Folder;
 use crate::table::data::Table;
 
 /// Opens the results of a revision or a folder; those that are meant where none is named.
@@ -46,18 +47,13 @@ impl<'a> Tables<'a> {
         };
         let (study, cache) = (self.study, self.cache);
         let side = self.side(revision)?;
-        let studies = studies(side)?;
-        known_study(&studies, study, side)?;
-        let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
-        let Some((of, stage, record)) = find(&studies, only, inside) else {
-            let known = known(&studies, only, inside.matches('.').count());
-            let help = suggest(inside, known.iter().map(String::as_str));
-            return Err(format!("there is no table `{inside}` in {}; {help}", side.label));
-        };
-        match side.table(&of.folder, stage, record, cache).0 {
-            Got::Table(table) => Ok(*table),
-            Got::Without(why) => {
-                Err(format!("`{inside}` {why}, and the cache does not have it; `gearstudy run` computes it again"))
+        match table(side, study, cache, inside)? {
+            Ok(table) => Ok(table),
+            // While a run publishes, its files and its manifest do not belong together: once more when none does.
+            Err(Missed { folder, why }) => {
+                let Some(folder) = side.path().and_then(|path| Folder::at(&path.join(folder))) else { return Err(why) };
+                let _lock = folder.lock();
+                table(side, study, cache, inside)?.map_err(|missed| missed.why)
             }
         }
     }
@@ -89,6 +85,30 @@ impl<'a> Tables<'a> {
         };
         Ok(&self.sides[at].1)
     }
+}
+
+/// A table that a manifest lists and nobody has.
+struct Missed {
+    folder: String,
+    why: String,
+}
+
+fn table(side: &Side, study: Option<&str>, cache: Option<&Cache>, name: &str) -> Result<Result<Table, Missed>, String> {
+    let studies = studies(side)?;
+    known_study(&studies, study, side)?;
+    let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
+    let Some((of, stage, record)) = find(&studies, only, name) else {
+        let known = known(&studies, only, name.matches('.').count());
+        let help = suggest(name, known.iter().map(String::as_str));
+        return Err(format!("there is no table `{name}` in {}; {help}", side.label));
+    };
+    Ok(match side.table(&of.folder, stage, record, cache).0 {
+        Got::Table(table) => Ok(*table),
+        Got::Without(why) => {
+            let why = format!("`{name}` {why}, and the cache does not have it; `gearstudy run` computes it again");
+            Err(Missed { folder: of.folder.clone(), why })
+        }
+    })
 }
 
 fn studies(side: &Side) -> Result<Vec<Study>, String> {

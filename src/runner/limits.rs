@@ -85,7 +85,7 @@ impl Limited {
     fn option(self, amount: u64) -> String {
         match self {
             Self::Rows => format!("--limit-rows {amount}"),
-            Self::Memory => format!("--limit-memory {}MB", (amount + amount / 50).div_ceil(1_000_000)),
+            Self::Memory => format!("--limit-memory {}MB", amount.saturating_add(amount / 50).div_ceil(1_000_000)),
         }
     }
 }

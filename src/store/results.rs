@@ -46,6 +46,13 @@ impl Folder {
         Self { path: results.join(study), study: study.to_owned(), told: |_| {} }
     }
 
+    /// The folder at a path, whatever links lead there; none where there is no such folder.
+    #[must_use]
+    pub fn at(path: &Path) -> Option<Self> {
+        let path = path.canonicalize().ok()?;
+        Some(Self::new(path.parent()?, &path.file_name()?.to_string_lossy()))
+    }
+
     /// Who hears why a lock is waited for.
     #[must_use]
     pub fn telling(self, told: Told) -> Self {

@@ -18,6 +18,7 @@ use gearstudy::query::{Answer, ask};
 use gearstudy::store::entry::StoredTable;
 use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use gearstudy::store::parquet;
+use gearstudy::store::results::Folder;
 use gearstudy::table::data::{Cell, Table};
 use gearstudy::table::schema::{Column, Schema};
 use serde_json::Value;
@@ -106,6 +107,28 @@ impl Shop {
             |row: usize| answer.columns.iter().map(|column| cell(&column.cells[row])).collect::<Vec<_>>().join(" ");
         (0..rows).map(row).collect()
     }
+}
+
+/// While a run publishes, a file may be newer than the manifest: who reads waits for the end of it.
+#[test]
+fn a_query_waits_for_a_run_that_publishes() {
+    let shop = Shop::new();
+    let folder = Folder::at(&shop.path().join("small")).unwrap();
+    let file = folder.path().join("s.rows.parquet");
+    let whole = fs::read(&file).unwrap();
+    let lock = folder.lock().unwrap();
+    fs::write(&file, "half of it").unwrap();
+    let count = std::thread::scope(|scope| {
+        let asked = scope.spawn(|| shop.rows("SELECT COUNT(*) FROM s.rows"));
+        std::thread::sleep(std::time::Duration::from_millis(300));
+        assert!(!asked.is_finished(), "it did not wait");
+        fs::write(&file, whole).unwrap();
+        drop(lock);
+        asked.join().unwrap()
+    });
+    assert_eq!(count, ["5"]);
+    fs::write(&file, "half of it").unwrap();
+    assert!(shop.ask("SELECT * FROM s.rows").unwrap_err().contains("is damaged"));
 }
 
 #[test]
