@@ -60,16 +60,16 @@ impl Watcher {
         if self.quiet || self.bars.is_some() {
             return work();
         }
-        self.telling_every(EVERY, work)
+        self.telling_every(EVERY, |line| self.line(line), work)
     }
 
-    fn telling_every<T>(&self, every: Duration, work: impl FnOnce() -> T) -> T {
+    fn telling_every<T>(&self, every: Duration, say: impl Fn(&str) + Send, work: impl FnOnce() -> T) -> T {
         std::thread::scope(|scope| {
             let (ended, wait) = mpsc::channel::<()>();
             scope.spawn(move || {
                 // The other end is dropped when the work has ended, also by a panic.
                 while wait.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
-                    self.line(&self.stand(Instant::now()));
+                    say(&self.stand(Instant::now()));
                 }
             });
             let result = work();
@@ -295,11 +295,16 @@ mod tests {
     fn whoever_has_no_bars_is_told_until_the_work_has_ended() {
         let watcher = Watcher::new(false, 4, None);
         watcher.event(&Event::Started { stage: "ste", why: "", chunks: 1 });
-        let waited = watcher.telling_every(Duration::from_millis(1), || {
-            std::thread::sleep(Duration::from_millis(20));
+        let said = Mutex::new(Vec::new());
+        let say = |line: &str| said.lock().unwrap().push(line.to_owned());
+        let waited = watcher.telling_every(Duration::from_millis(1), say, || {
+            while said.lock().unwrap().len() < 3 {
+                std::thread::yield_now();
+            }
             7
         });
         assert_eq!(waited, 7);
+        assert!(said.lock().unwrap().iter().all(|line| line.starts_with("  running: ste 0 % after")), "{said:?}");
     }
 
     #[test]

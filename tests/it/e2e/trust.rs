@@ -100,6 +100,27 @@ fn no_damage_to_a_table_ends_in_a_panic() {
     }
 }
 
+/// Figures of what was measured lie apart, so that what git keeps is the same after every run.
+#[test]
+fn what_differs_from_run_to_run_lies_apart() {
+    let desk = Desk::with("quick.yaml");
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let stage = "  cost:\n    kind: accuracy\n    of: stiffness\n    quantities: [summary.mean]\n    reference: {}\n    ladders: \
+                 { l: [{}] }\n    repeats: 1\n  report:\n";
+    let figure = "      - { name: seconds, title: Time, kind: points, table: cost.ladder, x: seconds, y: value }\n";
+    fs::write(desk.path("quick.yaml"), text.replace("  report:\n", stage) + figure).unwrap();
+    let kept = || -> Vec<(String, Vec<u8>)> {
+        let read = |file: String| (file.clone(), fs::read(desk.path("results/quick").join(file)).unwrap());
+        manifest(&desk).files.into_iter().filter(|record| !record.varies).map(|record| read(record.file)).collect()
+    };
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    let (first, seconds) = (kept(), desk.path("results/quick/figures/measured/seconds.svg"));
+    assert!(first.iter().any(|(file, _)| file == "figures/torque.svg") && seconds.is_file());
+    assert!(!desk.path("results/quick/figures/seconds.svg").exists());
+    desk.run(&["run", "--quiet", "--force", "quick.yaml"], 0);
+    assert!(first == kept());
+}
+
 /// What git keeps has a digest in the manifest, so a commit can be looked at as well.
 #[test]
 fn a_figure_that_was_changed_before_the_commit_is_found() {
