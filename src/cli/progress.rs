@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 use std::io::{ErrorKind, IsTerminal, Write};
-use std::sync::Mutex;
 use std::sync::mpsc::{self, RecvTimeoutError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
@@ -20,6 +20,8 @@ pub struct Watcher {
     width: usize,
     bars: Option<MultiProgress>,
     running: Mutex<BTreeMap<String, Running>>,
+    /// The file that is being published.
+    writing: Mutex<Option<String>>,
 }
 
 /// A stage that is being computed.
@@ -30,46 +32,86 @@ struct Running {
     /// Nothing of one that was never begun.
     since: Option<Instant>,
     share: f64,
+    /// Seconds after which that share was done.
+    done_after: f64,
 }
 
 impl Running {
-    /// How far it is, and how long still.
+    fn elapsed(&self, now: Instant) -> f64 {
+        self.since.map_or(0.0, |since| now.saturating_duration_since(since).as_secs_f64())
+    }
+
+    fn progressed(&mut self, share: f64, now: Instant) {
+        (self.share, self.done_after) = (share, self.elapsed(now));
+    }
+
+    /// How far it is, and what is still to come.
     fn standing(&self, now: Instant) -> String {
-        let elapsed = self.since.map_or(0.0, |since| now.saturating_duration_since(since).as_secs_f64());
-        let left = left(self.share, elapsed).map_or_else(String::new, |left| format!(", about {} left", rough(left)));
-        format!("{:.0} % after {}{left}", 100.0 * self.share, rough(elapsed))
+        let elapsed = rough(self.elapsed(now));
+        let still = self.still(now).map_or_else(String::new, |still| format!(", {still}"));
+        if self.share < 1.0 {
+            format!("{:.0} % after {elapsed}{still}", 100.0 * self.share)
+        } else {
+            format!("computed{still}, after {elapsed}")
+        }
+    }
+
+    fn draw(&self, now: Instant) {
+        let Some(bar) = &self.bar else { return };
+        // A share is from 0 to 1.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        bar.set_position((self.share * 1000.0) as u64);
+        bar.set_message(self.still(now).map_or_else(String::new, |still| format!("  {still}")));
+        bar.tick();
+    }
+
+    /// The time that is left to compute it, or that it is computed.
+    fn still(&self, now: Instant) -> Option<String> {
+        if self.share >= 1.0 {
+            return Some("its tables are stored".to_owned());
+        }
+        left(self.share, self.done_after, self.elapsed(now)).map(|left| format!("about {} left", rough(left)))
     }
 }
 
-/// Seconds left where a share was done in some; nothing before that tells anything.
-fn left(share: f64, elapsed: f64) -> Option<f64> {
-    ((0.02..1.0).contains(&share) && elapsed >= 2.0).then(|| elapsed * (1.0 - share) / share)
+/// Seconds left where a share was done after some of those that have gone by. Nothing at the beginning, which tells
+/// nothing; nothing once they are over and the share still stands where it stood.
+fn left(share: f64, done_after: f64, elapsed: f64) -> Option<f64> {
+    let left = done_after / share - elapsed;
+    ((0.02..1.0).contains(&share) && elapsed >= 2.0 && left > 0.0).then_some(left)
 }
 
 /// How often those are told how it stands who have no bars to look at.
 const EVERY: Duration = Duration::from_secs(10);
+/// How often bars are drawn where nothing happens.
+const REDRAWN: Duration = Duration::from_secs(1);
 
 impl Watcher {
     #[must_use]
     pub fn new(quiet: bool, width: usize, bars: Option<MultiProgress>) -> Self {
-        Self { quiet, width, bars, running: Mutex::default() }
+        Self { quiet, width, bars, running: Mutex::default(), writing: Mutex::default() }
     }
 
-    /// Does the work; while it goes on, and there are no bars, a line every ten seconds says what is running.
+    /// Does the work; while it goes on bars are kept true, and where there are none a line every ten seconds says what is
+    /// running.
     pub fn telling<T>(&self, work: impl FnOnce() -> T) -> T {
-        if self.quiet || self.bars.is_some() {
+        if self.quiet {
             return work();
         }
-        self.telling_every(EVERY, |line| self.line(line), work)
+        let Some(bars) = &self.bars else { return Self::every(EVERY, || self.line(&self.stand(Instant::now())), work) };
+        let files = bars.add(ProgressBar::new_spinner().with_style(style("  {msg}")));
+        let result = Self::every(REDRAWN, || self.redraw(&files, Instant::now()), work);
+        files.finish_and_clear();
+        result
     }
 
-    fn telling_every<T>(&self, every: Duration, say: impl Fn(&str) + Send, work: impl FnOnce() -> T) -> T {
+    fn every<T>(pause: Duration, tell: impl Fn() + Send, work: impl FnOnce() -> T) -> T {
         std::thread::scope(|scope| {
             let (ended, wait) = mpsc::channel::<()>();
             scope.spawn(move || {
                 // The other end is dropped when the work has ended, also by a panic.
-                while wait.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
-                    say(&self.stand(Instant::now()));
+                while wait.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+                    tell();
                 }
             });
             let result = work();
@@ -80,12 +122,32 @@ impl Watcher {
 
     /// What is running, how far it is, and how long still.
     fn stand(&self, now: Instant) -> String {
-        let running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+        let running = self.running();
         let stages: Vec<String> =
             running.iter().map(|(stage, running)| format!("{stage} {}", running.standing(now))).collect();
-        let stages =
-            if stages.is_empty() { "no stage; results are read or written".to_owned() } else { stages.join("; ") };
-        format!("  running: {stages}")
+        match self.written() {
+            _ if !stages.is_empty() => format!("  running: {}", stages.join("; ")),
+            None => "  running: no stage; results are read".to_owned(),
+            Some(file) => format!("  running: no stage; `{file}` is made and written"),
+        }
+    }
+
+    /// Bars between two events.
+    fn redraw(&self, files: &ProgressBar, now: Instant) {
+        for running in self.running().values() {
+            running.draw(now);
+        }
+        if let Some(file) = self.written() {
+            files.set_message(format!("{file} is made and written"));
+        }
+    }
+
+    fn running(&self) -> MutexGuard<'_, BTreeMap<String, Running>> {
+        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn written(&self) -> Option<String> {
+        self.writing.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
     fn line(&self, text: &str) {
@@ -107,16 +169,14 @@ impl Watcher {
     fn bar(&self, stage: &str) -> Option<ProgressBar> {
         let bars = self.bars.as_ref()?;
         let width = self.width;
-        let style =
-            ProgressStyle::with_template("  {prefix}  {bar:30.cyan/blue}  {percent:>3} %  {elapsed}{msg}").ok()?;
+        let style = style("  {prefix}  {bar:30.cyan/blue}  {percent:>3} %  {elapsed}{msg}");
         let bar = bars.add(ProgressBar::new(1000).with_style(style));
         bar.set_prefix(format!("{stage:width$}"));
         Some(bar)
     }
 
     fn end(&self, stage: &str) -> String {
-        let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let Running { bar, why, .. } = running.remove(stage).unwrap_or_default();
+        let Running { bar, why, .. } = self.running().remove(stage).unwrap_or_default();
         if let Some(bar) = bar {
             bar.finish_and_clear();
         }
@@ -130,21 +190,19 @@ impl Observer for Watcher {
             Event::Planned { .. } | Event::Hit { .. } => {}
             Event::Started { stage, why, .. } => {
                 let bar = self.bar(stage);
-                let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                let since = Some(Instant::now());
-                running.insert((*stage).to_owned(), Running { bar, why: (*why).to_owned(), since, share: 0.0 });
+                let (why, since) = ((*why).to_owned(), Some(Instant::now()));
+                self.running().insert((*stage).to_owned(), Running { bar, why, since, share: 0.0, done_after: 0.0 });
             }
             Event::Progressed { stage, share } => {
-                let mut running = self.running.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-                let Some(running) = running.get_mut(*stage) else { return };
-                running.share = *share;
-                if let Some(bar) = &running.bar {
-                    // A share is from 0 to 1.
-                    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-                    bar.set_position((share * 1000.0) as u64);
-                    let left = left(*share, bar.elapsed().as_secs_f64());
-                    bar.set_message(left.map_or_else(String::new, |left| format!("  about {} left", rough(left))));
+                let now = Instant::now();
+                if let Some(running) = self.running().get_mut(*stage) {
+                    running.progressed(*share, now);
+                    running.draw(now);
                 }
+            }
+            Event::Publishing { file } => {
+                let mut writing = self.writing.lock().unwrap_or_else(PoisonError::into_inner);
+                *writing = Some((*file).to_owned());
             }
             Event::Warned { stage, message } => self.stage(stage, "warning", message),
             Event::Finished { stage, seconds } => {
@@ -163,6 +221,11 @@ impl Observer for Watcher {
             }
         }
     }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    // A template that cannot be read is no reason to stop a run.
+    ProgressStyle::with_template(template).unwrap_or_else(|_| ProgressStyle::default_bar())
 }
 
 /// Bars, where there is somebody to look at them.
@@ -272,23 +335,28 @@ mod tests {
         let watcher = Watcher::new(false, 4, None);
         let began = Instant::now();
         let after = |seconds| began + Duration::from_secs(seconds);
-        assert_eq!(watcher.stand(after(10)), "  running: no stage; results are read or written");
+        let progressed = |share, seconds| watcher.running().get_mut("ste").unwrap().progressed(share, after(seconds));
+        assert_eq!(watcher.stand(after(10)), "  running: no stage; results are read");
         let running = Running { since: Some(began), ..Running::default() };
-        watcher.running.lock().unwrap().insert("ste".to_owned(), running);
+        watcher.running().insert("ste".to_owned(), running);
         assert_eq!(watcher.stand(after(10)), "  running: ste 0 % after 10 s");
-        watcher.event(&Event::Progressed { stage: "ste", share: 0.25 });
+        progressed(0.25, 20);
         assert_eq!(watcher.stand(after(20)), "  running: ste 25 % after 20 s, about 60 s left");
+        // Nobody has said anything since.
+        assert_eq!(watcher.stand(after(70)), "  running: ste 25 % after 70 s, about 10 s left");
+        assert_eq!(watcher.stand(after(90)), "  running: ste 25 % after 90 s");
+        progressed(1.0, 91);
+        assert_eq!(watcher.stand(after(95)), "  running: ste computed, its tables are stored, after 95 s");
         watcher.event(&Event::Started { stage: "pair", why: "never ran", chunks: 1 });
         let both = watcher.stand(after(1000));
-        assert!(
-            both.contains("pair 0 % after ") && both.contains("; ste 25 % after 17 min, about 50 min left"),
-            "{both}"
-        );
+        assert!(both.contains("pair 0 % after ") && both.contains("; ste computed, its tables are stored, "), "{both}");
         for stage in ["ste", "pair"] {
             watcher.event(&Event::Finished { stage, seconds: 1.0 });
         }
-        assert_eq!(watcher.stand(after(2000)), "  running: no stage; results are read or written");
-        assert_eq!([left(0.01, 100.0), left(0.5, 1.0), left(1.0, 9.0), left(0.2, 8.0)], [None, None, None, Some(32.0)]);
+        watcher.event(&Event::Publishing { file: "s.h5" });
+        assert_eq!(watcher.stand(after(2000)), "  running: no stage; `s.h5` is made and written");
+        let lefts = [left(0.01, 100.0, 100.0), left(0.5, 1.0, 1.0), left(1.0, 9.0, 9.0), left(0.2, 8.0, 8.0)];
+        assert_eq!(lefts, [None, None, None, Some(32.0)]);
     }
 
     #[test]
@@ -296,8 +364,8 @@ mod tests {
         let watcher = Watcher::new(false, 4, None);
         watcher.event(&Event::Started { stage: "ste", why: "", chunks: 1 });
         let said = Mutex::new(Vec::new());
-        let say = |line: &str| said.lock().unwrap().push(line.to_owned());
-        let waited = watcher.telling_every(Duration::from_millis(1), say, || {
+        let say = || said.lock().unwrap().push(watcher.stand(Instant::now()));
+        let waited = Watcher::every(Duration::from_millis(1), say, || {
             while said.lock().unwrap().len() < 3 {
                 std::thread::yield_now();
             }

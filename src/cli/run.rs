@@ -119,6 +119,7 @@ fn run_one(
             let (path, text) = (study.path.clone(), study.text.clone());
             Ending::Invalid(Box::new(LoadError { path, text, diagnostic }))
         }
+        RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
     })?;
     if !how.quiet {

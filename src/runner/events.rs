@@ -23,7 +23,7 @@ pub enum Event<'a> {
         why: &'a str,
         chunks: usize,
     },
-    /// The share of a stage that is done, 0 to 1.
+    /// The share of a stage that is computed; 1 when only its tables remain to be stored.
     Progressed {
         stage: &'a str,
         share: f64,
@@ -31,6 +31,10 @@ pub enum Event<'a> {
     Warned {
         stage: &'a str,
         message: &'a str,
+    },
+    /// A file of the results is about to be made and written.
+    Publishing {
+        file: &'a str,
     },
     Finished {
         stage: &'a str,

@@ -24,7 +24,7 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::results::{Draw, Folder, Published};
+use crate::store::results::{Draw, Folder, Published, Source};
 use crate::study::Study;
 use crate::table::data::Table;
 
@@ -57,7 +57,16 @@ pub fn run(
 ) -> Result<(Outcome, Published), RunError> {
     let facts = || Facts::collect(study.path.parent().unwrap_or(Path::new("")), options.threads());
     let publish = |outcome: &Outcome| {
-        folder.publish(outcome.manifest(study), facts, &|stage, table| outcome.bytes(cache, stage, table), draw)
+        let next = |file: &str| {
+            observer.event(&Event::Publishing { file });
+            // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
+            if !outcome.stopped && stop.load(Ordering::Relaxed) {
+                return Err(StoreError::Stopped { path: file.to_owned() });
+            }
+            Ok(())
+        };
+        let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
+        folder.publish(outcome.manifest(study), facts, Source { bytes: &bytes, draw, next: &next })
     };
     let mut outcome = execute(study, cache, options, observer, stop)?;
     let mut published = publish(&outcome);

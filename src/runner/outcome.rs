@@ -38,7 +38,10 @@ impl From<StoreError> for Fault {
         match error {
             StoreError::NotDeterministic { .. } => Self::NotDeterministic(message),
             StoreError::Format { .. } => Self::Bug(message),
-            StoreError::Io { .. } | StoreError::Damaged { .. } | StoreError::InUse { .. } => Self::Store(message),
+            StoreError::Io { .. }
+            | StoreError::Damaged { .. }
+            | StoreError::Stopped { .. }
+            | StoreError::InUse { .. } => Self::Store(message),
         }
     }
 }

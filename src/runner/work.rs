@@ -83,7 +83,7 @@ impl Run<'_> {
         Ok(table)
     }
 
-    /// Tells how much of a stage is done, all its parts together.
+    /// Tells how much of a stage is computed, all its parts together.
     fn progressed(&self, node: usize, index: usize, share: f64) {
         let (study, parts) = {
             let board = self.board();
@@ -128,7 +128,7 @@ impl Run<'_> {
             demand: &demand,
             stop: self.stop,
             progress: &|share| {
-                self.progressed(node, index, share);
+                self.progressed(node, index, if share > NEARLY { NEARLY } else { share });
             },
             warn: &|message| {
                 self.observer.event(&Event::Warned { stage: name, message: &message });
@@ -150,9 +150,7 @@ impl Run<'_> {
             Err(panic) => return Err(Ended::Fault(Fault::Bug(message(&*panic)))),
         };
         let seconds = began.elapsed().as_secs_f64();
-        if parts.len() > 1 {
-            self.progressed(node, index, 1.0);
-        }
+        self.progressed(node, index, 1.0);
         let tables = demanded(&outputs, &demand, tables)?;
         // Warnings of parallel loops come in any order.
         let mut warnings = warnings.into_inner().unwrap_or_else(PoisonError::into_inner);
@@ -163,6 +161,9 @@ impl Run<'_> {
         Ok(Known { entry: Some(entry), tables: tables.into_iter().map(Arc::new).collect() })
     }
 }
+
+/// The most that a stage says of itself: whether it is computed is seen when it has come back.
+const NEARLY: f64 = 0.99;
 
 fn built(kind: &Kind, record: &Record) -> Result<Box<dyn Stage>, Failure> {
     (kind.build)(record).map_err(|diagnostic| Failure::new(diagnostic.message))

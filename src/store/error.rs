@@ -19,6 +19,8 @@ pub enum StoreError {
     NotDeterministic { table: String },
     #[error("table `{table}` cannot be stored: {problem}")]
     Format { table: String, problem: String },
+    #[error("stopped before `{path}`")]
+    Stopped { path: String },
     #[error("`{path}` is in use by {who}")]
     InUse { path: String, who: String },
 }

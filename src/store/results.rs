@@ -16,7 +16,7 @@ use std::path::{Path, PathBuf};
 pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
-pub use publish::{Bytes, Changes, Draw, Drawn, Published, Tables};
+pub use publish::{Bytes, Changes, Draw, Drawn, Published, Source, Tables};
 
 use super::error::StoreError;
 use super::file;

@@ -6,6 +6,9 @@ use std::time::Instant;
 use super::*;
 use crate::runner::board::State;
 use crate::runner::events::{Event, Observer};
+use crate::runner::execute::{RunError, run};
+use crate::store::error::StoreError;
+use crate::store::results::Folder;
 
 fn twenty() -> Vec<f64> {
     (1..=20).map(f64::from).collect()
@@ -60,6 +63,38 @@ fn a_running_stage_hears_that_it_should_stop() {
     assert_eq!(outcome.stage("a").unwrap().state, State::Skipped);
     assert_eq!(outcome.stage("b").unwrap().state, State::Done);
     assert_eq!(bench.run(&[stage("b", 1.0)]).stage("b").unwrap().state, State::Hit);
+}
+
+/// Stops the run when a file of the results is next.
+struct StopBefore<'a>(&'a str, &'a AtomicBool);
+
+impl Observer for StopBefore<'_> {
+    fn event(&self, event: &Event<'_>) {
+        if matches!(event, Event::Publishing { file } if *file == self.0) {
+            self.1.store(true, Ordering::Relaxed);
+        }
+    }
+}
+
+#[test]
+fn whoever_stops_while_results_are_written_gets_them_next_time() {
+    let bench = Bench::new();
+    let folder = Folder::new(&bench.folder.path().join("results"), "study");
+    let publish = |specs: &[Spec], observer: &dyn Observer, stop: &AtomicBool| {
+        run(&bench.study(specs), &bench.cache(), &bench.options, observer, stop, &folder, None)
+    };
+    let (specs, stop) = ([stage("a", 1.0), stage("b", 1.0)], AtomicBool::new(false));
+    let stopped = publish(&specs, &StopBefore("b.values.parquet", &stop), &stop);
+    assert!(matches!(stopped, Err(RunError::Store(StoreError::Stopped { path })) if path == "b.values.parquet"));
+    assert!(folder.path().join("a.values.parquet").exists() && folder.manifest().is_none());
+    let (outcome, published) = publish(&specs, &Silent, &AtomicBool::new(false)).unwrap();
+    assert_eq!((outcome.ran(), published.changes.tables.len()), (0, 2));
+
+    // A run that was stopped before publishes what it has.
+    let (specs, stop) =
+        ([stage("c", 1.0), stage("a", 2.0).mode("until_stopped"), stage("b", 2.0)], AtomicBool::new(false));
+    let (outcome, published) = publish(&specs, &StopAfterB(&stop), &stop).unwrap();
+    assert!(outcome.stopped && published.changes.tables.contains(&"b.values.parquet".to_owned()), "{published:?}");
 }
 
 /// What the child of the next test does; nothing when the tests are run as usual.

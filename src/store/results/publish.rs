@@ -29,6 +29,24 @@ pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
 pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
 /// Draws page and figures of a manifest and its tables.
 pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
+/// Hears which file is made next, and says whether to go on: all of them can take minutes.
+pub type Next<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
+
+/// Where what is published comes from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    pub bytes: Bytes<'a>,
+    pub draw: Option<Draw<'a>>,
+    pub next: Next<'a>,
+}
+
+impl<'a> Source<'a> {
+    /// Tables without a page, all in one go.
+    #[must_use]
+    pub fn of(bytes: Bytes<'a>) -> Self {
+        Self { bytes, draw: None, next: &|_| Ok(()) }
+    }
+}
 
 /// A file that was drawn.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,18 +105,18 @@ impl Folder {
     /// written.
     ///
     /// # Errors
-    /// When a table cannot be had or a file not be written; what was there before stays valid.
+    /// When a table cannot be had or a file not be written, or when the source says so; what was there before stays valid.
     pub fn publish(
         &self,
         manifest: Manifest,
         facts: impl FnOnce() -> Facts,
-        bytes: Bytes<'_>,
-        draw: Option<Draw<'_>>,
+        source: Source<'_>,
     ) -> Result<Published, StoreError> {
+        let draws = source.draw.is_some();
         let nothing = |old: Known| Published { manifest: old.manifest, changes: Changes::default(), undrawn: None };
         if let Some(old) = self.known().ok().flatten() {
             let new = with_earlier_tables(Some(&old), manifest.clone());
-            if compare(Some(&old), &new, draw.is_some(), self) == Changes::default() {
+            if compare(Some(&old), &new, draws, self) == Changes::default() {
                 if old.is_outdated() {
                     self.refresh(&old);
                 }
@@ -116,10 +134,10 @@ impl Folder {
             known => known.ok().flatten(),
         };
         let new = with_earlier_tables(old.as_ref(), manifest);
-        let changes = compare(old.as_ref(), &new, draw.is_some(), self);
+        let changes = compare(old.as_ref(), &new, draws, self);
         match old {
             Some(old) if changes == Changes::default() => Ok(nothing(old)),
-            old => self.write(old.as_ref(), new, changes, Some(facts), bytes, draw),
+            old => self.write(old.as_ref(), new, changes, Some(facts), source),
         }
     }
 
@@ -144,7 +162,8 @@ impl Folder {
         };
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
         let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
-        self.write(Some(&old), new, changes, None::<fn() -> Facts>, &nothing, Some(&|_, _| Ok(drawn.clone()))).map(Some)
+        let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), ..Source::of(&nothing) };
+        self.write(Some(&old), new, changes, None::<fn() -> Facts>, source).map(Some)
     }
 
     /// The folder is locked.
@@ -154,8 +173,7 @@ impl Folder {
         mut new: Manifest,
         mut changes: Changes,
         facts: Option<impl FnOnce() -> Facts>,
-        bytes: Bytes<'_>,
-        draw: Option<Draw<'_>>,
+        source: Source<'_>,
     ) -> Result<Published, StoreError> {
         file::sweep(self.path());
         if let Some(old) = old {
@@ -165,18 +183,21 @@ impl Folder {
         for table in new.stages.iter().flat_map(|stage| &stage.tables) {
             if changes.tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
-                self.put(&mut listed, &table.file, &bytes(stage, name)?, table.varies())?;
+                (source.next)(&table.file)?;
+                self.put(&mut listed, &table.file, &(source.bytes)(stage, name)?, table.varies())?;
             } else {
                 let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
                 listed.keep(old, &table.file, is_good.then(|| table.varies()));
             }
             let wanted: Vec<&String> = table.files.iter().filter(|file| changes.files.contains(file)).collect();
-            if !wanted.is_empty() {
+            if let Some(first) = wanted.first() {
+                (source.next)(first)?;
                 self.put_held(&mut listed, table, &wanted)?;
             }
             table.files.iter().filter(|file| !wanted.contains(file)).for_each(|file| listed.keep(old, file, None));
         }
         if changes.hdf5 {
+            (source.next)(&self.hdf5_file())?;
             self.put_hdf5(&mut listed, &new)?;
         } else if cfg!(feature = "hdf5") {
             listed.keep(old, &self.hdf5_file(), None);
@@ -197,20 +218,26 @@ impl Folder {
         let mut undrawn = None;
         let earlier: Vec<String> =
             old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
-        match draw.filter(|_| changes.drawn) {
+        match source.draw.filter(|_| changes.drawn) {
             None => {
                 drawn_by = old.map_or_else(String::new, |old| old.drawn_by().to_owned());
                 earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old, file, None));
             }
-            Some(draw) => match self.put_drawn(&new, draw) {
-                Ok(drawn) => {
-                    changes.remove.extend(self.former(&earlier, &drawn));
-                    listed.files.extend(drawn.files);
-                    listed.seen.extend(drawn.seen);
+            Some(draw) => {
+                (source.next)(PAGE)?;
+                let drawn = self.drawings(&new, draw);
+                // It may have taken long.
+                (source.next)(PAGE)?;
+                match drawn.and_then(|drawn| self.put_drawn(drawn)) {
+                    Ok(drawn) => {
+                        changes.remove.extend(self.former(&earlier, &drawn));
+                        listed.files.extend(drawn.files);
+                        listed.seen.extend(drawn.seen);
+                    }
+                    // Tables are worth more than their picture: they are published without.
+                    Err(problem) => undrawn = Some(problem),
                 }
-                // Tables are worth more than their picture: they are published without.
-                Err(problem) => undrawn = Some(problem),
-            },
+            }
         }
         self.remove(&changes.remove)?;
         new.files = listed.files;
@@ -292,9 +319,9 @@ impl Folder {
         }
     }
 
-    fn put_drawn(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Listed, String> {
+    fn put_drawn(&self, drawn: Vec<Drawn>) -> Result<Listed, String> {
         let mut listed = Listed::default();
-        for Drawn { file, bytes, varies } in self.drawings(manifest, draw)? {
+        for Drawn { file, bytes, varies } in drawn {
             let folder = self.path().join(&file);
             let folder = folder.parent().unwrap_or(self.path());
             fs::create_dir_all(folder).map_err(|error| StoreError::io("make", folder)(error).to_string())?;
