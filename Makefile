@@ -40,11 +40,11 @@ study: release  ## run one study: make study STUDY=energy_ga
 	$(RELEASE) run "studies/$(STUDY).yaml"
 
 test: setup  ## format, lints, all tests, and the quick study run twice
-	cargo fmt --check
+	cargo fmt --all --check
 	@# One build for lints and tests, benches too: a check of its own, or another set of features, would build most of the
 	@# dependencies again.
-	$(LINTED) cargo test --locked --features frames --all-targets --no-run
-	$(LINTED) cargo test --locked --features frames
+	$(LINTED) cargo test --locked --workspace --features frames --all-targets --no-run
+	$(LINTED) cargo test --locked --workspace --features frames
 	@# The program that the tests were built with: another build would differ in features and take a minute.
 	scripts/run-twice target/debug/gearstudy studies/quick.yaml
 

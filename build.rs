@@ -9,12 +9,15 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::{env, fs, io};
 
-/// Layers every stage may use.
-const SHARED: [&str; 5] = ["base", "numeric", "gear", "optimize", "table"];
+/// Where everything is that the tables of any stage may depend on; beside it the files of `src/stage` that belong to no
+/// single kind.
+const SHARED: [&str; 4] =
+    ["crates/declare/src", "crates/gearmesh/src", "crates/studygraph/src/stage", "crates/studygraph/src/table"];
+/// All sources.
+const ALL: [&str; 2] = ["crates", "src"];
 
 fn main() -> io::Result<()> {
     prefer_static_hdf5()?;
-    let source = PathBuf::from("src");
     let rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())).arg("--version").output()?;
     println!("cargo:rustc-env=GEARSTUDY_RUSTC={}", String::from_utf8_lossy(&rustc.stdout).trim());
     println!("cargo:rustc-env=GEARSTUDY_PROFILE={}", env::var("PROFILE").unwrap_or_default());
@@ -22,22 +25,24 @@ fn main() -> io::Result<()> {
     let dependencies = fs::read("Cargo.lock").map_or_else(|_| String::new(), |lock| blake3::hash(&lock).to_string());
     println!("cargo:rustc-env=GEARSTUDY_DEPENDENCIES={dependencies}");
     println!("cargo:rerun-if-changed=Cargo.lock");
+    println!("cargo:rerun-if-changed=crates");
     println!("cargo:rerun-if-changed=src");
     println!("cargo:rerun-if-changed=build.rs");
     // The whole program, whatever a result depends on: what a manifest names it by.
     let mut all = Vec::new();
-    collect(&source, &mut all)?;
+    for folder in ALL {
+        collect(Path::new(folder), &mut all)?;
+    }
     println!("cargo:rustc-env=GEARSTUDY_CODE={}", digest(&all)?);
     let (commit, changed) = commit().unwrap_or_default();
     println!("cargo:rustc-env=GEARSTUDY_COMMIT={commit}");
     println!("cargo:rustc-env=GEARSTUDY_CHANGED={changed}");
     let mut shared = Vec::new();
-    for layer in SHARED {
-        collect(&source.join(layer), &mut shared)?;
+    for folder in SHARED {
+        collect(Path::new(folder), &mut shared)?;
     }
     let mut stages = Vec::new();
-    collect(&source.join("stage"), &mut stages)?;
-    // Files of `stage/` that belong to no single kind (codecs, the trait) are shared by all kinds.
+    collect(Path::new("src/stage"), &mut stages)?;
     let mut kinds: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     for path in stages {
         match kind_of(&path) {
@@ -64,7 +69,7 @@ fn commit() -> Option<(String, bool)> {
     };
     // The folder of a dependency may lie in the repository of somebody else.
     git(&["ls-files", "--error-unmatch", "Cargo.toml", "build.rs"])?;
-    let changed = git(&["status", "--porcelain", "--", "src", "build.rs", "Cargo.toml", "Cargo.lock"])?;
+    let changed = git(&["status", "--porcelain", "--", "src", "crates", "build.rs", "Cargo.toml", "Cargo.lock"])?;
     Some((git(&["rev-parse", "--verify", "HEAD"])?, !changed.is_empty()))
 }
 

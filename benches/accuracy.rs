@@ -3,18 +3,17 @@
 use std::hint::black_box;
 use std::time::Instant;
 
-use gearstudy::gear::compliance::ContactLaw::{Linear, LoadDependent};
-use gearstudy::gear::compliance::energy::Beam;
-use gearstudy::gear::compliance::sainsot::Body;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::geometry::{Pair, Side};
-use gearstudy::gear::modification::Design;
-use gearstudy::gear::transmission_error::curve::Wanted;
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::Loading;
-use gearstudy::numeric::chebyshev::Series;
-
 use crate::article::{Stages, TORQUE, cycle};
+use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
+use gearmesh::gear::compliance::energy::Beam;
+use gearmesh::gear::compliance::sainsot::Body;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::transmission_error::curve::Wanted;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::numeric::chebyshev::Series;
 
 pub fn print() {
     let mut stages = Stages::new();

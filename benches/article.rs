@@ -4,18 +4,18 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::seed::Seed;
-use gearstudy::base::work::Tally;
-use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
-use gearstudy::gear::geometry::Pair;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::modification::{self, Design};
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::stage::{Context, Demand, Inputs, designs, pair};
-use gearstudy::study::{self, Node, Study};
-use gearstudy::table::data::Table;
-
 use crate::support::record;
+use declare::seed::Seed;
+use declare::work::Tally;
+use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::modification::{self, Design};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearstudy::program;
+use gearstudy::stage::{Context, Demand, Inputs, designs, pair};
+use studygraph::study::{Node, Study};
+use studygraph::table::data::Table;
 
 /// \[N m\], the load of the article's Table 2.
 pub const TORQUE: f64 = 50.0;
@@ -42,7 +42,7 @@ impl Stages {
 
     /// The stages of another study.
     pub fn of(name: &str) -> Self {
-        let study = study::load(&study_path(name)).unwrap_or_else(|error| panic!("{error}"));
+        let study = program::load(&study_path(name)).unwrap_or_else(|error| panic!("{error}"));
         Self { study, tables: BTreeMap::new() }
     }
 

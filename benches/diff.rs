@@ -5,16 +5,16 @@ use std::hint::black_box;
 use std::path::Path;
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::diff::compare::{Options, compare};
-use gearstudy::diff::pretty;
-use gearstudy::history::side::Side;
-use gearstudy::store::entry::StoredTable;
-use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
-use gearstudy::table::schema::{Column, Schema};
 
 use crate::brief;
+use studygraph::diff::compare::{Options, compare};
+use studygraph::diff::pretty;
+use studygraph::history::side::Side;
+use studygraph::store::entry::StoredTable;
+use studygraph::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
+use studygraph::table::schema::{Column, Schema};
 
 criterion_group!(name = benches; config = brief(); targets = diff);
 
@@ -79,7 +79,7 @@ fn diff(criterion: &mut Criterion) {
         });
         group.bench_function(format!("values {name}"), |bencher| {
             bencher.iter(|| {
-                gearstudy::diff::table::compare("stage.curve", black_box(&before), black_box(&after), None, &|_| None)
+                studygraph::diff::table::compare("stage.curve", black_box(&before), black_box(&after), None, &|_| None)
             });
         });
     }

@@ -4,19 +4,19 @@ use std::process::{Command, Stdio};
 use std::time::Duration;
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::base::record::Value;
-use gearstudy::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
-use gearstudy::gear::contact::CornerContact;
-use gearstudy::gear::geometry::Pair;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::modification::{Design, family};
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::Loading;
 
 use crate::accuracy::{relative, seconds};
 use crate::article::{Stages, study_path};
 use crate::brief;
 use crate::support::record;
+use declare::record::Value;
+use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
+use gearmesh::gear::contact::CornerContact;
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::modification::{Design, family};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
 
 criterion_group!(name = benches; config = brief().sample_size(10); targets = finite_elements);
 

@@ -3,15 +3,15 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::gear::geometry::outline::sample::Density;
-use gearstudy::gear::geometry::outline::tip::Tip;
-use gearstudy::gear::geometry::outline::{Outline, roots};
-use gearstudy::gear::geometry::validity::{Mating, Validity};
-use gearstudy::gear::geometry::{Gear, Pair, Rack, Side, Specification};
-use gearstudy::gear::material::Material;
 
 use crate::brief;
 use crate::support::record;
+use gearmesh::gear::geometry::outline::sample::Density;
+use gearmesh::gear::geometry::outline::tip::Tip;
+use gearmesh::gear::geometry::outline::{Outline, roots};
+use gearmesh::gear::geometry::validity::{Mating, Validity};
+use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::material::Material;
 
 criterion_group!(name = benches; config = brief(); targets = profiles);
 

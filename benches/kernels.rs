@@ -3,15 +3,15 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::gear::compliance::ContactLaw::{Linear, LoadDependent};
-use gearstudy::gear::contact::SliceCoupling;
-use gearstudy::gear::geometry::Pair;
-use gearstudy::gear::transmission_error::curve::Wanted;
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::Loading;
 
 use crate::article::{Stages, TORQUE, assumptions, compliance, cycle};
 use crate::brief;
+use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
+use gearmesh::gear::contact::SliceCoupling;
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::transmission_error::curve::Wanted;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
 
 criterion_group!(name = benches; config = brief(); targets = tables, curves, slices, stages);
 

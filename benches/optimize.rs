@@ -1,14 +1,14 @@
 //! What the optimisers cost themselves, on an objective that costs next to nothing.
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::base::error::Failure;
-use gearstudy::base::record::Value;
-use gearstudy::base::seed::Seed;
-use gearstudy::optimize::bounds::Bounds;
-use gearstudy::optimize::{METHODS, optimizer};
 
 use crate::brief;
 use crate::support::record;
+use declare::error::Failure;
+use declare::record::Value;
+use declare::seed::Seed;
+use gearmesh::optimize::bounds::Bounds;
+use gearmesh::optimize::{METHODS, optimizer};
 
 criterion_group!(name = benches; config = brief(); targets = methods);
 

@@ -6,24 +6,24 @@ use std::sync::atomic::AtomicBool;
 use std::time::{Duration, Instant};
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::runner::events::Silent;
-use gearstudy::runner::execute;
-use gearstudy::runner::options::Options;
-use gearstudy::runner::plan;
-use gearstudy::store::cache::Cache;
-use gearstudy::store::results::Folder;
-use gearstudy::study;
 
 use crate::article;
 use crate::brief;
+use gearstudy::program;
+use studygraph::runner::events::Silent;
+use studygraph::runner::execute;
+use studygraph::runner::options::Options;
+use studygraph::runner::plan;
+use studygraph::store::cache::Cache;
+use studygraph::store::results::Folder;
 
 criterion_group!(name = benches; config = brief(); targets = runner);
 
 fn runner(criterion: &mut Criterion) {
     let folder = tempfile::tempdir().expect("there is a place for temporary files");
     let mut group = criterion.benchmark_group("runner");
-    group.bench_function("read study", |bencher| bencher.iter(|| study::load(&article::path())));
-    let study = study::load(&article::path()).unwrap_or_else(|error| panic!("{error}"));
+    group.bench_function("read study", |bencher| bencher.iter(|| program::load(&article::path())));
+    let study = program::load(&article::path()).unwrap_or_else(|error| panic!("{error}"));
     let cache = Cache::open(&folder.path().join("cache")).expect("the folder is ours");
     let results = Folder::new(&folder.path().join("results"), &study.name);
     let (options, stop) = (Options::default(), AtomicBool::new(false));

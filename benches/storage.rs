@@ -3,12 +3,12 @@
 use std::hint::black_box;
 
 use criterion::{Criterion, criterion_group};
-use gearstudy::base::digest::Writer;
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
-use gearstudy::table::schema::{Column, Schema};
 
 use crate::brief;
+use declare::digest::Writer;
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
+use studygraph::table::schema::{Column, Schema};
 
 criterion_group!(name = benches; config = brief(); targets = storage);
 
@@ -42,7 +42,7 @@ fn storage(criterion: &mut Criterion) {
     group.bench_function("parquet read 1e5 rows", |bencher| bencher.iter(|| parquet::read(black_box(bytes.clone()))));
     #[cfg(feature = "hdf5")]
     {
-        use gearstudy::store::hdf5::Writer;
+        use studygraph::store::hdf5::Writer;
         group.bench_function("hdf5 of 1e5 rows, in memory", |bencher| {
             bencher.iter(|| {
                 let mut writer = Writer::new("bench.h5").expect("there is memory");

@@ -9,18 +9,19 @@ use std::path::Path;
 use super::arguments::Places;
 use super::progress::{self, out};
 use super::{Ending, rights};
-use crate::runner::graph::Graph;
-use crate::runner::standing::{self, standing_of};
-use crate::stage::{self, kinds::KINDS};
-use crate::store::archive::metadata::{Author, Description, Step, metadata};
-use crate::store::archive::open::MOST_BYTES;
-use crate::store::archive::pack::{Entries, pack};
-use crate::store::archive::{self, METADATA, about};
-use crate::store::file::{self, Durability};
-use crate::store::index::{self, INDEX};
-use crate::store::manifest::Manifest;
-use crate::store::results::{Folder, Known, MANIFEST, here};
-use crate::study::{Study, schema};
+use crate::program::PROGRAM;
+use crate::stage::kinds::KINDS;
+use studygraph::runner::graph::Graph;
+use studygraph::runner::standing::{self, standing_of};
+use studygraph::store::archive::metadata::{Author, Description, Step, metadata};
+use studygraph::store::archive::open::MOST_BYTES;
+use studygraph::store::archive::pack::{Entries, pack};
+use studygraph::store::archive::{self, METADATA};
+use studygraph::store::file::{self, Durability};
+use studygraph::store::index::{self, INDEX};
+use studygraph::store::manifest::Manifest;
+use studygraph::store::results::{Folder, Known, MANIFEST, here};
+use studygraph::study::{Study, schema};
 
 /// What only the user knows.
 pub(super) struct About<'a> {
@@ -47,7 +48,7 @@ pub(super) fn archive(
     let _lock = folder.path().is_dir().then(|| folder.lock()).transpose().map_err(|error| usage(error.to_string()))?;
     // Stamps are for those who look often; what goes out is read.
     let known = folder.known().map_err(|error| usage(error.to_string()))?.map(Known::without_stamps);
-    let standing = standing_of(study, known.as_ref(), stage::code_digest).map_err(|error| usage(error.message))?;
+    let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
     let first = |command: &str| format!("first: gearstudy {command} {}", study.path.display());
     if let Some(problem) = standing.problem() {
         return Err(usage(format!("{problem}; {}", first("run"))));
@@ -63,10 +64,16 @@ pub(super) fn archive(
     let mut entries = results(&folder, &known).map_err(|problem| usage(format!("{problem}; {}", first("run"))))?;
     entries.insert(archive::study(&study.name), study.text.clone().into_bytes());
     entries.insert(archive::SCHEMA.to_owned(), schema::schema_text(KINDS).into_bytes());
-    entries.insert(archive::CITATION.to_owned(), about::CITATION.as_bytes().to_vec());
+    entries.insert(archive::CITATION.to_owned(), PROGRAM.about.citation.as_bytes().to_vec());
     let steps = steps(study, manifest).map_err(usage)?;
-    let description =
-        Description { manifest, entries: &entries, steps: &steps, license: license.as_deref(), authors: &authors };
+    let description = Description {
+        manifest,
+        entries: &entries,
+        steps: &steps,
+        license: license.as_deref(),
+        authors: &authors,
+        about: &PROGRAM.about,
+    };
     let described = metadata(&description).map_err(usage)?;
     entries.insert(METADATA.to_owned(), described);
     let bytes = pack(&entries).map_err(usage)?;

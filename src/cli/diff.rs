@@ -9,17 +9,17 @@ use super::Ending;
 use super::arguments::{Differences, Places, Shown};
 use super::pages::terminal_width;
 use super::progress::out;
-use crate::base::error::nearest;
-use crate::diff::compare::{Options, compare};
-use crate::diff::model::Comparison;
-use crate::diff::{html, markdown, pretty};
-use crate::history::git::Repository;
-use crate::history::side::Side;
-use crate::store::cache::Cache;
-use crate::store::lock::Lock;
-use crate::store::results::{Folder, MANIFEST};
-use crate::study;
-use crate::table::tolerance::Allowance;
+use crate::program;
+use declare::error::nearest;
+use studygraph::diff::compare::{Options, compare};
+use studygraph::diff::model::Comparison;
+use studygraph::diff::{html, markdown, pretty};
+use studygraph::history::git::Repository;
+use studygraph::history::side::Side;
+use studygraph::store::cache::Cache;
+use studygraph::store::lock::Lock;
+use studygraph::store::results::{Folder, MANIFEST};
+use studygraph::table::tolerance::Allowance;
 
 /// What is compared with what: a revision or a folder each.
 struct Asked {
@@ -180,5 +180,5 @@ pub(super) fn study_name(word: &str) -> String {
     }
     let stem = path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     // A study that is no longer valid still has results.
-    study::load(&path).map_or(stem, |study| study.name)
+    program::load(&path).map_or(stem, |study| study.name)
 }

@@ -8,7 +8,7 @@ use std::io::{IsTerminal, Write};
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 
 use super::progress::{is_hidden, plain};
-use crate::study::LoadError;
+use studygraph::study::LoadError;
 
 /// Writes the message to standard error.
 pub fn invalid_study(error: &LoadError) {

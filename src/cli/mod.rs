@@ -26,12 +26,12 @@ use std::io::Write;
 pub use progress::complain;
 
 /// What the program allocates with.
-pub use crate::stage::memory::Allocator;
+pub use studygraph::stage::memory::Allocator;
 
 use clap::Parser;
 
-use crate::store::parquet;
-use crate::study::LoadError;
+use studygraph::store::parquet;
+use studygraph::study::LoadError;
 
 use arguments::{Arguments, Command};
 use studies::load_all;

@@ -7,9 +7,9 @@ use std::path::PathBuf;
 use super::progress::plain;
 use crate::report;
 use crate::report::text as as_text;
-use crate::store::manifest::Manifest;
-use crate::store::results::{Drawn, FIGURES, Folder, MEASURED, PAGE, Tables};
-use crate::table::data::Table;
+use studygraph::store::manifest::Manifest;
+use studygraph::store::results::{Drawn, FIGURES, Folder, MEASURED, PAGE, Tables};
+use studygraph::table::data::Table;
 
 #[must_use]
 pub(super) fn path(folder: &Folder) -> PathBuf {

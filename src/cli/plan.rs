@@ -5,11 +5,11 @@
 use serde_json::json;
 
 use super::progress::{duration, rough};
-use crate::runner::foresee::Expected;
-use crate::runner::limits::{grouped, size};
-use crate::runner::plan::{Action, Plan};
 use crate::stage::{Omission, Rows, omission};
-use crate::study::Study;
+use studygraph::runner::foresee::Expected;
+use studygraph::runner::limits::{grouped, size};
+use studygraph::runner::plan::{Action, Plan};
+use studygraph::study::Study;
 
 pub(super) fn plan_text(study: &Study, plan: &Plan) -> String {
     let width = plan.stages.iter().map(|stage| stage.name.chars().count()).max().unwrap_or(0);

@@ -3,13 +3,12 @@
 use comfy_table::{Cell as DrawnCell, CellAlignment, ContentArrangement, Row, Table as Drawn, presets};
 use serde_json::{Map, Value, json};
 
-use crate::diff::markdown::escaped;
-use crate::store::csv::{heading, write_cells};
-use crate::table::data::{Cell, Table};
-use crate::table::schema::Type;
-use crate::table::select::{parse_conditions, rows_where, unknown_column};
-
 use super::arguments::Format;
+use studygraph::diff::markdown::escaped;
+use studygraph::store::csv::{heading, write_cells};
+use studygraph::table::data::{Cell, Table};
+use studygraph::table::schema::Type;
+use studygraph::table::select::{parse_conditions, rows_where, unknown_column};
 
 /// Rows to print, wherever they come from.
 pub struct Grid<'a> {
@@ -155,7 +154,7 @@ fn trimmed(text: &str) -> &str {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::schema::{Column, Schema};
+    use studygraph::table::schema::{Column, Schema};
 
     fn sample() -> Table {
         let columns = vec![Column::text("design", "").key(), Column::float("peak_to_peak", "um", "").allows_nan()];

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
-use crate::runner::events::{Event, Observer};
+use studygraph::runner::events::{Event, Observer};
 
 /// Watches one study.
 pub struct Watcher {

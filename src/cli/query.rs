@@ -10,14 +10,14 @@ use super::arguments::{Format, Places, Question};
 use super::diff::{side, study_name, working_tree};
 use super::print::{Grid, Heading};
 use super::progress::out;
-use crate::history::git::Repository;
 use crate::query::tables::Tables;
 use crate::query::{Answer, ask};
-use crate::store::cache::Cache;
-use crate::store::file::{self, Durability};
-use crate::store::parquet;
-use crate::table::data::{Cell, Data, Table};
-use crate::table::schema::{Column, Schema};
+use studygraph::history::git::Repository;
+use studygraph::store::cache::Cache;
+use studygraph::store::file::{self, Durability};
+use studygraph::store::parquet;
+use studygraph::table::data::{Cell, Data, Table};
+use studygraph::table::schema::{Column, Schema};
 
 pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<(), Ending> {
     let target = asked.output.as_deref().map(|path| Target::of(path).map_err(Ending::Usage)).transpose()?;

@@ -3,9 +3,9 @@
 //! SPDX licence list: <https://spdx.org/licenses/>. ORCID iD: 16 digits, the last a check by ISO/IEC 7064:2003, MOD 11-2.
 //! Must not know: what they are put into.
 
-use crate::base::error::nearest;
-use crate::base::text;
-use crate::store::archive::metadata::Author;
+use declare::error::nearest;
+use declare::text;
+use studygraph::store::archive::metadata::Author;
 
 const ORCID: &str = "https://orcid.org/";
 

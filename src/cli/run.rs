@@ -14,18 +14,19 @@ use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
 use super::show::none_yet;
 use super::signals::stop_flag;
-use crate::base::error::Diagnostic;
-use crate::runner::execute::{self, RunError};
-use crate::runner::limits::{Limits, MOST_ROWS};
-use crate::runner::options::{Force, Options, Wanted};
-use crate::runner::outcome::Outcome;
-use crate::runner::plan::{self, Plan};
+use crate::program::PROGRAM;
 use crate::stage::Want;
-use crate::store::cache::{Cache, Remove};
-use crate::store::error::StoreError;
-use crate::store::manifest::Manifest;
-use crate::store::results::{Folder, Published, Tables};
-use crate::study::{LoadError, Study};
+use declare::error::Diagnostic;
+use studygraph::runner::execute::{self, RunError};
+use studygraph::runner::limits::{Limits, MOST_ROWS};
+use studygraph::runner::options::{Force, Options, Wanted};
+use studygraph::runner::outcome::Outcome;
+use studygraph::runner::plan::{self, Plan};
+use studygraph::store::cache::{Cache, Remove};
+use studygraph::store::error::StoreError;
+use studygraph::store::manifest::Manifest;
+use studygraph::store::results::{Folder, Published, Tables};
+use studygraph::study::{LoadError, Study};
 
 /// How to run.
 #[derive(Default)]
@@ -218,7 +219,7 @@ pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<
             told.replace(pages::verdicts(manifest, tables)? + &line);
             Ok(drawn)
         };
-        let published = folder.redraw(&draw).map_err(|error| stored(&error))?;
+        let published = folder.redraw(&draw, PROGRAM.about.code).map_err(|error| stored(&error))?;
         if let Some(problem) = published.ok_or_else(|| none_yet(study, &folder))?.undrawn {
             return Err(Ending::Usage(problem));
         }

@@ -10,12 +10,14 @@ use super::Ending;
 use super::arguments::{Format, Places};
 use super::progress::out;
 use super::{draw, print};
-use crate::base::error::suggest;
+use crate::program::{load, load_text};
+use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
-use crate::store::manifest::TableRecord;
-use crate::store::results::Folder;
-use crate::study::{Study, describe, load, load_text, rexs, schema as studies};
-use crate::table::data::Table;
+use declare::error::suggest;
+use studygraph::store::manifest::TableRecord;
+use studygraph::store::results::Folder;
+use studygraph::study::{Study, describe, schema as studies};
+use studygraph::table::data::Table;
 
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
 

@@ -9,12 +9,12 @@ use serde_json::{Value, json};
 use super::arguments::Places;
 use super::progress::out;
 use super::{Ending, studies};
-use crate::base::error::Diagnostic;
-use crate::runner::standing::{StageStanding, Standing, State, standing_of};
-use crate::stage;
-use crate::store::cache::{Cache, Lookup};
-use crate::store::results::{FileState, Folder, Known};
-use crate::study::{self, Study};
+use crate::program;
+use declare::error::Diagnostic;
+use studygraph::runner::standing::{StageStanding, Standing, State, standing_of};
+use studygraph::store::cache::{Cache, Lookup};
+use studygraph::store::results::{FileState, Folder, Known};
+use studygraph::study::{self, Study};
 
 /// A study and where it stands.
 struct Told {
@@ -105,7 +105,7 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: b
 }
 
 fn told(file: &Path, places: &Places, cache: Option<&Cache>, check: bool) -> Result<Told, Fault> {
-    let study = study::load(file).map_err(Fault::Study)?;
+    let study = program::load(file).map_err(Fault::Study)?;
     let folder = Folder::new(&places.results, &study.name);
     // What is odd while a run publishes need not be so.
     let look = || match standing_now(&study, &folder, check) {
@@ -140,7 +140,7 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
         }
         Read { files, bytes, damaged, unknown }
     });
-    Ok((standing_of(study, known.as_ref(), stage::code_digest)?, read))
+    Ok((standing_of(study, known.as_ref())?, read))
 }
 
 /// Whether something is not as a run leaves it.

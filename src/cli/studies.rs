@@ -5,8 +5,9 @@
 use std::path::{Path, PathBuf};
 
 use super::Ending;
-use crate::base::error::nearest;
-use crate::study::{self, Study};
+use crate::program;
+use declare::error::nearest;
+use studygraph::study::Study;
 
 /// Where studies are looked for by name.
 const FOLDER: &str = "studies";
@@ -24,7 +25,7 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     let all = all();
     let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned()).unwrap_or_default();
     // The file is nearly always called as its study.
-    let named = |path: &&PathBuf| study::load(path).is_ok_and(|study| study.name == name);
+    let named = |path: &&PathBuf| program::load(path).is_ok_and(|study| study.name == name);
     if let Some(found) = all.iter().find(|path| stem(path) == name).or_else(|| all.iter().find(named)) {
         return Ok(found.clone());
     }
@@ -59,7 +60,7 @@ pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
 pub(super) fn load_all(words: &[PathBuf]) -> Result<Vec<Study>, Ending> {
     let mut studies: Vec<Study> = Vec::new();
     for word in words {
-        let study = study::load(&file(word)?).map_err(|error| Ending::Invalid(Box::new(error)))?;
+        let study = program::load(&file(word)?).map_err(|error| Ending::Invalid(Box::new(error)))?;
         distinct(&studies, &study)?;
         studies.push(study);
     }

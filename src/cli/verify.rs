@@ -10,14 +10,14 @@ use super::arguments::Limits;
 use super::progress::{self, Watcher, out};
 use super::signals::stop_flag;
 use super::{Ending, pages, run};
-use crate::base::number::with_unit;
-use crate::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
-use crate::diff::words;
-use crate::runner::execute::RunError;
-use crate::runner::options::Options;
-use crate::runner::verify::{Agreement, Verification, Verified, VerifiedFile, VerifyError, verify as verified};
-use crate::store::archive::about;
-use crate::store::archive::open::open;
+use crate::program::PROGRAM;
+use declare::number::with_unit;
+use studygraph::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
+use studygraph::diff::words;
+use studygraph::runner::execute::RunError;
+use studygraph::runner::options::Options;
+use studygraph::runner::verify::{Agreement, Verification, Verified, VerifiedFile, VerifyError, verify as verified};
+use studygraph::store::archive::open::open;
 
 /// Says per table whether it came out as archived; differences end with code 4.
 pub(super) fn verify(
@@ -35,14 +35,16 @@ pub(super) fn verify(
     let watcher = Watcher::new(quiet || as_json, 12, bars);
     let options = Options { jobs: jobs.unwrap_or(0), limits: run::limits(limits), ..Options::default() };
     let verification =
-        verified(&mut archive, work.path(), &options, &watcher, &stop, &pages::draw).map_err(|error| match error {
-            VerifyError::Study(error) => Ending::Invalid(error),
-            VerifyError::Stopped => Ending::Stopped,
-            VerifyError::Run(RunError::Beyond(found)) => Ending::Beyond(
-                found.help.iter().fold(found.message.clone(), |all, help| format!("{all}\n  help: {help}")),
-            ),
-            VerifyError::Failed(_) => Ending::Failed(format!("{}: {error}", file.display())),
-            other => Ending::Usage(other.to_string()),
+        verified(&mut archive, work.path(), &options, &watcher, &stop, &pages::draw, &PROGRAM).map_err(|error| {
+            match error {
+                VerifyError::Study(error) => Ending::Invalid(error),
+                VerifyError::Stopped => Ending::Stopped,
+                VerifyError::Run(RunError::Beyond(found)) => Ending::Beyond(
+                    found.help.iter().fold(found.message.clone(), |all, help| format!("{all}\n  help: {help}")),
+                ),
+                VerifyError::Failed(_) => Ending::Failed(format!("{}: {error}", file.display())),
+                other => Ending::Usage(other.to_string()),
+            }
         })?;
     if as_json {
         out(&format!("{:#}\n", as_value(file, &verification)));
@@ -191,7 +193,7 @@ fn as_value(file: &Path, verification: &Verification) -> Json {
         .collect();
     let [identical, within, different] = verification.counts();
     json!({
-        "file": file, "study": verification.study, "made_by": verification.version, "verified_by": about::VERSION,
+        "file": file, "study": verification.study, "made_by": verification.version, "verified_by": PROGRAM.about.version,
         "notes": verification.notes, "identical": identical, "within_tolerance": within, "different": different,
         "tables": tables, "files": files,
     })

@@ -12,8 +12,8 @@ use polars::sql::SQLContext;
 
 use super::names::Parsed;
 use super::{Answer, Column, memory};
-use crate::base::error::suggest;
-use crate::table::data::{Cell, Data, Table};
+use declare::error::suggest;
+use studygraph::table::data::{Cell, Data, Table};
 
 /// Bytes of what polars says; what is longer is a plan, or the query again as it was parsed.
 const LONGEST_SENTENCE: usize = 240;

@@ -9,7 +9,7 @@ mod memory;
 mod names;
 pub mod tables;
 
-use crate::table::data::Cell;
+use studygraph::table::data::Cell;
 use tables::Tables;
 
 /// The rows that a query gives.

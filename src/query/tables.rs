@@ -2,12 +2,12 @@
 //!
 //! Must not know: SQL.
 
-use crate::base::error::suggest;
-use crate::history::side::{Got, Side};
-use crate::store::cache::Cache;
-use crate::store::manifest::{Manifest, StageRecord, TableRecord};
-use crate::store::results::Folder;
-use crate::table::data::Table;
+use declare::error::suggest;
+use studygraph::history::side::{Got, Side};
+use studygraph::store::cache::Cache;
+use studygraph::store::manifest::{Manifest, StageRecord, TableRecord};
+use studygraph::store::results::Folder;
+use studygraph::table::data::Table;
 
 /// Opens the results of a revision or a folder; those that are meant where none is named.
 pub type Open<'a> = &'a dyn Fn(Option<&str>) -> Result<Side, String>;

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::page::seconds;
 use super::{ReportError, flags, floats, texts};
-use crate::base::number::significant;
-use crate::store::manifest::Manifest;
-use crate::table::data::Table;
+use declare::number::significant;
+use studygraph::store::manifest::Manifest;
+use studygraph::table::data::Table;
 
 /// A row of the page.
 #[derive(Serialize)]

@@ -5,9 +5,9 @@
 
 use super::plot::{Axis, Kind, Mark, Plot, Series};
 use super::{ReportError, floats, integers, texts};
-use crate::base::number::{significant, with_unit};
-use crate::table::data::{Data, Table};
-use crate::table::select::{parse_conditions, rows_where};
+use declare::number::{significant, with_unit};
+use studygraph::table::data::{Data, Table};
+use studygraph::table::select::{parse_conditions, rows_where};
 
 /// A plot with its name and remark.
 pub struct Figure {
@@ -259,8 +259,8 @@ fn interrupted(series: Series) -> Series {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::table::data::Row;
-    use crate::table::schema::{Column, Schema};
+    use studygraph::table::data::Row;
+    use studygraph::table::schema::{Column, Schema};
 
     fn declared(columns: &[(&str, &str)]) -> Table {
         let schema = vec![Column::integer("figure", "Number.").key()];

@@ -17,8 +17,8 @@ mod verdict;
 
 use std::cell::RefCell;
 
-use crate::store::manifest::{Manifest, StageRecord};
-use crate::table::data::{Data, Table};
+use studygraph::store::manifest::{Manifest, StageRecord};
+use studygraph::table::data::{Data, Table};
 
 /// What a run's results look like.
 pub struct Rendered {

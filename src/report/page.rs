@@ -10,9 +10,9 @@ use serde::Serialize;
 use super::choice::{self, Choice};
 use super::figure::Figure;
 use super::{ReportError, flags, integers, plot, texts, verdict};
-use crate::base::number::{significant, unit_symbol, with_unit};
-use crate::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
-use crate::table::data::{Data, Table};
+use declare::number::{significant, unit_symbol, with_unit};
+use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
+use studygraph::table::data::{Data, Table};
 
 /// Rows of a table shown on the page.
 const SHOWN_ROWS: usize = 8;
@@ -157,7 +157,7 @@ pub fn html(
         stages,
         tables: index,
         seconds: seconds(manifest.seconds),
-        style: include_str!("page.css"),
+        style: studygraph::page::STYLE,
         plot_style: plot::STYLE,
         script: include_str!("page.js"),
     };
@@ -221,7 +221,7 @@ fn table_view<'a>(record: &'a TableRecord, tables: &dyn Fn(&str) -> Option<Table
     });
     let rows = table.as_ref().map_or_else(Vec::new, |table| {
         // By the record's columns, and only what it says: a volatile value would make the page differ from run to run.
-        let cell = |row: usize, column: &crate::store::manifest::ColumnRecord| match table.column(&column.name) {
+        let cell = |row: usize, column: &studygraph::store::manifest::ColumnRecord| match table.column(&column.name) {
             None => String::new(),
             Some(_) if column.volatile => "varies".to_owned(),
             Some(Data::Float(values)) => significant(values[row], 6),

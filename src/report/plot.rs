@@ -9,7 +9,7 @@ use std::fmt::Write;
 use super::drawing::true_to_scale;
 use super::legend::{self, Colour, Item, Sign};
 use super::scale::{Scale, Tick};
-use crate::base::number::{superscript, unit_symbol};
+use declare::number::{superscript, unit_symbol};
 
 /// Colours, type and strokes of every figure; light, dark and print.
 pub const STYLE: &str = include_str!("plot.css");

@@ -3,7 +3,7 @@
 //! Must not know: pixels, SVG. Tick values and labels are made on decimal texts, so they are exact: 0.3, never
 //! 0.30000000000000004.
 
-use crate::base::number::{magnitude, superscript};
+use declare::number::{magnitude, superscript};
 
 /// From `low` to `high`, `low < high`, both finite; positive when logarithmic.
 #[derive(Clone, Copy, Debug, PartialEq)]

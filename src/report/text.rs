@@ -8,7 +8,7 @@ use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle
 
 use super::ReportError;
 use super::verdict::{self, Row};
-use crate::table::data::Table;
+use studygraph::table::data::Table;
 
 /// Below this the columns would break their numbers.
 const NARROWEST_TABLE: u16 = 96;

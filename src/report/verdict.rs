@@ -5,9 +5,9 @@
 use serde::Serialize;
 
 use super::{ReportError, floats, texts};
-use crate::base::number::{Printed, significant, unit_symbol, with_unit};
-use crate::base::units::split_quantity;
-use crate::table::data::Table;
+use declare::number::{Printed, significant, unit_symbol, with_unit};
+use declare::units::split_quantity;
+use studygraph::table::data::Table;
 
 /// A row, ready to be set.
 #[derive(Clone, Debug, Serialize)]

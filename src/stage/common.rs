@@ -2,17 +2,17 @@
 //!
 //! A field that is added to one of these tables is a field of every kind that has it. Must not know: what any kind computes.
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape};
-use crate::base::record::Record;
-use crate::base::work::Counter;
-use crate::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
-use crate::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
-use crate::gear::geometry::Pair;
-use crate::gear::geometry::root::{ROOT_SHAPES, RootShape};
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::trace::NODES;
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Field, Shape};
+use declare::record::Record;
+use declare::work::Counter;
+use gearmesh::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
+use gearmesh::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::root::{ROOT_SHAPES, RootShape};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::trace::NODES;
 
 /// How the teeth of a pair deflect; read by [`teeth`].
 pub const TEETH: &[Field] = &[

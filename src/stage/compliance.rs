@@ -3,15 +3,14 @@
 //! Values stand at Chebyshev nodes of the roll angle, so the series that comes back is the one that was written, to the
 //! last few bits. Must not know: which method made them.
 
-use crate::base::error::Failure;
-use crate::base::units::in_unit;
-use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use crate::numeric::chebyshev::{Series, nodes};
-use crate::numeric::surface::Surface;
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
-
 use super::pair::si;
+use declare::error::Failure;
+use declare::units::in_unit;
+use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::numeric::chebyshev::{Series, nodes};
+use gearmesh::numeric::surface::Surface;
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 type Getter = fn(&ToothCompliance) -> &Series;
 

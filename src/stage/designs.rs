@@ -5,13 +5,13 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::error::{Failure, Place};
-use crate::base::parameter::{Field, Member, Shape};
-use crate::base::record::{Entry, Record, Value};
-use crate::gear::geometry::Pair;
-use crate::gear::modification::{self, Design};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use declare::error::{Failure, Place};
+use declare::parameter::{Field, Member, Shape};
+use declare::record::{Entry, Record, Value};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::modification::{self, Design};
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 /// A design as a study writes it: a list of members of the modification families.
 pub const ELEMENTS: Shape = Shape::List(&Shape::Member(modification::members));
@@ -208,8 +208,8 @@ fn rebuilt<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::base::parameter::Choice;
-    use crate::base::units::LENGTH;
+    use declare::parameter::Choice;
+    use declare::units::LENGTH;
 
     const INNER: &[Field] = &[Field::number("factor", 0.0, 9.0, "")];
     const FIELDS: &[Field] = &[

@@ -3,12 +3,12 @@
 //! A pair is rebuilt from its specification columns by the same constructor that made it; the derived columns are there
 //! for readers. Must not know: which stage asks.
 
-use crate::base::error::Failure;
-use crate::base::units::{in_unit, parse_unit};
-use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
-use crate::gear::material::Material;
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use declare::error::Failure;
+use declare::units::{in_unit, parse_unit};
+use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::material::Material;
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 /// One row per gear.
 #[must_use]

@@ -1,10 +1,10 @@
 //! Queries made to break something: an answer or one sentence, never a crash.
 
-use gearstudy::query::Answer;
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 use crate::Shop;
+use gearstudy::query::Answer;
 
 /// Panics of polars are caught and said; here they only fill the screen.
 fn ask(shop: &Shop, query: &str) -> Result<Answer, String> {

@@ -12,19 +12,19 @@ use std::fs;
 use std::path::Path;
 use std::process::Command;
 
-use gearstudy::history::side::Side;
-use gearstudy::query::tables::Tables;
-use gearstudy::query::{Answer, ask};
-use gearstudy::store::entry::StoredTable;
-use gearstudy::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
-use gearstudy::store::parquet;
-use gearstudy::store::results::Folder;
-use gearstudy::table::data::{Cell, Table};
-use gearstudy::table::schema::{Column, Schema};
 use serde_json::Value;
 use tempfile::TempDir;
 
 use crate::desk::Desk;
+use gearstudy::query::tables::Tables;
+use gearstudy::query::{Answer, ask};
+use studygraph::history::side::Side;
+use studygraph::store::entry::StoredTable;
+use studygraph::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
+use studygraph::store::parquet;
+use studygraph::store::results::Folder;
+use studygraph::table::data::{Cell, Table};
+use studygraph::table::schema::{Column, Schema};
 
 /// Results of two studies, `small` with the tables `s.rows` and `s.more`, `other` with `s.rows`.
 struct Shop(TempDir);

@@ -2,14 +2,14 @@
 
 use std::path::Path;
 
-use gearstudy::runner::events::Silent;
-use gearstudy::runner::options::Options;
-use gearstudy::runner::{execute::execute, plan::plan};
-use gearstudy::store::cache::Cache;
-use gearstudy::study::load_text;
-use gearstudy::table::data::Table;
-
 use crate::registry::walk::{Ran, load, walk};
+use crate::support::with_code;
+use gearstudy::program::load_text;
+use studygraph::runner::events::Silent;
+use studygraph::runner::options::Options;
+use studygraph::runner::{execute::execute, plan::plan};
+use studygraph::store::cache::Cache;
+use studygraph::table::data::Table;
 
 const BASE: &str = "
 study: t
@@ -103,7 +103,7 @@ fn a_step_is_the_stage_with_its_settings() {
 
     // The front: whoever is not on it is beaten by somebody in both.
     let [errors, seconds] = ["relative_error", "seconds"].map(|column| ladder.floats(column));
-    let gearstudy::table::data::Data::Flag(front) = ladder.column("on_front").unwrap() else { panic!() };
+    let studygraph::table::data::Data::Flag(front) = ladder.column("on_front").unwrap() else { panic!() };
     for row in 0..ladder.rows() {
         let beaten = (0..ladder.rows()).any(|other| {
             ladder.texts("quantity")[other] == ladder.texts("quantity")[row]
@@ -119,7 +119,7 @@ fn a_step_is_the_stage_with_its_settings() {
         let (quantity, wanted) = (&choice.texts("quantity")[row], choice.floats("wanted")[row]);
         let fits = |other: &usize| ladder.texts("quantity")[*other] == *quantity && errors[*other] <= wanted;
         let best = (0..ladder.rows()).filter(fits).min_by(|a, b| seconds[*a].total_cmp(&seconds[*b]));
-        let gearstudy::table::data::Data::Flag(met) = choice.column("met").unwrap() else { panic!() };
+        let studygraph::table::data::Data::Flag(met) = choice.column("met").unwrap() else { panic!() };
         assert_eq!(met[row], best.is_some());
         let setting = best.map_or("", |best| ladder.texts("setting")[best].as_str());
         assert_eq!(choice.texts("setting")[row], setting);
@@ -239,21 +239,21 @@ fn the_key_follows_the_other_stage_and_its_code() {
         BASE.replace("positions: 16", &format!("positions: {positions}"))
             + "  accuracy: { kind: accuracy, of: ste, quantities: [summary.mean], reference: { slices: 33 }, ladders: { a: [{ slices: 5 }] }, repeats: 1 }\n"
     };
-    let options = Options { code: |_| "one".to_owned(), ..Options::default() };
-    let study = |positions| load(&text(positions));
-    let outcome = execute(&study(16), &cache, &options, &Silent, &stop).unwrap();
+    let options = Options::default();
+    let study = |positions, code_of| with_code(load(&text(positions)), code_of);
+    let one: fn(&str) -> String = |_| "one".to_owned();
+    let outcome = execute(&study(16, one), &cache, &options, &Silent, &stop).unwrap();
     assert_eq!(outcome.faults().count(), 0);
-    let action = |positions, options: &Options| {
-        let plan = plan(&study(positions), &cache, options).unwrap();
+    let action = |positions, code_of| {
+        let plan = plan(&study(positions, code_of), &cache, &options).unwrap();
         plan.stages.iter().find(|stage| stage.name == "accuracy").unwrap().action.phrase()
     };
-    assert_eq!(action(16, &options), "hit");
-    assert_eq!(action(17, &options), "run: config changed: reference, ladders");
-    let other = Options { code: |kind| if kind == "ste" { "two" } else { "one" }.to_owned(), ..Options::default() };
-    assert!(action(16, &other).contains("code changed"), "{}", action(16, &other));
-    let other =
-        Options { code: |kind| if kind == "optimizer" { "two" } else { "one" }.to_owned(), ..Options::default() };
-    assert_eq!(action(16, &other), "hit");
+    assert_eq!(action(16, one), "hit");
+    assert_eq!(action(17, one), "run: config changed: reference, ladders");
+    let other: fn(&str) -> String = |kind| if kind == "ste" { "two" } else { "one" }.to_owned();
+    assert!(action(16, other).contains("code changed"), "{}", action(16, other));
+    let other = |kind: &str| if kind == "optimizer" { "two" } else { "one" }.to_owned();
+    assert_eq!(action(16, other), "hit");
 }
 
 /// Equidistant samples alone come without the curve, and are the same.

@@ -6,16 +6,16 @@ mod python;
 use std::fs;
 use std::path::Path;
 
-use gearstudy::store::archive::open::open;
-use gearstudy::store::archive::pack::{Entries, pack};
-use gearstudy::store::archive::{METADATA, sha256};
-use gearstudy::store::index::digest;
-use gearstudy::store::manifest::Manifest;
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
 use serde_json::Value;
 
 use crate::desk::Desk;
+use studygraph::store::archive::open::open;
+use studygraph::store::archive::pack::{Entries, pack};
+use studygraph::store::archive::{METADATA, sha256};
+use studygraph::store::index::digest;
+use studygraph::store::manifest::Manifest;
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
 
 /// Everything in an archive.
 pub fn entries(path: &Path) -> Entries {

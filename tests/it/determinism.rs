@@ -10,15 +10,17 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::runner::events::Silent;
-use gearstudy::runner::execute::execute;
-use gearstudy::runner::options::Options;
-use gearstudy::runner::outcome::Outcome;
-use gearstudy::store::cache::Cache;
-use gearstudy::study::{self, Study};
+use crate::support::with_code;
+use gearstudy::program;
+use studygraph::runner::events::Silent;
+use studygraph::runner::execute::execute;
+use studygraph::runner::options::Options;
+use studygraph::runner::outcome::Outcome;
+use studygraph::store::cache::Cache;
+use studygraph::study::Study;
 
 fn quick() -> Study {
-    study::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/quick.yaml")).unwrap()
+    program::load(&Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/quick.yaml")).unwrap()
 }
 
 fn run(study: &Study, options: &Options) -> Outcome {
@@ -69,7 +71,7 @@ fn another_seed_changes_only_what_draws_from_it() {
 /// not be there. What comes in through ports is left out: those digests are results, and change with the kernels.
 #[test]
 fn golden_parts_of_keys_of_the_quick_study() {
-    let outcome = run(&quick(), &Options { code: |_| "code".to_owned(), ..Options::default() });
+    let outcome = run(&with_code(quick(), |_| "code".to_owned()), &Options::default());
     let mut found = Vec::new();
     for stage in &outcome.stages {
         let record = &stage.keys[0];

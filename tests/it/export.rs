@@ -4,11 +4,10 @@
 use std::ffi::OsStr;
 use std::fs;
 
-use gearstudy::store::manifest::Manifest;
-
 use crate::archive::entries;
 use crate::desk::Desk;
 use crate::python;
+use studygraph::store::manifest::Manifest;
 
 fn study(outline: &str, export: &str) -> String {
     format!(

@@ -7,13 +7,13 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::seed::Seed;
-use gearstudy::base::work::Tally;
-use gearstudy::stage::{Context, Inputs};
 use serde_json::Value;
 
 use crate::desk::Desk;
 use crate::registry::walk::{Ran, demand, load, walk};
+use declare::seed::Seed;
+use declare::work::Tally;
+use gearstudy::stage::{Context, Inputs};
 
 const FINITE_ELEMENT: &str = "{ finite_element: { elements_across: 6 } }";
 const RING: &str = "{ energy: { body: ring } }";
@@ -87,7 +87,7 @@ stages:
 
 /// What a study is refused with.
 fn refused(text: &str) -> String {
-    gearstudy::study::load_text(text, Path::new("t.yaml")).err().map_or_else(String::new, |error| error.to_string())
+    gearstudy::program::load_text(text, Path::new("t.yaml")).err().map_or_else(String::new, |error| error.to_string())
 }
 
 fn near(found: f64, exact: f64, relative: f64, what: &str) {

@@ -5,6 +5,7 @@
 
 mod accuracy;
 mod archive;
+mod bad;
 mod calculix;
 mod desk;
 mod determinism;
@@ -24,4 +25,5 @@ mod report;
 mod results;
 mod rexs;
 mod schema;
+mod settings;
 mod support;

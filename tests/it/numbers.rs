@@ -63,7 +63,7 @@ fn sources(folder: &Path, into: &mut Vec<PathBuf>) {
 /// The functions that are tests, by what stands before them.
 fn tests() -> BTreeSet<String> {
     let mut files = Vec::new();
-    for folder in ["src", "tests"] {
+    for folder in ["src", "crates", "tests"] {
         sources(&root().join(folder), &mut files);
     }
     let mut found = BTreeSet::new();

@@ -3,17 +3,17 @@
 //!
 //! Seeds are fixed, so a failure comes back; proptest says which pair it was, and makes it smaller.
 
-use gearstudy::base::record::Value;
-use gearstudy::gear::compliance::{Assumptions, ContactLaw, method};
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::geometry::{Pair, Rack, Specification};
-use gearstudy::gear::material::Material;
-use gearstudy::gear::stability::{Case, Model, Point, Report, Rules, Verdict, check};
-use gearstudy::gear::transmission_error::cycle::Settings;
 use proptest::prelude::*;
 use proptest::test_runner::RngSeed;
 
 use super::support::record;
+use declare::record::Value;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, method};
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{Pair, Rack, Specification};
+use gearmesh::gear::material::Material;
+use gearmesh::gear::stability::{Case, Model, Point, Report, Rules, Verdict, check};
+use gearmesh::gear::transmission_error::cycle::Settings;
 
 /// A model of the chain.
 pub fn model(name: &str, given: &[(&str, Value)], contact: ContactLaw, coupled: bool) -> Model {

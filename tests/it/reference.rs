@@ -4,18 +4,18 @@
 use std::collections::BTreeMap;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::seed::Seed;
-use gearstudy::base::work::Tally;
-use gearstudy::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::Loading;
-use gearstudy::numeric::chebyshev::Series;
-use gearstudy::stage::designs;
-use gearstudy::stage::{Context, Inputs, compliance, pair};
-use gearstudy::table::data::Table;
 use serde_json::Value;
 
 use crate::registry::walk::{Ran, demand, load, walk};
+use declare::seed::Seed;
+use declare::work::Tally;
+use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::numeric::chebyshev::Series;
+use gearstudy::stage::designs;
+use gearstudy::stage::{Context, Inputs, compliance, pair};
+use studygraph::table::data::Table;
 
 /// ρ_fP = c/(1 − sin α) and r_f/1.75, as the reference has them. Its crowning of 6.34 and 5.67 µm is that at the ends of
 /// the common face of 18 mm; at the ends of the pinion's own 20 mm it is (20/18)² times as deep.
@@ -136,7 +136,7 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
     let stiffness = |name| table(&ran, "stiffness", name);
     let compliance = compliance::read(stiffness("compliance"), stiffness("neighbours"), stiffness("model")).unwrap();
     let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
-    let families = gearstudy::gear::modification::members();
+    let families = gearmesh::gear::modification::members();
     let named = designs::read(table(&ran, "designs", "designs"), table(&ran, "designs", "elements"), families).unwrap();
     let pitch_point = pair.pinion.reference_radius * libm::sin(pair.working_pressure_angle);
     let double = (pair.contact_ratio - 1.0) * pair.base_pitch;

@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use gearstudy::runner::standing::standing;
-use gearstudy::stage::code_digest;
-use gearstudy::store::results::Folder;
-use gearstudy::study;
+use crate::support::with_code;
+use gearstudy::program;
+use studygraph::runner::standing::standing;
+use studygraph::store::results::Folder;
 
 /// Studies with a manifest under version control, and their files there; without git, all that lies there but `quick`.
 fn committed(top: &Path) -> BTreeMap<String, Vec<PathBuf>> {
@@ -48,10 +48,10 @@ fn committed_results_are_not_stale() {
             std::fs::create_dir_all(clone.path().join(&file).parent().unwrap()).unwrap();
             std::fs::copy(top.join(&file), clone.path().join(&file)).unwrap();
         }
-        let study = study::load(&top.join("studies").join(format!("{name}.yaml"))).unwrap();
+        let study = program::load(&top.join("studies").join(format!("{name}.yaml"))).unwrap();
         let folder = Folder::new(&clone.path().join("results"), &study.name);
         // Only the small tables are committed; what the manifest says of the others is what they are.
-        let found = standing(&study, &folder, code_digest).unwrap();
+        let found = standing(&study, &folder).unwrap();
         problems.extend(found.problem().map(|problem| format!("results/{name}: {problem}")));
         let manifest = folder.manifest().unwrap();
         let there = manifest.stages.iter().flat_map(|stage| &stage.tables);
@@ -80,11 +80,11 @@ fn stale_results_are_found() {
     let folder = Folder::new(&top.join("results"), "energy_ga");
     let other = text.replacen("face_width: 20 mm", "face_width: 20.5 mm", 1);
     assert_ne!(text, other);
-    let study = study::load_text(&other, &path).unwrap();
-    let found = standing(&study, &folder, code_digest).unwrap().problem().unwrap();
+    let study = program::load_text(&other, &path).unwrap();
+    let found = standing(&study, &folder).unwrap().problem().unwrap();
     assert!(found.contains("stage `pair` is not up to date: stale: ") && found.contains("pinion"), "{found}");
-    let study = study::load_text(&text, &path).unwrap();
-    let found = standing(&study, &folder, |_| "other".to_owned()).unwrap().problem().unwrap();
+    let study = with_code(program::load_text(&text, &path).unwrap(), |_| "other".to_owned());
+    let found = standing(&study, &folder).unwrap().problem().unwrap();
     assert!(found.contains("stage `pair` is not up to date: stale: code changed"), "{found}");
 }
 

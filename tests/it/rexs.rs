@@ -3,10 +3,11 @@
 
 use std::fs;
 
-use gearstudy::study::{load_text, rexs};
 use proptest::prelude::*;
 
 use crate::desk::Desk;
+use gearstudy::program::load_text;
+use gearstudy::rexs;
 
 const FLANK: &str = r#"<attribute id="normal_pressure_angle" unit="deg">20</attribute>
       <attribute id="addendum_coefficient_basic_profile" unit="none">1.0</attribute>"#;

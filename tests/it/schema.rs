@@ -3,10 +3,9 @@
 use std::fs;
 use std::path::Path;
 
-use gearstudy::stage::kinds::KINDS;
-use gearstudy::study::schema::schema_text;
-
 use crate::python;
+use gearstudy::stage::kinds::KINDS;
+use studygraph::study::schema::schema_text;
 
 #[test]
 fn the_schema_in_the_repository_is_up_to_date() {

@@ -1,8 +1,11 @@
 //! What several tests need: records of declared parameters without a YAML file.
 
-use gearstudy::base::error::Place;
-use gearstudy::base::parameter::{Field, Presence, Shape};
-use gearstudy::base::record::{Entry, Record, Value};
+use declare::error::Place;
+use declare::parameter::{Field, Presence, Shape};
+use declare::record::{Entry, Record, Value};
+use gearstudy::program::PROGRAM;
+use studygraph::program::Program;
+use studygraph::study::Study;
 
 /// The record of `fields` with their defaults, and `given` instead where a name is among them.
 pub fn record(fields: &[Field], given: &[(&str, Value)]) -> Record {
@@ -43,4 +46,10 @@ fn read(shape: &Shape, text: &str) -> Value {
         Shape::List(item) => Value::List(vec![Entry { value: read(item, text), place: Place::default() }]),
         _ => panic!("a default of this shape is not read here"),
     }
+}
+
+/// A study as a program with other code reads it.
+pub fn with_code(study: Study, code_of: fn(&str) -> String) -> Study {
+    let program = Program { kinds: PROGRAM.kinds, code_of, about: PROGRAM.about };
+    Study { program: Box::leak(Box::new(program)), ..study }
 }

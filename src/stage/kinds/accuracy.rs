@@ -9,15 +9,14 @@ mod tables;
 mod trial;
 mod variant;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape};
-use crate::base::record::{Entry, Record, Value};
-use crate::base::units::RATIO;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
-use crate::table::data::Table;
-use crate::table::schema::Schema;
-
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Field, Shape};
+use declare::record::{Entry, Record, Value};
+use declare::units::RATIO;
 use quantity::Quantity;
+use studygraph::table::data::Table;
+use studygraph::table::schema::Schema;
 use trial::{Plan, Trial};
 use variant::Variant;
 

@@ -13,14 +13,13 @@ mod svg;
 #[cfg(test)]
 mod tests;
 
-use contour::{Contour, contours};
-
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
-use crate::base::record::{Record, Value};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use contour::{Contour, contours};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, Shape};
+use declare::record::{Record, Value};
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
     name: "export",

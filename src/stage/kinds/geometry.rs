@@ -9,27 +9,26 @@ mod drawn;
 mod meshing;
 mod valid;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
-use crate::base::record::Record;
-use crate::base::units::{ANGLE, LENGTH, STRESS};
-use crate::base::work::{Counter, Work};
-use crate::gear::geometry::error::GeometryError;
-use crate::gear::geometry::outline::sample::{Density, Point};
-use crate::gear::geometry::outline::tip::{self, Tip};
-use crate::gear::geometry::outline::{Outline, roots};
-use crate::gear::geometry::validity::Mating;
-use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
-use crate::gear::material::Material;
-use crate::gear::modification::Design;
-use crate::gear::modification::template::Template;
 use crate::stage::designs;
 use crate::stage::pair::{self, gears_schema, pair_schema};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Saved, Stage};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::Schema;
-
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, Shape};
+use declare::record::Record;
+use declare::units::{ANGLE, LENGTH, STRESS};
+use declare::work::{Counter, Work};
 use drawn::Drawn;
+use gearmesh::gear::geometry::error::GeometryError;
+use gearmesh::gear::geometry::outline::sample::{Density, Point};
+use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::outline::{Outline, roots};
+use gearmesh::gear::geometry::validity::Mating;
+use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::material::Material;
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::modification::template::Template;
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
     name: "geometry",

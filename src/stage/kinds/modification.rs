@@ -3,17 +3,17 @@
 //! Families and their parameters come from `gear/modification`; this file only reads them and shows what they come to
 //! on the pair. Must not know: any single family.
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape};
-use crate::base::record::{Entry, Record, Value};
-use crate::base::units::in_unit;
-use crate::gear::geometry::Side;
-use crate::gear::modification::Design;
-use crate::gear::modification::template::Template;
 use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
-use crate::table::data::{Row, Table};
-use crate::table::schema::{Column, Schema};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Field, Shape};
+use declare::record::{Entry, Record, Value};
+use declare::units::in_unit;
+use gearmesh::gear::geometry::Side;
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::modification::template::Template;
+use studygraph::table::data::{Row, Table};
+use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
     name: "modification",
@@ -167,7 +167,7 @@ impl Stage for Modification {
             rows.extend(resolved_rows(&named.name, &design));
             parameters.extend(parameter_rows(&named.name, &design));
         }
-        let failed = |error: crate::table::data::TableError| Failure::new(error.to_string());
+        let failed = |error: studygraph::table::data::TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
         tables.push(Table::from_rows(resolved_schema(), rows).map_err(failed)?);
         if context.demand.table("parameters") {

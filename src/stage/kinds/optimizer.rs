@@ -7,21 +7,21 @@ mod sampling;
 
 use rayon::prelude::*;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape, count, joined};
-use crate::base::record::{Record, Value};
-use crate::base::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
-use crate::gear::geometry::Pair;
-use crate::gear::modification::template::{Template, Variable};
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::loading::Loading;
-use crate::optimize::bounds::Bounds;
-use crate::optimize::search::{Optimizer as Search, Reason};
-use crate::optimize::{self};
 use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Stage, common};
-use crate::table::data::{Data, Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, Shape, count, joined};
+use declare::record::{Record, Value};
+use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::modification::template::{Template, Variable};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::optimize::bounds::Bounds;
+use gearmesh::optimize::search::{Optimizer as Search, Reason};
+use gearmesh::optimize::{self};
+use studygraph::table::data::{Data, Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
     name: "optimizer",
@@ -163,7 +163,7 @@ impl Optimizer {
         Bounds::new(self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect())
     }
 
-    fn search(&self, seed: crate::base::seed::Seed) -> Result<Search, Diagnostic> {
+    fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
         optimize::optimizer(self.method.0, &self.method.1, self.bounds()?, seed)
     }
 

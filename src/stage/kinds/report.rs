@@ -16,15 +16,14 @@ mod verdict;
 
 use std::collections::BTreeSet;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape};
-use crate::base::record::Record;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, Want};
-use crate::table::data::Table;
-use crate::table::schema::{Column, Schema};
-
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Field, Shape};
+use declare::record::Record;
 use entry::Entry;
 use figure::Figure;
+use studygraph::table::data::Table;
+use studygraph::table::schema::{Column, Schema};
 use verdict::Verdict;
 
 const WITH: Shape = Shape::Map(&Shape::Text);

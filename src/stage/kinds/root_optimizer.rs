@@ -5,20 +5,20 @@
 
 use rayon::prelude::*;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape};
-use crate::base::record::Record;
-use crate::base::seed::Seed;
-use crate::base::units::{LENGTH, in_unit};
-use crate::gear::geometry::{Gear, Side};
-use crate::gear::problem::{self, Family, Problem, Variable, Worth};
-use crate::optimize;
-use crate::optimize::bounds::Bounds;
-use crate::optimize::constraints::{Evaluation, KEPT};
-use crate::optimize::search::{Candidate, Reason};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, Shape};
+use declare::record::Record;
+use declare::seed::Seed;
+use declare::units::{LENGTH, in_unit};
+use gearmesh::gear::geometry::{Gear, Side};
+use gearmesh::gear::problem::{self, Family, Problem, Variable, Worth};
+use gearmesh::optimize;
+use gearmesh::optimize::bounds::Bounds;
+use gearmesh::optimize::constraints::{Evaluation, KEPT};
+use gearmesh::optimize::search::{Candidate, Reason};
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
     name: "root_optimizer",

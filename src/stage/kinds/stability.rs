@@ -7,16 +7,16 @@ mod tables;
 
 use rayon::prelude::*;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, Shape, count, joined};
-use crate::base::record::Record;
-use crate::base::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
-use crate::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
-use crate::optimize::latin_hypercube;
-use crate::stage::steps::Steps;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, common, pair};
-use crate::table::data::Table;
-use crate::table::schema::Schema;
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, Shape, count, joined};
+use declare::record::Record;
+use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
+use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
+use gearmesh::optimize::latin_hypercube;
+use studygraph::stage::steps::Steps;
+use studygraph::table::data::Table;
+use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
     name: "stability",

@@ -12,21 +12,21 @@ use std::time::Instant;
 use rayon::prelude::*;
 
 use self::tables::{cost_row, cost_schema, curve_columns, curve_schema, harmonics_schema, summary_row, summary_schema};
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Field, Shape, count, joined};
-use crate::base::record::{Record, Value};
-use crate::base::units::{ANGLE, RATIO, TORQUE, in_unit};
-use crate::base::work::Counter;
-use crate::gear::contact::SliceCoupling;
-use crate::gear::modification::{self, Design};
-use crate::gear::transmission_error::curve::{Point, Summary, Wanted};
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::loading::Loading;
-use crate::gear::transmission_error::sampling::{Against, Sampled};
-use crate::stage::steps::Steps;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::Schema;
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Field, Shape, count, joined};
+use declare::record::{Record, Value};
+use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
+use declare::work::Counter;
+use gearmesh::gear::contact::SliceCoupling;
+use gearmesh::gear::modification::{self, Design};
+use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use studygraph::stage::steps::Steps;
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
     name: "ste",

@@ -4,20 +4,20 @@
 
 use std::time::Instant;
 
-use crate::base::error::{Diagnostic, Failure};
-use crate::base::parameter::{Choice, Field, count, joined};
-use crate::base::record::Record;
-use crate::base::units::{RATIO, TORQUE, in_unit};
-use crate::base::work::{Counter, Work};
-use crate::gear::compliance::iso6336;
-use crate::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
-use crate::gear::geometry::Pair;
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::stiffness::stiffness;
 use crate::stage::compliance as codec;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Rows, Saved, Stage, common, pair};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::{Choice, Field, count, joined};
+use declare::record::Record;
+use declare::units::{RATIO, TORQUE, in_unit};
+use declare::work::{Counter, Work};
+use gearmesh::gear::compliance::iso6336;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::stiffness::stiffness;
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
     name: "stiffness",

@@ -3,16 +3,17 @@
 use std::fs;
 use std::io::Cursor;
 
-use gearstudy::runner::verify::unpack;
-use gearstudy::store::archive::METADATA;
-use gearstudy::store::archive::open::Archive;
-use gearstudy::store::archive::pack::{Entries, pack};
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
 
 use super::{archived, entries, manifest, packed, put_manifest};
 use crate::desk::Desk;
+use gearstudy::program::PROGRAM;
+use studygraph::runner::verify::unpack;
+use studygraph::store::archive::METADATA;
+use studygraph::store::archive::open::Archive;
+use studygraph::store::archive::pack::{Entries, pack};
 
 /// Verifies what `change` makes of an archive, which must end with `code` and one message with `wanted` in it.
 #[track_caller]
@@ -92,7 +93,7 @@ fn mutated_studies_and_manifests_never_panic() {
     let check = |entries: &Entries| {
         let archive = Archive::check(Cursor::new(pack(entries).unwrap()), "x.zip");
         let mut archive = archive.map_err(|error| error.to_string())?;
-        unpack(&mut archive, work.path()).map(drop).map_err(|error| error.to_string())
+        unpack(&mut archive, work.path(), &PROGRAM).map(drop).map_err(|error| error.to_string())
     };
     assert_eq!(check(&small), Ok(()));
     let mut random = ChaCha8Rng::seed_from_u64(66);

@@ -6,16 +6,15 @@
 use std::collections::BTreeMap;
 use std::fmt::Write;
 
-use gearstudy::gear::compliance::ToothCompliance;
-use gearstudy::gear::compliance::across_face::Layers;
-use gearstudy::gear::finite_elements::element::{Plane, RULE, shape};
-use gearstudy::gear::finite_elements::gear_model::GearModel;
-use gearstudy::gear::finite_elements::mesh::{Mesh, Sizing};
-use gearstudy::gear::geometry::{Gear, Specification};
-use gearstudy::numeric::chebyshev::Series;
-
 use super::program;
 use super::{model, specification};
+use gearmesh::gear::compliance::ToothCompliance;
+use gearmesh::gear::compliance::across_face::Layers;
+use gearmesh::gear::finite_elements::element::{Plane, RULE, shape};
+use gearmesh::gear::finite_elements::gear_model::GearModel;
+use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
+use gearmesh::gear::geometry::{Gear, Specification};
+use gearmesh::numeric::chebyshev::Series;
 
 const TEETH: u32 = 17;
 /// Face width \[modules\].

@@ -5,21 +5,20 @@
 
 use std::env;
 
-use gearstudy::base::record::Value;
-use gearstudy::gear::compliance::{Assumptions, ContactLaw, PairCompliance, method};
-use gearstudy::gear::contact::flattening;
-use gearstudy::gear::finite_elements::element::{self, NODES, Plane};
-use gearstudy::gear::finite_elements::mesh::Mesh;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::geometry::{Pair, Side};
-use gearstudy::gear::modification::Design;
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::{Loading, State};
-use gearstudy::numeric::chebyshev::Series;
-
 use super::press::{Fineness, Pressed, press, sizing};
 use super::{displacements, model, specification, work};
 use crate::support::record;
+use declare::record::Value;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, PairCompliance, method};
+use gearmesh::gear::contact::flattening;
+use gearmesh::gear::finite_elements::element::{self, NODES, Plane};
+use gearmesh::gear::finite_elements::mesh::Mesh;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::{Loading, State};
+use gearmesh::numeric::chebyshev::Series;
 
 const MODULE: f64 = 3e-3;
 

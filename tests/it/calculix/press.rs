@@ -5,13 +5,12 @@
 
 use std::fmt::Write;
 
-use gearstudy::gear::finite_elements::mesh::{Mesh, Sizing};
-use gearstudy::gear::finite_elements::outline::Outline;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::geometry::{Pair, Side};
-
 use super::program;
 use super::wheel::Wheel;
+use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
+use gearmesh::gear::finite_elements::outline::Outline;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{Pair, Side};
 
 /// Millimetres in a metre.
 const MILLI: f64 = 1e3;

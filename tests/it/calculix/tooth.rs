@@ -2,13 +2,12 @@
 
 use std::fmt::Write;
 
-use gearstudy::gear::finite_elements::element::{self, Plane, RULE};
-use gearstudy::gear::finite_elements::mesh::{Edge, Sizing};
-use gearstudy::gear::geometry::Gear;
-
 use super::program;
 use super::wheel::Wheel;
 use super::{displacements, model, specification, work};
+use gearmesh::gear::finite_elements::element::{self, Plane, RULE};
+use gearmesh::gear::finite_elements::mesh::{Edge, Sizing};
+use gearmesh::gear::geometry::Gear;
 
 const TEETH: u32 = 17;
 

@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use gearstudy::gear::finite_elements::mesh::{Edge, Mesh};
+use gearmesh::gear::finite_elements::mesh::{Edge, Mesh};
 
 /// Where a sector is in the whole.
 pub struct Sector {

@@ -3,14 +3,14 @@
 use std::fs;
 use std::process::Command;
 
-use gearstudy::diff::compare::{Options, compare};
-use gearstudy::diff::pretty;
-use gearstudy::history::side::Side;
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
 use serde_json::Value;
 
 use crate::desk::Desk;
+use studygraph::diff::compare::{Options, compare};
+use studygraph::diff::pretty;
+use studygraph::history::side::Side;
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
 
 /// What a project keeps of its results.
 const IGNORED: &str = ".gearstudy/\nresults/*/*\n!results/*/manifest.json\n!results/*/*.summary.parquet\n\

@@ -2,11 +2,11 @@
 
 use std::fs;
 
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
 use serde_json::Value;
 
 use super::diff::{committed, git, json};
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
 
 /// Equal manifests say nothing of the files beside them.
 #[test]

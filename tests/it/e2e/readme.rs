@@ -6,8 +6,9 @@ use std::path::{Path, PathBuf};
 
 use clap::Parser;
 use clap::error::ErrorKind;
+
 use gearstudy::cli::arguments::Arguments;
-use gearstudy::study;
+use gearstudy::program;
 
 fn documents() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
@@ -87,7 +88,7 @@ fn every_study_in_the_documents_loads() {
     for (path, text) in documents() {
         for (language, block) in blocks(&text) {
             if language == "yaml" && block.lines().any(|line| line.starts_with("study:")) {
-                study::load_text(&block, Path::new("study.yaml"))
+                program::load_text(&block, Path::new("study.yaml"))
                     .unwrap_or_else(|error| panic!("{}: {error}\n{block}", path.display()));
                 count += 1;
             }
@@ -103,6 +104,6 @@ fn the_readme_s_message_is_the_one_a_user_gets() {
     let (_, study) = blocks.iter().find(|(_, block)| block.starts_with("study:")).unwrap();
     let (_, message) = blocks.iter().find(|(_, block)| block.starts_with("my-study.yaml:")).unwrap();
     let slip = study.replacen("module: 3 mm", "module: 3", 1);
-    let error = study::load_text(&slip, Path::new("my-study.yaml")).err().unwrap();
+    let error = program::load_text(&slip, Path::new("my-study.yaml")).err().unwrap();
     assert_eq!(error.to_string().trim(), message.trim());
 }

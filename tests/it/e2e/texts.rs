@@ -4,10 +4,9 @@
 use std::fs;
 use std::path::Path;
 
-use gearstudy::store::hdf5;
-use gearstudy::study::load_text;
-
 use crate::desk::Desk;
+use gearstudy::program::load_text;
+use studygraph::store::hdf5;
 
 /// Stands where a text is put.
 const TEXT: &str = "<TEXT>";

@@ -6,16 +6,15 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use gearstudy::store::archive::METADATA;
-use gearstudy::store::hdf5::Writer;
-use gearstudy::store::index::{INDEX, Index, digest};
-use gearstudy::store::manifest::Manifest;
-use gearstudy::store::parquet;
-use gearstudy::table::data::{Data, Table};
-
 use super::diff::{committed, git};
 use crate::archive::{archived, entries, packed};
 use crate::desk::Desk;
+use studygraph::store::archive::METADATA;
+use studygraph::store::hdf5::Writer;
+use studygraph::store::index::{INDEX, Index, digest};
+use studygraph::store::manifest::Manifest;
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table};
 
 fn manifest(desk: &Desk) -> Manifest {
     serde_json::from_slice(&fs::read(desk.path("results/quick/manifest.json")).unwrap()).unwrap()

@@ -1,21 +1,21 @@
 //! The chain under parameters from end to end of their ranges, and specifications that are no numbers at all.
 
-use gearstudy::base::record::Value;
-use gearstudy::base::seed::Seed;
-use gearstudy::gear::compliance::ContactLaw;
-use gearstudy::gear::contact::CornerContact;
-use gearstudy::gear::geometry::root::RootShape;
-use gearstudy::gear::geometry::{Pair, Specification};
-use gearstudy::gear::modification::Design;
-use gearstudy::gear::stability::{AXES, Case, Model, Rules, Verdict, check, sample};
-use gearstudy::gear::transmission_error::curve::Wanted;
-use gearstudy::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearstudy::gear::transmission_error::loading::Loading;
-use gearstudy::gear::transmission_error::stiffness::stiffness;
 use rand_core::Rng;
 
 use super::drive;
 use crate::properties::{base, model};
+use declare::record::Value;
+use declare::seed::Seed;
+use gearmesh::gear::compliance::ContactLaw;
+use gearmesh::gear::contact::CornerContact;
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{Pair, Specification};
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::stability::{AXES, Case, Model, Rules, Verdict, check, sample};
+use gearmesh::gear::transmission_error::curve::Wanted;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::stiffness::stiffness;
 
 /// What a specification must survive.
 const STRANGE: [f64; 16] = [

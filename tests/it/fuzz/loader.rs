@@ -3,12 +3,12 @@
 use std::fs;
 use std::path::Path;
 
-use gearstudy::base::seed::Seed;
-use gearstudy::study;
 use rand_core::Rng;
 
 use super::drive;
 use crate::registry;
+use declare::seed::Seed;
+use gearstudy::program;
 
 const WORDS: [&str; 36] = [
     "",
@@ -127,7 +127,7 @@ fn changed(text: &str, number: u64) -> String {
 }
 
 fn read(text: &str) {
-    if let Err(error) = study::load_text(text, Path::new("t.yaml")) {
+    if let Err(error) = program::load_text(text, Path::new("t.yaml")) {
         assert!(error.to_string().len() < 4000, "{error}");
         if let Some(place) = error.diagnostic.place {
             assert!(error.text.get(place.offset..place.offset + place.length).is_some(), "{place:?}: {error}");

@@ -3,17 +3,17 @@
 
 use std::collections::BTreeMap;
 
-use gearstudy::base::error::{Failure, Place};
-use gearstudy::base::record::{Entry, Value};
-use gearstudy::base::seed::Seed;
-use gearstudy::optimize::bounds::Bounds;
-use gearstudy::optimize::search::{Optimizer, Reason};
-use gearstudy::optimize::{METHODS, foreseen, members, optimizer};
 use proptest::prelude::*;
 use rayon::prelude::*;
 
 use super::{choice, integer, run, search};
 use crate::support::record;
+use declare::error::{Failure, Place};
+use declare::record::{Entry, Value};
+use declare::seed::Seed;
+use gearmesh::optimize::bounds::Bounds;
+use gearmesh::optimize::search::{Optimizer, Reason};
+use gearmesh::optimize::{METHODS, foreseen, members, optimizer};
 
 /// Short runs of every method, and of the variants that take another path.
 fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {

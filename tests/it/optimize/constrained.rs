@@ -3,12 +3,11 @@
 //! The problems and their minima are numbers 6, 24, 35, 43, 65, 71 and 76 of Hock and Schittkowski, Test Examples for
 //! Nonlinear Programming Codes (Springer 1981); bounds that they do not have are wide of the minimum.
 
-use gearstudy::base::error::Failure;
-use gearstudy::base::record::Value;
-use gearstudy::optimize::constraints::{Evaluation, KEPT};
-use gearstudy::optimize::search::Optimizer;
-
 use super::{choice, integer, search};
+use declare::error::Failure;
+use declare::record::Value;
+use gearmesh::optimize::constraints::{Evaluation, KEPT};
+use gearmesh::optimize::search::Optimizer;
 
 struct Problem {
     number: u32,

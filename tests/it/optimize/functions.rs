@@ -1,10 +1,9 @@
 //! Known functions: their minima are found, to stated tolerances, from 20 seeds. What each method is not made for is
 //! stated too: a local search may end in any of several minima, a genetic algorithm with ten bits near one.
 
-use gearstudy::base::record::Value;
-use gearstudy::optimize::search::{Optimizer, Reason};
-
 use super::{choice, integer, run, search};
+use declare::record::Value;
+use gearmesh::optimize::search::{Optimizer, Reason};
 
 const SEEDS: std::ops::Range<u64> = 0..20;
 

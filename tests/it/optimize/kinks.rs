@@ -5,9 +5,8 @@
 //! report V-798, Academy of Sciences of the Czech Republic (2000), chapters 2 and 3: CB2, CB3, DEM, QL, LQ, Mifflin 1 and
 //! 2, Rosen-Suzuki, with starts and minima given there.
 
-use gearstudy::optimize::search::{Optimizer, Reason};
-
 use super::{choice, integer, run, search};
+use gearmesh::optimize::search::{Optimizer, Reason};
 
 struct Kinked {
     name: &'static str,

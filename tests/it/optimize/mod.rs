@@ -6,14 +6,13 @@ mod functions;
 mod kinks;
 mod reference;
 
-use gearstudy::base::error::Failure;
-use gearstudy::base::record::Value;
-use gearstudy::base::seed::Seed;
-use gearstudy::optimize::bounds::Bounds;
-use gearstudy::optimize::search::Optimizer;
-use gearstudy::optimize::{METHODS, optimizer};
-
 use crate::support::record;
+use declare::error::Failure;
+use declare::record::Value;
+use declare::seed::Seed;
+use gearmesh::optimize::bounds::Bounds;
+use gearmesh::optimize::search::Optimizer;
+use gearmesh::optimize::{METHODS, optimizer};
 
 /// A method with some parameters set, on a box.
 fn search(method: &str, given: &[(&str, Value)], bounds: &[(f64, f64)], seed: u64) -> Optimizer {

@@ -1,11 +1,11 @@
 //! Second method: SciPy's Nelder–Mead step for step, its differential evolution and an independent genetic algorithm by
 //! their statistics, its Sobol points. The values come from `tests/reference/optimize.py`.
 
-use gearstudy::base::record::Value;
-use gearstudy::optimize::search::Optimizer;
 use serde_json::Value as Json;
 
 use super::{integer, run, search};
+use declare::record::Value;
+use gearmesh::optimize::search::Optimizer;
 
 fn reference(part: &str) -> Vec<Json> {
     let all: Json = serde_json::from_str(include_str!("../../reference/optimize.json")).unwrap();
@@ -154,7 +154,7 @@ fn sobol_points_are_those_of_joe_and_kuo() {
     points
         .run(|batch| {
             met.extend_from_slice(batch);
-            Ok::<_, gearstudy::base::error::Failure>(vec![0.0; batch.len()])
+            Ok::<_, declare::error::Failure>(vec![0.0; batch.len()])
         })
         .unwrap();
     let expected = reference("sobol");

@@ -3,14 +3,13 @@
 
 use std::collections::BTreeSet;
 
-use gearstudy::gear::compliance::METHODS;
-use gearstudy::gear::modification::{FAMILIES, members};
-use gearstudy::gear::problem;
-use gearstudy::optimize;
-use gearstudy::table::data::{Data, Table};
-
 use super::is_name;
 use super::walk::{demand, load, walk};
+use gearmesh::gear::compliance::METHODS;
+use gearmesh::gear::modification::{FAMILIES, members};
+use gearmesh::gear::problem;
+use gearmesh::optimize;
+use studygraph::table::data::{Data, Table};
 
 const PAIR: &str = "
   pair:
@@ -187,7 +186,7 @@ fn methods_of_whole_pairs_ask_for_no_root_contact_or_coupling() {
         assert!((500.0..2000.0).contains(&pressure), "{pressure}");
 
         let text = study(&stage("k", ", contact: load_dependent, torque: 150 N m"));
-        let error = gearstudy::study::load_text(&text, std::path::Path::new("t.yaml")).err().unwrap().to_string();
+        let error = gearstudy::program::load_text(&text, std::path::Path::new("t.yaml")).err().unwrap().to_string();
         assert!(error.contains(&format!("is not for the method `{name}`")), "{error}");
     }
 }

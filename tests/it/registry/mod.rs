@@ -11,16 +11,16 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-use gearstudy::base::units::parse_unit;
-use gearstudy::runner::events::Silent;
-use gearstudy::runner::execute::execute;
-use gearstudy::runner::options::Options;
+use declare::units::parse_unit;
+use gearstudy::program;
 use gearstudy::stage::kinds::KINDS;
-use gearstudy::store::cache::Cache;
-use gearstudy::study::{self, describe};
-use gearstudy::table::data::Data;
-use gearstudy::table::schema::Type;
-
+use studygraph::runner::events::Silent;
+use studygraph::runner::execute::execute;
+use studygraph::runner::options::Options;
+use studygraph::store::cache::Cache;
+use studygraph::study::{self, declared, describe};
+use studygraph::table::data::Data;
+use studygraph::table::schema::Type;
 use walk::{load, walk};
 
 /// All examples as one study, each stage called after its kind.
@@ -66,9 +66,14 @@ fn every_kind_has_a_name_of_its_own_and_is_documented() {
             assert!(about.contains(line), "{line}");
         }
         // The code digest of a kind covers a file of its own; without one, a change to it would not be noticed.
-        let shared = gearstudy::stage::code_digest("no such kind");
-        assert!(gearstudy::stage::code_digest(kind.name).len() > shared.len(), "{} has no code of its own", kind.name);
+        let shared = program::code_digest("no such kind");
+        assert!(program::code_digest(kind.name).len() > shared.len(), "{} has no code of its own", kind.name);
     }
+}
+
+#[test]
+fn every_declared_field_is_one_that_a_study_can_give() {
+    assert_eq!(declared::faults(KINDS), Vec::<String>::new());
 }
 
 /// The studies of this repository and the examples: every kind, in use.
@@ -79,7 +84,7 @@ fn studies() -> Vec<study::Study> {
     paths.sort();
     assert!(!paths.is_empty());
     let mut studies = vec![load(&examples())];
-    studies.extend(paths.iter().map(|path| study::load(path).unwrap_or_else(|error| panic!("{error}"))));
+    studies.extend(paths.iter().map(|path| program::load(path).unwrap_or_else(|error| panic!("{error}"))));
     studies
 }
 
@@ -147,7 +152,7 @@ fn every_example_runs_and_gives_finite_tables_whose_rows_have_keys() {
 fn the_runner_gives_what_a_plain_walk_through_the_stages_gives() {
     let quick = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/quick.yaml");
     {
-        let study = study::load(&quick).unwrap();
+        let study = program::load(&quick).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let cache = Cache::open(folder.path()).unwrap();
         let stop = std::sync::atomic::AtomicBool::new(false);

@@ -3,12 +3,11 @@
 use std::collections::BTreeSet;
 use std::path::Path;
 
-use gearstudy::gear::geometry::outline::{roots, tip};
-use gearstudy::study;
-use gearstudy::table::data::Table;
-
 use super::is_name;
 use super::walk::{load, walk};
+use gearmesh::gear::geometry::outline::{roots, tip};
+use gearstudy::program;
+use studygraph::table::data::Table;
 
 const ROOTS: &[(&str, &str)] = &[
     ("trochoid", "trochoid"),
@@ -71,11 +70,11 @@ fn refusals_stand_at_their_field() {
         (17, "{ root: tangent_arc }", "its radius must be at most"),
         (29, "{ tip: { chamfer: { size: 9 mm } } }", "the tip is broken by 9 mm, but must be by"),
     ] {
-        let error = study::load_text(&study(teeth, outline), Path::new("t.yaml")).err().unwrap().to_string();
+        let error = program::load_text(&study(teeth, outline), Path::new("t.yaml")).err().unwrap().to_string();
         assert!(error.contains(message) && error.contains("t.yaml:9:"), "{error}");
     }
     let both = study(29, "{}").replace("tip_shortening: 0.05", "tip_shortening: 0.05, tip_radius: 32.9 mm");
-    let error = study::load_text(&both, Path::new("t.yaml")).err().unwrap().to_string();
+    let error = program::load_text(&both, Path::new("t.yaml")).err().unwrap().to_string();
     assert!(error.contains("`tip_radius` and `tip_shortening` both say where the tip is"), "{error}");
 }
 
@@ -94,7 +93,7 @@ fn a_gear_alone_is_drawn_over_the_whole_range() {
             for angle in ["14.5", "20", "30"] {
                 for (_, root) in ROOTS.iter().filter(|(_, root)| !root.contains("mm")) {
                     let text = alone(teeth, module, angle, shift, &format!("{{ root: {root}, points: 24 }}"));
-                    let study = match study::load_text(&text, Path::new("t.yaml")) {
+                    let study = match program::load_text(&text, Path::new("t.yaml")) {
                         Ok(study) => study,
                         Err(error) => {
                             let error = error.to_string();
@@ -121,7 +120,7 @@ fn a_gear_alone_is_drawn_over_the_whole_range() {
 
 #[test]
 fn what_needs_a_pair_says_so() {
-    let refused = |text: &str| study::load_text(text, Path::new("t.yaml")).err().unwrap().to_string();
+    let refused = |text: &str| program::load_text(text, Path::new("t.yaml")).err().unwrap().to_string();
     let plain = alone(17, "3", "20", 0.0, "{}");
     for kind in ["stiffness", "root_optimizer, problem: root_arc", "modification, designs: { a: [] }"] {
         let error = refused(&format!("{plain}  other: {{ pair: one, kind: {kind} }}\n"));

@@ -6,12 +6,13 @@ use std::path::Path;
 use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::seed::Seed;
-use gearstudy::base::work::Tally;
-use gearstudy::stage::estimate::{Ahead, Certainty, Rows};
+use declare::seed::Seed;
+use declare::work::Tally;
+use gearstudy::program;
 use gearstudy::stage::{Context, Demand, Inputs, Stage};
-use gearstudy::study::{self, Study};
-use gearstudy::table::data::Table;
+use studygraph::stage::estimate::{Ahead, Certainty, Rows};
+use studygraph::study::Study;
+use studygraph::table::data::Table;
 
 /// All tables of a stage, in its own order, and what it warned of.
 pub struct Ran {
@@ -20,13 +21,13 @@ pub struct Ran {
 }
 
 pub fn load(text: &str) -> Study {
-    study::load_text(text, Path::new("t.yaml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    program::load_text(text, Path::new("t.yaml")).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// Everything the stage can give, or only what is not on demand.
 pub fn demand(stage: &dyn Stage, everything: bool) -> Demand {
     let schemas = stage.outputs().into_iter().filter(|schema| everything || !schema.on_demand);
-    let columns = |columns: &[gearstudy::table::schema::Column]| -> BTreeSet<String> {
+    let columns = |columns: &[studygraph::table::schema::Column]| -> BTreeSet<String> {
         columns.iter().filter(|column| everything && column.on_demand).map(|column| column.name.clone()).collect()
     };
     Demand { tables: schemas.map(|schema| (schema.name.clone(), columns(&schema.columns))).collect() }

@@ -4,13 +4,13 @@ use std::fs;
 use std::process::Child;
 use std::time::Duration;
 
-use gearstudy::store::index::Stamp;
 use serde_json::Value;
 
 use super::cache::TINY;
 use super::disk::{self, Place};
 use super::faults::{earlier, undisturbed};
 use super::published::{differences, published};
+use studygraph::store::index::Stamp;
 
 /// The orders that make a run one of a computer of this name.
 fn host(place: &Place, name: &str) -> Vec<(&'static str, String)> {

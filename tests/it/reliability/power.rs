@@ -9,14 +9,13 @@ use std::fs;
 use std::path::Path;
 use std::time::{Duration, SystemTime};
 
-use gearstudy::base::digest::Digest;
-use gearstudy::store::cache::{Cache, Lookup};
-use gearstudy::store::results::{Folder, is_drawn};
-
 use super::cache::TINY;
 use super::disk::{self, Place};
 use super::faults::{Before, earlier, thorough, undisturbed};
 use super::published::{Published, differences, essence, published};
+use declare::digest::Digest;
+use studygraph::store::cache::{Cache, Lookup};
+use studygraph::store::results::{Folder, is_drawn};
 
 /// One thing that a run did to the disk.
 enum Step {
@@ -291,7 +290,7 @@ fn accepted(
     place: &Place,
     whole: &Tables,
     expected: &Published,
-    manifest: &gearstudy::store::manifest::Manifest,
+    manifest: &studygraph::store::manifest::Manifest,
 ) -> Vec<String> {
     let mut wrong = Vec::new();
     let cache = Cache::open_if_possible(&place.disk.join("cache"));

@@ -8,13 +8,12 @@ mod tables;
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use gearstudy::base::record::Value;
+use declare::record::Value;
 use gearstudy::report::{self, Rendered, RenderedFigure};
-use gearstudy::store::manifest::OmissionRecord;
-use gearstudy::table::data::{Row, Table};
-
 use record::{figures, group, item, list, published, text};
 use study::{manifest, render, study};
+use studygraph::store::manifest::OmissionRecord;
+use studygraph::table::data::{Row, Table};
 use tables::tables;
 
 const VERDICTS: [&str; 7] = ["unexplained", "moved", "outdated", "explained", "refuted", "reproduced", "holds"];

@@ -1,7 +1,7 @@
 //! What the stage `report` is told, as a record built by hand: one entry for each verdict, one figure for each shape.
 
-use gearstudy::base::error::Place;
-use gearstudy::base::record::{Entry, Record, Value};
+use declare::error::Place;
+use declare::record::{Entry, Record, Value};
 
 pub fn item(value: Value) -> Entry {
     Entry { value, place: Place { line: 40, ..Place::default() } }

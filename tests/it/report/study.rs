@@ -3,20 +3,19 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 
-use gearstudy::base::error::Place;
-use gearstudy::base::record::{Record, Value};
-use gearstudy::base::seed::Seed;
-use gearstudy::base::work::Tally;
-use gearstudy::report::{self, Rendered};
-use gearstudy::stage::{self, Context, Demand, Inputs};
-use gearstudy::store::entry::StoredTable;
-use gearstudy::store::manifest::{
-    KeyRecord, Machine, Manifest, OmissionRecord, Program, Source, StageRecord, TableRecord,
-};
-use gearstudy::table::data::Table;
-
 use super::record::{item, list};
 use super::tables::tables;
+use declare::error::Place;
+use declare::record::{Record, Value};
+use declare::seed::Seed;
+use declare::work::Tally;
+use gearstudy::report::{self, Rendered};
+use gearstudy::stage::{self, Context, Demand, Inputs};
+use studygraph::store::entry::StoredTable;
+use studygraph::store::manifest::{
+    KeyRecord, Machine, Manifest, OmissionRecord, Program, Source, StageRecord, TableRecord,
+};
+use studygraph::table::data::Table;
 
 fn report_tables(published: Vec<Value>, figures: Vec<Value>, tables: &BTreeMap<String, Table>) -> Vec<Table> {
     let fields = vec![("published", item(list(published))), ("figures", item(list(figures)))];

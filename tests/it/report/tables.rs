@@ -3,8 +3,8 @@
 
 use std::collections::BTreeMap;
 
-use gearstudy::table::data::{Row, Table};
-use gearstudy::table::schema::{Column, Schema};
+use studygraph::table::data::{Row, Table};
+use studygraph::table::schema::{Column, Schema};
 
 const BASE_PITCH: f64 = 8.856;
 const CONTACT_RATIO: f64 = 1.6457;

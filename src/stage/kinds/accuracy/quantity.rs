@@ -2,11 +2,11 @@
 //!
 //! Must not know: what ran, or how long.
 
-use crate::base::error::{Diagnostic, suggest};
 use crate::stage::Demand;
-use crate::table::data::{Data, Table};
-use crate::table::schema::{Schema, Type};
-use crate::table::select::{CellName, check_conditions, rows_where, unknown_column};
+use declare::error::{Diagnostic, suggest};
+use studygraph::table::data::{Data, Table};
+use studygraph::table::schema::{Schema, Type};
+use studygraph::table::select::{CellName, check_conditions, rows_where, unknown_column};
 
 /// A column of a stage's table.
 pub struct Quantity {

@@ -6,8 +6,8 @@ use super::quantity::{self, Distance};
 use super::trial::{Trial, quantile};
 use super::{Accuracy, Ladder};
 use crate::stage::Demand;
-use crate::table::data::{Row, Table};
-use crate::table::schema::{Column, Schema};
+use studygraph::table::data::{Row, Table};
+use studygraph::table::schema::{Column, Schema};
 
 /// Bytes of a megabyte.
 const MEGABYTE: f64 = 1e6;

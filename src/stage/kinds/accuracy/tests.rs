@@ -5,11 +5,11 @@
 use super::quantity::{Value, distance};
 use super::trial::quantile;
 use super::variant::{Variant, inputs, ports};
-use crate::base::error::{Failure, Place};
-use crate::base::record::{self, Entry, Record};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Port, Stage};
-use crate::table::data::Table;
-use crate::table::schema::Schema;
+use declare::error::{Failure, Place};
+use declare::record::{self, Entry, Record};
+use studygraph::table::data::Table;
+use studygraph::table::schema::Schema;
 
 fn rows(values: &[(&str, f64)]) -> Vec<Value> {
     values.iter().map(|(row, value)| Value { row: (*row).to_owned(), value: *value }).collect()

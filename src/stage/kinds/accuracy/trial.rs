@@ -6,9 +6,9 @@ use std::time::Instant;
 
 use super::quantity::{Quantity, Value};
 use super::variant::Variant;
-use crate::base::error::Failure;
-use crate::stage::memory::most_during;
 use crate::stage::{Context, Inputs, Stage};
+use declare::error::Failure;
+use studygraph::stage::memory::most_during;
 
 /// How often a variant runs.
 pub struct Plan {

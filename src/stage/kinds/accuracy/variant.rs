@@ -4,9 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::base::error::Diagnostic;
-use crate::base::record::{self, Record, Value};
 use crate::stage::{self, Ahead, Inputs, Port, Stage};
+use declare::error::Diagnostic;
+use declare::record::{self, Record, Value};
 
 /// A stage as it is tried.
 pub struct Variant {
@@ -76,9 +76,9 @@ fn differing(one: &Value, two: &Value, found: &mut Vec<Option<(f64, f64)>>) {
 /// Whether two values are alike, wherever they stand.
 fn same(one: &Value, two: &Value) -> bool {
     let digest = |value: &Value| {
-        let entry = record::Entry { value: value.clone(), place: crate::base::error::Place::default() };
-        let record = Record { fields: vec![("value", entry)], place: crate::base::error::Place::default() };
-        let mut writer = crate::base::digest::Writer::new("gearstudy 1 variant");
+        let entry = record::Entry { value: value.clone(), place: declare::error::Place::default() };
+        let record = Record { fields: vec![("value", entry)], place: declare::error::Place::default() };
+        let mut writer = declare::digest::Writer::new("gearstudy 1 variant");
         record.write(&mut writer);
         writer.finish()
     };

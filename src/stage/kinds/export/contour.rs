@@ -4,9 +4,9 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use crate::base::error::Failure;
 use crate::stage::pair::si;
-use crate::table::data::Table;
+use declare::error::Failure;
+use studygraph::table::data::Table;
 
 /// A point of the table `outline`.
 #[derive(Clone, Debug, PartialEq)]

@@ -4,8 +4,8 @@ use std::f64::consts::PI;
 
 use super::contour::{Contour, Piece, contours};
 use super::{dxf, svg};
-use crate::table::data::{Row, Table};
-use crate::table::schema::{Column, Schema};
+use studygraph::table::data::{Row, Table};
+use studygraph::table::schema::{Column, Schema};
 
 const TEETH: usize = 17;
 const BASE: f64 = 11.981_081;

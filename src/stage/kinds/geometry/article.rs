@@ -3,10 +3,10 @@
 //! Must not know: which root is drawn.
 
 use super::drawn::Drawn;
-use crate::base::units::in_unit;
-use crate::gear::problem::root_arc::RootArc;
-use crate::table::data::Row;
-use crate::table::schema::{Column, Schema};
+use declare::units::in_unit;
+use gearmesh::gear::problem::root_arc::RootArc;
+use studygraph::table::data::Row;
+use studygraph::table::schema::{Column, Schema};
 
 const OBJECTIVE: &str = "objective";
 

@@ -6,12 +6,12 @@
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::drawn::{Drawn, gear_column};
-use crate::base::units::in_unit;
-use crate::gear::geometry::outline::curve::Part;
-use crate::gear::geometry::outline::sample::Density;
-use crate::gear::problem::root_arc::RootArc;
-use crate::table::data::Row;
-use crate::table::schema::{Column, Schema};
+use declare::units::in_unit;
+use gearmesh::gear::geometry::outline::curve::Part;
+use gearmesh::gear::geometry::outline::sample::Density;
+use gearmesh::gear::problem::root_arc::RootArc;
+use studygraph::table::data::Row;
+use studygraph::table::schema::{Column, Schema};
 
 /// Points of an arc.
 const ARC: u32 = 90;

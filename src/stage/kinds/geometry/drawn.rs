@@ -4,15 +4,15 @@
 
 use std::f64::consts::PI;
 
-use crate::base::error::Failure;
-use crate::base::units::in_unit;
-use crate::gear::geometry::outline::Outline;
-use crate::gear::geometry::outline::curve::Local;
-use crate::gear::geometry::outline::junction::Place;
-use crate::gear::geometry::outline::sample::{Density, Point};
-use crate::gear::geometry::{Gear, Side};
-use crate::table::data::{Data, Row};
-use crate::table::schema::{Column, Schema};
+use declare::error::Failure;
+use declare::units::in_unit;
+use gearmesh::gear::geometry::outline::Outline;
+use gearmesh::gear::geometry::outline::curve::Local;
+use gearmesh::gear::geometry::outline::junction::Place;
+use gearmesh::gear::geometry::outline::sample::{Density, Point};
+use gearmesh::gear::geometry::{Gear, Side};
+use studygraph::table::data::{Data, Row};
+use studygraph::table::schema::{Column, Schema};
 
 /// A gear with its full profile.
 pub struct Drawn {
@@ -111,7 +111,7 @@ impl Drawn {
             format!("{} {}", segment.part.name(), segment.curve.name())
         };
         let last = self.outline.segments.len() - 1;
-        let row = |(index, junction): (usize, crate::gear::geometry::outline::junction::Junction)| -> Row {
+        let row = |(index, junction): (usize, gearmesh::gear::geometry::outline::junction::Junction)| -> Row {
             let (before, after) = match junction.place {
                 Place::Space => (0, 0),
                 Place::Behind(at) => (at, at + 1),

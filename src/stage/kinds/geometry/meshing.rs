@@ -6,11 +6,11 @@
 use std::f64::consts::PI;
 
 use super::drawn::Drawn;
-use crate::base::units::in_unit;
-use crate::gear::geometry::outline::sample::Density;
-use crate::gear::geometry::{Pair, Side};
-use crate::table::data::Row;
-use crate::table::schema::{Column, Schema};
+use declare::units::in_unit;
+use gearmesh::gear::geometry::outline::sample::Density;
+use gearmesh::gear::geometry::{Pair, Side};
+use studygraph::table::data::Row;
+use studygraph::table::schema::{Column, Schema};
 
 /// Half the angle of the circles that are drawn, in pitches.
 const REACH: f64 = 1.6;

@@ -3,11 +3,11 @@
 //! Must not know: how any of it is computed.
 
 use super::drawn::{Drawn, gear_column};
-use crate::base::units::in_unit;
-use crate::gear::geometry::Pair;
-use crate::gear::geometry::validity::{Mating, Validity};
-use crate::table::data::Row;
-use crate::table::schema::{Column, Schema};
+use declare::units::in_unit;
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::validity::{Mating, Validity};
+use studygraph::table::data::Row;
+use studygraph::table::schema::{Column, Schema};
 
 /// With the columns of a pair, or of a gear alone.
 #[must_use]

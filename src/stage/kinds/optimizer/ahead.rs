@@ -3,10 +3,10 @@
 //! Must not know: how any method searches.
 
 use super::Optimizer;
-use crate::base::work::{Counter, Work};
-use crate::optimize;
 use crate::stage::designs::{designs_schema, elements_schema, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+use declare::work::{Counter, Work};
+use gearmesh::optimize;
 
 /// Solves for the objective under one torque: so many, and so many for each position.
 const SOLVES: f64 = 50.0;

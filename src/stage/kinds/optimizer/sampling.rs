@@ -4,10 +4,10 @@
 //! know: how the search goes on.
 
 use super::Optimizer;
-use crate::gear::geometry::Pair;
-use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::loading::Loading;
-use crate::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Places on the diagonal of the box that stand for all of it.
 const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];

@@ -2,18 +2,17 @@
 //!
 //! Must not know: figures, other entries.
 
-use crate::base::error::{Diagnostic, Place};
-use crate::base::record::{Record, Value};
-use crate::base::units::{RATIO, in_unit};
-use crate::stage::Inputs;
-use crate::table::data::Row;
-
 use super::formula::{Formula, Outcome};
 use super::operand::{Operand, in_si};
 use super::quantity::Number;
 use super::rows::Rows;
 use super::stated::{Target, convert, read_target};
 use super::verdict::{Comparison, Verdict};
+use crate::stage::Inputs;
+use declare::error::{Diagnostic, Place};
+use declare::record::{Record, Value};
+use declare::units::{RATIO, in_unit};
+use studygraph::table::data::Row;
 
 /// Names that a proof may use without giving them.
 const GIVEN: [&str; 2] = ["published", "computed"];

@@ -3,18 +3,17 @@
 //! Only the declaration is kept (and checked against the tables); the points are drawn from the tables themselves. Must
 //! not know: how anything is drawn.
 
-use crate::base::error::{Diagnostic, Place as TextPlace};
-use crate::base::parameter::{Choice, Field, Shape};
-use crate::base::record::{Record, Value};
-use crate::base::text::is_device;
-use crate::base::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
-use crate::stage::{Ahead, Inputs};
-use crate::table::data::{Data, Row, Table};
-use crate::table::schema::{Column, Schema, Type};
-use crate::table::select::{rows_where, unknown_column};
-
 use super::operand::{in_si, no_rows, table};
 use super::quantity::{described, same_dimension};
+use crate::stage::{Ahead, Inputs};
+use declare::error::{Diagnostic, Place as TextPlace};
+use declare::parameter::{Choice, Field, Shape};
+use declare::record::{Record, Value};
+use declare::text::is_device;
+use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
+use studygraph::table::data::{Data, Row, Table};
+use studygraph::table::schema::{Column, Schema, Type};
+use studygraph::table::select::{rows_where, unknown_column};
 
 const KINDS: &[Choice] = &[
     Choice { name: "line", summary: "a line for each series" },

@@ -10,10 +10,9 @@ mod tests;
 
 use evalexpr::{DefaultNumericTypes, Node, Operator, Value, build_operator_tree};
 
-use crate::base::error::suggest;
-use crate::base::units::{Dimension, RATIO};
-
 use super::quantity::{Number, described, power, product, shown, wider};
+use declare::error::suggest;
+use declare::units::{Dimension, RATIO};
 
 /// Longer formulas are refused: nobody reads them, and the parser's recursion stays shallow.
 const LONGEST: usize = 600;

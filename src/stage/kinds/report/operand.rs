@@ -2,13 +2,12 @@
 //!
 //! Must not know: verdicts. Everything is SI once it is resolved.
 
-use crate::base::number::{significant, with_unit};
-use crate::base::units::{UnitError, parse_quantity, split_quantity};
-use crate::stage::Inputs;
-use crate::table::data::{Cell, Data, Table};
-use crate::table::select::{CellName, rows_where, unknown_column};
-
 use super::quantity::{Number, described};
+use crate::stage::Inputs;
+use declare::number::{significant, with_unit};
+use declare::units::{UnitError, parse_quantity, split_quantity};
+use studygraph::table::data::{Cell, Data, Table};
+use studygraph::table::select::{CellName, rows_where, unknown_column};
 
 /// A quantity or cells, as written.
 #[derive(Clone, Debug)]

@@ -2,8 +2,8 @@
 //!
 //! Must not know: formulas. SI; an angle counts as a plain number.
 
-use crate::base::number::{significant, with_unit};
-use crate::base::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
+use declare::number::{significant, with_unit};
+use declare::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
 
 /// A number in SI and its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]

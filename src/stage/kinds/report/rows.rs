@@ -2,11 +2,10 @@
 //!
 //! Must not know: published values, verdicts.
 
-use crate::stage::Inputs;
-
 use super::formula::{Formula, Names};
 use super::operand::{Operand, Values};
 use super::quantity::{Number, shown};
+use crate::stage::Inputs;
 
 /// The values of every name, in rows that line up.
 pub struct Rows<'a> {

@@ -2,13 +2,12 @@
 //!
 //! Must not know: what is compared with them.
 
-use crate::base::error::Diagnostic;
-use crate::base::number::Printed;
-use crate::base::record::Record;
-use crate::base::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
-
 use super::operand::in_si;
 use super::quantity::{Number, described, same_dimension};
+use declare::error::Diagnostic;
+use declare::number::Printed;
+use declare::record::Record;
+use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
 
 /// A value as printed.
 pub struct Stated {

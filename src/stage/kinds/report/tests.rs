@@ -3,12 +3,12 @@
 use std::sync::atomic::AtomicBool;
 
 use super::*;
-use crate::base::error::Place;
-use crate::base::record::{Entry as Item, Value};
-use crate::base::seed::Seed;
-use crate::base::work::Tally;
 use crate::stage::Demand;
-use crate::table::data::Cell;
+use declare::error::Place;
+use declare::record::{Entry as Item, Value};
+use declare::seed::Seed;
+use declare::work::Tally;
+use studygraph::table::data::Cell;
 
 type Fields<'a> = &'a [(&'static str, Value)];
 

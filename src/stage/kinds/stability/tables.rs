@@ -4,9 +4,9 @@
 
 use std::collections::BTreeMap;
 
-use crate::gear::stability::{DigitsLost, Report, Verdict};
-use crate::table::data::{Row, Table, TableError};
-use crate::table::schema::{Column, Schema};
+use gearmesh::gear::stability::{DigitsLost, Report, Verdict};
+use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
 
 /// In the order of [`write`].
 pub fn schemas() -> Vec<Schema> {

@@ -4,9 +4,9 @@
 
 use super::tables::{cost_schema, curve_schema, harmonics_schema, summary_schema};
 use super::{OF_CURVES, Ste, samples};
-use crate::base::work::{Counter, Work};
-use crate::gear::transmission_error::curve::Point;
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+use declare::work::{Counter, Work};
+use gearmesh::gear::transmission_error::curve::Point;
 
 /// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
 const SOLVES_PER_ROW: f64 = 2.3;

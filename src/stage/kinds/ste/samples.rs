@@ -4,10 +4,10 @@
 //! ones. Must not know: how a position is solved.
 
 use super::tables::keys;
-use crate::base::units::in_unit;
-use crate::gear::transmission_error::loading::Loading;
-use crate::table::data::Row;
-use crate::table::schema::{Column, Schema};
+use declare::units::in_unit;
+use gearmesh::gear::transmission_error::loading::Loading;
+use studygraph::table::data::Row;
+use studygraph::table::schema::{Column, Schema};
 
 /// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
 /// rounding made of it.

@@ -3,11 +3,11 @@
 //! Must not know: how a curve is found.
 
 use super::Answer;
-use crate::base::units::{in_unit, showing};
-use crate::gear::transmission_error::curve::Point;
-use crate::gear::transmission_error::cycle::Settings;
-use crate::table::data::{Data, Row};
-use crate::table::schema::{Column, Schema};
+use declare::units::{in_unit, showing};
+use gearmesh::gear::transmission_error::curve::Point;
+use gearmesh::gear::transmission_error::cycle::Settings;
+use studygraph::table::data::{Data, Row};
+use studygraph::table::schema::{Column, Schema};
 
 pub fn keys() -> Vec<Column> {
     vec![

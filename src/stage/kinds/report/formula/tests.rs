@@ -2,7 +2,7 @@
 
 use super::super::quantity::same_dimension;
 use super::*;
-use crate::base::units::{LENGTH, STRESS, parse_quantity};
+use declare::units::{LENGTH, STRESS, parse_quantity};
 
 fn given(name: &str) -> Option<Number> {
     let text = match name {

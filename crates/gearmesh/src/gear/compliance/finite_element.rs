@@ -1,0 +1,237 @@
+//! The finite-element method: tooth and gear body as one elastic body, the whole gear, clamped at its bore.
+//!
+//! `finite_elements` gives the influences of unit loads on a flank; here they become the pair's tables. What a load does
+//! to its own tooth is one number, so all of it stands in `body`, and bending, shear and compression are zero. It is the
+//! displacement of the centreline along the load line; the contact law adds the approach of the flank, to the depth
+//! `contact_depth`, so nothing is counted twice. Must not know: how it is solved.
+
+#[cfg(test)]
+mod tests;
+
+use super::{
+    Assumptions, ComplianceError, Foreseen, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance,
+    neighbours, of_both,
+};
+use crate::gear::finite_elements::element::{PLANES, Plane};
+use crate::gear::finite_elements::gear_model::{GearModel, Influences};
+use crate::gear::finite_elements::mesh::Sizing;
+use crate::gear::finite_elements::root_stress;
+use crate::gear::geometry::root::Root;
+use crate::gear::geometry::{Gear, Pair, Side};
+use crate::numeric::chebyshev::{Series, nodes};
+use crate::numeric::surface::Surface;
+use declare::parameter::{Field, Member};
+use declare::record::Record;
+use declare::work::{Counter, Work};
+
+/// Nodes along the flank: interpolation between them is exact to 1e-4, which a test holds.
+const ROLLS: usize = 16;
+/// Elements across with which a mesh still is one.
+const LEAST: usize = 4;
+const MOST: usize = 64;
+/// ν up to which plane strain does not lock.
+const MOST_POISSON: f64 = 0.49;
+/// The order that the error estimate counts on; 2 to 4 are observed.
+const ORDER: f64 = 1.5;
+
+const FIELDS: &[Field] = &[
+    Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
+    Field::integer(
+        "elements_across",
+        6,
+        64,
+        "elements across a tooth, taken as an even number; all other sizes follow from it; where an accuracy is wanted, \
+         from how many on",
+    )
+    .default("16"),
+];
+
+pub const METHOD: Method = Method {
+    member: Member {
+        name: "finite_element",
+        summary: "Plane finite elements of the whole gear: teeth and body as one.",
+        fields: FIELDS,
+    },
+    whole_pair: false,
+    needs_fillet: true,
+    tabulate,
+    root_stress: Some(root_stress),
+    foresee,
+};
+
+/// Elements across with which a factorisation takes the usual time; it grows with their square.
+const USUAL: f64 = 8.0;
+/// Bytes that a mesh takes over the square of its elements across: 58,000 to 67,000 were measured with 6 to 48.
+const MESH_BYTES: usize = 100_000;
+
+fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
+    let told = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
+    // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones may follow.
+    let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST, 2) } else { (even(told), 1) };
+    let meshes = 4 * rounds;
+    let neighbours = if assumptions.coupled { 6 * ROLLS * ROLLS } else { 0 };
+    Foreseen {
+        nodes: 48,
+        neighbours,
+        work: Work::of(Counter::MeshFactorisations, meshes).with(Counter::ComplianceEvaluations, meshes * ROLLS),
+        times: (even(told) as f64 / USUAL).powi(2),
+        memory: (finest * finest * MESH_BYTES) as u64,
+    }
+}
+
+fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+    let mut work = Work::NONE;
+    let side = |side| {
+        let task = Task::new(options, pair, side, assumptions)?;
+        let (solution, facts) = task.solve(&mut work)?;
+        Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
+    };
+    let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
+    let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
+    let Assumptions { contact, coupled, .. } = assumptions;
+    let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+    let compliance = PairCompliance { pinion, gear, contact, coupled };
+    Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
+}
+
+fn root_stress(
+    options: &Record,
+    pair: &Pair,
+    assumptions: Assumptions,
+) -> Result<(Vec<RootStress>, Work), ComplianceError> {
+    let mut work = Work::NONE;
+    let side = |side| {
+        let task = Task::new(options, pair, side, assumptions)?;
+        let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
+        let module = task.gear.specification.module;
+        work = work.and(&Work::of(Counter::MeshFactorisations, 1));
+        let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
+        let row = |(&roll, points): (&f64, &Vec<_>)| {
+            let (stress, radius) = root_stress::largest(points)?;
+            Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
+        };
+        Ok::<_, ComplianceError>(task.rolls.iter().zip(&found).filter_map(row).collect::<Vec<_>>())
+    };
+    let [mut rows, of_gear] = of_both(pair, side)?;
+    rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
+    Ok((rows, work))
+}
+
+/// One gear, and how it is to be solved.
+struct Task<'a> {
+    side: Side,
+    gear: &'a Gear,
+    root: Root,
+    plane: Plane,
+    across: usize,
+    accuracy: Option<f64>,
+    rolls: Vec<f64>,
+    neighbours: u32,
+}
+
+impl<'a> Task<'a> {
+    fn new(options: &Record, pair: &'a Pair, side: Side, assumptions: Assumptions) -> Result<Self, ComplianceError> {
+        let gear = pair.side(side);
+        let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
+        let plane = if options.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain };
+        let poisson_ratio = gear.specification.material.poisson_ratio;
+        if plane == Plane::Strain && poisson_ratio > MOST_POISSON {
+            return Err(ComplianceError::Incompressible { side, poisson_ratio, most: MOST_POISSON });
+        }
+        let across = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
+        let rolls = nodes(root.form_roll, gear.tip_roll(), ROLLS);
+        Ok(Self {
+            side,
+            gear,
+            root,
+            plane,
+            across: even(across),
+            accuracy: assumptions.accuracy,
+            rolls,
+            neighbours: if assumptions.coupled { neighbours(pair, side) } else { 0 },
+        })
+    }
+
+    fn failed(&self, across: usize, error: crate::gear::finite_elements::MeshError) -> ComplianceError {
+        ComplianceError::Mesh { side: self.side, across, error }
+    }
+
+    fn model(&self, across: usize) -> Result<GearModel<'_>, ComplianceError> {
+        GearModel::new(self.gear, &self.root, self.plane, &Sizing::even(across))
+            .map_err(|error| self.failed(across, error))
+    }
+
+    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
+        let model = self.model(across)?;
+        let done = Work::of(Counter::MeshFactorisations, 1).with(Counter::ComplianceEvaluations, self.rolls.len());
+        *work = work.and(&done);
+        let found = model.influences(&self.rolls, self.neighbours).map_err(|error| self.failed(across, error))?;
+        let facts = MeshFacts {
+            side: self.side,
+            elements_across: across,
+            elements: model.mesh.elements.len(),
+            unknowns: model.sector.unknowns(),
+            error_estimate: model.rounding(),
+        };
+        Ok((found, facts))
+    }
+
+    /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
+    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
+        let mut across = self.across;
+        loop {
+            let coarse = even(across / 2).max(LEAST);
+            let (found, mut facts) = self.at(across, work)?;
+            let change = difference(&found, &self.at(coarse, work)?.0);
+            facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
+            let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
+            if facts.error_estimate <= accuracy || across >= MOST {
+                return Ok((found, facts));
+            }
+            let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST
+            let next = libm::ceil(across as f64 * factor) as usize;
+            across = even(next.max(across + 2)).min(MOST);
+        }
+    }
+
+    /// SI, over the whole face width.
+    fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
+        let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
+        let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
+        let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
+        let nothing = || Series::from_values(lower, upper, &[0.0]);
+        let [contact_depth] = Series::converged(lower, upper, |roll| [self.gear.depth_to_centreline(roll)])
+            .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
+        let neighbours = (solution.further.iter())
+            .map(|rows| Surface::from_values([lower; 2], [upper; 2], [ROLLS; 2], &scaled(&rows.concat())))
+            .collect();
+        Ok(ToothCompliance {
+            bending: nothing(),
+            shear: nothing(),
+            axial: nothing(),
+            body: Series::from_values(lower, upper, &scaled(&solution.own)),
+            contact_depth,
+            neighbours,
+        })
+    }
+}
+
+/// The next even number.
+fn even(count: usize) -> usize {
+    count.next_multiple_of(2)
+}
+
+/// The largest difference of influences, in units of the teeth's own.
+fn difference(fine: &Influences, coarse: &Influences) -> f64 {
+    let own = fine.own.iter().zip(&coarse.own).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
+    let mut largest = own;
+    for (fine_rows, coarse_rows) in fine.further.iter().zip(&coarse.further) {
+        for (by, (a, b)) in fine_rows.iter().zip(coarse_rows).enumerate() {
+            for (on, (a, b)) in a.iter().zip(b).enumerate() {
+                largest = largest.max((a - b).abs() / (fine.own[by] * fine.own[on]).sqrt());
+            }
+        }
+    }
+    largest
+}

@@ -1,0 +1,287 @@
+//! Compliance of teeth: what every method gives, as functions of the roll angle of the loaded point.
+//!
+//! Micro-geometry never enters these tables; it only changes gaps. Lengths in m, forces in N.
+//! Must not know: modification, load.
+
+pub mod across_face;
+pub mod energy;
+pub mod finite_element;
+pub mod iso6336;
+pub mod ring;
+pub mod sainsot;
+#[cfg(test)]
+mod tests;
+pub mod weber_banaschek;
+
+use super::finite_elements::MeshError;
+use super::geometry::error::{GeometryError, Millimetres, Plain};
+use super::geometry::root::RootShape;
+use super::geometry::{Pair, Side};
+use crate::numeric::chebyshev::Series;
+use crate::numeric::complementarity::MOST;
+use crate::numeric::surface::Surface;
+use declare::parameter::{Choice, Member};
+use declare::record::Record;
+use declare::work::{Counter, Work};
+
+/// Every way to the compliance of a pair, one line per member.
+pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD, finite_element::METHOD];
+
+/// A way to the compliance of a pair.
+#[derive(Clone, Copy)]
+pub struct Method {
+    pub member: Member,
+    /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
+    pub whole_pair: bool,
+    /// Whether a root with a sharp corner, the shape `base_circle`, is beyond it.
+    pub needs_fillet: bool,
+    /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
+    /// method does not hold for this pair. The record holds what this method alone can be told.
+    pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
+    /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
+    pub root_stress: Option<RootStresses>,
+    /// What it takes to tabulate a pair.
+    pub foresee: fn(&Record, Assumptions) -> Foreseen,
+}
+
+/// What a method takes, before it runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foreseen {
+    /// Nodes of the series of both teeth, about.
+    pub nodes: usize,
+    /// Nodes of the tables of neighbours of both, at most about; 0 where there are none.
+    pub neighbours: usize,
+    pub work: Work,
+    /// How many times as long as usual a unit of work takes.
+    pub times: f64,
+    /// The most bytes that it holds.
+    pub memory: u64,
+}
+
+/// What methods take that integrate along a tooth: series of some dozens of nodes, and where teeth are coupled a table of
+/// every pair of them for up to three neighbours.
+pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
+    Foreseen {
+        nodes: 128,
+        neighbours: if assumptions.coupled { 3000 } else { 0 },
+        work: Work::of(Counter::ComplianceEvaluations, 224),
+        times: if assumptions.coupled { 4.0 } else { 1.0 },
+        memory: 4 << 20,
+    }
+}
+
+/// The largest stress at the root of both gears' teeth, for loads along the flank, and what it took.
+pub type RootStresses = fn(&Record, &Pair, Assumptions) -> Result<(Vec<RootStress>, Work), ComplianceError>;
+
+/// What every method is asked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumptions {
+    pub root: RootShape,
+    pub contact: ContactLaw,
+    /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
+    pub coupled: bool,
+    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
+    /// compliance.
+    pub torque: Option<f64>,
+    /// Wanted error of a tooth's compliances, relative to its own; a method takes the cheapest settings that meet it, or
+    /// those it is told and those it has where there is none.
+    pub accuracy: Option<f64>,
+}
+
+/// What a method gives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tabulated {
+    pub compliance: PairCompliance,
+    pub warnings: Vec<String>,
+    /// How far off the compliances may be from what the method would give with perfect numerics, in units of the tooth's
+    /// own.
+    pub error_estimate: f64,
+    /// One per gear, for methods that mesh the teeth.
+    pub meshes: Vec<MeshFacts>,
+    /// What it took.
+    pub work: Work,
+}
+
+/// The mesh a gear's compliance was found with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MeshFacts {
+    pub side: Side,
+    /// Elements across a tooth.
+    pub elements_across: usize,
+    /// Elements of one tooth with its share of the body; the gear has as many times its number of teeth.
+    pub elements: usize,
+    /// Unknown displacements of the same.
+    pub unknowns: usize,
+    /// How far off the compliances may be, relative to the tooth's own.
+    pub error_estimate: f64,
+}
+
+/// The largest first principal stress on the surface of a loaded tooth's root.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RootStress {
+    pub side: Side,
+    /// Roll angle of the loaded point \[rad\].
+    pub roll: f64,
+    /// Per load per face width \[Pa/(N/m) = 1/m\].
+    pub stress: f64,
+    /// Radius of the place \[m\].
+    pub radius: f64,
+}
+
+/// Relative error of what is integrated and interpolated to rounding, as values of another program with 40 digits bound it.
+pub const ROUNDING: f64 = 1e-12;
+
+/// The method called `name`.
+#[must_use]
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.member.name == name)
+}
+
+/// What `tooth` gives for both gears; for gears that are alike it is asked once.
+///
+/// # Errors
+/// Those of `tooth`.
+pub fn of_both<T: Clone, E>(pair: &Pair, mut tooth: impl FnMut(Side) -> Result<T, E>) -> Result<[T; 2], E> {
+    let pinion = tooth(Side::Pinion)?;
+    let gear = if pair.pinion == pair.gear { pinion.clone() } else { tooth(Side::Gear)? };
+    Ok([pinion, gear])
+}
+
+/// The methods as a study names them.
+#[must_use]
+pub fn members() -> &'static [Member] {
+    const MEMBERS: [Member; METHODS.len()] = {
+        let mut members = [METHODS[0].member; METHODS.len()];
+        let mut index = 1;
+        while index < METHODS.len() {
+            members[index] = METHODS[index].member;
+            index += 1;
+        }
+        members
+    };
+    &MEMBERS
+}
+
+/// Why a method gives no compliance for a pair.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ComplianceError {
+    #[error(transparent)]
+    Root(GeometryError),
+    #[error("{}: the tip is too near to a point to be integrated: it is {} thick", .side.name(), Millimetres(*.thickness))]
+    Unresolved { side: Side, thickness: f64 },
+    #[error("{}: the root radius is {} times the bore radius, but must be {} to {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(.range[0]), Plain(.range[1]))]
+    BoreOfFormula { side: Side, bore_ratio: f64, range: [f64; 2] },
+    #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.least))]
+    ManyTeeth { side: Side, half_angle: f64, least: f64 },
+    #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
+    NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+    #[error("the formula of ISO 6336-1 gives no stiffness for these profile shifts, dedenda and pressure angle: c′ is {} N/(mm µm)", Plain(*.single * 1e-9))]
+    NoIsoStiffness { single: f64 },
+    #[error("{}, {across} elements across: {error}", .side.name())]
+    Mesh { side: Side, across: usize, error: MeshError },
+    #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.most))]
+    Incompressible { side: Side, poisson_ratio: f64, most: f64 },
+}
+
+impl ComplianceError {
+    /// The parameter it is about, as a path such as `pinion.bore_radius` or `root`.
+    #[must_use]
+    pub fn field(&self) -> &'static str {
+        let own = |side: Side, pinion, gear| if side == Side::Pinion { pinion } else { gear };
+        match self {
+            Self::Root(error) => error.field(),
+            Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
+            Self::BoreOfFormula { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
+            Self::NoIsoStiffness { .. } => "pinion.profile_shift",
+            Self::Mesh { error: MeshError::SharpRoot, .. } => "root",
+            Self::Mesh { side, error: MeshError::Bore { .. } | MeshError::Rounding { .. }, .. } => {
+                own(*side, "pinion.bore_radius", "gear.bore_radius")
+            }
+            Self::Mesh { .. } => "method",
+            Self::Incompressible { .. } => "material.poisson_ratio",
+            Self::NegativeBody { side, .. } | Self::ManyTeeth { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
+        }
+    }
+}
+
+/// The compliances \[m/N\] of one gear's tooth over the whole of its face width, against the roll angle \[rad\] of the
+/// contact point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToothCompliance {
+    pub bending: Series,
+    pub shear: Series,
+    pub axial: Series,
+    /// Gear body under the tooth's own load.
+    pub body: Series,
+    /// Distance from the contact point to the tooth's centreline along the load line \[m\]: the depth t of the
+    /// load-dependent contact laws.
+    pub contact_depth: Series,
+    /// Deflection at a tooth per load on the one k + 1 pitches further, in the sense in which the roll angles of loaded
+    /// teeth grow. Arguments: the roll angles of the loaded points of the first and of the further tooth; on the line of
+    /// action they differ by (k + 1)·2π/z, in corner contact by less. Reciprocal, so one table serves both.
+    pub neighbours: Vec<Surface>,
+}
+
+impl ToothCompliance {
+    /// Everything but the contact \[m/N\].
+    #[must_use]
+    pub fn total(&self, roll: f64) -> f64 {
+        self.bending.value(roll) + self.shear.value(roll) + self.axial.value(roll) + self.body.value(roll)
+    }
+
+    /// Everything but the contact as one table, four times as fast to read; `None` when the parts' ranges differ.
+    #[must_use]
+    pub fn total_series(&self) -> Option<Series> {
+        Series::sum(&[&self.bending, &self.shear, &self.axial, &self.body])
+    }
+}
+
+/// How many teeth to one side of a loaded one can be loaded with it: as many pairs as share the contact, and one more
+/// in corner contact at either end.
+#[must_use]
+pub fn neighbours(pair: &Pair, side: Side) -> u32 {
+    let teeth = pair.side(side).specification.teeth;
+    // The contact ratio of what can be built is far below 2^32.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST as u32 - 1];
+    pairs.min(most).min(teeth - 1)
+}
+
+/// How two flanks flatten against each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ContactLaw {
+    /// 4(1 − ν²)/(π E b): the article `energy_ga`.
+    Linear,
+    /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
+    LoadDependent,
+    /// The compliances of the teeth hold it already: methods that know a pair as a whole. No study chooses it.
+    Included,
+}
+
+/// The contact laws as a study names them.
+pub const CONTACT_LAWS: &[Choice] = &[
+    Choice { name: "linear", summary: "4(1 − ν²)/(π E b), whatever the load" },
+    Choice { name: "load_dependent", summary: "Weber and Banaschek: grows with the logarithm of the load" },
+];
+
+impl ContactLaw {
+    /// The law called `name` in [`CONTACT_LAWS`].
+    #[must_use]
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "linear" => Some(Self::Linear),
+            "load_dependent" => Some(Self::LoadDependent),
+            _ => None,
+        }
+    }
+}
+
+/// Everything the contact solver needs to know of a pair's elasticity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PairCompliance {
+    pub pinion: ToothCompliance,
+    pub gear: ToothCompliance,
+    pub contact: ContactLaw,
+    /// Whether loads on neighbouring teeth deflect each other through the gear bodies.
+    pub coupled: bool,
+}

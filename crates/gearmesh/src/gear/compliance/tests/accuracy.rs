@@ -1,0 +1,130 @@
+//! Estimated errors of compliances against the truth, over random pairs.
+
+use rayon::prelude::*;
+
+use crate::gear::compliance::{Assumptions, ContactLaw, ROUNDING, Tabulated, ToothCompliance, method};
+use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::{Pair, Side};
+use crate::gear::random::Random;
+use declare::error::Place;
+use declare::record::{Entry, Record, Value};
+
+fn record(fields: Vec<(&'static str, Value)>) -> Record {
+    let entry = |value| Entry { value, place: Place::default() };
+    Record { fields: fields.into_iter().map(|(name, value)| (name, entry(value))).collect(), place: Place::default() }
+}
+
+fn energy(pair: &Pair, body: &'static str, harmonics: i64, assumptions: Assumptions) -> Option<Tabulated> {
+    let fields = vec![
+        ("shear_factor", Value::Number(1.2)),
+        ("body", Value::Choice(body)),
+        ("harmonics", Value::Integer(harmonics)),
+    ];
+    (method("energy").unwrap().tabulate)(&record(fields), pair, assumptions).ok()
+}
+
+/// The largest difference along both flanks, of own and neighbours' compliances, in units of the tooth's own.
+fn difference(one: &ToothCompliance, two: &ToothCompliance) -> f64 {
+    let at = |share: f64| two.body.lower() + share * (two.body.upper() - two.body.lower());
+    let mut largest = 0.0_f64;
+    for share in [0.0, 0.25, 0.5, 0.75, 1.0] {
+        let roll = at(share);
+        largest = largest.max((one.total(roll) / two.total(roll) - 1.0).abs());
+        for further in [0.0, 0.5, 1.0].map(at) {
+            let own = (two.total(roll) * two.total(further)).sqrt();
+            for (a, b) in one.neighbours.iter().zip(&two.neighbours) {
+                largest = largest.max((a.value(roll, further) - b.value(roll, further)).abs() / own);
+            }
+        }
+    }
+    largest
+}
+
+fn error(found: &Tabulated, truth: &Tabulated) -> f64 {
+    let [one, two] = [found, truth].map(|tabulated| &tabulated.compliance);
+    difference(&one.pinion, &two.pinion).max(difference(&one.gear, &two.gear))
+}
+
+/// Holds in 99 of 100, and is no more than 30 times the error in the median.
+#[track_caller]
+fn check(what: &str, mut ratios: Vec<f64>, least: usize) {
+    ratios.sort_by(f64::total_cmp);
+    let (count, holds) = (ratios.len(), ratios.iter().filter(|ratio| **ratio >= 1.0).count());
+    let median = ratios[count / 2];
+    println!("{what}: {holds} of {count} hold, median {median:.1}");
+    assert!(count >= least, "{what}: only {count}");
+    assert!(holds * 100 >= count * 99, "{what}: holds in {holds} of {count}; the least {}", ratios[0]);
+    assert!(median <= 30.0, "{what}: {median} times the error in the median");
+}
+
+#[test]
+fn the_estimate_of_the_ring_s_harmonics_holds() {
+    let mut random = Random::new(21);
+    let (mut ratios, mut wished) = (Vec::new(), Vec::new());
+    while ratios.len() < 200 {
+        let pair = random.pair();
+        let root = random.of(&[RootShape::Trochoid, RootShape::CircularFillet]);
+        let (body, coupled) = random.of(&[("ring", false), ("ring", true), ("sainsot", true)]);
+        let assumptions = Assumptions { root, contact: ContactLaw::Linear, coupled, torque: None, accuracy: None };
+        // Sainsot's formula refuses some bodies.
+        let Some(truth) = energy(&pair, body, 400, assumptions) else { continue };
+        let found = energy(&pair, body, random.of(&[10, 14, 20, 35, 60]), assumptions).unwrap();
+        ratios.push(found.error_estimate / error(&found, &truth));
+        let accuracy = random.scaled(1e-5, 1e-2);
+        let wish = Assumptions { accuracy: Some(accuracy), ..assumptions };
+        let found = energy(&pair, body, 100, wish).unwrap();
+        assert!(found.error_estimate <= accuracy);
+        wished.push(accuracy / error(&found, &truth));
+    }
+    check("harmonics", ratios, 200);
+    assert!(wished.iter().filter(|ratio| **ratio >= 1.0).count() >= 198);
+    // Without a ring there is nothing but rounding.
+    let pair = random.pair();
+    let assumptions = Assumptions {
+        root: RootShape::Trochoid,
+        contact: ContactLaw::Linear,
+        coupled: false,
+        torque: None,
+        accuracy: Some(1e-3),
+    };
+    for name in ["energy", "weber_banaschek", "iso6336"] {
+        let method = method(name).unwrap();
+        let fields = vec![
+            ("shear_factor", Value::Number(1.2)),
+            ("body", Value::Choice("sainsot")),
+            ("harmonics", Value::Integer(10)),
+        ];
+        let options = if name == "energy" { record(fields) } else { Record::default() };
+        let found = (method.tabulate)(&options, &pair, assumptions).unwrap();
+        assert!(found.error_estimate <= ROUNDING, "{name}");
+    }
+}
+
+/// 100 pairs, 200 gears. Twice as fine a mesh is the truth: a tenth of what is compared is its own error.
+#[test]
+fn the_estimate_of_the_mesh_holds() {
+    let mut random = Random::new(22);
+    let assumptions = Assumptions {
+        root: RootShape::Trochoid,
+        contact: ContactLaw::Linear,
+        coupled: true,
+        torque: None,
+        accuracy: None,
+    };
+    let solve = |pair: &Pair, across: i64| {
+        let fields = vec![("plane", Value::Choice("strain")), ("elements_across", Value::Integer(across))];
+        (method("finite_element").unwrap().tabulate)(&record(fields), pair, assumptions).unwrap()
+    };
+    let pairs: Vec<Pair> = (0..100).map(|_| random.pair()).collect();
+    let of_pair = |pair: &Pair| {
+        let (truth, found) = (solve(pair, 12), solve(pair, 6));
+        found.meshes.clone().into_iter().map(move |mesh| {
+            let [one, two] = [&found, &truth].map(|tabulated| match mesh.side {
+                Side::Pinion => &tabulated.compliance.pinion,
+                Side::Gear => &tabulated.compliance.gear,
+            });
+            mesh.error_estimate / difference(one, two)
+        })
+    };
+    check("mesh", pairs.par_iter().flat_map_iter(of_pair).collect(), 200);
+}

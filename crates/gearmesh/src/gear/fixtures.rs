@@ -1,0 +1,168 @@
+//! For tests only: the pair 19/48, module 3 mm, with compliances in closed form, and records of modifications.
+//!
+//! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
+
+use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use super::geometry::{Gear, Pair, Rack, Specification};
+use super::material::Material;
+use super::modification::{Design, family};
+use crate::numeric::chebyshev::Series;
+use crate::numeric::surface::Surface;
+use declare::error::{Diagnostic, Place};
+use declare::record::{Entry, Record, Value};
+
+pub const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+pub const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
+
+fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
+    let module = 3e-3;
+    let reference_radius = 0.5 * module * f64::from(teeth);
+    Gear {
+        specification: Specification { face_width, ..standard(teeth, module, 2.0) },
+        reference_radius,
+        base_radius,
+        tip_radius: reference_radius + module,
+        root_radius: reference_radius - 1.25 * module,
+        form_radius: base_radius,
+        form_roll: 0.0,
+        undercut: false,
+        // (π/2)/z + inv 20°.
+        half_base_angle: std::f64::consts::FRAC_PI_2 / f64::from(teeth) + 0.014_904_383_867_336_45,
+    }
+}
+
+/// A gear of the standard rack without profile shift, 7 modules wide, its bore r_f/`bore_ratio`.
+pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
+    Specification {
+        teeth,
+        module,
+        pressure_angle: 20_f64.to_radians(),
+        profile_shift: 0.0,
+        rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
+        tip_radius: None,
+        face_width: 7.0 * module,
+        bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
+        material: STEEL,
+    }
+}
+
+/// 19/48, 20 and 18 mm wide.
+pub fn pair() -> Pair {
+    let (start, end) = (2.009_266_843_717_533_4e-3, 16.583_582_258_918_156e-3);
+    let pinion_base = 19.0 * BASE_PITCH / std::f64::consts::TAU;
+    Pair {
+        pinion: gear(19, pinion_base, 20e-3),
+        gear: gear(48, pinion_base * 48.0 / 19.0, 18e-3),
+        centre_distance: 100.5e-3,
+        working_pressure_angle: 20_f64.to_radians(),
+        tangent_length: 34.373_024_404_229_71e-3,
+        start_of_contact: start,
+        end_of_contact: end,
+        base_pitch: BASE_PITCH,
+        contact_ratio: (end - start) / BASE_PITCH,
+    }
+}
+
+/// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker so that as much angle of their
+/// tips is left.
+pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
+    let mut pair = pair();
+    let involute = |pair: &Pair| {
+        let roll = pair.end_of_contact / pair.pinion.base_radius;
+        roll - libm::atan(roll)
+    };
+    let before = involute(&pair);
+    pair.contact_ratio = ratio;
+    pair.end_of_contact = pair.start_of_contact + ratio * BASE_PITCH;
+    pair.pinion.tip_radius = libm::hypot(pair.pinion.base_radius, pair.end_of_contact);
+    pair.pinion.half_base_angle += involute(&pair) - before;
+    pair
+}
+
+/// The same pair with the gear driving: its path of contact is run through backwards.
+pub fn swapped(pair: &Pair) -> Pair {
+    Pair {
+        pinion: pair.gear.clone(),
+        gear: pair.pinion.clone(),
+        start_of_contact: pair.tangent_length - pair.end_of_contact,
+        end_of_contact: pair.tangent_length - pair.start_of_contact,
+        ..pair.clone()
+    }
+}
+
+/// Teeth whose compliance is `value(u, centre)` with u the roll angle; everything in the bending part.
+pub fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
+    let nothing = || Series::from_values(0.0, 2.0, &[0.0]);
+    ToothCompliance {
+        bending: Series::fit(0.0, 2.0, 40, value),
+        shear: nothing(),
+        axial: nothing(),
+        body: nothing(),
+        contact_depth: Series::from_values(0.0, 2.0, &[2.5e-3]),
+        neighbours: Vec::new(),
+    }
+}
+
+/// Every pair has the stiffness `stiffness`, linear contact included, wherever it is.
+pub fn constant(pair: &Pair, stiffness: f64) -> PairCompliance {
+    let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
+    let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * width);
+    let half = 0.5 * (1.0 / stiffness - contact);
+    PairCompliance { pinion: tooth(|_| half), gear: tooth(|_| half), contact: ContactLaw::Linear, coupled: false }
+}
+
+/// Teeth that get softer towards their tips, near enough to real ones.
+pub fn varying() -> PairCompliance {
+    let pinion = tooth(|u| 0.8e-9 + 2.4e-9 * u * u + 1.5e-9 * u * u * u);
+    let gear = tooth(|u| 0.5e-9 + 3.0e-9 * u * u);
+    PairCompliance { pinion, gear, contact: ContactLaw::Linear, coupled: false }
+}
+
+/// As [`varying`], with neighbouring teeth deflecting each other.
+pub fn coupled() -> PairCompliance {
+    let mut compliance = varying();
+    for tooth in [&mut compliance.pinion, &mut compliance.gear] {
+        tooth.neighbours = (1..5)
+            .map(|pitches| {
+                let value = |u: f64, v: f64| 0.35e-9 / f64::from(pitches) * (1.0 + 0.2 * u + 0.1 * v * v);
+                Surface::fit([0.0; 2], [2.0; 2], [2, 3], value)
+            })
+            .collect();
+    }
+    PairCompliance { coupled: true, ..compliance }
+}
+
+/// A record of the family `name` with defaults filled in.
+pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
+    let family = family(name).unwrap();
+    let defaults = [
+        ("counted_from", if name == "root_relief" { "root" } else { "tip" }),
+        ("curve", "linear"),
+        ("end", "both"),
+        ("formulas", "derived"),
+    ];
+    let mut fields = Vec::new();
+    for field in family.member.fields {
+        let given = values.iter().find(|(given, _)| *given == field.name).map(|(_, value)| value.clone());
+        let default = defaults.iter().find(|(default, _)| *default == field.name).map(|(_, word)| Value::Choice(word));
+        if let Some(value) = given.or(default) {
+            fields.push((field.name, Entry { value, place: Place::default() }));
+        }
+    }
+    let known = |name: &str| family.member.fields.iter().any(|field| field.name == name);
+    assert!(values.iter().all(|(name, _)| known(name)), "no such field");
+    Record { fields, place: Place::default() }
+}
+
+/// A modification: family, gear, other values.
+pub type Part<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
+
+/// A design of several modifications.
+pub fn design(pair: &Pair, parts: &[Part]) -> Result<Design, Diagnostic> {
+    let mut design = Design::default();
+    for (name, gear, values) in parts {
+        let values = [&[("gear", Value::Choice(gear))], *values].concat();
+        design.add(family(name).unwrap(), &record(name, &values), pair)?;
+    }
+    Ok(design)
+}

@@ -1,0 +1,46 @@
+//! The article's arc: from the base circle to a point H = r_b − r_f lower on the page (equations 17 to 20).
+//!
+//! Its lowest point is that far below A in y, not in radius, so it never meets the root circle on a tangent: it crosses
+//! it, ends above it (a step remains), or meets its neighbour in the middle of the space first (a notch remains). As
+//! printed, equation 20 has the sign that puts the centre above A; the flank then has a corner of 2θ there. Source: Zhai,
+//! Liang and Fu 2020, as in `base_arc.rs`. Must not know: other roots.
+
+use super::base_arc::{Base, Circle, DOWN_THE_PAGE};
+use super::{Family, Toe};
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::GeometryError;
+use declare::parameter::{Choice, Field, Member};
+use declare::record::Record;
+
+pub const FAMILY: Family = Family {
+    member: Member {
+        name: "arc",
+        summary: "Arc from the base circle down by r_b − r_f, as in zhai2020; it need not meet the root circle.",
+        fields: FIELDS,
+    },
+    build,
+};
+
+const FIELDS: &[Field] = &[Field::choice(
+    "formulas",
+    &[
+        Choice { name: "derived", summary: "the centre at Y_A − r_c sin θ, so that flank and arc share a tangent" },
+        Choice { name: "printed", summary: "the centre at Y_A + r_c sin θ, as equation 20 has it" },
+    ],
+    "Which sign equation 20 has.",
+)
+.default("derived")];
+
+/// The article's circle by either sign of equation 20.
+#[must_use]
+pub fn circle(base: &Base, printed: bool) -> Circle {
+    let circle = base.article_circle();
+    let y = if printed { 2.0 * base.a[1] - circle.centre[1] } else { circle.centre[1] };
+    Circle { centre: [circle.centre[0], y], ..circle }
+}
+
+fn build(record: &Record, gear: &Gear) -> Result<Toe, GeometryError> {
+    let base = Base::new(gear, "the arc of zhai2020")?;
+    let circle = circle(&base, record.choice("formulas") == "printed");
+    Ok(Toe { segments: base.segments(circle, DOWN_THE_PAGE), form_roll: 0.0 })
+}

@@ -1,0 +1,34 @@
+//! The families of roots a full profile may have: the registry, one line each, and what a family gives.
+//!
+//! Must not know: the tip, how many points are wanted.
+
+pub mod arc;
+pub mod base_arc;
+pub mod optimised_arc;
+pub mod tangent_arc;
+pub mod trochoid;
+
+use super::curve::Segment;
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::GeometryError;
+use declare::parameter::Member;
+use declare::record::Record;
+use declare::registry;
+
+/// A root on the right half of a tooth.
+#[derive(Clone, Debug)]
+pub struct Toe {
+    /// Upwards, from the root circle, or from the middle of the space where the root circle is not reached.
+    pub segments: Vec<Segment>,
+    /// Roll angle \[rad\] at which the flank begins.
+    pub form_roll: f64,
+}
+
+/// A family as registered.
+pub struct Family {
+    pub member: Member,
+    /// The root of a gear, or why there is none, with numbers.
+    pub build: fn(&Record, &Gear) -> Result<Toe, GeometryError>,
+}
+
+registry!(Family: trochoid, arc, tangent_arc, optimised_arc);

@@ -1,0 +1,45 @@
+//! The article's optimisation, solved: the arc tangent to the flank on the base circle that comes nearest to the root circle.
+//!
+//! Equations 27 to 30 as corrected: the circle passes through A along the flank, its centre lies between the tooth and the
+//! middle of the space, and the distance between its lowest point and the root circle is to be least. That distance falls
+//! as r_c grows to (r_b² − r_f²)/(2 r_f), where it is zero, so the best radius is that or, where the space is too narrow,
+//! r_b tan(π/z − ψ_b), with the centre in the middle of the space. Then the root lies above the root circle, and is smooth
+//! all the same. Source: Zhai, Liang and Fu 2020, section 5. Must not know: other roots.
+
+use std::f64::consts::PI;
+
+use super::base_arc::Base;
+use super::{Family, Toe};
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::{GeometryError, Plain, Problem};
+use declare::parameter::Member;
+use declare::record::Record;
+
+pub const FAMILY: Family = Family {
+    member: Member {
+        name: "optimised_arc",
+        summary: "Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).",
+        fields: &[],
+    },
+    build,
+};
+
+/// The best radius.
+///
+/// # Errors
+/// When the tooth is as wide as the pitch on the base circle, so that no centre lies between tooth and space.
+pub fn radius(base: &Base) -> Result<f64, GeometryError> {
+    let middle = base.middle_radius();
+    if middle <= 0.0 {
+        let [angle, most] = [base.angle, base.half_pitch].map(|angle| Plain(angle * 180.0 / PI));
+        return Err(Problem::NoSpace { angle, most }.into());
+    }
+    Ok(base.touching_radius().min(middle))
+}
+
+fn build(_record: &Record, gear: &Gear) -> Result<Toe, GeometryError> {
+    let base = Base::new(gear, "the optimised arc")?;
+    let circle = base.tangent_circle(radius(&base)?);
+    let lowest = libm::atan2(circle.centre[1], circle.centre[0]) + PI;
+    Ok(Toe { segments: base.segments(circle, lowest), form_roll: 0.0 })
+}

@@ -1,0 +1,168 @@
+//! The tip of a tooth: an arc of the tip circle, with its corner as it is, chamfered or rounded.
+//!
+//! A chamfer begins on the flank its size below the tip circle and ends on the tip circle its size from the corner. A
+//! rounding is an arc tangent to the flank and, from inside, to the tip circle. Must not know: the root.
+
+use super::curve::{Curve, Part, Segment};
+use crate::gear::geometry::Gear;
+use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
+use crate::numeric::crossing;
+use declare::parameter::{Field, Member};
+use declare::record::Record;
+use declare::units::LENGTH;
+
+/// What is done to the corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Tip {
+    Land,
+    /// Its size \[m\].
+    Chamfer(f64),
+    /// Its radius \[m\].
+    Rounding(f64),
+}
+
+const MEMBERS: &[Member] = &[
+    Member { name: "land", summary: "The flank ends in a corner on the tip circle.", fields: &[] },
+    Member {
+        name: "chamfer",
+        summary: "A straight chamfer, as high as it is wide.",
+        fields: &[Field::quantity("size", LENGTH, 0.0, 1.0, "How far it begins below the tip circle.")],
+    },
+    Member {
+        name: "rounding",
+        summary: "An arc tangent to the flank and to the tip circle.",
+        fields: &[Field::quantity("radius", LENGTH, 0.0, 1.0, "Radius of the arc.")],
+    },
+];
+
+/// The tips as a user may write them.
+#[must_use]
+pub fn members() -> &'static [Member] {
+    MEMBERS
+}
+
+impl Tip {
+    /// The tip that a study states.
+    #[must_use]
+    pub fn of((name, record): (&str, &Record)) -> Self {
+        match name {
+            "chamfer" => Self::Chamfer(record.quantity("size")),
+            "rounding" => Self::Rounding(record.quantity("radius")),
+            _ => Self::Land,
+        }
+    }
+
+    /// Where the flank ends, and what lies between it and the tooth's centreline.
+    ///
+    /// # Errors
+    /// When the break is larger than the tooth has room for.
+    pub(super) fn segments(
+        self,
+        gear: &Gear,
+        flank: &Curve,
+        form_roll: f64,
+    ) -> Result<(f64, Vec<Segment>), GeometryError> {
+        let top = Top { gear, flank, form_roll };
+        let size = match self {
+            Self::Land => return top.land(),
+            Self::Chamfer(size) | Self::Rounding(size) if size <= 0.0 => return top.land(),
+            Self::Chamfer(size) | Self::Rounding(size) => size,
+        };
+        let cut = |size: f64| match self {
+            Self::Rounding(_) => top.rounding(size),
+            _ => top.chamfer(size),
+        };
+        cut(size).ok_or_else(|| {
+            // Room shrinks steadily as the break grows.
+            let (mut good, mut bad) = (0.0, size);
+            for _ in 0..50 {
+                let middle = 0.5 * (good + bad);
+                *(if cut(middle).is_some() { &mut good } else { &mut bad }) = middle;
+            }
+            Problem::TipBreakTooLarge { size: Millimetres(size), largest: Millimetres(good) }.into()
+        })
+    }
+}
+
+/// The upper end of a flank.
+struct Top<'a> {
+    gear: &'a Gear,
+    flank: &'a Curve,
+    form_roll: f64,
+}
+
+fn radius([x, y]: [f64; 2]) -> f64 {
+    libm::hypot(x, y)
+}
+
+fn half_angle([x, y]: [f64; 2]) -> f64 {
+    libm::atan2(x, y)
+}
+
+impl Top<'_> {
+    /// The roll angle at which the flank reaches a radius.
+    fn roll_at(&self, wanted: f64) -> Option<f64> {
+        let unmodified = self.gear.roll_at(wanted);
+        if let Curve::Modified { relief, .. } = self.flank {
+            // What is taken off shifts the place by about its depth over r_b.
+            let depth = |roll: f64| relief.depth(roll).abs() / self.gear.base_radius;
+            let room = 4.0 * (depth(unmodified) + depth(unmodified + 4.0 * depth(unmodified))) + 1e-9;
+            return crossing::bracketed((unmodified - room).max(0.0), unmodified + room, |roll| {
+                radius(self.flank.point(roll)) - wanted
+            });
+        }
+        (wanted >= self.gear.base_radius).then_some(unmodified)
+    }
+
+    /// The arc of the tip circle from an angle to the centreline.
+    fn on_tip(&self, angle: f64) -> Segment {
+        Segment::about_centre(Part::TipLand, self.gear.tip_radius, angle, 0.0)
+    }
+
+    fn corner(&self) -> Option<(f64, f64)> {
+        let end = self.roll_at(self.gear.tip_radius)?;
+        let angle = half_angle(self.flank.point(end));
+        (end > self.form_roll && angle > 0.0).then_some((end, angle))
+    }
+
+    fn land(&self) -> Result<(f64, Vec<Segment>), GeometryError> {
+        let depth = Millimetres(match self.flank {
+            Curve::Modified { relief, .. } => relief.depth(self.gear.tip_roll()),
+            _ => 0.0,
+        });
+        let (end, angle) = self.corner().ok_or(Problem::ReliefTooDeep { depth })?;
+        Ok((end, vec![self.on_tip(angle)]))
+    }
+
+    fn chamfer(&self, size: f64) -> Option<(f64, Vec<Segment>)> {
+        let tip = self.gear.tip_radius;
+        let end = self.roll_at(tip - size)?;
+        let angle = self.corner()?.1 - size / tip;
+        if end < self.form_roll || angle < 0.0 {
+            return None;
+        }
+        let land = self.on_tip(angle);
+        Some((end, vec![Segment::straight(Part::TipBreak, self.flank.point(end), land.start()), land]))
+    }
+
+    fn rounding(&self, round: f64) -> Option<(f64, Vec<Segment>)> {
+        let tip = self.gear.tip_radius;
+        let centre = |roll: f64| {
+            let local = self.flank.local(roll);
+            // The material lies to the left of the way up.
+            [local.position[0] - round * local.tangent[1], local.position[1] + round * local.tangent[0]]
+        };
+        let distance = |roll: f64| radius(centre(roll)) - (tip - round);
+        let last = self.corner()?.0;
+        let end = crossing::bracketed(self.form_roll, last, distance)?;
+        let [x, y] = centre(end);
+        if x < 0.0 {
+            return None;
+        }
+        let [from_x, from_y] = self.flank.point(end);
+        let from = libm::atan2(from_y - y, from_x - x);
+        let to = libm::atan2(y, x);
+        let arc = Segment { part: Part::TipBreak, curve: Curve::Arc { centre: [x, y], radius: round }, from, to };
+        Some((end, vec![arc, self.on_tip(half_angle([x, y]))]))
+    }
+}

@@ -1,0 +1,101 @@
+//! A design with some of its values left open: what an optimiser varies, and a fixed design as the case with none open.
+//!
+//! Must not know: optimisers, compliance, load.
+
+use super::{Design, Family, family};
+use crate::gear::geometry::Pair;
+use declare::error::Diagnostic;
+use declare::parameter::Shape;
+use declare::record::{Entry, Record, Value};
+use declare::units::{Dimension, RATIO};
+
+/// One open value.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Variable {
+    /// `family.field`, behind the gear where that is not both; with a number behind it where it would not be unique.
+    pub name: String,
+    pub dimension: Dimension,
+    /// SI.
+    pub least: f64,
+    pub most: f64,
+}
+
+/// Modifications as the study states them.
+#[derive(Clone)]
+pub struct Template {
+    parts: Vec<(&'static Family, Record)>,
+    variables: Vec<Variable>,
+    /// Part and field of each variable.
+    slots: Vec<(usize, usize)>,
+}
+
+impl Template {
+    /// Reads a list of family members; ranges become variables, in the order of the study.
+    ///
+    /// # Errors
+    /// When the fields of a member contradict each other.
+    pub fn new(members: &[Entry]) -> Result<Self, Diagnostic> {
+        let mut template = Self { parts: Vec::new(), variables: Vec::new(), slots: Vec::new() };
+        for entry in members {
+            let Value::Member(name, record) = &entry.value else {
+                return Err(Diagnostic::new("a modification is written `family: { fields }`").at(entry.place));
+            };
+            let family = family(name)
+                .ok_or_else(|| Diagnostic::new(format!("there is no modification `{name}`")).at(entry.place))?;
+            (family.check)(record).map_err(|diagnostic| diagnostic.or_at(entry.place))?;
+            template.open(family, record);
+            template.parts.push((family, record.clone()));
+        }
+        Ok(template)
+    }
+
+    fn open(&mut self, family: &'static Family, record: &Record) {
+        for (slot, (field, entry)) in record.fields.iter().enumerate() {
+            let Value::Range(least, most) = entry.value else { continue };
+            let shape = family.member.fields.iter().find(|declared| declared.name == *field).map(|found| found.shape);
+            let dimension = if let Some(Shape::Quantity { dimension, .. }) = shape { dimension } else { RATIO };
+            let gear = record.choice("gear");
+            let gear = if gear == "both" { String::new() } else { format!("{gear}.") };
+            let plain = format!("{gear}{}.{field}", family.member.name);
+            let taken = |name: &str| self.variables.iter().any(|variable| variable.name == name);
+            let numbered = (2..).map(|number| format!("{plain}_{number}"));
+            let name = std::iter::once(plain.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(plain);
+            self.variables.push(Variable { name, dimension, least, most });
+            self.slots.push((self.parts.len(), slot));
+        }
+    }
+
+    /// What is open.
+    #[must_use]
+    pub fn variables(&self) -> &[Variable] {
+        &self.variables
+    }
+
+    /// The design with `values` (SI) in the place of the variables.
+    ///
+    /// # Errors
+    /// When a modification does not fit the pair: a relief longer than the flank, say. Most bounds are on one value
+    /// alone; the start of an `arc` or `parabola` bounds its amount.
+    ///
+    /// # Panics
+    /// When there are fewer values than variables.
+    pub fn design(&self, pair: &Pair, values: &[f64]) -> Result<Design, Diagnostic> {
+        let mut design = Design::default();
+        let mut next = 0;
+        for (index, (family, record)) in self.parts.iter().enumerate() {
+            if self.slots.get(next).is_none_or(|(part, _)| *part != index) {
+                design.add(family, record, pair)?;
+                continue;
+            }
+            let mut record = record.clone();
+            while let Some((_, field)) = self.slots.get(next).filter(|(part, _)| *part == index) {
+                let plain = self.variables[next].dimension == RATIO;
+                let value = values[next];
+                record.fields[*field].1.value = if plain { Value::Number(value) } else { Value::Quantity(value) };
+                next += 1;
+            }
+            design.add(family, &record, pair)?;
+        }
+        Ok(design)
+    }
+}

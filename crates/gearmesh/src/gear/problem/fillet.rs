@@ -1,0 +1,213 @@
+//! The root with the least stress, or with the stiffest tooth, at the same root circle and so at the same clearance: an
+//! objective by finite elements over the one radius that shapes it.
+//!
+//! The root is generated (its radius is that of the rack's tip) or an arc tangent to root circle and flank (its own
+//! radius). Two constraints keep the pair running: the flank must reach down to where the mate's tip touches it, and the
+//! corner of that tip, unbroken, must pass the root (`geometry/tip_path.rs`). Objectives are dimensionless: σ m b/F, and
+//! displacement times E b/F. They jump by the meshes' error where the mesh changes, so a search needs no finer tolerance
+//! than 1e-3. Must not know: how anything is searched, strength.
+
+use super::{Family, Problem, Variable, Worth};
+use crate::gear::finite_elements::MeshError;
+use crate::gear::finite_elements::element::{PLANES, Plane};
+use crate::gear::finite_elements::gear_model::GearModel;
+use crate::gear::finite_elements::mesh::Sizing;
+use crate::gear::finite_elements::root_stress;
+use crate::gear::geometry::error::GeometryError;
+use crate::gear::geometry::outline::roots::Toe;
+use crate::gear::geometry::root::{Root, RootShape};
+use crate::gear::geometry::tip_path::{Corner, TipPath};
+use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification, trochoid};
+use declare::parameter::{Choice, Field, Member};
+use declare::units::RATIO;
+
+pub const FAMILY: Family = Family {
+    member: Member {
+        name: "fillet",
+        summary: "The root with the least stress, or the stiffest tooth, at the same clearance, by finite elements.",
+        fields: FIELDS,
+    },
+    dimension: RATIO,
+    most: [1, 2],
+    // Assembling and solving grow with the square of the elements across; at a dozen it is a fiftieth of a second.
+    seconds: |record| 0.02 * (record.integer("elements_across") as f64 / 12.0).powi(2),
+    build: |record, pair, side| {
+        let across = usize::try_from(record.integer("elements_across")).unwrap_or(MOST_ACROSS);
+        let tip = record.choice("load") == "tip";
+        Ok(Box::new(Fillet {
+            gear: pair.side(side).clone(),
+            arc: record.choice("root") == "arc",
+            stress: record.choice("minimize") == "stress",
+            plane: if record.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain },
+            across: across.next_multiple_of(2),
+            roll: if tip { pair.side(side).tip_roll() } else { single_contact(pair, side) },
+            active_radius: pair.side(side).radius_at(pair.lowest_roll(side)),
+            tip: TipPath::new(pair, side, vec![Corner::of(pair.side(side.other()))]),
+        }))
+    },
+};
+
+const MOST_ACROSS: usize = 64;
+
+const FIELDS: &[Field] = &[
+    Field::choice("root", ROOTS, "which root, and what is free of it").default("rack"),
+    Field::choice("minimize", OBJECTIVES, "what is to be small").default("stress"),
+    Field::choice("load", LOADS, "where the load acts").default("single_contact"),
+    Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
+    Field::integer("elements_across", 6, 64, "elements across a tooth, taken as an even number").default("12"),
+];
+
+const ROOTS: &[Choice] = &[
+    Choice { name: "rack", summary: "generated; the rack's tip radius is free" },
+    Choice { name: "arc", summary: "an arc tangent to root circle and flank; its radius is free" },
+];
+
+const OBJECTIVES: &[Choice] = &[
+    Choice { name: "stress", summary: "the largest tension along the root's surface" },
+    Choice { name: "compliance", summary: "the displacement of the loaded tooth" },
+];
+
+const LOADS: &[Choice] = &[
+    Choice { name: "single_contact", summary: "at the outer point of single contact" },
+    Choice { name: "tip", summary: "at the tip" },
+];
+
+/// The smallest radius that is tried, as a share of the largest; a sharp root has no finite stress.
+const LEAST_SHARE: f64 = 0.1;
+
+/// The gear's roll angle at the end of single contact that is nearer to its tip; the tip where contact is never single.
+fn single_contact(pair: &Pair, side: Side) -> f64 {
+    let s = match side {
+        Side::Pinion => (pair.start_of_contact + pair.base_pitch).min(pair.end_of_contact),
+        Side::Gear => (pair.end_of_contact - pair.base_pitch).max(pair.start_of_contact),
+    };
+    if pair.contact_ratio < 2.0 { pair.roll(side, s) } else { pair.side(side).tip_roll() }
+}
+
+struct Fillet {
+    gear: Gear,
+    arc: bool,
+    stress: bool,
+    plane: Plane,
+    across: usize,
+    roll: f64,
+    /// Radius that the mate's tip reaches.
+    active_radius: f64,
+    tip: TipPath,
+}
+
+impl Fillet {
+    /// The gear and the root of a radius \[m\].
+    fn shaped(&self, radius: f64) -> Result<(Gear, Root), GeometryError> {
+        if self.arc {
+            return Ok((self.gear.clone(), self.gear.fillet(radius)?));
+        }
+        let given = self.gear.specification;
+        let rack = Rack { tip_radius: radius / given.module, ..given.rack };
+        let gear = Gear::new(&Specification { rack, ..given })?;
+        let root = gear.root(RootShape::Trochoid)?;
+        Ok((gear, root))
+    }
+
+    fn objective(&self, gear: &Gear, root: &Root) -> Result<f64, MeshError> {
+        let model = GearModel::new(gear, root, self.plane, &Sizing::even(self.across))?;
+        if !self.stress {
+            return Ok(model.influences(&[self.roll], 0)?.own[0]);
+        }
+        let points = model.root_stresses(&[self.roll])?;
+        Ok(points.first().and_then(|points| root_stress::largest(points)).map_or(f64::NAN, |(stress, _)| stress))
+    }
+
+    /// How much lower the flank reaches than it must, and how far the mate's tip stays from the root.
+    fn constraints(&self, gear: &Gear, root: &Root) -> Vec<f64> {
+        let passed = self.tip.distance(&Toe::of(root).segments);
+        vec![self.active_radius - gear.radius_at(root.form_roll), passed]
+    }
+}
+
+impl Problem for Fillet {
+    fn variables(&self) -> Vec<Variable> {
+        let given = self.gear.specification;
+        let largest = if self.arc { self.gear.largest_fillet() } else { given.module * trochoid::full_round(&given) };
+        let most = largest * (1.0 - 1e-9);
+        vec![Variable { name: if self.arc { "radius" } else { "rack_tip_radius" }, least: LEAST_SHARE * most, most }]
+    }
+
+    fn constraints(&self) -> &'static [&'static str] {
+        &["flank reaches below the mate's tip", "mate's tip passes the root"]
+    }
+
+    fn worth(&self, point: &[f64]) -> Worth {
+        let Ok((gear, root)) = self.shaped(point[0]) else {
+            return Worth { objective: f64::INFINITY, constraints: vec![f64::NAN; 2] };
+        };
+        let objective = self.objective(&gear, &root).unwrap_or(f64::INFINITY);
+        Worth { objective, constraints: self.constraints(&gear, &root) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::material::Material;
+    use declare::error::Place;
+    use declare::record::{Entry, Record, Value};
+
+    fn pair(shift: f64) -> Pair {
+        let gear = |teeth, profile_shift| Specification {
+            teeth,
+            module: 3e-3,
+            pressure_angle: 20_f64.to_radians(),
+            profile_shift,
+            rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 },
+            tip_radius: None,
+            face_width: 0.02,
+            bore_radius: 0.012,
+            material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        };
+        Pair::new(gear(25, shift), gear(40, 0.1), None).unwrap()
+    }
+
+    fn problem(pair: &Pair, side: Side, given: &[(&'static str, &'static str)]) -> Box<dyn Problem> {
+        let place = Place::default();
+        let entry = |value| Entry { value, place };
+        let chosen =
+            |name: &str, usual| given.iter().find(|(field, _)| *field == name).map_or(usual, |(_, word)| *word);
+        let words = [("root", "rack"), ("minimize", "stress"), ("load", "tip"), ("plane", "strain")];
+        let mut fields: Vec<_> =
+            words.into_iter().map(|(name, usual)| (name, entry(Value::Choice(chosen(name, usual))))).collect();
+        fields.push(("elements_across", entry(Value::Integer(6))));
+        (FAMILY.build)(&Record { fields, place }, pair, side).unwrap()
+    }
+
+    /// Tier: invariant. The rack that generates the root leaves room for a mate of any size.
+    #[test]
+    fn a_generated_root_keeps_the_constraints() {
+        let pair = pair(0.0);
+        for side in [Side::Pinion, Side::Gear] {
+            let problem = problem(&pair, side, &[("minimize", "compliance")]);
+            let [variable] = problem.variables()[..] else { panic!("one variable") };
+            for share in [0.1, 0.5, 0.9] {
+                let radius = variable.least + share * (variable.most - variable.least);
+                let worth = problem.worth(&[radius]);
+                assert!(worth.constraints.iter().all(|value| *value > 0.0), "{side:?} {share}: {worth:?}");
+            }
+        }
+    }
+
+    /// Tier: invariant. Rounder is less stressed and stiffer; large arcs reach up to where the mate touches.
+    #[test]
+    fn rounder_roots_are_less_stressed_until_the_mate_is_in_the_way() {
+        let pair = pair(0.0);
+        for minimize in ["stress", "compliance"] {
+            for root in ["rack", "arc"] {
+                let problem = problem(&pair, Side::Pinion, &[("root", root), ("minimize", minimize)]);
+                let [variable] = problem.variables()[..] else { panic!("one variable") };
+                let [small, large] =
+                    [0.2, 0.9].map(|share| problem.worth(&[variable.least + share * (variable.most - variable.least)]));
+                assert!(large.objective < small.objective, "{root} {minimize}: {small:?} {large:?}");
+                assert!(large.constraints.iter().zip(&small.constraints).all(|(a, b)| a < b), "{root}: {large:?}");
+            }
+        }
+    }
+}

@@ -1,0 +1,58 @@
+//! Small design problems on one gear of a pair: variables in a box, an objective, constraints; and their registry.
+//!
+//! An optimiser needs nothing else of them. Values in SI. Must not know: how anything is searched, tables.
+
+pub mod fillet;
+pub mod root_arc;
+
+use super::geometry::error::GeometryError;
+use super::geometry::{Pair, Side};
+use declare::parameter::Member;
+use declare::record::Record;
+use declare::registry;
+use declare::units::Dimension;
+
+/// A length that is free.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Variable {
+    pub name: &'static str,
+    /// \[m\].
+    pub least: f64,
+    pub most: f64,
+}
+
+/// What a point of the box is worth.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Worth {
+    /// To be made small.
+    pub objective: f64,
+    /// Lengths \[m\]; each must not be negative.
+    pub constraints: Vec<f64>,
+}
+
+/// A problem with everything but its variables fixed.
+pub trait Problem: Send + Sync {
+    fn variables(&self) -> Vec<Variable>;
+
+    /// What the constraints are called, in their order.
+    fn constraints(&self) -> &'static [&'static str];
+
+    fn worth(&self, point: &[f64]) -> Worth;
+}
+
+/// Sets a problem up for a gear of a pair, or says why there is none.
+pub type Build = fn(&Record, &Pair, Side) -> Result<Box<dyn Problem>, GeometryError>;
+
+/// A problem as registered.
+pub struct Family {
+    pub member: Member,
+    /// The dimension of the objective.
+    pub dimension: Dimension,
+    /// The most variables that are free, and the most constraints.
+    pub most: [usize; 2],
+    /// About how many seconds a point of the box takes.
+    pub seconds: fn(&Record) -> f64,
+    pub build: Build,
+}
+
+registry!(Family: root_arc, fillet);

@@ -1,0 +1,115 @@
+//! For tests only: random pairs, loads and designs as they occur, the same ones each time.
+//!
+//! Must not know: what is tested with them.
+
+use rand_chacha::ChaCha8Rng;
+use rand_core::{Rng, SeedableRng};
+
+use super::fixtures::{Part, STEEL, design};
+use super::geometry::{Pair, Rack, Specification};
+use super::modification::Design;
+use declare::record::Value::{Choice, Number, Quantity};
+
+/// Draws from ranges.
+pub struct Random(ChaCha8Rng);
+
+impl Random {
+    pub fn new(seed: u64) -> Self {
+        Self(ChaCha8Rng::seed_from_u64(seed))
+    }
+
+    /// 0 to 1.
+    pub fn share(&mut self) -> f64 {
+        (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    pub fn between(&mut self, least: f64, most: f64) -> f64 {
+        least + (most - least) * self.share()
+    }
+
+    /// Evenly over the orders of magnitude.
+    pub fn scaled(&mut self, least: f64, most: f64) -> f64 {
+        libm::exp(self.between(libm::log(least), libm::log(most)))
+    }
+
+    pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let index = (self.share() * choices.len() as f64) as usize;
+        choices[index]
+    }
+
+    /// A pair that can be: 12 to 60 teeth with up to five times as many, module 1 to 8 mm, shifted or not.
+    pub fn pair(&mut self) -> Pair {
+        loop {
+            let module = self.scaled(1e-3, 8e-3);
+            let angle = self.of(&[17.5_f64, 20.0, 20.0, 22.5, 25.0]).to_radians();
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let pinion = self.between(12.0, 61.0) as u32;
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let gear = (f64::from(pinion) * self.between(1.0, 5.0)) as u32;
+            let shifts = if self.share() < 0.5 { [0.0; 2] } else { [self.between(0.0, 0.5), self.between(-0.4, 0.3)] };
+            let width = module * self.between(3.0, 15.0);
+            let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius: self.between(0.1, 0.3) };
+            let bore = self.between(1.4, 4.0);
+            let of = |teeth: u32, profile_shift: f64| Specification {
+                teeth,
+                module,
+                pressure_angle: angle,
+                profile_shift,
+                rack,
+                tip_radius: None,
+                face_width: width,
+                bore_radius: module * (0.5 * f64::from(teeth) + profile_shift - 1.25) / bore,
+                material: STEEL,
+            };
+            if let Ok(pair) = Pair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None) {
+                return pair;
+            }
+        }
+    }
+
+    /// A torque that bends the teeth by about 1 to 30 µm \[N m\].
+    pub fn torque(&mut self, pair: &Pair) -> f64 {
+        let width = pair.pinion.specification.face_width;
+        self.scaled(2e4, 6e5) * width * pair.pinion.base_radius
+    }
+
+    /// Profile and lead modifications of a few micrometres; some have no closed form across the face.
+    pub fn design(&mut self, pair: &Pair) -> Design {
+        loop {
+            let curve = self.of(&["linear", "parabolic", "power"]);
+            let tip = [
+                ("amount", Quantity(self.between(0.0, 20e-6))),
+                ("fraction", Number(self.between(0.2, 1.0))),
+                ("curve", Choice(curve)),
+                ("exponent", Number(self.between(1.2, 3.0))),
+            ];
+            let tip = if curve == "power" { &tip[..] } else { &tip[..3] };
+            let crown = [("amount", Quantity(self.between(0.0, 15e-6)))];
+            let slope = [("amount", Quantity(self.between(-15e-6, 15e-6)))];
+            let width = pair.pinion.specification.face_width;
+            let end = [
+                ("amount", Quantity(self.between(1e-6, 20e-6))),
+                ("length", Quantity(width * self.between(0.1, 0.45))),
+                ("curve", Choice("power")),
+                ("exponent", Number(self.between(1.2, 3.5))),
+            ];
+            let mut parts: Vec<Part> = Vec::new();
+            if self.share() < 0.8 {
+                parts.push(("tip_relief", self.of(&["pinion", "gear", "both"]), tip));
+            }
+            if self.share() < 0.5 {
+                parts.push(("lead_crowning", "pinion", &crown));
+            }
+            if self.share() < 0.3 {
+                parts.push(("helix_slope", "gear", &slope));
+            }
+            if self.share() < 0.6 {
+                parts.push(("end_relief", self.of(&["pinion", "gear"]), &end));
+            }
+            if let Ok(design) = design(pair, &parts) {
+                return design;
+            }
+        }
+    }
+}

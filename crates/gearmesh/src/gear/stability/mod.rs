@@ -1,0 +1,301 @@
+//! What must hold of any pair under any load, however extreme: invariants checked on a case, each with its limit.
+//!
+//! A case is a pair, a load, modifications, and a model. [`check()`] runs the chain from geometry to transmission error on
+//! it and gives one finding per invariant: `Holds`, `Broken`, or `Refused` where physics or the model excludes the case,
+//! with the reason. Limits come from rounding: a small multiple of ε times the condition number, which is found by
+//! changing the inputs of a second evaluation in twice the precision. Must not know: tables, studies.
+
+mod axis;
+mod contact;
+pub mod digits;
+pub mod precise;
+mod symmetry;
+#[cfg(test)]
+mod tests;
+mod trap;
+
+pub use axis::{AXES, Axis, Point, axis, sample};
+pub use trap::{Continuity, continuity, traps};
+
+use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
+use super::contact::{CornerContact, SliceCoupling};
+use super::geometry::{Pair, Specification};
+use super::modification::{Design, family};
+use super::transmission_error::cycle::{MeshCycle, Settings};
+use crate::numeric::double_double::Double;
+use declare::error::Place;
+use declare::record::{Entry, Record, Value};
+use precise::Rule;
+
+/// How the case is computed.
+#[derive(Clone)]
+pub struct Model {
+    pub method: &'static Method,
+    /// What the method alone is told.
+    pub options: Record,
+    pub assumptions: Assumptions,
+    pub settings: Settings,
+}
+
+/// A pair under a load. SI.
+#[derive(Clone)]
+pub struct Case {
+    pub name: String,
+    /// The axis it lies on; `trap` and `sample` for those that lie on none.
+    pub axis: &'static str,
+    /// Where on the axis: 0 at its first value, 1 at its last.
+    pub place: f64,
+    pub gears: [Specification; 2],
+    pub torque: f64,
+    /// Linear tip relief of both gears, and its roll length.
+    pub relief: f64,
+    pub relief_length: f64,
+    /// Lead crowning of both gears.
+    pub crowning: f64,
+    pub model: Model,
+}
+
+/// What is said of an invariant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    Holds,
+    Broken,
+    Refused,
+}
+
+impl Verdict {
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Holds => "holds",
+            Self::Broken => "broken",
+            Self::Refused => "refused",
+        }
+    }
+}
+
+/// One invariant of one case; value and limit are NaN where it is refused.
+#[derive(Clone, Debug)]
+pub struct Finding {
+    pub invariant: &'static str,
+    pub value: f64,
+    pub limit: f64,
+    pub verdict: Verdict,
+    pub reason: String,
+}
+
+impl Finding {
+    /// It holds where the value is not above the limit; a NaN is above everything.
+    #[must_use]
+    pub fn new(invariant: &'static str, value: f64, limit: f64) -> Self {
+        let verdict = if value <= limit { Verdict::Holds } else { Verdict::Broken };
+        Self { invariant, value, limit, verdict, reason: String::new() }
+    }
+
+    #[must_use]
+    pub fn refused(invariant: &'static str, reason: impl Into<String>) -> Self {
+        Self { invariant, value: f64::NAN, limit: f64::NAN, verdict: Verdict::Refused, reason: reason.into() }
+    }
+}
+
+/// A quantity against its second evaluation.
+#[derive(Clone, Debug)]
+pub struct DigitsLost {
+    pub quantity: &'static str,
+    pub value: f64,
+    pub exact: f64,
+    /// 15.95 + log10 of the relative difference, 0 at least.
+    pub lost: f64,
+    /// Relative change per relative change of the inputs.
+    pub condition: f64,
+}
+
+/// Everything that was found of a case.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    pub findings: Vec<Finding>,
+    pub digits: Vec<DigitsLost>,
+}
+
+/// Digits that may be lost on top of what the condition number takes: log10 of 2¹³ roundings that all go one way, more
+/// than any number of the chain has behind it.
+pub const MOST_LOST: f64 = 4.0;
+/// Roundings in a path position.
+const ROUNDINGS: f64 = 4.0;
+/// Of the base pitch.
+const SHORTEST_RELIEF: f64 = 1e-9;
+/// How far quick copies of functions of the path are from them, relative: their series end at 1e-14.
+const TABLE: f64 = 1e-13;
+
+/// Pair, design and compliance of a case.
+pub(crate) struct Built {
+    pub pair: Pair,
+    pub design: Design,
+    pub compliance: PairCompliance,
+    pub cycle: MeshCycle,
+}
+
+/// Why a case cannot be: which step refuses it.
+pub(crate) type Refusal = (&'static str, String);
+
+impl Case {
+    /// The pair.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn pair(&self) -> Result<Pair, String> {
+        Pair::new(self.gears[0], self.gears[1], None).map_err(|error| error.to_string())
+    }
+
+    /// Modifications of both gears alike.
+    ///
+    /// # Errors
+    /// When one does not fit the pair.
+    pub fn design(&self, pair: &Pair) -> Result<Design, String> {
+        let mut design = Design::default();
+        let parts: [(&str, &[(&'static str, Value)]); 2] = [
+            (
+                "tip_relief",
+                &[
+                    ("gear", Value::Choice("both")),
+                    ("amount", Value::Quantity(self.relief)),
+                    ("length", Value::Quantity(self.relief_length)),
+                    ("counted_from", Value::Choice("tip")),
+                    ("curve", Value::Choice("linear")),
+                ],
+            ),
+            ("lead_crowning", &[("gear", Value::Choice("both")), ("amount", Value::Quantity(self.crowning))]),
+        ];
+        for (part, (name, fields)) in parts.into_iter().enumerate() {
+            let amount = [self.relief, self.crowning][part];
+            let entry = |value: &Value| Entry { value: value.clone(), place: Place::default() };
+            let fields = fields.iter().map(|(name, value)| (*name, entry(value))).collect();
+            let record = Record { fields, place: Place::default() };
+            if let Some(family) = family(name).filter(|_| amount != 0.0) {
+                design.add(family, &record, pair).map_err(|error| error.message)?;
+            }
+        }
+        Ok(design)
+    }
+
+    pub(crate) fn build(&self) -> Result<Built, Refusal> {
+        let pair = self.pair().map_err(|reason| ("geometry", reason))?;
+        let design = self.design(&pair).map_err(|reason| ("modification", reason))?;
+        let Model { method, options, assumptions, settings } = &self.model;
+        let tabulated = (method.tabulate)(options, &pair, *assumptions);
+        let compliance = tabulated.map_err(|error| ("compliance", error.to_string()))?.compliance;
+        let cycle = MeshCycle::new(&pair, &compliance, *settings).map_err(|error| ("mesh cycle", error.to_string()))?;
+        Ok(Built { pair, design, compliance, cycle })
+    }
+
+    /// C_β at the end of the common face, of both gears.
+    pub(crate) fn crown(&self) -> f64 {
+        let width = self.gears[0].face_width.min(self.gears[1].face_width);
+        self.gears.iter().map(|gear| self.crowning * (width / gear.face_width) * (width / gear.face_width)).sum()
+    }
+
+    /// Why the second evaluation does not cover it.
+    fn not_covered(&self) -> Option<&'static str> {
+        let Model { method, options, assumptions, settings } = &self.model;
+        let plain = method.member.name == "energy" && options.choice("body") == "sainsot";
+        if !plain {
+            Some("the second evaluation knows the energy method with the fitted gear body only")
+        } else if assumptions.root != super::geometry::root::RootShape::Trochoid {
+            Some("the second evaluation knows the generated root only")
+        } else if assumptions.coupled {
+            Some("the second evaluation adds pairs; coupling comes from a Fourier series of the ring")
+        } else if settings.corner_contact != CornerContact::None {
+            Some("the second evaluation stays on the line of action")
+        } else if self.crowning != 0.0 && settings.slice_coupling != SliceCoupling::None {
+            Some("the slices of the second evaluation do not hold each other")
+        } else if self.crowning != 0.0 && assumptions.contact == ContactLaw::LoadDependent {
+            Some("a crowned face under the load-dependent law has no closed form: its slices decide, not rounding")
+        } else {
+            None
+        }
+    }
+
+    pub(crate) fn inputs(&self) -> precise::Inputs {
+        // As a definition, a relief shorter than this takes nothing away.
+        let specification = &self.gears[0];
+        let base_pitch = std::f64::consts::PI * specification.module * libm::cos(specification.pressure_angle);
+        let relief = if self.relief_length > SHORTEST_RELIEF * base_pitch { self.relief } else { 0.0 };
+        let of = |gear: &Specification| precise::GearInputs {
+            teeth: f64::from(gear.teeth),
+            shift: gear.profile_shift.into(),
+            addendum: gear.rack.addendum,
+            dedendum: gear.rack.dedendum,
+            round: gear.rack.tip_radius,
+            tip_radius: gear.tip_radius.map(Double::from),
+            tip_scale: Double::ONE,
+            face_width: gear.face_width,
+            bore_radius: gear.bore_radius,
+            youngs_modulus: gear.material.youngs_modulus,
+            poisson_ratio: gear.material.poisson_ratio,
+            relief: relief.into(),
+            relief_length: self.relief_length.into(),
+            crowning: self.crowning.into(),
+        };
+        let energy = self.model.method.member.name == "energy";
+        precise::Inputs {
+            gears: [of(&self.gears[0]), of(&self.gears[1])],
+            module: self.gears[0].module.into(),
+            pressure_angle: self.gears[0].pressure_angle.into(),
+            torque: self.torque.into(),
+            shear_factor: if energy { self.model.options.number("shear_factor") } else { 1.2 },
+            load_dependent: self.model.assumptions.contact == ContactLaw::LoadDependent && self.crowning == 0.0,
+        }
+    }
+}
+
+/// Rules of the second evaluation: a fine one for values, a coarse one for condition numbers.
+pub struct Rules {
+    fine: Rule,
+    coarse: Rule,
+}
+
+impl Rules {
+    #[must_use]
+    pub fn new() -> Self {
+        Self { fine: Rule::new(20, 24), coarse: Rule::new(10, 12) }
+    }
+}
+
+impl Default for Rules {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+/// All invariants of a case.
+#[must_use]
+pub fn check(case: &Case, rules: &Rules) -> Report {
+    let built = match case.build() {
+        Ok(built) => built,
+        Err((step, reason)) => {
+            return Report { findings: vec![Finding::refused(step, reason)], ..Report::default() };
+        }
+    };
+    let mut report = Report::default();
+    let values = match contact::check(case, &built, &mut report.findings) {
+        Ok(values) => values,
+        Err(reason) => {
+            report.findings.push(Finding::refused("approach within the model", reason));
+            return report;
+        }
+    };
+    let inputs = case.inputs();
+    let exact = precise::evaluate(&inputs, &rules.fine);
+    let mut conditions = precise::conditions(&inputs, &rules.coarse);
+    // An extremum where a relief starts lies as far off as a path position is rounded, times the slope of the relief.
+    if case.relief > 0.0 && case.relief_length > 0.0 {
+        let rise = ROUNDINGS * built.pair.tangent_length * case.relief / case.relief_length;
+        conditions[precise::NAMES.len() - 1] += rise / values[1] / libm::pow(10.0, MOST_LOST);
+    }
+    digits::check(case, &built, values, (&exact, &conditions), &mut report);
+    let [.., mean, peak_to_peak] = conditions;
+    // Where bodies couple, teeth that all turn with one bore make the matrix worse than the pair without it is.
+    let matrix = if case.model.assumptions.coupled { contact::condition_found(&report.findings) } else { 1.0 };
+    symmetry::check(case, values, [mean, peak_to_peak].map(|condition| condition.max(matrix)), &mut report.findings);
+    report
+}

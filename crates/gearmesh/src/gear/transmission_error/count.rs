@@ -1,0 +1,47 @@
+//! What one loading computes, counted on its own and added to the cycle's total when it goes.
+//!
+//! A counter that threads share would cost as much as what it counts. Must not know: what is computed.
+
+use std::cell::Cell;
+
+use declare::work::{Counter, Tally, Work};
+
+#[derive(Debug)]
+pub(super) struct Count<'a> {
+    total: &'a Tally,
+    slices: usize,
+    solves: Cell<usize>,
+    pressures: Cell<usize>,
+}
+
+impl<'a> Count<'a> {
+    /// `slices`: how many the face of a pair is cut into.
+    pub(super) fn new(total: &'a Tally, slices: usize) -> Self {
+        Self { total, slices, solves: Cell::new(0), pressures: Cell::new(0) }
+    }
+
+    pub(super) fn solve(&self) {
+        self.solves.set(self.solves.get() + 1);
+    }
+
+    pub(super) fn pressure(&self) {
+        self.pressures.set(self.pressures.get() + 1);
+    }
+}
+
+impl Clone for Count<'_> {
+    /// What was counted stays with the one it was counted by.
+    fn clone(&self) -> Self {
+        Self::new(self.total, self.slices)
+    }
+}
+
+impl Drop for Count<'_> {
+    fn drop(&mut self) {
+        let (solves, pressures) = (self.solves.get(), self.pressures.get());
+        if solves > 0 {
+            let work = Work::of(Counter::ContactSolves, solves).with(Counter::Slices, self.slices);
+            self.total.add(&work.with(Counter::ContactPressures, pressures));
+        }
+    }
+}

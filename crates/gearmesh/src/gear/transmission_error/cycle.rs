@@ -1,0 +1,274 @@
+//! One base pitch of mesh: which pairs are in contact where, and quick copies of everything elastic.
+//!
+//! Cycle positions τ \[m\] run from 0, where a pair starts contact at A, to p_b, where the next one does; pair j of a
+//! position is at s = s_A + τ + j p_b. The number of pairs in contact is a property of the zone a position was taken
+//! from: no position is ever compared with a zone's end, so both one-sided limits at B and D exist. With corner contact
+//! the springs are the pairs of a window of whole base pitches, as many at every position, from one base pitch before A to
+//! at least one after E; zones then only count the pairs inside the path of contact. Must not know: modification, load.
+
+use std::sync::Arc;
+
+use super::across::Across;
+use super::path::Path;
+use super::trace::Rows;
+use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::contact::{CornerContact, SliceCoupling};
+use crate::gear::geometry::Pair;
+use crate::gear::material::Material;
+use crate::numeric::chebyshev::Series;
+use crate::numeric::complementarity::MOST;
+use crate::numeric::graded::Graded;
+use crate::numeric::lobatto::Rule;
+use declare::error::Failure;
+use declare::work::{Tally, Work};
+
+/// Zones shorter than this share of the base pitch are not there: a contact ratio of 2 up to rounding is 2.
+const SHORTEST_ZONE: f64 = 1e-9;
+
+/// Pairs in corner contact: one before A and one after E.
+const CORNERS: usize = 2;
+
+/// How a mesh cycle is computed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Settings {
+    /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
+    pub positions: usize,
+    /// Slices on each smooth stretch of the face that is in contact, where there is no closed form; where slices are
+    /// coupled, equal ones on the whole face.
+    pub slices: usize,
+    pub corner_contact: CornerContact,
+    pub slice_coupling: SliceCoupling,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self { positions: 64, slices: 17, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None }
+    }
+}
+
+/// A stretch of the cycle with the same pairs in contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Zone {
+    pub start: f64,
+    pub end: f64,
+    pub pairs: usize,
+}
+
+/// A pair's mesh cycle.
+#[derive(Clone, Debug)]
+pub struct MeshCycle {
+    pub pair: Pair,
+    pub settings: Settings,
+    /// How many pairs are looked at in every position, where that is not the number in the zone.
+    springs: Option<usize>,
+    /// The common face width \[m\].
+    pub face_width: f64,
+    pub zones: Vec<Zone>,
+    pub(super) path: Path,
+    pub(super) elasticity: Elasticity,
+    /// Where slices hold each other.
+    pub(super) across: Option<Across>,
+    /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
+    coupling: Vec<Graded>,
+    pub(super) rows: Rows,
+    pub(super) slices: Rule,
+    /// Counted by every loading of this cycle and of those sampled otherwise.
+    pub(super) work: Arc<Tally>,
+}
+
+/// Against the path position.
+#[derive(Clone, Debug)]
+pub(super) enum Elasticity {
+    /// Stiffness of a pair \[N/m\].
+    Linear(Graded),
+    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\].
+    Logarithmic { compliance: Graded, constant: Graded, rate: f64 },
+}
+
+impl MeshCycle {
+    /// # Errors
+    /// When the contact ratio is below 1 (contact is lost) or above what the solver holds.
+    pub fn new(pair: &Pair, compliance: &PairCompliance, settings: Settings) -> Result<Self, Failure> {
+        let ratio = (pair.end_of_contact - pair.start_of_contact) / pair.base_pitch;
+        if !(ratio >= 1.0 - SHORTEST_ZONE && ratio <= MOST as f64) {
+            return Err(Failure::new(format!("the transverse contact ratio is {ratio:.6}; it must be 1 to {MOST}")));
+        }
+        let exact = settings.corner_contact == CornerContact::Exact;
+        let springs = most_pairs(ratio) + if exact { CORNERS } else { 0 };
+        if springs > MOST {
+            let largest = MOST - CORNERS;
+            return Err(Failure::new(format!(
+                "the transverse contact ratio is {ratio:.6}; with corner contact it must be 1 to {largest}"
+            )));
+        }
+        let path = Path::new(pair, settings.corner_contact);
+        let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
+        let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
+        let (pinion_series, gear_series) = (compliance.pinion.total_series(), compliance.gear.total_series());
+        let across = match settings.slice_coupling {
+            SliceCoupling::None => None,
+            SliceCoupling::Plate => Some(Across::new(pair, compliance, &path, face_width)?),
+        };
+        let total = |series: &Option<Series>, tooth: &ToothCompliance, roll: f64| {
+            series.as_ref().map_or_else(|| tooth.total(roll), |series| series.value(roll))
+        };
+        let teeth = |s: f64| {
+            let (pinion, gear) = path.rolls(s);
+            total(&pinion_series, &compliance.pinion, pinion) + total(&gear_series, &compliance.gear, gear)
+        };
+        let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
+        let law = |s: f64| {
+            let (pinion, gear) = path.rolls(s);
+            let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
+            Logarithmic::new(materials, flattening::combined_radius(path.radii(s)), depths)
+        };
+        let elasticity = match compliance.contact {
+            ContactLaw::Linear => {
+                let contact = flattening::linear(materials) / face_width;
+                Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
+            }
+            ContactLaw::Included => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
+            ContactLaw::LoadDependent => Elasticity::Logarithmic {
+                compliance: fit(&|s| teeth(s) * face_width),
+                constant: fit(&|s| law(s).constant),
+                rate: law(pair.start_of_contact).rate,
+            },
+        };
+        let neighbours = if compliance.coupled {
+            let known = compliance.pinion.neighbours.len().max(compliance.gear.neighbours.len());
+            known.min(springs - 1)
+        } else {
+            0
+        };
+        let coupling = (0..neighbours)
+            .map_while(|index| {
+                let ahead = pair.base_pitch * (index + 1) as f64;
+                let body = |s: f64| {
+                    // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
+                    let (behind, ahead) = (path.rolls(s), path.rolls(s + ahead));
+                    let value = |tooth: &ToothCompliance, first: f64, further: f64| {
+                        tooth.neighbours.get(index).map_or(0.0, |surface| surface.value(first, further))
+                    };
+                    value(&compliance.pinion, behind.0, ahead.0) + value(&compliance.gear, ahead.1, behind.1)
+                };
+                path.fit(ahead, &body)
+            })
+            .collect();
+        let zones = zones(ratio, pair.base_pitch);
+        let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
+        let springs = exact.then_some(springs);
+        let pair = pair.clone();
+        let work = Arc::default();
+        Ok(Self { pair, settings, springs, face_width, zones, path, elasticity, across, coupling, rows, slices, work })
+    }
+
+    /// The same cycle with the same corner contact and coupling of slices, sampled otherwise.
+    #[must_use]
+    pub fn sampled(&self, settings: Settings) -> Self {
+        // Both are in the quick copies.
+        let Settings { corner_contact, slice_coupling, .. } = self.settings;
+        let settings = Settings { corner_contact, slice_coupling, ..settings };
+        let same = settings.slices == self.settings.slices;
+        let slices = if same { self.slices.clone() } else { Rule::new(settings.slices) };
+        Self { settings, slices, ..self.clone() }
+    }
+
+    /// What was computed on this cycle so far, however sampled.
+    #[must_use]
+    pub fn work(&self) -> Work {
+        self.work.total()
+    }
+
+    /// p_b \[m\].
+    #[must_use]
+    pub fn period(&self) -> f64 {
+        self.pair.base_pitch
+    }
+
+    /// How many pairs may carry load in a zone with `pairs` inside the path of contact.
+    #[must_use]
+    pub fn springs(&self, pairs: usize) -> usize {
+        self.springs.unwrap_or(pairs)
+    }
+
+    /// Which of them is the newest one inside the path of contact; with corner contact one is before A.
+    #[must_use]
+    pub fn newest(&self) -> usize {
+        usize::from(self.springs.is_some())
+    }
+
+    /// The path position s of spring `spring` at the cycle position τ.
+    #[must_use]
+    pub fn path_position(&self, position: f64, spring: usize) -> f64 {
+        let pitches = spring as f64 - self.newest() as f64;
+        self.pair.start_of_contact + position + self.pair.base_pitch * pitches
+    }
+
+    /// The roll angles of the points of pinion and gear that touch at a path position, tip corners included.
+    #[must_use]
+    pub fn rolls(&self, s: f64) -> [f64; 2] {
+        self.path.rolls(s).into()
+    }
+
+    /// The flanks' radii of curvature there, pinion and gear.
+    #[must_use]
+    pub fn radii(&self, s: f64) -> [f64; 2] {
+        self.path.radii(s)
+    }
+
+    pub(super) fn materials(&self) -> [&Material; 2] {
+        [&self.pair.pinion.specification.material, &self.pair.gear.specification.material]
+    }
+
+    /// Whether any pair feels its neighbours' load.
+    pub(super) fn coupled(&self) -> bool {
+        !self.coupling.is_empty()
+    }
+
+    /// Interference at the pair at `behind` per load on the one that is `pitches` ≥ 1 ahead of it, and the reverse.
+    pub(super) fn coupling(&self, behind: f64, pitches: usize) -> f64 {
+        self.coupling.get(pitches - 1).map_or(0.0, |graded| graded.value(behind))
+    }
+}
+
+fn most_pairs(ratio: f64) -> usize {
+    zones(ratio, 1.0).iter().map(|zone| zone.pairs).max().unwrap_or(1)
+}
+
+/// ⌊ε⌋ + 1 pairs as long as the newest one shares the contact with the oldest, ⌊ε⌋ after that.
+fn zones(ratio: f64, period: f64) -> Vec<Zone> {
+    let whole = (ratio + SHORTEST_ZONE).floor();
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the ratio was checked to be 1 to MOST
+    let fewest = whole as usize;
+    let shared = (ratio - whole) * period;
+    if shared < SHORTEST_ZONE * period {
+        return vec![Zone { start: 0.0, end: period, pairs: fewest }];
+    }
+    vec![Zone { start: 0.0, end: shared, pairs: fewest + 1 }, Zone { start: shared, end: period, pairs: fewest }]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zones_fold_the_ends_of_contact_for_every_contact_ratio() {
+        for (ratio, expected) in [
+            (1.0, vec![1]),
+            (1.0001, vec![2, 1]),
+            (1.6457, vec![2, 1]),
+            (2.0, vec![2]),
+            (2.5, vec![3, 2]),
+            (3.2, vec![4, 3]),
+        ] {
+            let zones = zones(ratio, 9e-3);
+            assert_eq!(zones.iter().map(|zone| zone.pairs).collect::<Vec<_>>(), expected, "{ratio}");
+            let average: f64 = zones.iter().map(|zone| (zone.end - zone.start) * zone.pairs as f64).sum();
+            assert!((average / 9e-3 - ratio).abs() < 1e-12, "the mean number of pairs is the contact ratio");
+        }
+        // 2 up to rounding, from both sides.
+        assert_eq!(zones(2.0 - 4e-16, 1.0), zones(2.0, 1.0));
+        assert_eq!(zones(2.0 + 4e-16, 1.0), zones(2.0, 1.0));
+    }
+}

@@ -1,0 +1,278 @@
+//! Closed forms, invariants and traps of the transmission error.
+
+#![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
+
+mod accuracy;
+mod corner;
+mod extremes;
+mod work;
+
+use super::curve::Wanted;
+use super::cycle::{MeshCycle, Settings};
+use super::loading::Loading;
+use super::stiffness::stiffness;
+use crate::gear::compliance::{ContactLaw, PairCompliance};
+use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, swapped, varying};
+use crate::gear::geometry::Pair;
+use crate::gear::geometry::Side::{Gear, Pinion};
+use crate::gear::modification::Design;
+use declare::record::Value::{Choice, Number, Quantity};
+
+const STIFFNESS: f64 = 2.8e8;
+
+fn cycle(pair: &Pair, compliance: &PairCompliance) -> MeshCycle {
+    MeshCycle::new(pair, compliance, Settings::default()).unwrap()
+}
+
+fn torque(force: f64) -> f64 {
+    force * pair().pinion.base_radius
+}
+
+fn relief(pair: &Pair, amount: f64, fraction: f64) -> Design {
+    design(pair, &[("tip_relief", "both", &[("amount", Quantity(amount)), ("fraction", Number(fraction))])]).unwrap()
+}
+
+fn crowned(pair: &Pair, amount: f64) -> Design {
+    design(pair, &[("lead_crowning", "pinion", &[("amount", Quantity(amount))])]).unwrap()
+}
+
+fn ga_design(pair: &Pair, amount: f64, length: f64, crown: f64) -> Design {
+    let tip = [("amount", Quantity(amount)), ("length", Quantity(length)), ("curve", Choice("parabolic"))];
+    design(pair, &[("tip_relief", "both", &tip), ("lead_crowning", "pinion", &[("amount", Quantity(crown))])]).unwrap()
+}
+
+#[track_caller]
+fn close(value: f64, exact: f64, relative: f64) {
+    assert!((value - exact).abs() <= relative * exact.abs(), "{value:e} is not {exact:e}");
+}
+
+/// Harris' relations for constant pair stiffness k: no relief F/2k, long linear relief |F/k − C|/2, short F/2k.
+#[test]
+fn harris_relations_hold() {
+    for ratio in [1.1, 1.35, 1.645_626_2, 1.9] {
+        let pair = pair_with_contact_ratio(ratio);
+        let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+        for force in [1e-6, 10.0, 700.0, 1867.0, 2800.0, 40_000.0] {
+            let run = |design: &Design| Loading::new(&cycle, design, torque(force)).summary(Wanted::default());
+            close(run(&Design::default()).peak_to_peak, 0.5 * force / STIFFNESS, 1e-11);
+            let amount = 7e-6;
+            let long = run(&relief(&pair, amount, 1.0));
+            let exact = 0.5 * (force / STIFFNESS - amount).abs();
+            assert!(
+                (long.peak_to_peak - exact).abs() < 1e-9 * (force / STIFFNESS + amount),
+                "long, {force} N, {ratio}"
+            );
+            close(long.unloaded_peak_to_peak, 0.5 * amount, 1e-9);
+            if ratio < 1.9 {
+                let short = run(&relief(&pair, amount, 0.5));
+                // Of a path position against the length of the relief.
+                let rounding = 2e-14 * amount;
+                let error = (short.peak_to_peak - 0.5 * force / STIFFNESS).abs();
+                assert!(error < 1e-9 * (force / STIFFNESS) + rounding, "short, {force} N, {ratio}");
+                assert!(short.unloaded_peak_to_peak < rounding);
+            }
+        }
+    }
+}
+
+/// Two levels, F/2k for a share ε − 1 of the cycle and F/k for the rest: mean, variance and harmonics in closed form.
+#[test]
+fn moments_and_harmonics_of_unmodified_gears_are_those_of_a_rectangular_wave() {
+    let pair = pair();
+    let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+    let (force, share) = (1867.0, pair.contact_ratio - 1.0);
+    let design = Design::default();
+    let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted { harmonics: 8, pressure: false });
+    let (low, high) = (0.5 * force / STIFFNESS, force / STIFFNESS);
+    close(summary.mean, low * share + high * (1.0 - share), 1e-13);
+    close(summary.variance, (high - low) * (high - low) * share * (1.0 - share), 1e-12);
+    close(summary.reciprocal_variance.unwrap() * summary.variance, 1.0, 1e-15);
+    for (index, amplitude) in summary.harmonics.iter().enumerate() {
+        let angle = std::f64::consts::PI * (index + 1) as f64;
+        close(*amplitude, 2.0 * (high - low) * libm::sin(angle * share).abs() / angle, 1e-8);
+    }
+    close(summary.loaded_contact_ratio, pair.contact_ratio, 1e-12);
+    close(summary.largest_load_share, 1.0, 1e-13);
+    assert_eq!(summary.unloaded_peak_to_peak, 0.0);
+}
+
+#[test]
+fn every_contact_ratio_gives_its_levels() {
+    for (ratio, fewest, most) in
+        [(1.0, 1.0, 1.0), (1.0001, 1.0, 2.0), (2.0, 2.0, 2.0), (2.5, 2.0, 3.0), (3.2, 3.0, 4.0), (3.0, 3.0, 3.0)]
+    {
+        let pair = pair_with_contact_ratio(ratio);
+        let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
+        let force = 1000.0;
+        let design = Design::default();
+        let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted::default());
+        let exact = force / STIFFNESS * (1.0 / fewest - 1.0 / most);
+        assert!((summary.peak_to_peak - exact).abs() < 1e-12 * force / STIFFNESS, "{ratio}");
+        let (_, stiffness) = stiffness(&cycle, 10.0);
+        close(stiffness.fewest.least, fewest * STIFFNESS, 1e-12);
+        assert_eq!(stiffness.most.is_some(), fewest < most);
+        close(stiffness.most.map_or(most * STIFFNESS, |zone| zone.most), most * STIFFNESS, 1e-12);
+        close(stiffness.mean, ratio * STIFFNESS, 1e-9);
+    }
+    for ratio in [0.999, 6.001, f64::NAN] {
+        let pair = pair_with_contact_ratio(ratio);
+        let message = MeshCycle::new(&pair, &varying(), Settings::default()).unwrap_err().to_string();
+        assert!(message.contains("contact ratio"), "{message}");
+    }
+}
+
+/// Stiffness of varying teeth against a fine grid of the sum of reciprocals, with one-sided ends.
+#[test]
+fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
+    let pair = pair();
+    let compliance = varying();
+    let (points, summary) = stiffness(&cycle(&pair, &compliance), 50.0);
+    let single = |s: f64| {
+        let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
+        let (u1, u2) = (s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius);
+        1.0 / (compliance.pinion.total(u1) + compliance.gear.total(u2) + contact)
+    };
+    for point in &points {
+        let s = point.path_position;
+        let exact = if point.pairs == 2 { single(s) + single(s + BASE_PITCH) } else { single(s) };
+        close(point.secant_stiffness, exact, 1e-12);
+        close(point.tangent_stiffness, exact, 1e-12);
+    }
+    let shared = pair.end_of_contact - BASE_PITCH - pair.start_of_contact;
+    let grid = |from: f64, to: f64| (0..=20_000).map(move |i| from + (to - from) * f64::from(i) / 20_000.0);
+    let a = pair.start_of_contact;
+    let singles: Vec<f64> = grid(a + shared, a + BASE_PITCH).map(single).collect();
+    let doubles: Vec<f64> = grid(a, a + shared).map(|s| single(s) + single(s + BASE_PITCH)).collect();
+    let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
+    let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
+    let double = summary.most.unwrap();
+    close(summary.fewest.most, largest(&singles), 1e-8);
+    close(summary.fewest.least, smallest(&singles), 1e-8);
+    close(double.most, largest(&doubles), 1e-8);
+    close(double.least, smallest(&doubles), 1e-8);
+}
+
+#[test]
+fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
+    let pair = pair();
+    let logarithmic = PairCompliance { contact: ContactLaw::LoadDependent, ..varying() };
+    let power =
+        [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
+    let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
+    let mixed = design(
+        &pair,
+        &[
+            ("tip_relief", "pinion", &power),
+            ("root_relief", "pinion", &root),
+            ("profile_crowning", "gear", &[("amount", Quantity(4e-6))]),
+            ("profile_slope", "pinion", &[("amount", Quantity(-3e-6))]),
+            ("lead_crowning", "gear", &[("amount", Quantity(3e-6))]),
+        ],
+    )
+    .unwrap();
+    let designs = [
+        Design::default(),
+        ga_design(&pair, 6.93e-6, 3.41e-3, 5.67e-6),
+        ga_design(&pair, 7.81e-6, 5.05e-3, 6.34e-6),
+        ga_design(&pair, 20e-6, 5.9e-3, 0.0),
+        ga_design(&pair, 3e-6, 8.0e-3, 20e-6),
+        mixed,
+    ];
+    for (which, compliance) in [varying(), coupled(), logarithmic].iter().enumerate() {
+        let run = |positions: usize, design: &Design, torque: f64| {
+            let cycle =
+                MeshCycle::new(&pair, compliance, Settings { positions, slices: 9, ..Settings::default() }).unwrap();
+            Loading::new(&cycle, design, torque).peak_to_peak()
+        };
+        for (index, design) in designs.iter().enumerate() {
+            for torque in [1.0, 10.0, 25.0, 50.0, 100.0, 700.0] {
+                let fine = run(1000, design, torque);
+                for positions in [16, 64] {
+                    let coarse = run(positions, design, torque);
+                    assert!(
+                        (coarse / fine - 1.0).abs() < 1e-9,
+                        "{which} {index} {torque} N m, {positions}: {coarse:e} {fine:e} {:e}",
+                        coarse / fine - 1.0
+                    );
+                }
+            }
+        }
+    }
+}
+
+/// Brute force: a fine uniform grid with the zones told apart by comparison.
+#[test]
+fn peak_to_peak_agrees_with_a_brute_grid() {
+    let pair = pair();
+    let compliance = varying();
+    let cycle = cycle(&pair, &compliance);
+    let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
+    for (amount, length) in [(6.93e-6, 3.41e-3), (12e-6, 5.5e-3)] {
+        let design = ga_design(&pair, amount, length, 0.0);
+        let force = 50.0 / pair.pinion.base_radius;
+        let (mut low, mut high, mut sum) = (f64::INFINITY, 0.0_f64, 0.0);
+        let count = 100_000;
+        for i in 0..count {
+            let tau = BASE_PITCH * (f64::from(i) + 0.5) / f64::from(count);
+            let mut pairs = Vec::new();
+            for s in [tau + pair.start_of_contact, tau + pair.start_of_contact + BASE_PITCH] {
+                if s < pair.end_of_contact {
+                    let (u1, u2) = (s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius);
+                    let relief = |from_tip: f64| {
+                        let t = (1.0 - from_tip / length).max(0.0);
+                        amount * (0.44 * t + 0.56 * t * t)
+                    };
+                    let gap = relief(pair.end_of_contact - s) + relief(s - pair.start_of_contact);
+                    pairs.push((gap, 1.0 / (compliance.pinion.total(u1) + compliance.gear.total(u2) + contact)));
+                }
+            }
+            // Bisection on the load balance.
+            let (mut a, mut b) = (0.0, 1e-3);
+            for _ in 0..60 {
+                let middle = 0.5 * (a + b);
+                let load: f64 = pairs.iter().map(|(gap, k)| k * f64::max(middle - gap, 0.0)).sum();
+                if load < force { a = middle } else { b = middle }
+            }
+            (low, high, sum) = (low.min(b), high.max(b), sum + b);
+        }
+        let summary = Loading::new(&cycle, &design, 50.0).summary(Wanted::default());
+        close(summary.peak_to_peak, high - low, 3e-4);
+        assert!(summary.peak_to_peak >= (high - low) * (1.0 - 1e-9), "a grid cannot see more than everything");
+        close(summary.mean, sum / f64::from(count), 1e-9);
+    }
+}
+
+/// Driving and driven gear may change places: the path is then run through backwards.
+#[test]
+fn swapping_the_gears_changes_nothing() {
+    let pair = pair();
+    let swapped = swapped(&pair);
+    let tip = [("amount", Quantity(8e-6)), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
+    let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
+    let face = [("amount", Quantity(6e-6)), ("length", Quantity(4e-3))];
+    let of = |pair: &Pair, one: &'static str, two: &'static str| {
+        design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root), ("end_relief", one, &face)]).unwrap()
+    };
+    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
+        for compliance in [varying(), coupled()] {
+            let compliance = PairCompliance { contact, ..compliance };
+            let mirrored = PairCompliance {
+                pinion: compliance.gear.clone(),
+                gear: compliance.pinion.clone(),
+                ..compliance.clone()
+            };
+            let (one, two) = (of(&pair, "pinion", "gear"), of(&swapped, "gear", "pinion"));
+            let wanted = Wanted { harmonics: 3, pressure: true };
+            let here = Loading::new(&cycle(&pair, &compliance), &one, 50.0).summary(wanted);
+            let there = cycle(&swapped, &mirrored);
+            let there = Loading::new(&there, &two, 50.0 * 48.0 / 19.0).summary(wanted);
+            close(here.peak_to_peak, there.peak_to_peak, 1e-9);
+            close(here.mean, there.mean, 1e-10);
+            close(here.variance, there.variance, 1e-7);
+            close(here.largest_pressure.unwrap().value, there.largest_pressure.unwrap().value, 1e-9);
+            for (a, b) in here.harmonics.iter().zip(&there.harmonics) {
+                assert!((a - b).abs() < 1e-7 * here.peak_to_peak, "{a} {b}");
+            }
+        }
+    }
+}

@@ -1,0 +1,92 @@
+//! A box of variables, and the only way from the unit cube into it.
+//!
+//! Must not know: what the variables mean; their units are the caller's (SI).
+
+use declare::error::Diagnostic;
+
+/// Least and most of each variable; at least one variable, each with least < most.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Bounds(Vec<(f64, f64)>);
+
+impl Bounds {
+    /// # Errors
+    /// When there is no variable, or one whose bounds are not two finite numbers in ascending order.
+    pub fn new(pairs: Vec<(f64, f64)>) -> Result<Self, Diagnostic> {
+        if pairs.is_empty() {
+            return Err(Diagnostic::new("there is nothing to optimise: no variable has a range")
+                .help("give at least one design variable as `[least, most]`"));
+        }
+        for (at, &(least, most)) in pairs.iter().enumerate() {
+            let variable = at + 1;
+            if !(least.is_finite() && most.is_finite()) {
+                return Err(Diagnostic::new(format!(
+                    "the bounds {least} and {most} of variable {variable} are not finite"
+                )));
+            }
+            if least >= most {
+                return Err(Diagnostic::new(format!(
+                    "the range of variable {variable} is empty: its least value {least} must be below its most {most}"
+                ))
+                .help("give a single value for what is not to be varied"));
+            }
+        }
+        Ok(Self(pairs))
+    }
+
+    #[must_use]
+    pub fn dimension(&self) -> usize {
+        self.0.len()
+    }
+
+    #[must_use]
+    pub fn pairs(&self) -> &[(f64, f64)] {
+        &self.0
+    }
+
+    /// The point of the box for a point of the unit cube. 0 and 1 give the bounds exactly, and no rounding leaves them.
+    #[must_use]
+    pub fn point(&self, unit: &[f64]) -> Vec<f64> {
+        self.0
+            .iter()
+            .zip(unit)
+            // The weighted mean, not least + t·(most − least): that can miss `most` and overflow.
+            .map(|(&(least, most), t)| (least * (1.0 - t) + most * t).clamp(least, most))
+            .collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    proptest! {
+        #[test]
+        fn the_unit_cube_maps_onto_the_box(a in -1e300..1e300_f64, b in -1e300..1e300_f64, t in 0.0..=1.0_f64) {
+            prop_assume!(a < b);
+            let bounds = Bounds::new(vec![(a, b)]).unwrap();
+            let at = |t| bounds.point(&[t])[0];
+            prop_assert_eq!(at(0.0).to_bits(), a.to_bits());
+            prop_assert_eq!(at(1.0).to_bits(), b.to_bits());
+            prop_assert!((a..=b).contains(&at(t)));
+        }
+    }
+
+    #[test]
+    fn the_upper_bound_is_met_where_the_usual_map_misses_it() {
+        let (least, most) = (0.4_f64, 1.7);
+        assert!(least + (most - least) < most);
+        assert_eq!(Bounds::new(vec![(least, most)]).unwrap().point(&[1.0])[0].to_bits(), most.to_bits());
+    }
+
+    #[test]
+    fn impossible_boxes_are_refused() {
+        let refusal = |pairs: &[(f64, f64)]| Bounds::new(pairs.to_vec()).unwrap_err().message;
+        assert!(refusal(&[]).contains("nothing to optimise"));
+        assert!(refusal(&[(0.0, 1.0), (2.0, 2.0)]).contains("variable 2 is empty"));
+        assert!(refusal(&[(1.0, 0.0)]).contains("below"));
+        assert!(refusal(&[(0.0, f64::INFINITY)]).contains("not finite"));
+        assert!(refusal(&[(f64::NAN, 1.0)]).contains("not finite"));
+    }
+}

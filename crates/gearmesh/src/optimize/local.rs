@@ -1,0 +1,114 @@
+//! What local searches share: what they are asked, where they start and when they stop.
+//!
+//! Lengths are shares of each variable's range. Must not know: how any of them searches.
+
+use super::random::uniform;
+use super::{Foreseen, count, points_held};
+use declare::error::Diagnostic;
+use declare::parameter::{Choice, Field};
+use declare::record::Record;
+use declare::seed::Seed;
+
+/// A search from one point until it has converged by its own measure; what then becomes of it, [`super::restarts`] says.
+pub trait Search: Send {
+    /// As [`super::Strategy::batch`].
+    fn batch(&self) -> &[Vec<f64>];
+
+    /// As [`super::Strategy::learn`].
+    ///
+    /// # Errors
+    /// When the batch has not as many values as it must have.
+    fn learn(&mut self, values: &[f64]) -> Result<(), String>;
+
+    fn converged(&self) -> bool;
+
+    /// The lowest point and its value.
+    fn best(&self) -> (&[f64], f64);
+
+    /// Begins anew at a point, with the first steps of the study; `value` is the function's there, if it is known, and
+    /// `down` a direction in which it falls.
+    fn begin(&mut self, at: Vec<f64>, value: Option<f64>, down: Option<Vec<f64>>);
+}
+
+pub const START: Field = Field::choice("start", STARTS, "where it starts").default("centre");
+
+const STARTS: &[Choice] = &[
+    Choice { name: "centre", summary: "the middle of every range" },
+    Choice { name: "random", summary: "a random point, from the seed" },
+];
+
+/// From `least` upwards.
+pub const fn tolerance(least: f64, summary: &'static str) -> Field {
+    Field::number("tolerance", least, 0.1, summary).default("1e-8")
+}
+
+pub const fn restarts(summary: &'static str) -> Field {
+    Field::integer("restarts", 0, 1000, summary).default("30")
+}
+
+pub const EVALUATIONS: Field = Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000");
+
+/// When to stop.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// The extent at which it has converged, in the maximum norm.
+    pub tolerance: f64,
+    pub restarts: usize,
+    pub evaluations: usize,
+}
+
+/// What a local search will ask for; `least` evaluations are needed for `what`.
+///
+/// # Errors
+/// With too few evaluations to begin.
+pub fn foresee(record: &Record, dimension: usize, (least, what): (usize, &str)) -> Result<Foreseen, Diagnostic> {
+    let evaluations = count(record, "evaluations");
+    if evaluations < least {
+        let message = format!("{evaluations} evaluations are too few for {what} {dimension} variables");
+        return Err(Diagnostic::new(message).at(record.place_of("evaluations")).help(format!("give at least {least}")));
+    }
+    // Simplex or directions, and the gradients of all looks at a kink.
+    let memory = points_held(MOST_HELD * (dimension + 1), dimension);
+    Ok(Foreseen { evaluations, batches: evaluations, exact: false, memory })
+}
+
+/// Points that a local search keeps for each variable, at most.
+const MOST_HELD: usize = 64;
+
+/// Start and limits, from [`START`], [`tolerance`], [`restarts`] and [`EVALUATIONS`].
+pub fn read(record: &Record, dimension: usize, seed: Seed) -> (Vec<f64>, Limits) {
+    let limits = Limits {
+        tolerance: record.number("tolerance"),
+        restarts: count(record, "restarts"),
+        evaluations: count(record, "evaluations"),
+    };
+    let mut generator = seed.generator(0);
+    let start = match record.choice("start") {
+        "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
+        _ => vec![0.5; dimension],
+    };
+    (start, limits)
+}
+
+/// Onto the range.
+pub fn clip(coordinate: f64) -> f64 {
+    coordinate.clamp(0.0, 1.0)
+}
+
+/// The stretch of a line on which at least one variable is off its bounds.
+pub fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
+    let (mut least, mut most) = (0.0_f64, 0.0_f64);
+    for (at, along) in at.iter().zip(along) {
+        if *along != 0.0 {
+            let (zero, one) = (-at / along, (1.0 - at) / along);
+            least = least.min(zero.min(one));
+            most = most.max(zero.max(one));
+        }
+    }
+    (least, most)
+}
+
+/// A variable that has met a bound stays there while the others go on.
+pub fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
+    at.iter().zip(along).map(|(at, along)| clip(at + place * along)).collect()
+}

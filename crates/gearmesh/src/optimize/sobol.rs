@@ -1,0 +1,94 @@
+//! Sobol points: a sequence that fills the cube evenly at every length, best at powers of two. Not scrambled.
+//!
+//! Source: Joe and Kuo, SIAM J. Sci. Comput. 30 (2008) 2635, primitive polynomials and initial direction numbers of
+//! their set D6; the order is that of the Gray code (Antonov and Saleev 1979). Must not know: seeds.
+
+use super::sampling::{self, MOST_POINTS, Sample};
+use super::{Foreseen, Method, Strategy, count};
+use declare::error::Diagnostic;
+use declare::parameter::{Field, Member};
+use declare::record::Record;
+use declare::seed::Seed;
+
+pub const METHOD: Method = Method {
+    member: Member {
+        name: "sobol",
+        summary: "evenly spread points, best when their number is a power of two",
+        fields: FIELDS,
+    },
+    foresee,
+    build,
+};
+
+const FIELDS: &[Field] = &[Field::integer("points", 1, MOST_POINTS, "number of points").default("256")];
+
+const BITS: u32 = 32;
+
+/// For the second variable onwards: the inner coefficients of the primitive polynomial as bits, and m₁, m₂, …; the
+/// polynomial's degree is the number of the m.
+const DIRECTIONS: &[(u32, &[u32])] = &[
+    (0, &[1]),
+    (1, &[1, 3]),
+    (1, &[1, 3, 1]),
+    (2, &[1, 1, 1]),
+    (1, &[1, 1, 3, 3]),
+    (4, &[1, 3, 5, 13]),
+    (2, &[1, 1, 5, 5, 17]),
+    (4, &[1, 1, 5, 5, 5]),
+    (7, &[1, 1, 7, 11, 19]),
+    (11, &[1, 1, 5, 1, 1]),
+    (13, &[1, 1, 1, 3, 11]),
+    (14, &[1, 3, 5, 5, 31]),
+    (1, &[1, 3, 3, 9, 7, 49]),
+    (13, &[1, 1, 1, 15, 21, 21]),
+    (16, &[1, 3, 1, 13, 27, 49]),
+];
+
+fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
+    let most = DIRECTIONS.len() + 1;
+    if dimension > most {
+        return Err(Diagnostic::new(format!(
+            "Sobol points are tabulated for at most {most} variables, not {dimension}"
+        ))
+        .help("use `latin_hypercube`"));
+    }
+    sampling::foreseen(Some(count(record, "points")), dimension, 0)
+}
+
+fn build(record: &Record, dimension: usize, _: Seed) -> Box<dyn Strategy> {
+    let columns: Vec<[u32; BITS as usize]> = (0..dimension).map(directions).collect();
+    let layout = Box::new(move |index| columns.iter().map(|column| coordinate(column, index)).collect());
+    Box::new(Sample::new(count(record, "points"), layout))
+}
+
+/// v₁ … v₃₂ of one variable, as fractions of 2³².
+fn directions(variable: usize) -> [u32; BITS as usize] {
+    let mut directions = [0; BITS as usize];
+    let Some((polynomial, initial)) = variable.checked_sub(1).map(|at| DIRECTIONS[at]) else {
+        for (bit, direction) in (0..BITS).zip(&mut directions) {
+            *direction = 1 << (BITS - 1 - bit);
+        }
+        return directions;
+    };
+    let degree = initial.len();
+    for at in 0..BITS as usize {
+        directions[at] = if at < degree {
+            initial[at] << (BITS as usize - 1 - at)
+        } else {
+            let mut direction = directions[at - degree] ^ (directions[at - degree] >> degree);
+            for inner in 1..degree {
+                if polynomial >> (degree - 1 - inner) & 1 == 1 {
+                    direction ^= directions[at - inner];
+                }
+            }
+            direction
+        };
+    }
+    directions
+}
+
+fn coordinate(directions: &[u32; BITS as usize], index: usize) -> f64 {
+    let gray = index ^ (index >> 1);
+    let bits = directions.iter().enumerate().filter(|(bit, _)| gray >> bit & 1 == 1).fold(0, |sum, (_, v)| sum ^ v);
+    f64::from(bits) / 4_294_967_296.0
+}

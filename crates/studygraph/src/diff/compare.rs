@@ -1,0 +1,379 @@
+//! Two sides, study by study, stage by stage, table by table.
+//!
+//! Must not know: how the outcome is shown.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use super::model::{Comparison, Damage, Flip, StageDiff, State, StudyDiff, TableDiff};
+use super::{table, verdict, why};
+use crate::history::side::{Got, Side};
+use crate::store::cache::Cache;
+use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::table::schema::{Column, Type};
+use crate::table::tolerance::{Allowance, find};
+use declare::error::suggest;
+
+/// Columns that one tolerance is meant for and that are named; of more only their number is said.
+const MOST_MEANT: usize = 6;
+
+/// What is asked for besides the two sides.
+#[derive(Default)]
+pub struct Options<'a> {
+    /// Only these studies; all when empty.
+    pub studies: &'a [String],
+    /// They come before those of the studies, which come before those of the columns.
+    pub tolerances: &'a [Allowance],
+    /// Where tables may be found that are not kept with the results.
+    pub cache: Option<&'a Cache>,
+    /// Whether a study that only the later side has is left out on purpose.
+    pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
+    /// Whether a file of a folder of results is one that is not kept there on purpose.
+    pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
+}
+
+/// A study's name and its manifests, with the folder each lies in.
+struct Pair {
+    name: String,
+    before: Option<(String, Manifest)>,
+    after: Option<(String, Manifest)>,
+}
+
+/// Compares everything that both sides hold.
+///
+/// # Errors
+/// One sentence: a side without results, an unknown study, a tolerance for no column.
+pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Comparison, String> {
+    let mut comparison = Comparison {
+        before: before.label.clone(),
+        after: after.label.clone(),
+        state: State::Same,
+        damaged: Vec::new(),
+        verdicts: Vec::new(),
+        studies: Vec::new(),
+        problems: Vec::new(),
+        remarks: Vec::new(),
+    };
+    let pairs = pairs(before, after, options, &mut comparison)?;
+    comparison.remarks.extend(check_tolerances(&pairs, options.tolerances)?);
+    for pair in &pairs {
+        comparison.damaged.extend(damaged(pair, before, after, options));
+        let study = match (&pair.before, &pair.after) {
+            (Some(old), Some(new)) => {
+                let own = new.1.tolerances.iter().map(|(name, value)| Allowance::new(name, value));
+                let own = own.collect::<Result<Vec<_>, _>>();
+                let own =
+                    own.map_err(|problem| format!("{}, in the manifest of {}: {problem}", pair.name, after.label))?;
+                let task = Task { before, after, old, new, own, options };
+                let (study, found) = task.study(&pair.name);
+                comparison.verdicts.extend(found.flips);
+                replace(&mut comparison.damaged, found.damaged);
+                study
+            }
+            (Some((folder, only)), None) => {
+                let stages = only.stages.iter();
+                let gone = stages.flat_map(|stage| gone(before, folder, &pair.name, stage, options));
+                comparison.verdicts.extend(gone);
+                one_sided(&pair.name, only, State::Removed)
+            }
+            (None, Some((_, only))) => one_sided(&pair.name, only, State::Added),
+            (None, None) => continue,
+        };
+        comparison.studies.push(study);
+    }
+    verdict::sort(&mut comparison.verdicts);
+    let damaged = (!comparison.damaged.is_empty()).then_some(State::Changed);
+    comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
+    Ok(comparison)
+}
+
+/// Of a table that is compared, its values tell more than its bytes.
+fn replace(told: &mut Vec<Damage>, found: Vec<Damage>) {
+    for damage in found {
+        let same = |one: &Damage| (&one.at, &one.study, &one.file) == (&damage.at, &damage.study, &damage.file);
+        if let Some(position) = told.iter().position(same) {
+            told.remove(position);
+        }
+        told.push(damage);
+    }
+}
+
+/// Files that are not what their manifests say, but for values of tables that will be compared.
+fn damaged(pair: &Pair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
+    let tables = |side: &Option<(String, Manifest)>| -> BTreeSet<(String, String)> {
+        let manifest = side.iter().flat_map(|(_, manifest)| &manifest.stages);
+        manifest.flat_map(|stage| &stage.tables).map(|table| (table.name.clone(), table.content.clone())).collect()
+    };
+    let both = tables(&pair.before).into_iter().chain(tables(&pair.after));
+    let mut contents = BTreeMap::<String, BTreeSet<String>>::new();
+    for (name, content) in both {
+        contents.entry(name).or_default().insert(content);
+    }
+    let compared = |table: &TableRecord| contents.get(&table.name).is_some_and(|contents| contents.len() > 1);
+    let mut found = Vec::new();
+    for (side, held, other, there) in
+        [(before, &pair.before, after, &pair.after), (after, &pair.after, before, &pair.before)]
+    {
+        let Some((folder, manifest)) = held else { continue };
+        let mut tell = |file: String, problem: String| {
+            found.push(Damage { at: side.label.clone(), study: pair.name.clone(), file, problem });
+        };
+        for (file, problem) in side.damage(folder, manifest, &compared) {
+            tell(file, problem);
+        }
+        // Git seldom keeps all; what the other side has of the same study should be here too.
+        let (Some(path), Some((there, theirs))) = (side.path(), there) else { continue };
+        let listed = manifest.files.iter().filter(|listed| theirs.files.iter().any(|other| other.file == listed.file));
+        for listed in listed.filter(|listed| !side.has(folder, &listed.file) && other.has(there, &listed.file)) {
+            if !options.not_kept.is_some_and(|not_kept| not_kept(&path.join(folder).join(&listed.file))) {
+                tell(listed.file.clone(), format!("is not there; {} has it", other.label));
+            }
+        }
+    }
+    found
+}
+
+fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Comparison) -> Result<Vec<Pair>, String> {
+    let mut problems = Vec::new();
+    let mut read = |side: &Side| -> Result<Vec<(String, String, Option<Manifest>)>, String> {
+        let folders = side.studies()?;
+        if folders.is_empty() {
+            return Err(format!("there are no results at {}", side.label));
+        }
+        let read = folders.into_iter().filter_map(|folder| {
+            let wanted = options.studies.is_empty() || side.is_single() || options.studies.contains(&folder);
+            let manifest = if wanted { side.manifest(&folder) } else { Ok(None) };
+            match manifest {
+                Ok(Some(manifest)) if side.is_single() => Some((manifest.study.clone(), folder, Some(manifest))),
+                Ok(manifest) => Some((folder.clone(), folder, manifest)),
+                Err(problem) => {
+                    problems.push(problem);
+                    None
+                }
+            }
+        });
+        Ok(read.collect())
+    };
+    let (mut old, new) = (read(before)?, read(after)?);
+    let broken = !problems.is_empty();
+    comparison.problems.extend(problems);
+    if let (true, true, [old], [new]) = (before.is_single(), after.is_single(), &mut old[..], &new[..]) {
+        // Two folders of one study each are meant for each other, whatever they are called.
+        old.0.clone_from(&new.0);
+    }
+    let mut names: Vec<&String> = old.iter().chain(&new).map(|(name, ..)| name).collect();
+    names.sort();
+    names.dedup();
+    if let Some(unknown) = options.studies.iter().find(|wanted| !names.contains(wanted) && !broken) {
+        let known = names.iter().map(|name| name.as_str());
+        let help = suggest(unknown, known.collect::<Vec<_>>());
+        return Err(format!("neither {} nor {} has results of a study `{unknown}`; {help}", before.label, after.label));
+    }
+    let take = |side: &[(String, String, Option<Manifest>)], wanted: &str| {
+        let found = side.iter().find(|(name, ..)| name == wanted);
+        found.and_then(|(_, folder, manifest)| Some((folder.clone(), manifest.clone()?)))
+    };
+    let mut pairs = Vec::new();
+    for name in names.iter().filter(|name| options.studies.is_empty() || options.studies.contains(name)) {
+        let pair = Pair { name: (*name).clone(), before: take(&old, name), after: take(&new, name) };
+        let only_there = pair.before.is_none() && pair.after.is_some();
+        let damaged_before = broken && before.studies()?.contains(name) && pair.before.is_none();
+        let damaged_after = broken && after.studies()?.contains(name) && pair.after.is_none();
+        if damaged_before || damaged_after {
+            continue;
+        }
+        if only_there && options.leaves_out.is_some_and(|leaves_out| leaves_out(name)) {
+            comparison.remarks.push(format!("{name} is left out: git is told to ignore its results"));
+        } else {
+            pairs.push(pair);
+        }
+    }
+    Ok(pairs)
+}
+
+/// Every tolerance of the command line must be meant for some column, and fit it; where a name means several, it is said
+/// which.
+fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<Vec<String>, String> {
+    let mut remarks = Vec::new();
+    for allowance in tolerances {
+        let mut meant = BTreeSet::new();
+        let mut known: Vec<String> = Vec::new();
+        let mut found = false;
+        let manifests = pairs.iter().flat_map(|pair| [&pair.before, &pair.after]).flatten();
+        for table in manifests.flat_map(|(_, manifest)| &manifest.stages).flat_map(|stage| &stage.tables) {
+            let (stage, name) = table.name.split_once('.').unwrap_or((&table.name, ""));
+            for record in table.columns.iter().filter(|record| !record.volatile) {
+                if allowance.means(stage, name, &record.name) {
+                    found = true;
+                    meant.insert(format!("{}.{}", table.name, record.name));
+                    let kind = Type::from_name(&record.kind).unwrap_or(Type::Text);
+                    allowance.of(&Column { kind, ..Column::float(&record.name, &record.unit, "") })?;
+                } else if table::is_number(record) {
+                    let full = format!("{}.{}", table.name, record.name);
+                    let parts = allowance.name.split('.').count();
+                    known.push(full.splitn(4 - parts, '.').last().unwrap_or(&full).to_owned());
+                }
+            }
+        }
+        if !found {
+            known.sort();
+            known.dedup();
+            let help = suggest(&allowance.name, known.iter().map(String::as_str).collect::<Vec<_>>());
+            return Err(format!("there is no column `{}`; {help}", allowance.name));
+        }
+        if meant.len() > 1 {
+            let more = meant.len().saturating_sub(MOST_MEANT);
+            let mut names: Vec<String> = meant.iter().take(MOST_MEANT).cloned().collect();
+            names.extend((more > 0).then(|| format!("{more} more")));
+            let (name, number) = (&allowance.name, meant.len());
+            remarks.push(format!("the tolerance of `{name}` is that of {number} columns: {}", names.join(", ")));
+        }
+    }
+    Ok(remarks)
+}
+
+fn one_sided(name: &str, manifest: &Manifest, state: State) -> StudyDiff {
+    let stages = manifest.stages.iter().map(|stage| one_sided_stage(stage, state)).collect();
+    StudyDiff { name: name.to_owned(), state, stages }
+}
+
+fn one_sided_stage(stage: &StageRecord, state: State) -> StageDiff {
+    let tables = stage.tables.iter().map(|record| one_sided_table(record, state)).collect();
+    StageDiff { name: stage.name.clone(), kind: stage.kind.clone(), renamed_from: None, state, why: Vec::new(), tables }
+}
+
+fn one_sided_table(record: &TableRecord, state: State) -> TableDiff {
+    let (rows_before, rows_after) = if state == State::Added { (0, record.rows) } else { (record.rows, 0) };
+    TableDiff { name: record.name.clone(), state, rows_before, rows_after, ..TableDiff::default() }
+}
+
+/// The verdicts of a stage that is no more.
+fn gone(side: &Side, folder: &str, study: &str, stage: &StageRecord, options: &Options<'_>) -> Vec<Flip> {
+    let tables = stage.tables.iter().filter(|table| stage.kind == "report" && table.table() == verdict::TABLE);
+    let flips = tables.map(|record| match side.table(folder, stage, record, options.cache).0 {
+        Got::Table(table) => verdict::gone(study, &stage.name, &table),
+        Got::Without(_) => Vec::new(),
+    });
+    flips.flatten().collect()
+}
+
+/// Whether a stage is one that is gone, under another name: names are in no key, so nothing else need have changed.
+fn is_renamed(gone: &StageRecord, new: &StageRecord) -> bool {
+    let contents = |stage: &StageRecord| -> BTreeMap<String, String> {
+        stage.tables.iter().map(|table| (table.table().to_owned(), table.content.clone())).collect()
+    };
+    gone.kind == new.kind && !new.tables.is_empty() && contents(gone) == contents(new)
+}
+
+/// What is told apart from the stage it was found in.
+#[derive(Default)]
+struct Found {
+    flips: Vec<Flip>,
+    damaged: Vec<Damage>,
+}
+
+/// One study that both sides have.
+struct Task<'a> {
+    before: &'a Side,
+    after: &'a Side,
+    old: &'a (String, Manifest),
+    new: &'a (String, Manifest),
+    /// Tolerances of the study itself.
+    own: Vec<Allowance>,
+    options: &'a Options<'a>,
+}
+
+impl Task<'_> {
+    fn study(&self, name: &str) -> (StudyDiff, Found) {
+        let (old, new) = (&self.old.1, &self.new.1);
+        let (mut stages, mut found) = (Vec::new(), Found::default());
+        let is_in = |manifest: &Manifest, name: &str| manifest.stages.iter().any(|stage| stage.name == name);
+        let mut gone: Vec<&StageRecord> = old.stages.iter().filter(|stage| !is_in(new, &stage.name)).collect();
+        for stage in &new.stages {
+            let same_name = old.stages.iter().find(|earlier| earlier.name == stage.name);
+            let renamed = || Some(gone.remove(gone.iter().position(|earlier| is_renamed(earlier, stage))?));
+            stages.push(match same_name.or_else(renamed) {
+                None => one_sided_stage(stage, State::Added),
+                Some(earlier) => self.stage(name, earlier, stage, &mut found),
+            });
+        }
+        for stage in &gone {
+            found.flips.extend(self::gone(self.before, &self.old.0, name, stage, self.options));
+        }
+        stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, State::Removed)));
+        let state = State::of_parts(stages.iter().map(|stage| stage.state));
+        (StudyDiff { name: name.to_owned(), state, stages }, found)
+    }
+
+    fn stage(&self, study: &str, old: &StageRecord, new: &StageRecord, found: &mut Found) -> StageDiff {
+        let mut tables = Vec::new();
+        for record in &new.tables {
+            let Some(earlier) = old.tables.iter().find(|earlier| earlier.table() == record.table()) else {
+                tables.push(one_sided_table(record, State::Added));
+                continue;
+            };
+            tables.push(self.table(study, (old, earlier), (new, record), found));
+        }
+        let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.table() == table.table()));
+        tables.extend(gone.map(|table| one_sided_table(table, State::Removed)));
+        let mut why = why::reasons((&self.old.1, old), (&self.new.1, new));
+        let mut state = State::of_parts(tables.iter().map(|table| table.state));
+        if why::complete(old) && !why::complete(new) {
+            state = State::Changed;
+        }
+        if state.differs() && why.is_empty() {
+            why.push(why::unknown(&self.old.1, &self.new.1));
+        }
+        let renamed_from = (old.name != new.name).then(|| old.name.clone());
+        StageDiff { name: new.name.clone(), kind: new.kind.clone(), renamed_from, state, why, tables }
+    }
+
+    fn table(
+        &self,
+        study: &str,
+        (old, before): (&StageRecord, &TableRecord),
+        (new, after): (&StageRecord, &TableRecord),
+        found: &mut Found,
+    ) -> TableDiff {
+        if before.content == after.content {
+            return table::by_record(before, after, String::new());
+        }
+        let cache = self.options.cache;
+        let (first, second) = rayon::join(
+            || self.before.table(&self.old.0, old, before, cache),
+            || self.after.table(&self.new.0, new, after, cache),
+        );
+        let (stage, name) = after.name.split_once('.').unwrap_or((&after.name, ""));
+        for (side, file, problem) in [(self.before, &before.file, first.1), (self.after, &after.file, second.1)] {
+            found.damaged.extend(problem.map(|problem| Damage {
+                at: side.label.clone(),
+                study: study.to_owned(),
+                file: file.clone(),
+                problem,
+            }));
+        }
+        let (first, second) = match (first.0, second.0) {
+            (Got::Table(first), Got::Table(second)) => (first, second),
+            (Got::Without(note), Got::Table(_)) | (Got::Table(_), Got::Without(note)) => {
+                return table::by_record(before, after, note);
+            }
+            (Got::Without(one), Got::Without(other)) => {
+                let note = if one == other { one } else { format!("{one}, and {other}") };
+                return table::by_record(before, after, note);
+            }
+        };
+        let of_verdicts = new.kind == "report" && name == verdict::TABLE;
+        if of_verdicts {
+            found.flips.extend(verdict::flips(study, stage, &first, &second));
+        }
+        let tolerances = |column: &Column| {
+            let flagged = find(self.options.tolerances, stage, name, &column.name);
+            let meant = flagged.or_else(|| find(&self.own, stage, name, &column.name))?;
+            meant.of(column).ok()
+        };
+        let compared = |key| table::compare(&after.name, &first, &second, key, &tolerances);
+        let keys = if of_verdicts { &verdict::KEYS[..] } else { &[] };
+        let by_words = keys.iter().map(|key| compared(Some(key))).find(|diff| diff.note.is_empty());
+        by_words.unwrap_or_else(|| compared(None))
+    }
+}

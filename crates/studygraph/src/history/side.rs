@@ -1,0 +1,271 @@
+//! One set of results: those of a commit, or those in a folder.
+//!
+//! Must not know: what is done with them.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use rayon::prelude::*;
+
+use super::git::{Commit, Files, Repository};
+use crate::store::cache::Cache;
+use crate::store::file;
+use crate::store::index;
+use crate::store::manifest::{FORMAT, FileRecord, Manifest, StageRecord, TableRecord};
+use crate::store::parquet;
+use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
+use crate::table::data::Table;
+use declare::digest::Digest;
+
+/// Where the files come from.
+enum Source {
+    Folder(PathBuf),
+    Commit(Files),
+}
+
+/// One set of results.
+pub struct Side {
+    /// In words, for headings: `HEAD (59b124e)`.
+    pub label: String,
+    source: Source,
+    /// Set when the folder is that of one study, not that of all.
+    single: bool,
+}
+
+/// A table of one side.
+pub enum Got {
+    Table(Box<Table>),
+    /// Not there, or not to be trusted: a phrase that follows `ste.curve`.
+    Without(String),
+}
+
+/// The file of a table where the results lie.
+enum Held {
+    Table(Box<Table>),
+    Absent,
+    /// There, but git has its contents elsewhere: a phrase.
+    Elsewhere(&'static str),
+    /// Not what the manifest says: a phrase that follows the file's name.
+    Damaged(String),
+}
+
+impl Side {
+    /// The results in a folder: `<study>/manifest.json` in it, or `manifest.json` itself.
+    #[must_use]
+    pub fn folder(path: &Path, label: impl Into<String>) -> Self {
+        let single = path.join(MANIFEST).is_file();
+        Self { label: label.into(), source: Source::Folder(path.to_owned()), single }
+    }
+
+    /// The results that a commit holds in `folder`.
+    ///
+    /// # Errors
+    /// When git cannot list them.
+    pub fn commit(repository: &Repository, commit: &Commit, folder: &Path) -> Result<Self, String> {
+        let files = repository.files(commit, folder)?;
+        let single = files.paths().any(|path| path == Path::new(MANIFEST));
+        Ok(Self { label: commit.label(), source: Source::Commit(files), single })
+    }
+
+    /// Whether it holds the results of one study alone, whatever it is called.
+    #[must_use]
+    pub fn is_single(&self) -> bool {
+        self.single
+    }
+
+    /// The folder, when it is one.
+    #[must_use]
+    pub fn path(&self) -> Option<&Path> {
+        match &self.source {
+            Source::Folder(path) => Some(path),
+            Source::Commit(_) => None,
+        }
+    }
+
+    fn read(&self, path: &Path, most: u64) -> Result<Option<Vec<u8>>, String> {
+        match &self.source {
+            Source::Commit(files) => files.read(path),
+            Source::Folder(folder) => match file::read(&folder.join(path), most) {
+                Ok(bytes) => Ok(Some(bytes)),
+                Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
+                Err(error) => Err(format!("cannot be read: {error}")),
+            },
+        }
+    }
+
+    /// The folders with a manifest, sorted; one with an empty name for the results of a single study.
+    ///
+    /// # Errors
+    /// When the folder cannot be read.
+    pub fn studies(&self) -> Result<Vec<String>, String> {
+        if self.single {
+            return Ok(vec![String::new()]);
+        }
+        let mut names = match &self.source {
+            Source::Commit(files) => {
+                let manifests = files.paths().filter(|path| path.components().count() == 2 && path.ends_with(MANIFEST));
+                manifests.filter_map(|path| Some(path.parent()?.to_string_lossy().into_owned())).collect::<Vec<_>>()
+            }
+            Source::Folder(folder) => {
+                let entries = match fs::read_dir(folder) {
+                    Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+                    other => other.map_err(|error| format!("cannot read `{}`: {error}", folder.display()))?,
+                };
+                // Whatever it is: what is no file is told when it is read.
+                let with_manifest = entries.flatten().filter(|entry| entry.path().join(MANIFEST).exists());
+                with_manifest.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
+            }
+        };
+        names.sort();
+        Ok(names)
+    }
+
+    /// The manifest in one of [`Side::studies`].
+    ///
+    /// # Errors
+    /// A sentence, when it is damaged, of another format, or a pointer of Git LFS.
+    pub fn manifest(&self, study: &str) -> Result<Option<Manifest>, String> {
+        let path = Path::new(study).join(MANIFEST);
+        let wrong = |problem: &str| format!("`{}` of {} {problem}", path.display(), self.label);
+        let read = self.read(&path, file::MOST_MANIFEST).map_err(|problem| wrong(&problem))?;
+        let Some(bytes) = read else { return Ok(None) };
+        if let Some(pointer) = pointer(&bytes) {
+            return Err(wrong(pointer));
+        }
+        let manifest: Manifest =
+            serde_json::from_slice(&bytes).map_err(|error| wrong(&format!("is damaged: {error}")))?;
+        if manifest.format == FORMAT {
+            Ok(Some(manifest))
+        } else {
+            Err(wrong(&format!("has format {}; this version reads format {FORMAT}", manifest.format)))
+        }
+    }
+
+    /// A table of a study, checked against its manifest, and what is wrong with its file. Where the file is not kept or
+    /// damaged, the cache may still have the table.
+    pub fn table(
+        &self,
+        study: &str,
+        stage: &StageRecord,
+        record: &TableRecord,
+        cache: Option<&Cache>,
+    ) -> (Got, Option<String>) {
+        let (why, damage) = match self.held(study, record) {
+            Held::Table(table) => return (Got::Table(table), None),
+            Held::Absent => match &self.source {
+                Source::Commit(_) => (format!("is not kept at {}", self.label), None),
+                Source::Folder(_) => (format!("is not there in {}", self.label), None),
+            },
+            Held::Elsewhere(why) => (format!("at {} {why}", self.label), None),
+            Held::Damaged(problem) => (format!("at {} {problem}", self.label), Some(problem)),
+        };
+        (cached(cache, stage, record).map_or(Got::Without(why), |table| Got::Table(Box::new(table))), damage)
+    }
+
+    fn held(&self, study: &str, record: &TableRecord) -> Held {
+        // A manifest from elsewhere may name anything.
+        if Path::new(&record.file).file_name().is_none_or(|name| *name != *record.file) {
+            return Held::Damaged("lies elsewhere".to_owned());
+        }
+        let bytes = match self.read(&Path::new(study).join(&record.file), file::MOST_TABLE) {
+            Err(problem) => return Held::Damaged(problem),
+            Ok(None) => return Held::Absent,
+            Ok(Some(bytes)) => bytes,
+        };
+        if let Some(pointer) = pointer(&bytes) {
+            return Held::Elsewhere(pointer);
+        }
+        match parquet::read(bytes) {
+            Err(problem) => Held::Damaged(format!("is damaged: {problem}")),
+            Ok(table) if table.content_hash().to_string() == record.content => Held::Table(Box::new(table)),
+            Ok(_) => Held::Damaged("holds other values than its manifest says".to_owned()),
+        }
+    }
+
+    /// The files of a table that are not the lines it holds.
+    fn changed_files(&self, study: &str, record: &TableRecord, table: &Table) -> Vec<(String, String)> {
+        let changed = |file: &&String| match self.read(&Path::new(study).join(file), file::MOST_TABLE) {
+            Ok(Some(bytes)) => {
+                pointer(&bytes).is_none() && held_text(table, file).is_some_and(|text| text.as_bytes() != bytes)
+            }
+            _ => false,
+        };
+        let told = |file: &String| (file.clone(), format!("is not what the table `{}` holds", record.name));
+        // A manifest from elsewhere may name anything.
+        let here = |file: &&String| Path::new(file).file_name().is_some_and(|name| name == file.as_str());
+        record.files.iter().filter(here).filter(changed).map(told).collect()
+    }
+
+    /// Whether this file is there, whatever is in it.
+    #[must_use]
+    pub fn has(&self, study: &str, file: &str) -> bool {
+        let path = Path::new(study).join(file);
+        match &self.source {
+            Source::Commit(files) => files.has(&path),
+            Source::Folder(folder) => folder.join(path).symlink_metadata().is_ok(),
+        }
+    }
+
+    /// What is wrong with the files that a manifest lists, but for tables that are `read` anyway: each file, and a phrase
+    /// that follows its name. What is not there is for the caller to judge: git seldom keeps all.
+    #[must_use]
+    pub fn damage(
+        &self,
+        study: &str,
+        manifest: &Manifest,
+        read: &(dyn Fn(&TableRecord) -> bool + Sync),
+    ) -> Vec<(String, String)> {
+        let tables: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+        let of_table = |record: &&TableRecord| match self.held(study, record) {
+            Held::Damaged(problem) => vec![(record.file.clone(), problem)],
+            Held::Table(table) => self.changed_files(study, record, &table),
+            _ => Vec::new(),
+        };
+        let looked_at = |record: &&&TableRecord| !read(record) || !record.files.is_empty();
+        let mut found: Vec<(String, String)> = tables.par_iter().filter(looked_at).flat_map_iter(of_table).collect();
+        let known = match &self.source {
+            Source::Folder(folder) => Folder::new(folder, study).known().ok().flatten(),
+            Source::Commit(_) => None,
+        };
+        let others = manifest.files.par_iter().filter(|listed| here(&listed.file));
+        let others: Vec<(String, String)> = others
+            .filter_map(|listed| Some((listed.file.clone(), self.changed(study, listed, known.as_ref())?)))
+            .collect();
+        // What is wrong with a table's values says more than that its bytes are other ones.
+        let told: Vec<String> = found.iter().map(|(file, _)| file.clone()).collect();
+        found.extend(others.into_iter().filter(|(file, _)| !told.contains(file)));
+        found
+    }
+
+    /// Why a listed file that is there is not the one that was written.
+    fn changed(&self, study: &str, listed: &FileRecord, known: Option<&Known>) -> Option<String> {
+        let bytes = match self.read(&Path::new(study).join(&listed.file), file::MOST_TABLE) {
+            Err(problem) => return Some(problem),
+            Ok(bytes) => bytes.filter(|bytes| pointer(bytes).is_none())?,
+        };
+        let expected = known.and_then(|known| known.expected(&listed.file)).map(|(_, digest)| digest);
+        let size = bytes.len() as u64;
+        match (listed.bytes, expected.or(listed.digest.as_deref())) {
+            (Some(expected), _) if size != expected => Some(format!("has {size} bytes; its manifest says {expected}")),
+            (_, Some(digest)) if index::digest(&bytes) != digest => {
+                Some("has other bytes than were written".to_owned())
+            }
+            _ => None,
+        }
+    }
+}
+
+/// What a file of Git LFS looks like before its contents were fetched.
+fn pointer(bytes: &[u8]) -> Option<&'static str> {
+    bytes
+        .starts_with(b"version https://git-lfs.github.com/spec/")
+        .then_some("is a pointer of Git LFS: `git lfs pull` fetches it")
+}
+
+/// The table as it was computed on this machine, chunk by chunk.
+fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
+    let part = |key: &str| cache?.table(Digest::from_hex(key)?, record.table()).ok();
+    let parts: Vec<Table> = stage.keys.iter().map(|record| part(&record.key)).collect::<Option<_>>()?;
+    let table = Table::concatenated(&parts.iter().collect::<Vec<_>>()).ok()??;
+    (table.content_hash().to_string() == record.content).then_some(table)
+}

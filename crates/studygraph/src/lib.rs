@@ -1,0 +1,15 @@
+//! Studies as graphs of stages: read from YAML, run with a cache, published, compared. Which stages there are, whoever
+//! uses it says ([`program::Program`]).
+//!
+//! Must not know: gears.
+
+pub mod about;
+pub mod diff;
+pub mod history;
+pub mod page;
+pub mod program;
+pub mod runner;
+pub mod stage;
+pub mod store;
+pub mod study;
+pub mod table;

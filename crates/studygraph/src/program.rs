@@ -1,0 +1,23 @@
+//! The program that runs studies, handed in by itself: its kinds of stages, and what it knows of itself.
+//!
+//! Must not know: which kinds there are.
+
+use crate::about::About;
+use crate::stage::Kind;
+
+/// A program that runs studies.
+pub struct Program {
+    /// Every kind of stage, in the order in which they are listed to the user.
+    pub kinds: &'static [&'static Kind],
+    /// The digest of the code that the tables of a kind, called by its name, come from; part of every cache key.
+    pub code_of: fn(&str) -> String,
+    pub about: About,
+}
+
+impl Program {
+    /// The kind called `name`.
+    #[must_use]
+    pub fn kind(&self, name: &str) -> Option<&'static Kind> {
+        self.kinds.iter().copied().find(|kind| kind.name == name)
+    }
+}

@@ -1,0 +1,366 @@
+//! Where every stage of a run stands: one state each, one function that changes it.
+//!
+//! ```text
+//! Want → Ready → Hit
+//!              → Queued → Running → Done | Failed | Skipped
+//! Want → Skipped     Queued → Skipped
+//! ```
+//!
+//! A plan is a board on which everything that can be known without computing is known; a run goes on from there. Must
+//! not know: threads, how a stage is computed.
+
+use std::sync::Arc;
+
+use super::events::{Event, Observer};
+use super::graph::Graph;
+use super::key::{self, Part, Why, explain, phrase};
+use super::options::Options;
+use super::outcome::Fault;
+use crate::store::cache::{Cache, Lookup};
+use crate::store::entry::{Entry, OfRun, StoredTable};
+use crate::store::journal::{Journal, JournalStage};
+use crate::study::Study;
+use crate::table::data::Table;
+use declare::digest::Digest;
+use declare::error::Diagnostic;
+use declare::work::Work;
+
+/// Where a stage stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum State {
+    /// Not all its inputs are known.
+    Want,
+    /// They are, so its keys are.
+    Ready,
+    /// The cache has all of it.
+    Hit,
+    Queued,
+    Running,
+    Done,
+    Failed,
+    /// Not run: not asked for, or something it needs failed, or the user stopped.
+    Skipped,
+}
+
+impl State {
+    #[must_use]
+    pub const fn is_final(self) -> bool {
+        matches!(self, Self::Hit | Self::Done | Self::Failed | Self::Skipped)
+    }
+
+    /// Whether its tables are there.
+    #[must_use]
+    pub const fn has_tables(self) -> bool {
+        matches!(self, Self::Hit | Self::Done)
+    }
+
+    const fn may_become(self, next: Self) -> bool {
+        matches!(
+            (self, next),
+            (Self::Want, Self::Ready | Self::Skipped)
+                | (Self::Ready, Self::Hit | Self::Queued)
+                | (Self::Queued, Self::Running | Self::Skipped)
+                | (Self::Running, Self::Done | Self::Failed | Self::Skipped)
+        )
+    }
+}
+
+/// A change of state, with what comes with it.
+pub enum Step {
+    Ready(Arc<Vec<Part>>),
+    Hit(Vec<StoredTable>),
+    Queue(Vec<Why>),
+    Start,
+    Finish(Vec<StoredTable>),
+    Fail(Fault),
+    Skip(String),
+}
+
+impl Step {
+    const fn state(&self) -> State {
+        match self {
+            Self::Ready(_) => State::Ready,
+            Self::Hit(_) => State::Hit,
+            Self::Queue(_) => State::Queued,
+            Self::Start => State::Running,
+            Self::Finish(_) => State::Done,
+            Self::Fail(_) => State::Failed,
+            Self::Skip(_) => State::Skipped,
+        }
+    }
+}
+
+/// What is known about a part that was looked up or computed.
+#[derive(Default)]
+pub struct Known {
+    pub entry: Option<Entry>,
+    /// Just computed and still in memory.
+    pub tables: Vec<Arc<Table>>,
+}
+
+/// What is known about a stage.
+pub struct Progress {
+    pub state: State,
+    /// From Ready on.
+    pub parts: Arc<Vec<Part>>,
+    pub known: Vec<Known>,
+    /// The parts to compute.
+    pub missing: Vec<usize>,
+    pub why: Vec<Why>,
+    /// Parts that have not reported yet.
+    pub open: usize,
+    /// Parts that were computed.
+    pub ran: usize,
+    /// Whether a part was not even begun, or given up, because the run stops.
+    pub given_up: bool,
+    /// The fault of the first part that has one.
+    pub fault: Option<(usize, Fault)>,
+    /// The key of what several chunks are together.
+    pub whole: Option<Digest>,
+    /// From Hit or Done on.
+    pub tables: Vec<StoredTable>,
+    pub skipped: String,
+}
+
+/// All stages of a run.
+pub struct Board<'a> {
+    pub study: &'a Study,
+    pub graph: Graph,
+    pub nodes: Vec<Progress>,
+    pub observer: &'a dyn Observer,
+    /// Why nothing new is begun.
+    pub halted: Option<String>,
+    cache: &'a Cache,
+    options: &'a Options,
+    pub journal: Journal,
+}
+
+impl<'a> Board<'a> {
+    /// # Errors
+    /// As [`Graph::new`]; a name in the options that is no stage.
+    pub fn new(
+        study: &'a Study,
+        cache: &'a Cache,
+        options: &'a Options,
+        observer: &'a dyn Observer,
+    ) -> Result<Self, Diagnostic> {
+        let graph = Graph::new(study, &options.wanted)?;
+        if let super::options::Force::Stages(names) = &options.force {
+            names.iter().try_for_each(|name| super::graph::find(study, name).map(drop))?;
+        }
+        let needed = graph.needed(study, &options.only)?;
+        let progress = || Progress {
+            state: State::Want,
+            parts: Arc::new(Vec::new()),
+            known: Vec::new(),
+            missing: Vec::new(),
+            why: Vec::new(),
+            open: 0,
+            ran: 0,
+            given_up: false,
+            fault: None,
+            whole: None,
+            tables: Vec::new(),
+            skipped: String::new(),
+        };
+        let nodes = needed.iter().map(|_| progress()).collect();
+        let journal = cache.journal(&study.name);
+        let mut board = Self { study, graph, nodes, observer, halted: None, cache, options, journal };
+        for (node, needed) in needed.into_iter().enumerate() {
+            if !needed {
+                board.step(node, Step::Skip("not asked for".to_owned()));
+            }
+        }
+        Ok(board)
+    }
+
+    /// The one place where a state changes.
+    pub fn step(&mut self, node: usize, step: Step) {
+        let stage = self.study.nodes[node].name.as_str();
+        let progress = &mut self.nodes[node];
+        let next = step.state();
+        debug_assert!(progress.state.may_become(next), "`{stage}`: {:?} to {next:?}", progress.state);
+        progress.state = next;
+        let event = match step {
+            Step::Ready(parts) => {
+                progress.known = parts.iter().map(|_| Known::default()).collect();
+                progress.parts = parts;
+                return;
+            }
+            Step::Hit(tables) => {
+                progress.tables = tables;
+                Event::Hit { stage }
+            }
+            Step::Queue(why) => {
+                progress.why = why;
+                progress.open = progress.missing.len();
+                return;
+            }
+            Step::Start => {
+                let why = phrase(&progress.why);
+                return self.observer.event(&Event::Started { stage, why: &why, chunks: progress.missing.len() });
+            }
+            Step::Finish(tables) => {
+                progress.tables = tables;
+                progress.known.iter_mut().for_each(|known| known.tables.clear());
+                Event::Finished { stage, seconds: progress.seconds() }
+            }
+            Step::Fail(fault) => {
+                progress.known.iter_mut().for_each(|known| known.tables.clear());
+                let (_, fault) = progress.fault.insert((0, fault));
+                Event::Failed { stage, fault }
+            }
+            Step::Skip(why) => {
+                progress.skipped = why;
+                Event::Skipped { stage, why: &progress.skipped }
+            }
+        };
+        self.observer.event(&event);
+    }
+
+    /// Takes every stage as far as it goes without computing; gives those that were queued.
+    pub fn settle(&mut self) -> Vec<usize> {
+        let mut queued = Vec::new();
+        for node in self.graph.order.clone() {
+            if self.nodes[node].state != State::Want {
+                continue;
+            }
+            let inputs = self.graph.inputs[node].iter().map(|input| input.node);
+            let lost = |&input: &usize| matches!(self.nodes[input].state, State::Failed | State::Skipped);
+            if let Some(lost) = inputs.clone().find(lost) {
+                let verb = if self.nodes[lost].state == State::Failed { "failed" } else { "was not run" };
+                self.step(node, Step::Skip(format!("`{}` {verb}", self.study.nodes[lost].name)));
+            } else if inputs.clone().all(|input| self.nodes[input].state.has_tables()) {
+                let tables = |input: usize| self.nodes[input].tables.as_slice();
+                let parts = key::parts(self.study, &self.graph, node, tables);
+                self.step(node, Step::Ready(Arc::new(parts)));
+                if self.look_up(node) {
+                    queued.push(node);
+                }
+            }
+        }
+        queued
+    }
+
+    /// Takes a ready stage to Hit, or to Queued (then true).
+    fn look_up(&mut self, node: usize) -> bool {
+        let name = &self.study.nodes[node].name;
+        let none = JournalStage::default();
+        let last = self.journal.stage(name).unwrap_or(&none);
+        let forced = self.options.force.applies(name);
+        let parts = Arc::clone(&self.nodes[node].parts);
+        let mut reasons: Vec<Why> = Vec::new();
+        let progress = &mut self.nodes[node];
+        for (index, part) in parts.iter().enumerate() {
+            let why = match self.cache.look_up(part.key) {
+                _ if forced => vec![Why::Forced],
+                Lookup::Found(entry) => {
+                    progress.known[index].entry = Some(entry);
+                    continue;
+                }
+                Lookup::Damaged(problem) => vec![Why::ObjectDamaged(problem)],
+                Lookup::Missing if last.keys.iter().any(|record| record.key == part.record.key) => {
+                    vec![Why::ObjectMissing]
+                }
+                Lookup::Missing if last.failed.contains(&part.record.key) => vec![Why::FailedBefore],
+                Lookup::Missing => explain(&last.keys, &part.record, part.axis.as_ref().map(|(field, _)| *field)),
+            };
+            progress.missing.push(index);
+            reasons.extend(why);
+        }
+        reasons.dedup();
+        let mut distinct: Vec<Why> = Vec::new();
+        for why in reasons {
+            if !distinct.contains(&why) {
+                distinct.push(why);
+            }
+        }
+        if distinct.is_empty() {
+            match self.known_tables(node) {
+                Some(tables) => {
+                    self.step(node, Step::Hit(tables));
+                    return false;
+                }
+                None => distinct.push(Why::NotPutTogether),
+            }
+        }
+        self.step(node, Step::Queue(distinct));
+        true
+    }
+
+    /// What a stage's tables are, when all its parts are known, and, where there are several, what they are together.
+    pub fn known_tables(&mut self, node: usize) -> Option<Vec<StoredTable>> {
+        let progress = &mut self.nodes[node];
+        let entries: Vec<&Entry> = progress.known.iter().filter_map(|known| known.entry.as_ref()).collect();
+        if entries.len() != progress.parts.len() {
+            return None;
+        }
+        if let [entry] = entries[..] {
+            return Some(entry.tables.clone());
+        }
+        let whole = key::whole(entries.iter().map(|entry| entry.tables.as_slice()));
+        progress.whole = Some(whole);
+        match self.cache.look_up(whole) {
+            Lookup::Found(entry) => Some(entry.tables),
+            Lookup::Missing | Lookup::Damaged(_) => None,
+        }
+    }
+
+    /// Whether a stage that is not finished yet reads from this one.
+    #[must_use]
+    pub fn is_read(&self, node: usize) -> bool {
+        self.graph.readers[node].iter().any(|&reader| !self.nodes[reader].state.is_final())
+    }
+
+    /// Skips what cannot be reached any more.
+    pub fn close(&mut self) {
+        for node in self.graph.order.clone() {
+            if !self.nodes[node].state.is_final() {
+                let why = self.halted.clone().unwrap_or_else(|| "not reached".to_owned());
+                self.step(node, Step::Skip(why));
+            }
+        }
+    }
+
+    /// The journal after this run: stages without news keep what they had.
+    #[must_use]
+    pub fn next_journal(&self) -> Journal {
+        let stages = self.study.nodes.iter().zip(&self.nodes).filter_map(|(node, progress)| {
+            let last = self.journal.stage(&node.name).cloned();
+            let keys = || progress.parts.iter().map(|part| part.record.clone());
+            match progress.state {
+                State::Hit | State::Done => Some(JournalStage {
+                    name: node.name.clone(),
+                    keys: keys().collect(),
+                    whole: progress.whole.map(|key| key.to_string()),
+                    failed: Vec::new(),
+                }),
+                State::Failed => Some(JournalStage {
+                    name: node.name.clone(),
+                    failed: keys().map(|record| record.key).collect(),
+                    ..last.unwrap_or_default()
+                }),
+                _ => last,
+            }
+        });
+        Journal { stages: stages.collect() }
+    }
+}
+
+impl Progress {
+    /// Seconds of computing, whenever that was.
+    #[must_use]
+    pub fn seconds(&self) -> f64 {
+        self.of_runs().map(|of_run| of_run.seconds).sum()
+    }
+
+    /// The work that was counted, of all parts that are known.
+    pub fn work(&self) -> Work {
+        self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work)))
+    }
+
+    /// What is told of the parts that are known.
+    pub fn of_runs(&self) -> impl Iterator<Item = &OfRun> {
+        self.known.iter().filter_map(|known| Some(&known.entry.as_ref()?.of_run))
+    }
+}

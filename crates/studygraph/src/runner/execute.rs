@@ -1,0 +1,329 @@
+//! Running a study: stages and chunks on all threads, everything finished kept at once.
+//!
+//! Whatever is finished is in the cache before anything depends on it, so a run can be stopped or killed at any moment
+//! and the next one goes on from there. Failures are never kept. Tables stay in memory only while a stage that is not
+//! finished reads them. Order and number of threads enter no result. Must not know: how progress is drawn.
+
+use std::collections::{BTreeMap, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::path::Path;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+use rayon::{ScopeFifo, ThreadPoolBuilder};
+
+use super::board::{Board, State, Step};
+use super::events::{Event, Observer, Silent};
+use super::options::Options;
+use super::outcome::{Fault, Outcome};
+use super::plan;
+use super::work::{Ended, message};
+use crate::store::cache::Cache;
+use crate::store::entry::StoredTable;
+use crate::store::error::StoreError;
+use crate::store::facts::Facts;
+use crate::store::results::{Draw, Folder, Published, Source};
+use crate::study::Study;
+use crate::table::data::Table;
+use declare::error::Diagnostic;
+
+/// Why a run could not even be begun or ended.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    #[error(transparent)]
+    Study(#[from] Diagnostic),
+    /// It would take more than it may.
+    #[error("{}", .0.message)]
+    Beyond(Box<Diagnostic>),
+    #[error(transparent)]
+    Store(#[from] StoreError),
+    #[error("cannot start {threads} threads: {problem}")]
+    Threads { threads: usize, problem: String },
+}
+
+/// Runs a study and brings its results folder up to date; `draw` draws the report.
+///
+/// # Errors
+/// As [`execute`] and [`Folder::publish`]. What could not be kept is published all the same, and told last of all.
+pub fn run(
+    study: &Study,
+    cache: &Cache,
+    options: &Options,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+    folder: &Folder,
+    draw: Option<Draw<'_>>,
+) -> Result<(Outcome, Published), RunError> {
+    let facts =
+        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
+    let publish = |outcome: &Outcome| {
+        let next = |file: &str| {
+            observer.event(&Event::Publishing { file });
+            // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
+            if !outcome.stopped && stop.load(Ordering::Relaxed) {
+                return Err(StoreError::Stopped { path: file.to_owned() });
+            }
+            Ok(())
+        };
+        let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
+        folder.publish(
+            outcome.manifest(study),
+            facts,
+            Source { bytes: &bytes, draw, next: &next, code: study.program.about.code },
+        )
+    };
+    let mut outcome = execute(study, cache, options, observer, stop)?;
+    let mut published = publish(&outcome);
+    if let Err(StoreError::Damaged { .. }) = published {
+        // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
+        outcome = execute(study, cache, options, observer, stop)?;
+        published = publish(&outcome);
+    }
+    for message in &warnings(cache, &outcome) {
+        observer.event(&Event::Warning { message });
+    }
+    Ok((outcome, published?))
+}
+
+/// What the next run will miss.
+#[must_use]
+pub fn warnings(cache: &Cache, outcome: &Outcome) -> Vec<String> {
+    let (entries, journal) = cache.problems();
+    let entries = entries.map(|problem| {
+        let again = match outcome.unkept(cache) {
+            0 => String::new(),
+            1 => "; the next run computes 1 stage again".to_owned(),
+            many => format!("; the next run computes {many} stages again"),
+        };
+        format!("the cache `{}` does not keep what was computed: {problem}{again}", cache.root().display())
+    });
+    let journal =
+        journal.map(|problem| format!("{problem}; until one can be written, runs cannot say why they compute"));
+    entries.into_iter().chain(journal).collect()
+}
+
+/// Runs a study.
+///
+/// # Errors
+/// What is wrong with its graph or the options. Stages that fail are no error here: the outcome tells; nor is a cache that
+/// takes nothing.
+pub fn execute(
+    study: &Study,
+    cache: &Cache,
+    options: &Options,
+    observer: &dyn Observer,
+    stop: &AtomicBool,
+) -> Result<Outcome, RunError> {
+    let began = Instant::now();
+    let mut board = Board::new(study, cache, options, &Silent)?;
+    let queued = board.settle();
+    board.observer = observer;
+    let plan = plan::of(&board, options);
+    if let Some(refused) = plan.refused {
+        return Err(RunError::Beyond(Box::new(refused)));
+    }
+    observer.event(&Event::Planned { plan: &plan });
+    if !queued.is_empty() {
+        let threads = options.threads();
+        let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("stage {index}")).build();
+        let pool = pool.map_err(|error| RunError::Threads { threads, problem: error.to_string() })?;
+        let run = Run {
+            cache,
+            options,
+            observer,
+            stop,
+            board: Mutex::new(board),
+            loaded: Mutex::default(),
+            shares: Mutex::default(),
+            turns: Mutex::default(),
+        };
+        pool.in_place_scope_fifo(|scope| run.spawn(scope, 0, queued));
+        debug_assert!(run.board().halted.is_some() || run.loaded().is_empty(), "nobody reads these tables any more");
+        board = run.board.into_inner().unwrap_or_else(PoisonError::into_inner);
+    }
+    board.close();
+    let journal = board.next_journal();
+    if journal != board.journal {
+        cache.put_journal(&study.name, &journal);
+    }
+    let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
+    Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
+}
+
+/// Tables by node and name.
+pub(super) type Loaded = BTreeMap<(usize, String), Arc<Table>>;
+
+pub(super) struct Run<'a> {
+    pub(super) cache: &'a Cache,
+    options: &'a Options,
+    pub(super) observer: &'a dyn Observer,
+    pub(super) stop: &'a AtomicBool,
+    /// Locked only for moments, and before `loaded`.
+    board: Mutex<Board<'a>>,
+    loaded: Mutex<Loaded>,
+    /// By node and part, 0 to 1.
+    pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
+    turns: Mutex<Turns>,
+}
+
+/// Who is at work, and who waits until nobody is.
+#[derive(Default)]
+struct Turns {
+    running: usize,
+    /// Stages that run alone, in the order in which they became ready.
+    waiting: VecDeque<usize>,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn board(&self) -> MutexGuard<'_, Board<'a>> {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn loaded(&self) -> MutexGuard<'_, Loaded> {
+        self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Starts what was queued, after `finished` stages came to their end. Stages that run alone wait until no other one
+    /// runs or can. They are held back here and not by a lock in the stage: a thread that waits for parts of one stage
+    /// takes up another one meanwhile, which must never wait for the first.
+    fn spawn<'s>(&'s self, scope: &ScopeFifo<'s>, finished: usize, queued: Vec<usize>) {
+        let nodes = self.board().study.nodes.as_slice();
+        let (alone, mut ready): (Vec<usize>, Vec<usize>) =
+            queued.into_iter().partition(|node| nodes[*node].stage.runs_alone());
+        {
+            let mut turns = self.turns.lock().unwrap_or_else(PoisonError::into_inner);
+            turns.waiting.extend(alone);
+            turns.running = turns.running - finished + ready.len();
+            if turns.running == 0
+                && let Some(next) = turns.waiting.pop_front()
+            {
+                turns.running = 1;
+                ready.push(next);
+            }
+        }
+        for node in ready {
+            let missing = self.board().nodes[node].missing.clone();
+            if missing.is_empty() {
+                scope.spawn_fifo(move |scope| {
+                    self.board().step(node, Step::Start);
+                    self.complete(scope, node);
+                });
+            }
+            for index in missing {
+                scope.spawn_fifo(move |scope| self.run_part(scope, node, index));
+            }
+        }
+    }
+
+    fn run_part<'s>(&'s self, scope: &ScopeFifo<'s>, node: usize, index: usize) {
+        let result = if self.begin(node) { self.compute(node, index) } else { Err(Ended::GivenUp) };
+        let mut board = self.board();
+        let progress = &mut board.nodes[node];
+        match result {
+            Ok(known) => {
+                progress.known[index] = known;
+                progress.ran += 1;
+            }
+            Err(Ended::GivenUp) => progress.given_up = true,
+            Err(Ended::Fault(fault)) => {
+                if progress.fault.as_ref().is_none_or(|(first, _)| index < *first) {
+                    progress.fault = Some((index, fault));
+                }
+                if !self.options.keep_going {
+                    let why = format!("`{}` failed", board.study.nodes[node].name);
+                    board.halted.get_or_insert(why);
+                }
+            }
+        }
+        board.nodes[node].open -= 1;
+        if board.nodes[node].open == 0 {
+            drop(board);
+            self.complete(scope, node);
+        }
+    }
+
+    /// Whether a part may begin; the first one starts its stage.
+    fn begin(&self, node: usize) -> bool {
+        let mut board = self.board();
+        if self.stop.load(Ordering::Relaxed) {
+            board.halted = Some("stopped".to_owned());
+        }
+        if board.halted.is_some() {
+            return false;
+        }
+        if board.nodes[node].state == State::Queued {
+            board.step(node, Step::Start);
+        }
+        true
+    }
+
+    /// All parts of a stage have reported.
+    fn complete<'s>(&'s self, scope: &ScopeFifo<'s>, node: usize) {
+        let mut board = self.board();
+        let step = if let Some((_, fault)) = board.nodes[node].fault.take() {
+            Step::Fail(fault)
+        } else if board.nodes[node].given_up {
+            if self.stop.load(Ordering::Relaxed) {
+                board.halted = Some("stopped".to_owned());
+            }
+            Step::Skip(board.halted.clone().unwrap_or_else(|| "stopped".to_owned()))
+        } else {
+            drop(board);
+            let tables = catch_unwind(AssertUnwindSafe(|| self.put_together(node)));
+            let step = match tables.unwrap_or_else(|panic| Err(Ended::Fault(Fault::Bug(message(&*panic))))) {
+                Ok(tables) => Step::Finish(tables),
+                Err(Ended::Fault(fault)) => Step::Fail(fault),
+                Err(Ended::GivenUp) => Step::Skip("stopped".to_owned()),
+            };
+            board = self.board();
+            step
+        };
+        if matches!(step, Step::Fail(_)) && !self.options.keep_going {
+            let why = format!("`{}` failed", board.study.nodes[node].name);
+            board.halted.get_or_insert(why);
+        }
+        board.step(node, step);
+        let queued = if board.halted.is_some() { Vec::new() } else { board.settle() };
+        self.loaded().retain(|(node, _), _| board.is_read(*node));
+        drop(board);
+        self.spawn(scope, 1, queued);
+    }
+
+    /// What the tables of a stage are, all parts being known; keeps in memory what others are going to read.
+    fn put_together(&self, node: usize) -> Result<Vec<StoredTable>, Ended> {
+        let (parts, known, names, is_read) = {
+            let mut board = self.board();
+            let known = board.known_tables(node);
+            let entry = board.nodes[node].known.first().and_then(|known| known.entry.as_ref());
+            let names: Vec<String> =
+                entry.iter().flat_map(|entry| &entry.tables).map(|table| table.name.clone()).collect();
+            (Arc::clone(&board.nodes[node].parts), known, names, board.is_read(node))
+        };
+        let single = parts.len() == 1;
+        if !is_read && let Some(known) = known {
+            return Ok(known);
+        }
+        let mut stored = Vec::new();
+        for name in &names {
+            if single && self.fresh(node, 0, name).is_none() {
+                continue;
+            }
+            let table = self.whole(node, &parts, name)?;
+            if known.is_none() {
+                stored.push(StoredTable::describe(&table)?);
+            }
+            if is_read {
+                self.loaded().insert((node, name.clone()), table);
+            }
+        }
+        if let Some(known) = known {
+            return Ok(known);
+        }
+        let whole = self.board().nodes[node].whole;
+        if let Some(whole) = whole {
+            self.cache.put_whole(whole, stored.clone())?;
+        }
+        Ok(stored)
+    }
+}

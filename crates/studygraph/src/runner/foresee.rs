@@ -1,0 +1,170 @@
+//! What a run will take, before it runs: rows, bytes, memory and time of every stage that has something to compute.
+//!
+//! Rows of stages that are up to date are known, those of the others are estimated, and go into the estimates of whoever
+//! reads them. Must not know: limits, how any of it is shown.
+
+use std::collections::BTreeMap;
+
+use super::board::Board;
+use super::chunk::chunks;
+use crate::stage::{Ahead, Estimate, Rows, Stage};
+use declare::record::Record;
+
+/// What a stage, or a whole run, will take.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Expected {
+    /// By table, what is to be computed; of a run one line, without a name.
+    pub tables: Vec<(String, Rows)>,
+    /// Bytes on disk, in the cache and in the results, at most.
+    pub bytes: u64,
+    /// The most bytes in memory.
+    pub memory: u64,
+    /// About how long it takes on so many threads as there are.
+    pub seconds: f64,
+    /// Whether a thread that waits for its parts may begin another stage meanwhile.
+    pub parallel: bool,
+}
+
+/// All stages of a run.
+pub struct Foresight {
+    /// By node; nothing where nothing is to be computed.
+    pub stages: Vec<Option<Expected>>,
+    pub total: Expected,
+}
+
+/// Bytes of the program itself.
+const PROGRAM: u64 = 20_000_000;
+/// What the process holds over what it asked for at once: the system's allocator keeps much of what was given back. 1.4 to 2
+/// were measured with long tables.
+const KEPT: u64 = 2;
+
+/// Another record in the place of a node's own, to see what would become of the run.
+pub type Instead<'a> = Option<(usize, &'a Record)>;
+
+/// Looks ahead.
+#[must_use]
+pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
+    let mut wholes: Vec<Estimate> = board.nodes.iter().map(|_| Estimate::default()).collect();
+    let mut stages: Vec<Option<Expected>> = vec![None; board.nodes.len()];
+    let mut processor = 0.0;
+    if board.nodes.iter().all(|progress| progress.state.is_final()) {
+        let total = Expected { tables: Vec::new(), bytes: 0, memory: 0, seconds: 0.0, parallel: false };
+        return Foresight { stages, total };
+    }
+    for &node in &board.graph.order {
+        let (progress, of_study, demand) = (&board.nodes[node], &board.study.nodes[node], &board.graph.demands[node]);
+        if progress.state.is_final() {
+            let rows: BTreeMap<&str, usize> = progress.tables.iter().map(|table| (&*table.name, table.rows)).collect();
+            wholes[node] = board.graph.outputs[node].iter().fold(Estimate::new(false), |all, schema| {
+                let found = rows.get(&*schema.name).copied().unwrap_or(0);
+                all.columns(demand, schema.clone(), Rows::exact(found))
+            });
+            continue;
+        }
+        let mut ahead = Ahead::default();
+        let mut read = 0;
+        for input in &board.graph.inputs[node] {
+            read += wholes[input.node].held;
+            for want in &input.wants {
+                let rows = wholes[input.node].of_table(&want.table).unwrap_or(Rows::NONE);
+                ahead.know(&input.port, &want.table, rows);
+            }
+        }
+        let record = instead.filter(|(at, _)| *at == node).map_or(&of_study.record, |(_, record)| record);
+        let estimate = |stage: &dyn Stage| stage.estimate(demand, &ahead);
+        let built = |record: &Record| (of_study.kind.build)(record).ok().map(|stage| estimate(stage.as_ref()));
+        let whole = match instead {
+            Some((at, record)) if at == node => built(record).unwrap_or_default(),
+            _ => estimate(of_study.stage.as_ref()),
+        };
+        let parts: Vec<Estimate> = match chunks(of_study.kind, record) {
+            None => vec![whole.clone()],
+            Some(all) => {
+                let known = !progress.parts.is_empty() && instead.is_none();
+                let missing = |index: &usize| !known || progress.missing.contains(index);
+                let values = all.values.iter().enumerate().filter(|(index, _)| missing(index));
+                values.filter_map(|(_, values)| built(&record.with_axis(all.field, values))).collect()
+            }
+        };
+        let (expected, alone) = together(&whole, &parts, read, threads);
+        processor += alone;
+        stages[node] = Some(expected);
+        wholes[node] = whole;
+    }
+    let total = total(board, &stages, &wholes, processor, threads);
+    Foresight { stages, total }
+}
+
+/// A stage from the parts that are to be computed, and its seconds on one thread.
+fn together(whole: &Estimate, parts: &[Estimate], read: u64, threads: usize) -> (Expected, f64) {
+    let mut tables: Vec<(String, Rows)> = Vec::new();
+    for (name, rows) in parts.iter().flat_map(|part| &part.tables) {
+        match tables.iter_mut().find(|(known, _)| known == name) {
+            Some((_, known)) => *known = known.and(*rows),
+            None => tables.push((name.clone(), *rows)),
+        }
+    }
+    // As many parts as there are threads are computed at once; then all are put together, from their own tables.
+    let mut held: Vec<u64> = parts.iter().map(|part| part.memory).collect();
+    held.sort_unstable_by(|one, two| two.cmp(one));
+    let at_once: u64 = held.iter().take(threads).fold(0, |sum, held| sum.saturating_add(*held));
+    let joining = if parts.len() > 1 { whole.held.saturating_mul(2) } else { 0 };
+    let seconds: f64 = parts.iter().map(|part| part.seconds).sum();
+    let shared = if whole.parallel { threads } else { threads.min(parts.len()) }.max(1);
+    // Once in the cache; as a table and in HDF5 among the results.
+    let cached = parts.iter().fold(0_u64, |sum, part| sum.saturating_add(part.bytes));
+    let expected = Expected {
+        tables,
+        bytes: cached.saturating_add(whole.bytes.saturating_mul(2)),
+        memory: at_once.saturating_add(joining).saturating_add(read),
+        seconds: seconds / shared as f64,
+        parallel: whole.parallel,
+    };
+    (expected, seconds)
+}
+
+fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], processor: f64, threads: usize) -> Expected {
+    let running = || stages.iter().flatten();
+    let rows = running().flat_map(|stage| &stage.tables).fold(Rows::NONE, |total, (_, rows)| total.and(*rows));
+    let held = wholes.iter().fold(0_u64, |sum, whole| sum.saturating_add(whole.bytes));
+    // The results are put together last: HDF5 as one file in memory, and one table.
+    let publishing = held.saturating_add(wholes.iter().map(|whole| whole.held).max().unwrap_or(0));
+    let asked = at_once(board, stages, threads).max(if running().next().is_some() { publishing } else { 0 });
+    Expected {
+        tables: vec![(String::new(), rows)],
+        bytes: running().fold(0, |sum, stage| sum.saturating_add(stage.bytes)),
+        memory: if asked > 0 { PROGRAM.saturating_add(asked.saturating_mul(KEPT)) } else { 0 },
+        seconds: running().map(|stage| stage.seconds).fold(processor / threads as f64, f64::max),
+        parallel: true,
+    }
+}
+
+/// The most memory of stages that may run at the same time: whatever set that is, for any of its stages it is among those
+/// that neither read from it nor are read by it, near or far. Of those that take one thread there are no more than threads.
+fn at_once(board: &Board, stages: &[Option<Expected>], threads: usize) -> u64 {
+    let count = stages.len();
+    let mut above = vec![vec![false; count]; count];
+    for &node in &board.graph.order {
+        for input in &board.graph.inputs[node] {
+            let further = above[input.node].clone();
+            above[node][input.node] = true;
+            above[node].iter_mut().zip(further).for_each(|(mine, theirs)| *mine |= theirs);
+        }
+    }
+    let above = &above;
+    let memory = |node: usize| stages[node].as_ref().map_or(0, |stage| stage.memory);
+    let beside = |node: usize| {
+        let alone = board.study.nodes[node].stage.runs_alone();
+        let others = (0..count).filter(move |&other| !alone && !board.study.nodes[other].stage.runs_alone());
+        others.filter(move |&other| other != node && !above[node][other] && !above[other][node])
+    };
+    let all = |node: usize| {
+        let parallel = |node: usize| stages[node].as_ref().is_some_and(|stage| stage.parallel);
+        let (shared, mut single): (Vec<usize>, Vec<usize>) =
+            beside(node).chain([node]).partition(|node| parallel(*node));
+        single.sort_unstable_by_key(|node| std::cmp::Reverse(memory(*node)));
+        let together = shared.into_iter().chain(single.into_iter().take(threads));
+        together.map(memory).fold(0, u64::saturating_add)
+    };
+    (0..count).filter(|&node| memory(node) > 0).map(all).max().unwrap_or(0)
+}

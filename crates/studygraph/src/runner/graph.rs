@@ -1,0 +1,223 @@
+//! Who reads what from whom: resolved ports, order, demand. The only file that names petgraph.
+//!
+//! Demand is that of the whole study plus what the user asks for, also when only some stages are run: otherwise
+//! `--only` would change keys. Must not know: the cache, states.
+
+use std::collections::BTreeSet;
+
+use petgraph::algo::tarjan_scc;
+use petgraph::graph::{DiGraph, NodeIndex};
+use petgraph::visit::DfsPostOrder;
+
+use super::options::Wanted;
+use crate::stage::{Demand, Omission, Port, Stage, Want};
+use crate::study::{Node, Study};
+use crate::table::schema::Schema;
+use declare::error::{Diagnostic, suggest};
+
+/// A port with its source found.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Input {
+    pub port: String,
+    /// The node the tables come from, after following `through`.
+    pub node: usize,
+    pub wants: Vec<Want>,
+}
+
+/// The graph of a study; nodes are counted as in the study.
+#[derive(Debug)]
+pub struct Graph {
+    /// Every node after all it reads; otherwise as in the study.
+    pub order: Vec<usize>,
+    pub inputs: Vec<Vec<Input>>,
+    /// The nodes that read from each node, ascending.
+    pub readers: Vec<Vec<usize>>,
+    pub demands: Vec<Demand>,
+    pub outputs: Vec<Vec<Schema>>,
+}
+
+impl Graph {
+    /// # Errors
+    /// A port whose stage, table or column does not exist; a cycle.
+    pub fn new(study: &Study, wanted: &[Wanted]) -> Result<Self, Diagnostic> {
+        let ports: Vec<Vec<Port>> = study.nodes.iter().map(|node| node.stage.inputs()).collect();
+        let mut inputs = Vec::new();
+        for (node, of_node) in study.nodes.iter().zip(&ports) {
+            let resolved = of_node.iter().map(|port| {
+                let source = source(study, &ports, node, port, 0)?;
+                Ok(Input { port: port.name.clone(), node: source, wants: port.wants.clone() })
+            });
+            inputs.push(resolved.collect::<Result<Vec<_>, Diagnostic>>().map_err(|error| error.or_at(node.place))?);
+        }
+        let order = order(study, &inputs)?;
+        let mut readers = vec![Vec::new(); study.nodes.len()];
+        for (reader, of_reader) in inputs.iter().enumerate() {
+            for input in of_reader {
+                if readers[input.node].last() != Some(&reader) {
+                    readers[input.node].push(reader);
+                }
+            }
+        }
+        let outputs: Vec<Vec<Schema>> = study.nodes.iter().map(|node| node.stage.outputs()).collect();
+        let mut graph = Self { order, inputs, readers, demands: Vec::new(), outputs };
+        graph.demands = graph.demand(study, wanted)?;
+        Ok(graph)
+    }
+
+    fn demand(&self, study: &Study, wanted: &[Wanted]) -> Result<Vec<Demand>, Diagnostic> {
+        let mut demands: Vec<Demand> = self
+            .outputs
+            .iter()
+            .map(|outputs| {
+                let always = outputs.iter().filter(|schema| !schema.on_demand);
+                Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() }
+            })
+            .collect();
+        for (reader, inputs) in self.inputs.iter().enumerate() {
+            for input in inputs {
+                for want in &input.wants {
+                    let node = &study.nodes[input.node];
+                    add(&mut demands[input.node], node, &self.outputs[input.node], want)
+                        .map_err(|error| error.or_at(study.nodes[reader].place))?;
+                }
+            }
+        }
+        for Wanted { stage, want } in wanted {
+            let index = find(study, stage)?;
+            add(&mut demands[index], &study.nodes[index], &self.outputs[index], want)?;
+        }
+        Ok(demands)
+    }
+
+    /// Which nodes are needed for these.
+    ///
+    /// # Errors
+    /// A name that is no stage.
+    pub fn needed(&self, study: &Study, only: &[String]) -> Result<Vec<bool>, Diagnostic> {
+        let mut needed = vec![only.is_empty(); study.nodes.len()];
+        for name in only {
+            needed[find(study, name)?] = true;
+        }
+        for &node in self.order.iter().rev() {
+            if needed[node] {
+                self.inputs[node].iter().for_each(|input| needed[input.node] = true);
+            }
+        }
+        Ok(needed)
+    }
+
+    /// Tables and columns on demand of a node that nobody asks for.
+    #[must_use]
+    pub fn unasked(&self, node: usize, stage: &dyn Stage) -> Vec<Omission> {
+        let demand = &self.demands[node];
+        let why = "no stage reads it and nobody asked for it";
+        let mut omissions = Vec::new();
+        for schema in &self.outputs[node] {
+            if !demand.table(&schema.name) {
+                let omission = Omission::new(format!("table `{}`", schema.name), why);
+                omissions.push(omission.saving(stage.saved(demand, &schema.name, None)));
+                continue;
+            }
+            let columns = schema.columns.iter();
+            for column in columns.filter(|column| column.on_demand && !demand.column(&schema.name, &column.name)) {
+                let omission = Omission::new(format!("column `{}.{}`", schema.name, column.name), why);
+                omissions.push(omission.saving(stage.saved(demand, &schema.name, Some(&column.name))));
+            }
+        }
+        omissions
+    }
+}
+
+/// The node called `name`.
+///
+/// # Errors
+/// The nearest known name.
+pub fn find(study: &Study, name: &str) -> Result<usize, Diagnostic> {
+    study.nodes.iter().position(|node| node.name == name).ok_or_else(|| {
+        let known = study.nodes.iter().map(|node| node.name.as_str());
+        Diagnostic::new(format!("there is no stage `{name}`")).help(suggest(name, known))
+    })
+}
+
+/// Follows `through`, port by port.
+fn source(study: &Study, ports: &[Vec<Port>], node: &Node, port: &Port, depth: usize) -> Result<usize, Diagnostic> {
+    let index = find(study, &port.stage).map_err(|error| error.or_at(node.place))?;
+    let Some(through) = port.through else { return Ok(index) };
+    let via = &study.nodes[index];
+    if depth > study.nodes.len() {
+        let message = format!("stage `{}` reads through `{}`, which leads back to itself", node.name, via.name);
+        return Err(Diagnostic::new(message).at(node.place));
+    }
+    let Some(next) = ports[index].iter().find(|candidate| candidate.name == through) else {
+        let known = ports[index].iter().map(|port| port.name.as_str());
+        let message = format!(
+            "stage `{}` needs what `{}` reads as `{through}`, but `{}` reads no such thing",
+            node.name, via.name, via.name
+        );
+        return Err(Diagnostic::new(message).at(node.place).help(suggest(through, known)));
+    };
+    source(study, ports, via, next, depth + 1)
+}
+
+fn add(demand: &mut Demand, node: &Node, outputs: &[Schema], want: &Want) -> Result<(), Diagnostic> {
+    let Some(schema) = outputs.iter().find(|schema| schema.name == want.table) else {
+        let known = outputs.iter().map(|schema| schema.name.as_str());
+        let message = format!("stage `{}` ({}) has no table `{}`", node.name, node.kind.name, want.table);
+        return Err(Diagnostic::new(message).help(suggest(&want.table, known)));
+    };
+    let columns = demand.tables.entry(want.table.clone()).or_default();
+    for name in &want.columns {
+        let Some(column) = schema.column(name) else {
+            let message = format!("table `{}.{}` has no column `{name}`", node.name, want.table);
+            let known = schema.columns.iter().map(|column| column.name.as_str());
+            return Err(Diagnostic::new(message).help(suggest(name, known)));
+        };
+        // The others come in any case: naming them must not change a key.
+        if column.on_demand {
+            columns.insert(name.clone());
+        }
+    }
+    Ok(())
+}
+
+fn order(study: &Study, inputs: &[Vec<Input>]) -> Result<Vec<usize>, Diagnostic> {
+    let mut graph = DiGraph::<(), ()>::new();
+    let nodes: Vec<NodeIndex> = inputs.iter().map(|_| graph.add_node(())).collect();
+    for (reader, of_reader) in inputs.iter().enumerate() {
+        for input in of_reader {
+            graph.update_edge(nodes[reader], nodes[input.node], ());
+        }
+    }
+    let circular = |component: &Vec<NodeIndex>| component.len() > 1 || graph.contains_edge(component[0], component[0]);
+    if let Some(component) = tarjan_scc(&graph).into_iter().find(circular) {
+        let members: Vec<usize> = component.iter().map(|node| node.index()).collect();
+        return Err(cycle(study, inputs, &members));
+    }
+    let mut order = Vec::new();
+    let mut visit = DfsPostOrder::empty(&graph);
+    for node in nodes {
+        visit.move_to(node);
+        while let Some(next) = visit.next(&graph) {
+            order.push(next.index());
+        }
+    }
+    Ok(order)
+}
+
+/// Names a way round: from the first stage in the study, always to the first input that leads on.
+fn cycle(study: &Study, inputs: &[Vec<Input>], members: &[usize]) -> Diagnostic {
+    let mut path: Vec<usize> = members.iter().min().copied().into_iter().collect();
+    let start = loop {
+        let last = path[path.len() - 1];
+        let next = inputs[last].iter().map(|input| input.node).find(|next| members.contains(next)).unwrap_or(last);
+        if let Some(start) = path.iter().position(|&seen| seen == next) {
+            break start;
+        }
+        path.push(next);
+    };
+    let round = &path[start..];
+    let name = |position: usize| format!("`{}`", study.nodes[round[position % round.len()]].name);
+    let steps: Vec<String> = (0..round.len()).map(|at| format!("{} reads {}", name(at), name(at + 1))).collect();
+    let place = study.nodes[round[0]].place;
+    Diagnostic::new(format!("stages read each other in a circle: {}", steps.join(", "))).at(place)
+}

@@ -1,0 +1,238 @@
+//! The cache key of a stage or chunk, and the sentence that says why it differs from the last one.
+//!
+//! Both come from one [`KeyRecord`]: the key is the digest of the record's parts and of nothing else, so whatever
+//! changes a key has a name. Never in it: labels of stages, paths, times, thread counts. The name of a stage enters by
+//! its seed alone, and only where random numbers are drawn. Must not know: the cache, states.
+
+use std::fmt;
+
+use super::chunk::chunks;
+use super::graph::{Graph, Input};
+use crate::stage::{Demand, Kind};
+use crate::store::entry::StoredTable;
+use crate::store::manifest::KeyRecord;
+use crate::study::Study;
+use declare::digest::{Digest, Writer};
+use declare::record::Record;
+use declare::seed::Seed;
+
+/// A chunk of a stage, or all of it.
+pub struct Part {
+    pub key: Digest,
+    pub record: KeyRecord,
+    /// The axis that is cut and the values of this chunk.
+    pub axis: Option<(&'static str, Vec<f64>)>,
+}
+
+/// The keys of a stage whose inputs are known; `tables` gives what a node came out as.
+#[must_use]
+pub fn parts<'t>(study: &Study, graph: &Graph, node: usize, tables: impl Fn(usize) -> &'t [StoredTable]) -> Vec<Part> {
+    let of_study = &study.nodes[node];
+    let chunks = chunks(of_study.kind, &of_study.record);
+    let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
+    // A stage that runs variants of another depends on that one's code too.
+    let program = study.program;
+    let code = of_study.record.kinds().into_iter().fold((program.code_of)(of_study.kind.name), |all, nested| {
+        let version = program.kind(nested).map_or(0, |kind| kind.version);
+        format!("{all} {nested} {version} {}", (program.code_of)(nested))
+    });
+    let common = Parts {
+        kind: of_study.kind,
+        code: &code,
+        record: &of_study.record,
+        axis: chunks.as_ref().map(|chunks| chunks.field),
+        inputs: inputs.collect(),
+        seed: of_study.stage.uses_seed().then(|| Seed::of_stage(study.seed, &of_study.name)),
+        demand: &graph.demands[node],
+    };
+    let part = |axis: Option<(&'static str, Vec<f64>)>| {
+        let record = common.record(axis.as_ref().map_or(&[], |(_, values)| values));
+        Part { key: key(&record), record, axis }
+    };
+    match chunks {
+        None => vec![part(None)],
+        Some(chunks) => chunks.values.into_iter().map(|values| part(Some((chunks.field, values)))).collect(),
+    }
+}
+
+/// What the chunks of one stage have in common.
+pub struct Parts<'a> {
+    pub kind: &'a Kind,
+    pub code: &'a str,
+    pub record: &'a Record,
+    /// The field along which the stage is cut.
+    pub axis: Option<&'static str>,
+    /// Port, and the digest of what comes in.
+    pub inputs: Vec<(String, Digest)>,
+    pub seed: Option<Seed>,
+    pub demand: &'a Demand,
+}
+
+impl Parts<'_> {
+    /// The record of one chunk; `values` are empty for a stage that is not cut.
+    #[must_use]
+    pub fn record(&self, values: &[f64]) -> KeyRecord {
+        let mut config = Writer::new("gearstudy 1 config");
+        let mut fields = Vec::new();
+        for field in self.record.fields.iter().filter(|(name, _)| Some(*name) != self.axis) {
+            let mut writer = Writer::new("gearstudy 1 field");
+            Record { fields: vec![field.clone()], place: self.record.place }.write(&mut writer);
+            let digest = writer.finish();
+            config.text(field.0).digest(&digest);
+            fields.push((field.0.to_owned(), digest.short()));
+        }
+        config.count(fields.len());
+        let axis = self.axis.map(|name| Writer::new("gearstudy 1 axis").text(name).floats(values).finish());
+        let version = self.kind.version.into();
+        let code = Writer::new("gearstudy 1 kind").text(self.kind.name).integer(version).text(self.code).finish();
+        let mut demand = Writer::new("gearstudy 1 demand");
+        demand.count(self.demand.tables.len());
+        for (table, columns) in &self.demand.tables {
+            demand.text(table).count(columns.len());
+            for column in columns {
+                demand.text(column);
+            }
+        }
+        let hexadecimal = |digest: Option<Digest>| digest.map_or_else(String::new, |digest| digest.to_string());
+        let mut record = KeyRecord {
+            key: String::new(),
+            config: config.finish().to_string(),
+            fields,
+            axis: hexadecimal(axis),
+            code: code.to_string(),
+            seed: hexadecimal(self.seed.map(|seed| seed.digest())),
+            demand: demand.finish().to_string(),
+            inputs: self.inputs.iter().map(|(port, digest)| (port.clone(), digest.to_string())).collect(),
+        };
+        record.key = key(&record).to_string();
+        record
+    }
+}
+
+/// The key that belongs to the parts in a record.
+#[must_use]
+pub fn key(record: &KeyRecord) -> Digest {
+    let mut writer = Writer::new("gearstudy 1 key");
+    for part in [&record.code, &record.config, &record.axis, &record.seed, &record.demand] {
+        writer.text(part);
+    }
+    writer.count(record.inputs.len());
+    for (port, digest) in &record.inputs {
+        writer.text(port).text(digest);
+    }
+    writer.finish()
+}
+
+/// The digest of what a port reads.
+#[must_use]
+pub fn input(input: &Input, tables: &[StoredTable]) -> Digest {
+    let mut writer = Writer::new("gearstudy 1 input");
+    writer.count(input.wants.len());
+    for want in &input.wants {
+        match tables.iter().find(|table| table.name == want.table) {
+            Some(table) => table.write_seen(&want.columns, &mut writer),
+            None => {
+                writer.text(&want.table);
+            }
+        }
+    }
+    writer.finish()
+}
+
+/// The key under which it is kept what the chunks' tables are together.
+#[must_use]
+pub fn whole<'a>(chunks: impl Iterator<Item = &'a [StoredTable]>) -> Digest {
+    let mut writer = Writer::new("gearstudy 1 whole");
+    for tables in chunks {
+        writer.count(tables.len());
+        for table in tables {
+            writer.text(&table.name).digest(&table.content).digest(&table.base).count(table.columns.len());
+            for column in &table.columns {
+                writer.text(&column.name).digest(&column.content);
+            }
+        }
+    }
+    writer.finish()
+}
+
+/// One reason to compute.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Why {
+    NeverRan,
+    FailedBefore,
+    Forced,
+    /// Fields that changed.
+    Config(Vec<String>),
+    /// The axis has values that were not there.
+    Axis(&'static str),
+    /// A port through which something else came in.
+    Input(String),
+    Code,
+    Seed,
+    Demand,
+    ObjectMissing,
+    /// With what is wrong.
+    ObjectDamaged(String),
+    /// All chunks are there, but what they are together is not known.
+    NotPutTogether,
+}
+
+impl fmt::Display for Why {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::NeverRan => write!(formatter, "never ran"),
+            Self::FailedBefore => write!(formatter, "failed the last time"),
+            Self::Forced => write!(formatter, "forced"),
+            Self::Config(fields) if fields.is_empty() => write!(formatter, "config changed"),
+            Self::Config(fields) => write!(formatter, "config changed: {}", fields.join(", ")),
+            Self::Axis(field) => write!(formatter, "config changed: new values of {field}"),
+            Self::Input(port) => write!(formatter, "input changed: {port}"),
+            Self::Code => write!(formatter, "code changed"),
+            Self::Seed => write!(formatter, "seed changed"),
+            Self::Demand => write!(formatter, "demand changed"),
+            Self::ObjectMissing => write!(formatter, "object missing"),
+            Self::ObjectDamaged(problem) => write!(formatter, "object damaged: {problem}"),
+            Self::NotPutTogether => write!(formatter, "chunks not put together"),
+        }
+    }
+}
+
+/// Several reasons as one phrase.
+#[must_use]
+pub fn phrase(why: &[Why]) -> String {
+    why.iter().map(Why::to_string).collect::<Vec<_>>().join("; ")
+}
+
+/// Why `now` has another key than the records of the last success.
+#[must_use]
+pub fn explain(last: &[KeyRecord], now: &KeyRecord, axis: Option<&'static str>) -> Vec<Why> {
+    let Some(nearest) = last.iter().find(|record| record.axis == now.axis).or(last.first()) else {
+        return vec![Why::NeverRan];
+    };
+    let mut why = Vec::new();
+    if nearest.config != now.config {
+        why.push(Why::Config(differences(&nearest.fields, &now.fields)));
+    }
+    if nearest.axis != now.axis {
+        why.push(axis.map_or(Why::Config(Vec::new()), Why::Axis));
+    }
+    why.extend(differences(&nearest.inputs, &now.inputs).into_iter().map(Why::Input));
+    for (was, is, reason) in [
+        (&nearest.seed, &now.seed, Why::Seed),
+        (&nearest.code, &now.code, Why::Code),
+        (&nearest.demand, &now.demand, Why::Demand),
+    ] {
+        if was != is {
+            why.push(reason);
+        }
+    }
+    // The same parts in another order: ports that changed places.
+    if why.is_empty() { vec![Why::Config(Vec::new())] } else { why }
+}
+
+/// The names whose value differs, or that only one of the two has.
+fn differences(was: &[(String, String)], is: &[(String, String)]) -> Vec<String> {
+    let changed = is.iter().filter(|pair| !was.contains(pair)).map(|(name, _)| name.clone());
+    let gone = was.iter().filter(|(name, _)| !is.iter().any(|(other, _)| other == name)).map(|(name, _)| name.clone());
+    changed.chain(gone).collect()
+}

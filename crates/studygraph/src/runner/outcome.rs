@@ -1,0 +1,248 @@
+//! What came of a run: per stage a status, and the way to its tables.
+//!
+//! Must not know: how it is shown; threads.
+
+use super::board::{Board, State};
+use super::key::phrase;
+use super::plan::left_out;
+use crate::stage::Omission;
+use crate::store::cache::Cache;
+use crate::store::entry::StoredTable;
+use crate::store::error::StoreError;
+use crate::store::manifest::{FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord};
+use crate::store::parquet;
+use crate::study::{Study, settings};
+use crate::table::data::Table;
+use crate::table::schema::Schema;
+use declare::digest::Digest;
+use declare::work::Work;
+
+/// Why a stage gave no tables.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum Fault {
+    /// The stage's own finding.
+    #[error("{0}")]
+    Failed(String),
+    /// A mistake of this program.
+    #[error("this is a bug: {0}")]
+    Bug(String),
+    #[error("{0}")]
+    NotDeterministic(String),
+    #[error("{0}")]
+    Store(String),
+}
+
+impl From<StoreError> for Fault {
+    fn from(error: StoreError) -> Self {
+        let message = error.to_string();
+        match error {
+            StoreError::NotDeterministic { .. } => Self::NotDeterministic(message),
+            StoreError::Format { .. } => Self::Bug(message),
+            StoreError::Io { .. }
+            | StoreError::Damaged { .. }
+            | StoreError::Stopped { .. }
+            | StoreError::InUse { .. } => Self::Store(message),
+        }
+    }
+}
+
+/// What came of a run.
+#[derive(Debug)]
+pub struct Outcome {
+    /// Every stage after all it reads.
+    pub stages: Vec<StageOutcome>,
+    /// Whether the user stopped it.
+    pub stopped: bool,
+    pub seconds: f64,
+}
+
+#[derive(Debug)]
+pub struct StageOutcome {
+    pub name: String,
+    pub kind: &'static str,
+    pub version: u32,
+    /// Hit, Done, Failed or Skipped.
+    pub state: State,
+    /// Why it ran, failed or was skipped; `unchanged` when it did not have to run.
+    pub why: String,
+    pub fault: Option<Fault>,
+    pub chunks: usize,
+    /// Chunks that were computed in this run.
+    pub ran: usize,
+    /// Seconds of computing, whenever that was.
+    pub seconds: f64,
+    /// Work that was counted then.
+    pub work: Work,
+    pub warnings: Vec<String>,
+    pub left_out: Vec<Omission>,
+    pub keys: Vec<KeyRecord>,
+    /// As the manifest keeps it.
+    pub config: serde_json::Value,
+    /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
+    pub tables: Vec<(Schema, StoredTable)>,
+    parts: Vec<Digest>,
+}
+
+impl Outcome {
+    /// What a board shows at the end.
+    #[must_use]
+    pub fn of(board: &Board, stopped: bool, seconds: f64) -> Self {
+        let stages = board.graph.order.iter().map(|&node| {
+            let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
+            let fault = progress.fault.as_ref().map(|(_, fault)| fault.clone());
+            let mut warnings: Vec<String> = progress.of_runs().flat_map(|run| run.warnings.iter().cloned()).collect();
+            warnings.sort();
+            warnings.dedup();
+            let schema = |name: &str| board.graph.outputs[node].iter().find(|schema| schema.name == name).cloned();
+            let tables = progress.tables.iter().filter_map(|table| {
+                let schema = board.graph.demands[node].narrowed(schema(&table.name)?);
+                Some((schema, table.clone()))
+            });
+            StageOutcome {
+                name: of_study.name.clone(),
+                kind: of_study.kind.name,
+                version: of_study.kind.version,
+                state: progress.state,
+                why: match progress.state {
+                    State::Skipped => progress.skipped.clone(),
+                    State::Failed => fault.as_ref().map_or_else(String::new, Fault::to_string),
+                    _ if progress.why.is_empty() => "unchanged".to_owned(),
+                    _ => phrase(&progress.why),
+                },
+                fault,
+                chunks: progress.parts.len(),
+                ran: progress.ran,
+                seconds: progress.seconds(),
+                work: progress.work(),
+                warnings,
+                left_out: left_out(board, node),
+                keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
+                config: settings::shown(of_study.kind.fields, &of_study.record),
+                tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
+                parts: progress.parts.iter().map(|part| part.key).collect(),
+            }
+        });
+        Self { stages: stages.collect(), stopped, seconds }
+    }
+
+    #[must_use]
+    pub fn stage(&self, name: &str) -> Option<&StageOutcome> {
+        self.stages.iter().find(|stage| stage.name == name)
+    }
+
+    /// The faults, with the names of their stages.
+    pub fn faults(&self) -> impl Iterator<Item = (&str, &Fault)> {
+        self.stages.iter().filter_map(|stage| Some((stage.name.as_str(), stage.fault.as_ref()?)))
+    }
+
+    /// The number of stages of which anything was computed.
+    #[must_use]
+    pub fn ran(&self) -> usize {
+        self.stages.iter().filter(|stage| stage.ran > 0).count()
+    }
+
+    /// A table, from the cache.
+    ///
+    /// # Errors
+    /// When the stage gave no such table, or the cache was damaged since. A damaged entry is forgotten, so the next run
+    /// computes it again.
+    pub fn table(&self, cache: &Cache, stage: &str, table: &str) -> Result<Table, StoreError> {
+        let parts = self.parts(stage);
+        let loaded = parts.iter().map(|&key| forget_damaged(cache, key, cache.table(key, table)));
+        let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
+        together(&format!("{stage}.{table}"), loaded)
+    }
+
+    /// The Parquet file of a table.
+    ///
+    /// # Errors
+    /// As [`Outcome::table`].
+    pub fn bytes(&self, cache: &Cache, stage: &str, table: &str) -> Result<Vec<u8>, StoreError> {
+        match self.parts(stage) {
+            &[key] => forget_damaged(cache, key, cache.bytes(key, table)),
+            _ => parquet::write(&self.table(cache, stage, table)?),
+        }
+    }
+
+    /// The number of stages that the cache has not taken.
+    #[must_use]
+    pub fn unkept(&self, cache: &Cache) -> usize {
+        self.stages.iter().filter(|stage| stage.parts.iter().any(|key| cache.is_unkept(*key))).count()
+    }
+
+    fn parts(&self, stage: &str) -> &[Digest] {
+        self.stage(stage).filter(|stage| stage.state.has_tables()).map_or(&[], |stage| &stage.parts)
+    }
+
+    /// The manifest of this run, without facts and files.
+    #[must_use]
+    pub fn manifest(&self, study: &Study) -> Manifest {
+        let source = study.source.as_ref().map(|source| Source {
+            paper: source.paper.clone(),
+            tables: source.tables.clone(),
+            figures: source.figures.clone(),
+        });
+        Manifest {
+            format: FORMAT,
+            study: study.name.clone(),
+            title: study.title.clone(),
+            seed: study.seed,
+            source,
+            study_digest: blake3::hash(study.text.as_bytes()).to_string(),
+            seconds: self.seconds,
+            stages: self.stages.iter().map(StageOutcome::record).collect(),
+            tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),
+            ..Manifest::default()
+        }
+    }
+}
+
+impl StageOutcome {
+    fn record(&self) -> StageRecord {
+        let status = match self.state {
+            State::Hit if self.ran == 0 => "hit",
+            State::Hit | State::Done => "ran",
+            State::Failed => "failed",
+            _ => "skipped",
+        };
+        let omission = |omission: &Omission| OmissionRecord {
+            what: omission.what.clone(),
+            why: omission.why.clone(),
+            saved_seconds: omission.seconds(&self.work, self.seconds),
+        };
+        StageRecord {
+            name: self.name.clone(),
+            kind: self.kind.to_owned(),
+            version: self.version,
+            keys: self.keys.clone(),
+            config: self.config.clone(),
+            status: status.to_owned(),
+            why: self.why.clone(),
+            seconds: self.seconds,
+            work: self.work.named(),
+            warnings: self.warnings.clone(),
+            left_out: self.left_out.iter().map(omission).collect(),
+            tables: self.tables.iter().map(|(schema, table)| TableRecord::new(&self.name, schema, table)).collect(),
+        }
+    }
+}
+
+/// The chunks of a table as one.
+///
+/// # Errors
+/// When they do not fit together: a table of a stage that is cut must have the axis in its key.
+pub fn together(name: &str, mut parts: Vec<Table>) -> Result<Table, StoreError> {
+    if parts.len() == 1 {
+        return Ok(parts.remove(0));
+    }
+    let failed = |problem: String| StoreError::Format { table: name.to_owned(), problem };
+    let joined = Table::concatenated(&parts.iter().collect::<Vec<_>>());
+    joined.map_err(|error| failed(error.to_string()))?.ok_or_else(|| failed("there is no such table".to_owned()))
+}
+
+fn forget_damaged<T>(cache: &Cache, key: Digest, read: Result<T, StoreError>) -> Result<T, StoreError> {
+    if let Err(StoreError::Damaged { .. }) = &read {
+        cache.forget(key);
+    }
+    read
+}

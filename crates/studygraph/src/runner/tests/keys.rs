@@ -1,0 +1,79 @@
+//! Keys do not change by accident.
+
+use super::*;
+use crate::runner::key::{Parts, key};
+use crate::stage::Demand;
+use declare::digest::Digest;
+use declare::seed::Seed;
+
+fn parts<'a>(record: &'a Record, demand: &'a Demand) -> Parts<'a> {
+    Parts {
+        kind: &CUT,
+        code: "code",
+        record,
+        axis: Some("torque"),
+        inputs: vec![("pair".to_owned(), Digest([7; 32]))],
+        seed: Some(Seed::of_stage(1, "ste")),
+        demand,
+    }
+}
+
+fn record() -> Record {
+    let entry = |value| Entry { value, place: Place::default() };
+    let fields = vec![
+        ("value", entry(Value::Quantity(0.25))),
+        ("torque", entry(Value::Axis(vec![25.0, 50.0]))),
+        ("mode", entry(Value::Choice("iso"))),
+    ];
+    Record { fields, place: Place::default() }
+}
+
+fn demand() -> Demand {
+    Demand { tables: [("values".to_owned(), ["extra".to_owned()].into())].into() }
+}
+
+/// If this fails, every cache in the world is void: nobody's results change, but all is computed again. When that is
+/// meant (another digest, another part of the key), put the new digests here and say so in the change log; when it is
+/// not, something that should not be in a key has got into it, or something that should is gone.
+#[test]
+fn golden_keys() {
+    let (record, demand) = (record(), demand());
+    let parts = parts(&record, &demand);
+    let digests = [&[][..], &[25.0], &[25.0, 50.0]].map(|values| key(&parts.record(values)).short());
+    assert_eq!(digests, ["383d39fe2cd4", "aa4c0e25e7d2", "19a87f545dd4"]);
+    let whole = Parts { axis: None, seed: None, inputs: Vec::new(), ..parts };
+    assert_eq!(key(&whole.record(&[])).short(), "c84a8d1a4ec7");
+}
+
+#[test]
+fn every_part_is_in_the_key_and_has_a_name() {
+    use crate::runner::key::{Why, explain};
+    let (record, demand) = (record(), demand());
+    let base = || parts(&record, &demand);
+    let last = [base().record(&[25.0])];
+    let why = |parts: Parts, values: &[f64]| {
+        let now = parts.record(values);
+        assert_ne!(key(&now), key(&last[0]));
+        explain(&last, &now, Some("torque"))
+    };
+    let mut other = record.clone();
+    other.fields[0].1.value = Value::Quantity(0.5);
+    assert_eq!(why(Parts { record: &other, ..base() }, &[25.0]), [Why::Config(vec!["value".to_owned()])]);
+    other.fields.remove(0);
+    assert_eq!(why(Parts { record: &other, ..base() }, &[25.0]), [Why::Config(vec!["value".to_owned()])]);
+    assert_eq!(why(base(), &[50.0]), [Why::Axis("torque")]);
+    assert_eq!(why(Parts { code: "new", ..base() }, &[25.0]), [Why::Code]);
+    assert_eq!(why(Parts { kind: &PLAIN, ..base() }, &[25.0]), [Why::Code]);
+    assert_eq!(why(Parts { seed: None, ..base() }, &[25.0]), [Why::Seed]);
+    assert_eq!(why(Parts { demand: &Demand::default(), ..base() }, &[25.0]), [Why::Demand]);
+    let inputs = vec![("pair".to_owned(), Digest([8; 32]))];
+    assert_eq!(why(Parts { inputs, ..base() }, &[25.0]), [Why::Input("pair".to_owned())]);
+    let inputs = vec![("gear".to_owned(), Digest([7; 32]))];
+    let both = [Why::Input("gear".to_owned()), Why::Input("pair".to_owned())];
+    assert_eq!(why(Parts { inputs, ..base() }, &[25.0]), both);
+    assert_eq!(explain(&[], &last[0], None), [Why::NeverRan]);
+    // Where something stands in the file is in no key.
+    let mut moved = record.clone();
+    moved.fields[0].1.place = Place { line: 9, column: 9, offset: 99, length: 9 };
+    assert_eq!(parts(&moved, &demand).record(&[25.0]), last[0]);
+}

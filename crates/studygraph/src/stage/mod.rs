@@ -1,0 +1,181 @@
+//! Stage kinds: the trait that every kind has, and what it is given and gives.
+//!
+//! A stage is pure: the same configuration, inputs and seed give the same tables, bit for bit, whatever the number of
+//! threads. Must not know: the store, the runner, other stages (it sees their tables, never their code).
+
+pub mod estimate;
+pub mod memory;
+pub mod omission;
+pub mod steps;
+
+use std::collections::BTreeMap;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use crate::table::data::Table;
+use crate::table::schema::Schema;
+use declare::error::{Diagnostic, Failure};
+use declare::parameter::Field;
+use declare::record::Record;
+use declare::seed::Seed;
+use declare::work::Tally;
+
+pub use self::estimate::{Ahead, Estimate, Rows};
+pub use self::omission::{Omission, Saved};
+
+/// A kind of stage as registered.
+pub struct Kind {
+    /// As written after `kind:`; also the name of the file in `stage/kinds/`.
+    pub name: &'static str,
+    /// Part of every cache key; raised when the meaning of the tables changes.
+    pub version: u32,
+    pub summary: &'static str,
+    pub fields: &'static [Field],
+    /// A complete stage of this kind, as YAML, with the stages it refers to named after their kinds.
+    pub example: &'static str,
+    /// Builds a stage from a checked record; refuses what no declaration can express (interference, an empty range).
+    pub build: fn(&Record) -> Result<Box<dyn Stage>, Diagnostic>,
+}
+
+/// A stage of a study, ready to run.
+pub trait Stage: Send + Sync {
+    /// What it reads from other stages, in a fixed order.
+    fn inputs(&self) -> Vec<Port>;
+
+    /// The tables it can give; a table or column marked on demand is computed only when asked for.
+    fn outputs(&self) -> Vec<Schema>;
+
+    /// Why it cannot give a table that other stages of its kind give.
+    fn lacks(&self, _table: &str) -> Option<&'static str> {
+        None
+    }
+
+    /// Whether it draws random numbers. The seed is part of the key of those that do; the others are given a seed that
+    /// never changes, so one that says nothing and draws all the same still has tables that fit their key.
+    fn uses_seed(&self) -> bool {
+        false
+    }
+
+    /// Whether nothing else may run beside it, because it measures time or memory.
+    fn runs_alone(&self) -> bool {
+        false
+    }
+
+    /// What it will take, as far as that is known before it runs.
+    fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate;
+
+    /// What it does not compute for this demand, and why.
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
+        Vec::new()
+    }
+
+    /// What a table or column on demand would take that nobody asks for.
+    fn saved(&self, _demand: &Demand, _table: &str, _column: Option<&str>) -> Option<Saved> {
+        None
+    }
+
+    /// Computes the demanded tables.
+    ///
+    /// # Errors
+    /// When the values make no sense together, or the user asked to stop.
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure>;
+}
+
+/// One thing a stage reads: tables of another stage.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Port {
+    /// The name under which the stage finds the tables; enters the cache key with the tables' content.
+    pub name: String,
+    /// The stage as named in the study.
+    pub stage: String,
+    /// Read not from that stage itself but from what *it* reads through its port of this name.
+    pub through: Option<&'static str>,
+    pub wants: Vec<Want>,
+}
+
+impl Port {
+    /// Wants whole tables (all columns that are not on demand).
+    #[must_use]
+    pub fn tables(name: impl Into<String>, stage: impl Into<String>, tables: &[&str]) -> Self {
+        let wants = tables.iter().map(|table| Want { table: (*table).to_owned(), columns: Vec::new() }).collect();
+        Self { name: name.into(), stage: stage.into(), through: None, wants }
+    }
+
+    #[must_use]
+    pub fn through(mut self, port: &'static str) -> Self {
+        self.through = Some(port);
+        self
+    }
+}
+
+/// A table that is wanted, and which of its on-demand columns.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Want {
+    pub table: String,
+    /// Columns wanted by name; the columns that are not on demand come in any case.
+    pub columns: Vec<String>,
+}
+
+/// What downstream stages and the user ask of a stage: per table the on-demand columns that are wanted.
+///
+/// Every table that is not on demand is in it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Demand {
+    pub tables: BTreeMap<String, std::collections::BTreeSet<String>>,
+}
+
+impl Demand {
+    #[must_use]
+    pub fn table(&self, table: &str) -> bool {
+        self.tables.contains_key(table)
+    }
+
+    /// Whether an on-demand column is wanted.
+    #[must_use]
+    pub fn column(&self, table: &str, column: &str) -> bool {
+        self.tables.get(table).is_some_and(|columns| columns.contains(column))
+    }
+
+    /// The schema of a table with the on-demand columns that nobody wants taken out.
+    #[must_use]
+    pub fn narrowed(&self, mut schema: Schema) -> Schema {
+        schema.columns.retain(|column| !column.on_demand || self.column(&schema.name, &column.name));
+        schema
+    }
+}
+
+/// What a stage is given besides its inputs.
+pub struct Context<'a> {
+    pub seed: Seed,
+    pub demand: &'a Demand,
+    pub stop: &'a AtomicBool,
+    /// Called with the share of the work that is done, 0 to 1.
+    pub progress: &'a (dyn Fn(f64) + Sync),
+    /// Called with something the user should know about the result (a formula outside its range, say).
+    pub warn: &'a (dyn Fn(String) + Sync),
+    /// Where the work that is done is counted.
+    pub work: &'a Tally,
+}
+
+impl Context<'_> {
+    /// # Errors
+    /// [`Failure::Stopped`] once the user asked to stop; long loops call it.
+    pub fn check_stop(&self) -> Result<(), Failure> {
+        if self.stop.load(Ordering::Relaxed) { Err(Failure::Stopped) } else { Ok(()) }
+    }
+}
+
+/// The tables a stage reads, by port.
+#[derive(Default)]
+pub struct Inputs<'a> {
+    pub ports: BTreeMap<String, Vec<&'a Table>>,
+}
+
+impl<'a> Inputs<'a> {
+    /// # Errors
+    /// When the port or the table is not there: a mistake of this program, kept from being a panic.
+    pub fn table(&self, port: &str, table: &str) -> Result<&'a Table, Failure> {
+        let tables = self.ports.get(port).ok_or_else(|| Failure::new(format!("nothing came in through `{port}`")))?;
+        let found = tables.iter().find(|candidate| candidate.name() == table).copied();
+        found.ok_or_else(|| Failure::new(format!("no table `{table}` came in through `{port}`")))
+    }
+}

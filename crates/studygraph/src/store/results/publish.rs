@@ -1,0 +1,478 @@
+//! Bringing a results folder up to date: tables, HDF5, page, figures, index, manifest, in this order.
+//!
+//! Only what changed is written, so version control sees no noise. One process publishes at a time, the page too, and
+//! whatever is about to be replaced is struck from the manifest first: killed at any moment, a run leaves a manifest that
+//! vouches for nothing that may be half new. A stage that did not finish, or was not asked for, keeps the tables of its
+//! last success; its status says so. Files that a manifest never listed are not touched. Must not know: the cache, stages,
+//! how anything is drawn.
+
+use std::cell::RefCell;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
+
+use super::{FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, complete, held_text, here, is_drawn, split};
+use crate::store::error::StoreError;
+use crate::store::facts::Facts;
+use crate::store::file::{self, Durability};
+#[cfg(feature = "hdf5")]
+use crate::store::hdf5;
+use crate::store::index::{self, Index, Seen};
+use crate::store::lock;
+use crate::store::manifest::{FileRecord, Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
+use crate::table::data::Table;
+
+/// Gives the Parquet file of (stage, table).
+pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
+/// Gives a published table by its name, `stage.table`.
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
+/// Draws page and figures of a manifest and its tables.
+pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
+/// Hears which file is made next, and says whether to go on: all of them can take minutes.
+pub type Next<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
+
+/// Where what is published comes from.
+#[derive(Clone, Copy)]
+pub struct Source<'a> {
+    pub bytes: Bytes<'a>,
+    pub draw: Option<Draw<'a>>,
+    pub next: Next<'a>,
+    /// The digest of the code that draws.
+    pub code: &'a str,
+}
+
+impl<'a> Source<'a> {
+    /// Tables without a page, all in one go.
+    #[must_use]
+    pub fn of(bytes: Bytes<'a>) -> Self {
+        Self { bytes, draw: None, next: &|_| Ok(()), code: "" }
+    }
+}
+
+/// A file that was drawn.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawn {
+    /// [`PAGE`], or something in [`FIGURES`].
+    pub file: String,
+    pub bytes: Vec<u8>,
+    /// Whether it shows what differs from run to run.
+    pub varies: bool,
+}
+
+/// What publishing would write and remove.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Changes {
+    /// Whether the manifest says something new; always so when anything else changes.
+    pub manifest: bool,
+    /// Parquet files to write.
+    pub tables: Vec<String>,
+    /// Files to write whose lines tables hold.
+    pub files: Vec<String>,
+    pub hdf5: bool,
+    /// Page and figures.
+    pub drawn: bool,
+    /// Files of tables that are no more.
+    pub remove: Vec<String>,
+    /// Files that somebody else changed.
+    pub foreign: Vec<String>,
+}
+
+/// What publishing did.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Published {
+    /// As it stands in the folder.
+    pub manifest: Manifest,
+    pub changes: Changes,
+    /// Why there is no page; all else is published.
+    pub undrawn: Option<String>,
+}
+
+/// What the new manifest and the new index list.
+#[derive(Default)]
+struct Listed {
+    files: Vec<FileRecord>,
+    seen: Vec<Seen>,
+}
+
+impl Folder {
+    /// What [`Folder::publish`] would do. Reads the manifest, and of the files what has to be read.
+    #[must_use]
+    pub fn changes(&self, manifest: &Manifest, draws: bool) -> Changes {
+        let old = self.known().ok().flatten();
+        compare(old.as_ref(), &with_earlier_tables(old.as_ref(), manifest.clone()), draws, self)
+    }
+
+    /// Brings the folder up to date. `manifest` comes without facts and files; `facts` is asked only when something is
+    /// written.
+    ///
+    /// # Errors
+    /// When a table cannot be had or a file not be written, or when the source says so; what was there before stays valid.
+    pub fn publish(
+        &self,
+        manifest: Manifest,
+        facts: impl FnOnce() -> Facts,
+        source: Source<'_>,
+    ) -> Result<Published, StoreError> {
+        let draws = source.draw.is_some();
+        let nothing = |old: Known| Published { manifest: old.manifest, changes: Changes::default(), undrawn: None };
+        if let Some(old) = self.known().ok().flatten() {
+            let new = with_earlier_tables(Some(&old), manifest.clone());
+            if compare(Some(&old), &new, draws, self) == Changes::default() {
+                if old.is_outdated() {
+                    self.refresh(&old);
+                }
+                return Ok(nothing(old));
+            }
+        }
+        fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
+        let _lock = self.lock()?;
+        // Another run may have published while this one waited. A damaged manifest is written anew; one that cannot be
+        // read at the moment lists files that nobody would know of afterwards.
+        let old = match self.known() {
+            Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
+                return Err(StoreError::Io { action, path, source });
+            }
+            known => known.ok().flatten(),
+        };
+        let new = with_earlier_tables(old.as_ref(), manifest);
+        let changes = compare(old.as_ref(), &new, draws, self);
+        match old {
+            Some(old) if changes == Changes::default() => Ok(nothing(old)),
+            old => self.write(old.as_ref(), new, changes, Some(facts), source),
+        }
+    }
+
+    /// Draws page and figures of the last run again, with the code of this digest; none when there is none.
+    ///
+    /// # Errors
+    /// When a file cannot be written.
+    pub fn redraw(&self, draw: Draw<'_>, code: &str) -> Result<Option<Published>, StoreError> {
+        if !self.path().is_dir() {
+            return Ok(None);
+        }
+        let _lock = self.lock()?;
+        let Some(old) = self.known()? else { return Ok(None) };
+        let new = Manifest { files: Vec::new(), ..old.manifest.clone() };
+        // Before anything is touched: the page that is there may be all that can be had.
+        let drawn = match self.drawings(&new, draw) {
+            Ok(drawn) => drawn,
+            Err(problem) => {
+                let changes = Changes::default();
+                return Ok(Some(Published { manifest: old.manifest, changes, undrawn: Some(problem) }));
+            }
+        };
+        let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
+        let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
+        let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
+        self.write(Some(&old), new, changes, None::<fn() -> Facts>, source).map(Some)
+    }
+
+    /// The folder is locked.
+    fn write(
+        &self,
+        old: Option<&Known>,
+        mut new: Manifest,
+        mut changes: Changes,
+        facts: Option<impl FnOnce() -> Facts>,
+        source: Source<'_>,
+    ) -> Result<Published, StoreError> {
+        file::sweep(self.path());
+        if let Some(old) = old {
+            self.strike(&old.manifest, &changes)?;
+        }
+        let mut listed = Listed::default();
+        for table in new.stages.iter().flat_map(|stage| &stage.tables) {
+            if changes.tables.contains(&table.file) {
+                let (stage, name) = split(&table.name);
+                (source.next)(&table.file)?;
+                self.put(&mut listed, &table.file, &(source.bytes)(stage, name)?, table.varies())?;
+            } else {
+                let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
+                listed.keep(old, &table.file, is_good.then(|| table.varies()));
+            }
+            let wanted: Vec<&String> = table.files.iter().filter(|file| changes.files.contains(file)).collect();
+            if let Some(first) = wanted.first() {
+                (source.next)(first)?;
+                self.put_held(&mut listed, table, &wanted)?;
+            }
+            table.files.iter().filter(|file| !wanted.contains(file)).for_each(|file| listed.keep(old, file, None));
+        }
+        if changes.hdf5 {
+            (source.next)(&self.hdf5_file())?;
+            self.put_hdf5(&mut listed, &new)?;
+        } else if cfg!(feature = "hdf5") {
+            listed.keep(old, &self.hdf5_file(), None);
+        }
+        new.files.clear();
+        new = match (old, facts) {
+            // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
+            (Some(old), _) if essence(&old.manifest) == essence(&new) => {
+                Manifest { files: Vec::new(), ..old.manifest.clone() }
+            }
+            (_, Some(facts)) => {
+                let Facts { program, study_folder, machine, written } = facts();
+                Manifest { program, study_folder, machine, written, ..new }
+            }
+            (_, None) => new,
+        };
+        let mut drawn_by = source.code.to_owned();
+        let mut undrawn = None;
+        let earlier: Vec<String> =
+            old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
+        match source.draw.filter(|_| changes.drawn) {
+            None => {
+                drawn_by = old.map_or_else(String::new, |old| old.drawn_by().to_owned());
+                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old, file, None));
+            }
+            Some(draw) => {
+                (source.next)(PAGE)?;
+                let drawn = self.drawings(&new, draw);
+                // It may have taken long.
+                (source.next)(PAGE)?;
+                match drawn.and_then(|drawn| self.put_drawn(drawn)) {
+                    Ok(drawn) => {
+                        changes.remove.extend(self.former(&earlier, &drawn));
+                        listed.files.extend(drawn.files);
+                        listed.seen.extend(drawn.seen);
+                    }
+                    // Tables are worth more than their picture: they are published without.
+                    Err(problem) => undrawn = Some(problem),
+                }
+            }
+        }
+        self.remove(&changes.remove)?;
+        new.files = listed.files;
+        let text = manifest_bytes(&new)?;
+        Index::new(index::digest(&text), drawn_by, listed.seen).write(self.path())?;
+        // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
+        let durability = if old.is_some() { Durability::Synced } else { Durability::Lazy };
+        file::write(&self.path().join(MANIFEST), &text, durability)?;
+        Ok(Published { manifest: new, changes, undrawn })
+    }
+
+    /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
+    /// for the old one.
+    fn strike(&self, old: &Manifest, changes: &Changes) -> Result<(), StoreError> {
+        let replaced = |file: &String| {
+            changes.tables.contains(file)
+                || changes.files.contains(file)
+                || (changes.hdf5 && *file == self.hdf5_file())
+                || (changes.drawn && is_drawn(file))
+        };
+        let files: Vec<FileRecord> = old.files.iter().filter(|record| !replaced(&record.file)).cloned().collect();
+        if files.len() == old.files.len() {
+            return Ok(());
+        }
+        let text = manifest_bytes(&Manifest { files, ..old.clone() })?;
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
+    }
+
+    fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
+        let path = self.path().join(file);
+        file::write(&path, bytes, Durability::Lazy)?;
+        let seen = index::written(&path, file, bytes)?;
+        let (bytes, digest) = (Some(seen.bytes).filter(|_| !varies), Some(seen.digest.clone()).filter(|_| !varies));
+        listed.files.push(FileRecord { file: file.to_owned(), bytes, digest, varies });
+        listed.seen.push(seen);
+        Ok(())
+    }
+
+    /// Writes files whose lines a table holds; its own file is there.
+    fn put_held(&self, listed: &mut Listed, record: &TableRecord, wanted: &[&String]) -> Result<(), StoreError> {
+        let table = self.table(record)?;
+        for file in wanted.iter().filter(|file| here(file)) {
+            let text = held_text(&table, file).ok_or_else(|| {
+                let problem = "it holds no files".to_owned();
+                StoreError::Format { table: record.name.clone(), problem }
+            })?;
+            self.put(listed, file, text.as_bytes(), record.varies())?;
+        }
+        Ok(())
+    }
+
+    #[cfg(feature = "hdf5")]
+    fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
+        let name = self.hdf5_file();
+        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record))?;
+        // Its bytes depend on the version of libhdf5 as well.
+        self.put(listed, &name, &bytes, true)
+    }
+
+    #[cfg(not(feature = "hdf5"))]
+    #[allow(clippy::unused_self, clippy::unnecessary_wraps)] // the same shape with and without the feature
+    fn put_hdf5(&self, _listed: &mut Listed, _manifest: &Manifest) -> Result<(), StoreError> {
+        Ok(())
+    }
+
+    fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
+        let fault = RefCell::new(None);
+        let table = |name: &str| {
+            let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == name)?;
+            self.table(record).map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
+        };
+        let drawn = draw(manifest, &table);
+        match (drawn, fault.take()) {
+            // A clone has only the tables that git keeps, and a page may be drawn without.
+            (Ok(drawn), Some(fault)) if is_absent(&fault) => Ok(drawn),
+            // What is wrong with a file says more than that its table is missing. A page that leaves it out would stay.
+            (_, Some(fault)) => Err(fault.to_string()),
+            (drawn, None) => drawn,
+        }
+    }
+
+    fn put_drawn(&self, drawn: Vec<Drawn>) -> Result<Listed, String> {
+        let mut listed = Listed::default();
+        for Drawn { file, bytes, varies } in drawn {
+            let folder = self.path().join(&file);
+            let folder = folder.parent().unwrap_or(self.path());
+            fs::create_dir_all(folder).map_err(|error| StoreError::io("make", folder)(error).to_string())?;
+            self.put(&mut listed, &file, &bytes, varies).map_err(|error| error.to_string())?;
+        }
+        for folder in [FIGURES, MEASURED] {
+            file::sweep(&self.path().join(folder));
+        }
+        Ok(listed)
+    }
+
+    /// Figures that are no more, which would be taken for current ones. Where no page was listed, by an earlier version or
+    /// because a run was killed, nobody knows which were ours: what is called a figure is taken for one.
+    fn former(&self, earlier: &[String], drawn: &Listed) -> Vec<String> {
+        let is_new = |file: &String| drawn.files.iter().any(|record| record.file == *file);
+        if earlier.iter().any(|file| file == PAGE) {
+            return earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect();
+        }
+        let figures = |folder: &str| -> Vec<String> {
+            let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
+            let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+            let figures = names.filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "svg"));
+            figures.map(|name| format!("{folder}/{name}")).collect()
+        };
+        [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
+    }
+
+    /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is no fault,
+    /// and nobody who publishes is waited for.
+    fn refresh(&self, known: &Known) {
+        if self.path().join(lock::NAME).exists() {
+            return;
+        }
+        let Ok(_lock) = self.lock() else { return };
+        if self.known().ok().flatten().is_none_or(|now| now.digest != known.digest) {
+            return;
+        }
+        let mut listed = Listed::default();
+        known.manifest.files.iter().for_each(|record| listed.keep(Some(known), &record.file, Some(record.varies)));
+        let _ = Index::new(known.digest.clone(), known.drawn_by().to_owned(), listed.seen).write(self.path());
+    }
+}
+
+impl Listed {
+    /// Lists a file that nobody writes now, as [`Known::kept`].
+    fn keep(&mut self, old: Option<&Known>, file: &str, values: Option<bool>) {
+        let Some((record, seen)) = old.and_then(|old| old.kept(file, values)) else { return };
+        self.files.push(record);
+        self.seen.extend(seen);
+    }
+}
+
+fn is_absent(fault: &StoreError) -> bool {
+    matches!(fault, StoreError::Io { source, .. } if source.kind() == ErrorKind::NotFound)
+}
+
+/// Keeps the first fault; that a file is not there gives way to any other.
+fn worse(fault: &mut Option<StoreError>, other: StoreError) {
+    if fault.as_ref().is_none_or(is_absent) {
+        *fault = Some(other);
+    }
+}
+
+/// The HDF5 file of all tables, but for those of files, which lie beside it already.
+///
+/// # Errors
+/// When a table cannot be had, or holds what HDF5 cannot.
+#[cfg(feature = "hdf5")]
+pub fn hdf5_bytes(
+    name: &str,
+    manifest: &Manifest,
+    table: &dyn Fn(&TableRecord) -> Result<Table, StoreError>,
+) -> Result<Vec<u8>, StoreError> {
+    let mut writer = hdf5::Writer::new(name)?;
+    let tables = manifest.stages.iter().flat_map(|stage| &stage.tables);
+    for record in tables.filter(|record| record.files.is_empty()) {
+        writer.add(split(&record.name).0, &table(record)?)?;
+    }
+    writer.finish()
+}
+
+/// Stages without tables of their own take those of the earlier manifest that are still there.
+fn with_earlier_tables(old: Option<&Known>, mut new: Manifest) -> Manifest {
+    let Some(old) = old else { return new };
+    for stage in new.stages.iter_mut().filter(|stage| !complete(stage)) {
+        let mut stages = old.manifest.stages.iter();
+        let earlier = stages.find(|earlier| earlier.name == stage.name && earlier.kind == stage.kind);
+        let intact = |table: &TableRecord| old.table_state(table) == FileState::Intact;
+        if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(intact)) {
+            let StageRecord { status, why, .. } = std::mem::replace(stage, earlier.clone());
+            *stage = StageRecord { status, why, ..stage.clone() };
+        }
+    }
+    new
+}
+
+fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: &Folder) -> Changes {
+    let new_tables: Vec<&TableRecord> = new.stages.iter().flat_map(|stage| &stage.tables).collect();
+    let old_files = || old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone());
+    let old_tables: Vec<&TableRecord> =
+        old.iter().flat_map(|old| &old.manifest.stages).flat_map(|stage| &stage.tables).collect();
+    let intact = |file: &str| old.is_some_and(|old| old.state(file) == FileState::Intact);
+    let intact_table = |table: &TableRecord| {
+        old_tables.contains(&table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact)
+    };
+    let tables: Vec<String> =
+        new_tables.iter().filter(|table| !intact_table(table)).map(|table| table.file.clone()).collect();
+    let held = |table: &&TableRecord| {
+        let known = old_tables.contains(table);
+        table.files.iter().filter(|file| !(known && intact(file))).cloned().collect::<Vec<_>>()
+    };
+    let files: Vec<String> = new_tables.iter().flat_map(held).collect();
+    let with_hdf5 = cfg!(feature = "hdf5");
+    let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&folder.hdf5_file()));
+    let listed = |file: &str| {
+        let of_table = |table: &&TableRecord| table.file == file || table.files.iter().any(|held| held == file);
+        new_tables.iter().any(of_table) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file)
+    };
+    let remove: Vec<String> = old_files().filter(|file| !listed(file) && here(file)).collect();
+    let says_something_new = old.is_none_or(|old| essence(&old.manifest) != essence(new));
+    let any = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();
+    let pictures: Vec<String> = old_files().filter(|file| is_drawn(file)).collect();
+    let drawn =
+        draws && (any || !pictures.iter().any(|file| file == PAGE) || !pictures.iter().all(|file| intact(file)));
+    let mut foreign = old.map_or_else(Vec::new, Known::changed);
+    foreign.retain(|file| !remove.contains(file) && (draws || !is_drawn(file)));
+    Changes { manifest: any || drawn, tables, files, hdf5, drawn, remove, foreign }
+}
+
+fn manifest_bytes(manifest: &Manifest) -> Result<Vec<u8>, StoreError> {
+    let mut bytes = serde_json::to_vec_pretty(manifest)
+        .map_err(|error| StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() })?;
+    bytes.push(b'\n');
+    Ok(bytes)
+}
+
+/// A manifest without what may differ although the results are the same.
+fn essence(manifest: &Manifest) -> Manifest {
+    let mut essence = manifest.clone();
+    (essence.program, essence.machine) = (Program::default(), Machine::default());
+    essence.study_folder = StudyFolder::default();
+    (essence.written, essence.seconds) = (String::new(), 0.0);
+    essence.files.clear();
+    for stage in &mut essence.stages {
+        stage.seconds = 0.0;
+        stage.left_out.iter_mut().for_each(|left_out| left_out.saved_seconds = None);
+        if complete(stage) {
+            stage.status.clear();
+            stage.why.clear();
+        }
+    }
+    essence
+}

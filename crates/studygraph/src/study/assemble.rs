@@ -1,0 +1,195 @@
+//! From the tree of a file to a study: its own keys, its stages, and each stage built by its kind.
+//!
+//! Must not know: any kind by name.
+
+use std::path::Path;
+
+use super::decode::{Decoder, Reference};
+use super::document::{Content, Node as Tree, Pair, parse};
+use super::overrides::Stages;
+use super::words::{alternatives, quote};
+use super::{Node, Source, Study, links, settings};
+use crate::program::Program;
+use crate::stage::Kind;
+use crate::table::tolerance::Allowance;
+use declare::error::{Diagnostic, Place, suggest};
+use declare::parameter::{Field, Shape};
+use declare::record::{Entry, Record, Value};
+use declare::text;
+
+/// Characters of a name.
+pub const LONGEST_NAME: usize = 64;
+/// What names of studies and stages look like, as a regular expression.
+pub const NAME_PATTERN: &str = "^[a-z0-9][a-z0-9_-]{0,63}$";
+
+static NUMBERS: Shape = Shape::Integer { least: 0, most: 9999 };
+
+static SOURCE: &[Field] = &[
+    Field::new("paper", Shape::Text, "The paper, by the name under which the project keeps it."),
+    Field::new("tables", Shape::List(&NUMBERS), "Numbers of the tables that are reproduced.").default("[]"),
+    Field::new("figures", Shape::List(&NUMBERS), "Numbers of the figures that are reproduced.").default("[]"),
+];
+
+/// The keys of a study besides `stages`.
+pub static KEYS: &[Field] = &[
+    Field::new("study", Shape::Text, "The study's name: the folder of its results."),
+    Field::new("title", Shape::Text, "One line that says what is studied.").optional(),
+    Field::group("source", SOURCE, "What the study reproduces.").optional(),
+    Field::integer("seed", 0, i64::MAX, "Where all random numbers start.").default("0"),
+    Field::new(
+        "tolerances",
+        Shape::Map(&Shape::AnyQuantity),
+        "By how much `gearstudy diff` lets columns differ: relative as a number, absolute with a unit.",
+    )
+    .optional(),
+];
+
+/// A stage whose fields are read but which is not built yet.
+pub struct Draft {
+    pub name: String,
+    pub place: Place,
+    pub kind: &'static Kind,
+    pub record: Record,
+    pub references: Vec<Reference>,
+}
+
+/// Makes a study of a text.
+///
+/// # Errors
+/// The first thing that is wrong with it.
+pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study, Diagnostic> {
+    let start = Place { line: 1, column: 1, ..Place::default() };
+    let help = "a study starts with `study: NAME` and `stages:`";
+    let empty = || Diagnostic::new("the file is empty").at(start).help(help);
+    let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
+    let Content::Mapping(pairs) = &root.content else {
+        let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
+        return Err(Diagnostic::new(message).at(root.place));
+    };
+    let start = pairs.first().map_or(root.place, |pair| pair.place);
+    let belong = ranges_belong(program.kinds);
+    let keys = Decoder::new(&belong, Stages::default()).record(&root, KEYS, &["stages"], "the study", start)?;
+    let name = keys.text("study").to_owned();
+    check_name("study", &name, keys.place_of("study"))?;
+
+    let stages = pairs.iter().find(|pair| pair.key == "stages").ok_or_else(|| {
+        Diagnostic::new("the study has no `stages`").at(start).help("stages are written `NAME: { kind: KIND, … }`")
+    })?;
+    let drafts = drafts(stages, program.kinds, &belong)?;
+    links::check_references(&drafts)?;
+    let mut nodes = Vec::with_capacity(drafts.len());
+    for Draft { name, place, kind, record, .. } in drafts {
+        let stage = (kind.build)(&record).map_err(|found| found.or_at(place))?;
+        nodes.push(Node { name, place, kind, record, stage });
+    }
+    links::check_ports(&nodes)?;
+    let tolerances = tolerances(&keys)?;
+    links::check_tolerances(&tolerances, &nodes)?;
+    Ok(Study {
+        tolerances: tolerances.into_iter().map(|(allowance, _)| allowance).collect(),
+        title: keys.maybe_text("title").unwrap_or(&name).to_owned(),
+        source: keys.maybe_group("source").map(source),
+        seed: keys.integer("seed").unsigned_abs(),
+        path: path.to_owned(),
+        text: text.to_owned(),
+        name,
+        nodes,
+        program,
+    })
+}
+
+fn source(record: &Record) -> Source {
+    let numbers = |name: &str| {
+        let entries = record.list(name).iter();
+        entries.filter_map(|entry| if let Value::Integer(number) = entry.value { Some(number) } else { None }).collect()
+    };
+    Source { paper: record.text("paper").to_owned(), tables: numbers("tables"), figures: numbers("figures") }
+}
+
+fn tolerances(keys: &Record) -> Result<Vec<(Allowance, Place)>, Diagnostic> {
+    let read = |(name, entry): &(String, Entry)| {
+        let allowance = Allowance::new(name, &settings::any_quantity(&entry.value));
+        Ok((allowance.map_err(|problem| Diagnostic::new(problem).at(entry.place))?, entry.place))
+    };
+    keys.maybe_map("tolerances").unwrap_or_default().iter().map(read).collect()
+}
+
+fn drafts(stages: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Draft>, Diagnostic> {
+    let written = "stages are written `NAME: { kind: KIND, … }`";
+    let pairs = match &stages.node.content {
+        Content::Mapping(pairs) if !pairs.is_empty() => pairs,
+        Content::Mapping(_) => {
+            return Err(Diagnostic::new("a study has at least one stage").at(stages.node.place).help(written));
+        }
+        _ => {
+            let message = format!("`stages` is {}; a mapping from names to stages is expected", stages.node.describe());
+            return Err(Diagnostic::new(message).at(stages.node.place).help(written));
+        }
+    };
+    let stages = Stages { pairs, kinds };
+    pairs.iter().map(|pair| draft(pair, stages, belong)).collect()
+}
+
+fn draft(pair: &Pair, stages: Stages, belong: &str) -> Result<Draft, Diagnostic> {
+    let kinds = stages.kinds;
+    let (name, place) = (&pair.key, pair.place);
+    check_name("stage", name, place)?;
+    let known = || kinds.iter().map(|kind| kind.name);
+    let Content::Mapping(fields) = &pair.node.content else {
+        let message =
+            format!("stage {} is {}; a mapping with its `kind` is expected", quote(name), pair.node.describe());
+        return Err(Diagnostic::new(message).at(pair.node.place).help(format!("kinds are {}", alternatives(known()))));
+    };
+    let Some(Pair { node: wanted, .. }) = fields.iter().find(|field| field.key == "kind" && !field.node.is_null())
+    else {
+        let message = format!("stage {} has no `kind`", quote(name));
+        return Err(Diagnostic::new(message).at(place).help(format!("kinds are {}", alternatives(known()))));
+    };
+    let kind = kind_named(wanted, kinds)?;
+    let mut decoder = Decoder::new(belong, stages);
+    let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(name), place)?;
+    Ok(Draft { name: name.clone(), place, kind, record, references: decoder.references })
+}
+
+fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Diagnostic> {
+    let found = match &node.content {
+        Content::Scalar { text, .. } => kinds.iter().copied().find(|kind| kind.name == text).ok_or(text.as_str()),
+        _ => Err(""),
+    };
+    found.map_err(|text| {
+        let help = suggest(text, kinds.iter().map(|kind| kind.name));
+        Diagnostic::new(format!("unknown kind of stage: {}", node.describe())).at(node.place).help(help)
+    })
+}
+
+/// Lower-case letters, digits, `-` and `_`, beginning with a letter or digit: names become files and words of commands.
+/// Those of Windows' devices can be neither there, and a study is to run everywhere.
+fn check_name(what: &str, name: &str, place: Place) -> Result<(), Diagnostic> {
+    let allowed = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '-' || c == '_';
+    let message = format!("{} cannot be the name of a {what}", quote(name));
+    if text::is_device(name) {
+        let better = name.split('.').next().unwrap_or(name).to_ascii_lowercase();
+        let help =
+            format!("Windows keeps it for a device, so no file there can have it: for example `{better}-{what}`");
+        return Err(Diagnostic::new(message).at(place).help(help));
+    }
+    if name.starts_with(|c: char| c.is_ascii_alphanumeric()) && name.chars().all(allowed) && name.len() <= LONGEST_NAME
+    {
+        return Ok(());
+    }
+    let rule = format!("lower-case letters, digits, `-` and `_` make a name, at most {LONGEST_NAME} of them");
+    let better: String =
+        name.to_lowercase().chars().map(|c| if allowed(c) { c } else { '-' }).take(LONGEST_NAME).collect();
+    let better = better.trim_matches(['-', '_']);
+    let help = if better.is_empty() { rule } else { format!("{rule}: for example `{better}`") };
+    Err(Diagnostic::new(message).at(place).help(help))
+}
+
+/// Which fields take ranges, in words.
+fn ranges_belong(kinds: &[&'static Kind]) -> String {
+    let fields = kinds
+        .iter()
+        .flat_map(|kind| kind.fields.iter().filter(|field| field.chooses).map(|field| (field.name, kind.name)));
+    let places: Vec<_> = fields.map(|(field, kind)| format!("in `{field}` of a stage of kind `{kind}`")).collect();
+    if places.is_empty() { "where an optimiser chooses".to_owned() } else { places.join(" or ") }
+}

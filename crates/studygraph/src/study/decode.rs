@@ -1,0 +1,345 @@
+//! A tree and a table of declared fields become a record: the only reader of everything a study can say.
+//!
+//! Every wrong input ends in one diagnostic: where, what was found, what was expected, and the nearest known name.
+//! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
+
+use super::document::{Content, Node, Pair, nothing, parse};
+use super::notation;
+use super::overrides::{self, Stages};
+use super::quantity::Measure;
+use super::words::{self, alternatives, quote};
+use declare::error::{Diagnostic, Place, suggest};
+use declare::parameter::{Field, Member, Presence, Shape};
+use declare::record::{Entry, Record, Value, Variant};
+use declare::units::{parse_quantity, parse_unit, split_quantity};
+
+/// The name of a stage that a field refers to.
+#[derive(Clone, Debug)]
+pub struct Reference {
+    /// The field.
+    pub field: &'static str,
+    pub stage: String,
+    pub place: Place,
+    pub kinds: &'static [&'static str],
+}
+
+/// Reads fields, and gathers the references among them.
+pub struct Decoder<'a> {
+    pub references: Vec<Reference>,
+    /// Where `[least, most]` belongs: `` in the `design` of an `optimizer` stage ``.
+    pub ranges_belong: &'a str,
+    /// All stages as written, for fields that override those of another one.
+    stages: Stages<'a>,
+    chooses: bool,
+}
+
+/// A mapping whose fields are read, and how it is called in messages.
+struct Owner<'a> {
+    label: &'a str,
+    /// Where it stands: the place of what is missing in it.
+    place: Place,
+}
+
+impl<'a> Decoder<'a> {
+    pub fn new(ranges_belong: &'a str, stages: Stages<'a>) -> Self {
+        Self { references: Vec::new(), ranges_belong, stages, chooses: false }
+    }
+
+    /// Reads the fields of a mapping called `label` that stands at `place`; `others` are keys that somebody else reads.
+    ///
+    /// # Errors
+    /// When a field is unknown, missing or wrong.
+    pub fn record(
+        &mut self,
+        node: &Node,
+        fields: &'static [Field],
+        others: &[&str],
+        label: &str,
+        place: Place,
+    ) -> Result<Record, Diagnostic> {
+        let owner = Owner { label, place };
+        let pairs = match &node.content {
+            Content::Mapping(pairs) => pairs.as_slice(),
+            // A member without its fields may be written `name:`.
+            Content::Scalar { .. } if node.is_null() => &[],
+            _ => return Err(not_fields(node, fields, others, label)),
+        };
+        let known = || others.iter().copied().chain(fields.iter().map(|field| field.name));
+        if let Some(pair) = pairs.iter().find(|pair| !known().any(|name| name == pair.key)) {
+            let message = format!("unknown field {} of {label}", quote(&pair.key));
+            return Err(Diagnostic::new(message).at(pair.place).help(suggest(&pair.key, known().collect::<Vec<_>>())));
+        }
+        let mut record = Record { fields: Vec::with_capacity(fields.len()), place };
+        for field in fields {
+            if let Some(entry) = self.field(field, pairs, &owner)? {
+                record.fields.push((field.name, entry));
+            }
+        }
+        Ok(record)
+    }
+
+    fn field(&mut self, field: &'static Field, pairs: &[Pair], owner: &Owner) -> Result<Option<Entry>, Diagnostic> {
+        let around = self.chooses;
+        self.chooses |= field.chooses;
+        let entry = match (pairs.iter().find(|pair| pair.key == field.name), field.presence) {
+            (Some(pair), _) => self.value(&pair.node, &field.shape, field, field.name, pair.place).map(Some),
+            (None, Presence::Optional) => Ok(None),
+            (None, Presence::Required) => {
+                let expected = words::expected(&field.shape);
+                let message = format!("{} has no {}; {expected} is expected", owner.label, quote(field.name));
+                Err(Diagnostic::new(message).at(owner.place).help(field.summary))
+            }
+            (None, Presence::Default(text)) => {
+                let node = parse(text)?.unwrap_or_else(|| nothing(owner.place)).moved_to(owner.place);
+                self.value(&node, &field.shape, field, field.name, owner.place).map(Some)
+            }
+        };
+        self.chooses = around;
+        entry
+    }
+
+    /// Reads one value of a field; messages call it `name`, which stands at `key`.
+    fn value(
+        &mut self,
+        node: &Node,
+        shape: &'static Shape,
+        field: &'static Field,
+        name: &str,
+        key: Place,
+    ) -> Result<Entry, Diagnostic> {
+        if node.is_null() {
+            let help = if matches!(shape, Shape::List(_)) { "write `[]` for an empty list" } else { field.summary };
+            let message = format!("{} has no value; {} is expected", quote(name), words::expected(shape));
+            return Err(Diagnostic::new(message).at(node.place).help(help));
+        }
+        let value = match shape {
+            Shape::Quantity { dimension, least, most } => {
+                let measure = Measure { name, dimension: Some(*dimension), least: *least, most: *most };
+                measure.value(node, field.span, self.ranges())?
+            }
+            Shape::Number { least, most } => {
+                let measure = Measure { name, dimension: None, least: *least, most: *most };
+                measure.value(node, field.span, self.ranges())?
+            }
+            Shape::AnyQuantity => any_quantity(name, node)?,
+            Shape::Integer { least, most } => Value::Integer(integer(name, node, *least, *most)?),
+            Shape::Flag => match plain(node) {
+                Some("true" | "True" | "TRUE") => Value::Flag(true),
+                Some("false" | "False" | "FALSE") => Value::Flag(false),
+                _ => return Err(not_a(name, node, shape)),
+            },
+            Shape::Text => Value::Text(scalar(name, node, shape)?.to_owned()),
+            Shape::Choice(choices) => {
+                let text = scalar(name, node, shape)?;
+                let found = choices.iter().find(|choice| choice.name == text);
+                let found = found.ok_or_else(|| {
+                    let help = suggest(text, choices.iter().map(|choice| choice.name));
+                    Diagnostic::new(format!("{} cannot be {}", quote(name), quote(text))).at(node.place).help(help)
+                })?;
+                Value::Choice(found.name)
+            }
+            Shape::Reference(kinds) => {
+                let stage = scalar(name, node, shape)?.to_owned();
+                self.references.push(Reference { field: field.name, stage: stage.clone(), place: node.place, kinds });
+                Value::Reference(stage)
+            }
+            Shape::List(item) => {
+                let items = match &node.content {
+                    Content::Sequence(items) => items.as_slice(),
+                    _ => std::slice::from_ref(node),
+                };
+                Value::List(
+                    items.iter().map(|node| self.value(node, item, field, name, key)).collect::<Result<_, _>>()?,
+                )
+            }
+            Shape::Map(item) => {
+                let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
+                let mut entries = Vec::with_capacity(pairs.len());
+                for pair in pairs {
+                    check_label(name, pair)?;
+                    entries.push((pair.key.clone(), self.value(&pair.node, item, field, &pair.key, pair.place)?));
+                }
+                Value::Map(entries)
+            }
+            Shape::Group(fields) => Value::Group(self.record(node, fields, &[], &quote(name), key)?),
+            Shape::Member(members) => {
+                let (member, record) = self.member(name, node, members())?;
+                Value::Member(member, record)
+            }
+            Shape::Overrides(of) => {
+                let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
+                Value::Variant(self.variant(of, node, pairs)?)
+            }
+        };
+        Ok(Entry { value, place: node.place })
+    }
+
+    /// `name`, or `name: { fields }`.
+    fn member(
+        &mut self,
+        field: &str,
+        node: &Node,
+        members: &'static [Member],
+    ) -> Result<(&'static str, Record), Diagnostic> {
+        let names = || members.iter().map(|member| member.name);
+        let bare;
+        let (name, place, inside) = match &node.content {
+            Content::Scalar { text, .. } => {
+                bare = nothing(node.place);
+                (text, node.place, &bare)
+            }
+            Content::Mapping(pairs) => match pairs.as_slice() {
+                [pair] => (&pair.key, pair.place, &pair.node),
+                [] => {
+                    let message = format!("{} is empty; {} is expected", quote(field), alternatives(names()));
+                    return Err(Diagnostic::new(message).at(node.place));
+                }
+                [first, second, ..] => return Err(side_by_side(field, first, second, members)),
+            },
+            Content::Sequence(_) => {
+                let message = format!("{} takes one of {}, not a list", quote(field), alternatives(names()));
+                return Err(Diagnostic::new(message).at(node.place));
+            }
+        };
+        let member = members.iter().find(|member| member.name == name).ok_or_else(|| {
+            let message = format!("unknown name {} in {}", quote(name), quote(field));
+            Diagnostic::new(message).at(place).help(suggest(name, names().collect::<Vec<_>>()))
+        })?;
+        if !inside.is_null() && !matches!(inside.content, Content::Mapping(_)) {
+            return Err(not_fields(inside, member.fields, &[], &quote(member.name)));
+        }
+        Ok((member.name, self.record(inside, member.fields, &[], &quote(member.name), place)?))
+    }
+
+    /// The fields of the stage that the field `of` names, with those in `pairs` in the place of its own.
+    fn variant(&mut self, of: &str, node: &Node, pairs: &[Pair]) -> Result<Variant, Diagnostic> {
+        let named = self.references.iter().find(|reference| reference.field == of).cloned();
+        let Some(Reference { stage, place, .. }) = named else {
+            let message = format!("{} is not known, so nothing of it can be replaced", quote(of));
+            return Err(Diagnostic::new(message).at(node.place));
+        };
+        let (kind, merged) = self.stages.merged(&stage, place, pairs)?;
+        let around = std::mem::replace(&mut self.chooses, false);
+        let record = self.record(&merged, kind.fields, &["kind"], &quote(&stage), node.place);
+        self.chooses = around;
+        Ok(Variant { kind: kind.name, written: overrides::written(pairs), record: record? })
+    }
+
+    fn ranges(&self) -> Result<(), &'a str> {
+        if self.chooses { Ok(()) } else { Err(self.ranges_belong) }
+    }
+}
+
+/// More than one member where one is expected; often its fields are only not indented far enough.
+fn side_by_side(field: &str, first: &Pair, second: &Pair, members: &[Member]) -> Diagnostic {
+    let message =
+        format!("{} and {} stand side by side; {} takes one", quote(&first.key), quote(&second.key), quote(field));
+    let slipped = members.iter().any(|member| {
+        member.name == first.key && first.node.is_null() && member.fields.iter().any(|field| field.name == second.key)
+    });
+    let help = if slipped {
+        format!("indent {} and what follows further than {}", quote(&second.key), quote(&first.key))
+    } else {
+        "in a list, each starts with `- ` on a line of its own".to_owned()
+    };
+    Diagnostic::new(message).at(second.place).help(help)
+}
+
+/// Names that a user gives end up in tables, in conditions and in file names.
+fn check_label(field: &str, pair: &Pair) -> Result<(), Diagnostic> {
+    let fits = pair.key.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) && pair.key.chars().count() <= 64;
+    if fits {
+        return Ok(());
+    }
+    let message = format!("{} cannot be a name in `{field}`", quote(&pair.key));
+    Err(Diagnostic::new(message)
+        .at(pair.place)
+        .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"))
+}
+
+fn not_fields(node: &Node, fields: &[Field], others: &[&str], label: &str) -> Diagnostic {
+    let message = format!("{label} is {}; a mapping from its fields to their values is expected", node.describe());
+    let names: Vec<_> = others.iter().copied().chain(fields.iter().map(|field| field.name)).map(quote).collect();
+    let help = if names.is_empty() {
+        "it has no fields: write only its name".to_owned()
+    } else {
+        format!("its fields are {}", names.join(", "))
+    };
+    Diagnostic::new(message).at(node.place).help(help)
+}
+
+fn not_a(name: &str, node: &Node, shape: &Shape) -> Diagnostic {
+    let message = format!("{} is {}; {} is expected", quote(name), node.describe(), words::expected(shape));
+    Diagnostic::new(message).at(node.place)
+}
+
+fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'n str, Diagnostic> {
+    match &node.content {
+        Content::Scalar { text, .. } => Ok(text),
+        _ => Err(not_a(name, node, shape)),
+    }
+}
+
+/// The text of a scalar without quotes.
+fn plain(node: &Node) -> Option<&str> {
+    match &node.content {
+        Content::Scalar { text, quoted: false } => Some(text),
+        _ => None,
+    }
+}
+
+fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagnostic> {
+    let text = scalar(name, node, &Shape::Integer { least, most })?;
+    let shown = quote(text);
+    let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
+    let other = notation::help(text);
+    if plain(node).is_none() || other.is_some() || !is_digits(digits) {
+        let (number, unit) = split_quantity(text);
+        let has_unit = !number.is_empty() && !unit.is_empty() && parse_unit(unit).is_ok();
+        let how = match plain(node) {
+            None => "without quotes",
+            Some(_) if has_unit && other.is_none() => "without a unit",
+            Some(_) => "in digits",
+        };
+        let wrong =
+            Diagnostic::new(format!("{} must be a whole number {how}, not {shown}", quote(name))).at(node.place);
+        if let Some(help) = other {
+            return Err(wrong.help(help));
+        }
+        // Only where all of the text is understood is it known which number is meant.
+        let whole = number.parse::<f64>().ok().filter(|_| unit.is_empty() || has_unit);
+        let whole = whole.filter(|value| value.fract() == 0.0 && value.abs() < 1e15);
+        return Err(match whole {
+            Some(value) => wrong.help(format!("write `{value}`")),
+            None => wrong,
+        });
+    }
+    let read = text.parse::<i64>();
+    if let Ok(value) = read
+        && (least..=most).contains(&value)
+    {
+        return Ok(value);
+    }
+    // A number that no computer word holds needs both bounds said, even where they are those of the word.
+    let admissible = words::integer_range(least, most).filter(|_| read.is_ok());
+    let admissible = admissible.unwrap_or_else(|| format!("between {least} and {most}"));
+    Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place))
+}
+
+fn is_digits(text: &str) -> bool {
+    !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit())
+}
+
+fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
+    let text = scalar(name, node, &Shape::AnyQuantity)?;
+    if let Some(help) = notation::help(text) {
+        let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
+        return Err(Diagnostic::new(message).at(node.place).help(help));
+    }
+    let read = parse_quantity(text).map_err(|_| {
+        let message = format!("{} is not a number with a unit that is known; {name} needs one", quote(text));
+        Diagnostic::new(message).at(node.place).help("units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`")
+    })?;
+    let unit = split_quantity(text).1.to_owned();
+    Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })
+}

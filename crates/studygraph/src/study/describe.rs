@@ -1,0 +1,109 @@
+//! Stage kinds in words, from the declarations that read them.
+//!
+//! Must not know: any kind by name, or how wide the terminal is.
+
+use std::fmt::Write as _;
+
+use super::words::{self, quote};
+use crate::stage::Kind;
+use declare::parameter::{Field, Presence, Shape, Span};
+use declare::units::RATIO;
+
+/// One line for each kind.
+#[must_use]
+pub fn list(kinds: &[&'static Kind]) -> String {
+    let width = kinds.iter().map(|kind| kind.name.len()).max().unwrap_or(0);
+    let lines: Vec<_> = kinds.iter().map(|kind| format!("{:width$}  {}\n", kind.name, kind.summary)).collect();
+    lines.concat()
+}
+
+/// A kind with all its fields and its example.
+#[must_use]
+pub fn kind(kind: &'static Kind) -> String {
+    let mut text = format!("{}\n  {}\n\nfields\n", kind.name, kind.summary);
+    let mut families = Vec::new();
+    fields(&mut text, kind.fields, 1, &mut families);
+    text += "\nexample\n";
+    for line in kind.example.trim().lines() {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "  {line}");
+    }
+    text
+}
+
+fn fields(text: &mut String, fields: &'static [Field], level: usize, families: &mut Vec<Vec<&'static str>>) {
+    let indent = "  ".repeat(level);
+    for field in fields {
+        let presence = match field.presence {
+            Presence::Required => "required".to_owned(),
+            Presence::Optional => "optional".to_owned(),
+            Presence::Default(default) => format!("default {}", quote(default)),
+        };
+        let span = match field.span {
+            Span::Single => "",
+            Span::Axis { .. } => "; one value, a list, or { from, to, count }",
+            Span::Range => "; [least, most] where an optimiser chooses",
+        };
+        let _ = writeln!(text, "{indent}{}: {}{span} ({presence})", field.name, holds(&field.shape));
+        let _ = writeln!(text, "{indent}    {}", field.summary);
+        inside(text, &field.shape, level + 1, families);
+    }
+}
+
+/// What is named below a field: choices, fields, members.
+fn inside(text: &mut String, shape: &'static Shape, level: usize, families: &mut Vec<Vec<&'static str>>) {
+    let indent = "  ".repeat(level);
+    match shape {
+        Shape::Choice(choices) => {
+            for choice in *choices {
+                let _ = writeln!(text, "{indent}- {}: {}", choice.name, choice.summary);
+            }
+        }
+        Shape::List(item) | Shape::Map(item) => inside(text, item, level, families),
+        Shape::Group(inner) => fields(text, inner, level, families),
+        Shape::Member(members) => {
+            let names: Vec<_> = members().iter().map(|member| member.name).collect();
+            // A family may be used twice, and may hold itself.
+            if families.contains(&names) {
+                let _ = writeln!(text, "{indent}- the same as above: {}", words::alternatives(names));
+                return;
+            }
+            families.push(names);
+            for member in members() {
+                let _ = writeln!(text, "{indent}- {}: {}", member.name, member.summary);
+                fields(text, member.fields, level + 2, families);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// What a shape holds, in a few words.
+fn holds(shape: &Shape) -> String {
+    let with_range = |what: &str, range: Option<String>| match range {
+        Some(range) => format!("{what}, {range}"),
+        None => what.to_owned(),
+    };
+    match shape {
+        Shape::Quantity { dimension, least, most } => {
+            let range = words::range(*least, *most, |value| words::quantity(value, *dimension));
+            let (name, units) = dimension.describe();
+            if *dimension == RATIO || units.is_empty() {
+                return with_range(name, range);
+            }
+            with_range(&format!("{name} in {}", units.join(", ")), range)
+        }
+        Shape::AnyQuantity => "a number, with or without a unit".to_owned(),
+        Shape::Number { least, most } => with_range("a plain number", words::range(*least, *most, words::number)),
+        Shape::Integer { least, most } => with_range("a whole number", words::integer_range(*least, *most)),
+        Shape::Flag => "true or false".to_owned(),
+        Shape::Text => "text".to_owned(),
+        Shape::Choice(_) => "one of these words".to_owned(),
+        Shape::Reference(kinds) => words::stage_of(kinds),
+        Shape::List(item) => format!("a list, each {}", holds(item)),
+        Shape::Map(item) => format!("names of your own, each with {}", holds(item)),
+        Shape::Group(_) => "these fields".to_owned(),
+        Shape::Member(_) => "one of these, `name` or `name: { fields }`".to_owned(),
+        Shape::Overrides(of) => format!("fields of the stage in `{of}`, in the place of its own"),
+    }
+}

@@ -1,0 +1,244 @@
+//! Numbers of a study: quantities with their units, axes, and the ranges between which an optimiser chooses.
+//!
+//! A number is read from its text, so the same quantity written in two units has the same bits, and so has a point of
+//! an axis given by `from`, `to` and `count` and the same point written out. Results in SI. Must not know: stages.
+
+use super::document::{Content, Node};
+use super::notation;
+use super::words::{self, quote};
+use declare::error::{Diagnostic, suggest};
+use declare::parameter::Span;
+use declare::record::Value;
+use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_quantity};
+
+/// Points of an axis.
+const MOST_POINTS: usize = 100_000;
+
+/// What a field says about its number.
+#[derive(Clone, Copy)]
+pub struct Measure<'a> {
+    /// The field, for messages.
+    pub name: &'a str,
+    /// `None` for a plain number.
+    pub dimension: Option<Dimension>,
+    pub least: f64,
+    pub most: f64,
+}
+
+impl Measure<'_> {
+    /// Reads what the span of a field allows.
+    ///
+    /// # Errors
+    /// When it is not there, has a wrong unit, is outside the range, or is more than the span allows; `ranges` is where
+    /// a range belongs when it is not allowed here.
+    pub fn value(&self, node: &Node, span: Span, ranges: Result<(), &str>) -> Result<Value, Diagnostic> {
+        match (&node.content, span) {
+            (Content::Sequence(items), Span::Axis { .. }) => self.list(node, items),
+            (Content::Mapping(_), Span::Axis { .. }) => self.spaced(node),
+            (Content::Scalar { .. }, Span::Axis { .. }) => Ok(Value::Axis(vec![self.single(node)?])),
+            (Content::Sequence(items), Span::Range) => {
+                ranges.map_err(|place| {
+                    let message = format!("{} takes one value here, not a range", quote(self.name));
+                    Diagnostic::new(message).at(node.place).help(format!("a range `[least, most]` belongs {place}"))
+                })?;
+                self.bounds(node, items)
+            }
+            _ => {
+                let value = self.single(node)?;
+                Ok(if self.dimension.is_some() { Value::Quantity(value) } else { Value::Number(value) })
+            }
+        }
+    }
+
+    /// One number, in SI and inside the range.
+    fn single(&self, node: &Node) -> Result<f64, Diagnostic> {
+        let Content::Scalar { text, quoted } = &node.content else {
+            let message = format!("{} takes one value, not {}", quote(self.name), node.describe());
+            return Err(Diagnostic::new(message).at(node.place).help(format!("{} is expected", self.expected())));
+        };
+        self.read(text, *quoted).map_err(|found| found.or_at(node.place))
+    }
+
+    fn read(&self, text: &str, quoted: bool) -> Result<f64, Diagnostic> {
+        let shown = quote(text);
+        if self.dimension.is_none() && quoted {
+            let message = format!("{shown} is text in quotes; {} is expected", self.expected());
+            return Err(Diagnostic::new(message).help("write the number without quotes"));
+        }
+        if let Some(help) = notation::help(text) {
+            let message = format!("{shown} is not a number as a study has it; {} is expected", self.expected());
+            return Err(Diagnostic::new(message).help(help));
+        }
+        let read = parse_quantity(text).map_err(|error| self.unreadable(text, error))?;
+        match self.dimension {
+            None if read.has_unit => {
+                let message = format!("{shown} has a unit; {} is a plain number", quote(self.name));
+                return Err(Diagnostic::new(message).help(format!("write `{}`", split_quantity(text).0)));
+            }
+            Some(dimension) if dimension != RATIO && !read.has_unit => {
+                let example = words::example_like(split_quantity(text).0, dimension, self.least, self.most);
+                let example = example.map_or(String::new(), |example| format!(", for example `{example}`"));
+                let message = format!("{shown} has no unit; {} is expected{example}", dimension.describe().0);
+                return Err(Diagnostic::new(message));
+            }
+            Some(dimension) if dimension != read.dimension => {
+                let (name, units) = read.dimension.describe();
+                let is = if units.is_empty() { "has a unit of another kind".to_owned() } else { format!("is {name}") };
+                return Err(Diagnostic::new(format!("{shown} {is}; {} is expected", self.expected())));
+            }
+            _ => {}
+        }
+        // Adding zero turns a negative zero, the same value with other bits, into zero.
+        if (self.least..=self.most).contains(&read.value) { Ok(read.value + 0.0) } else { Err(self.outside(text)) }
+    }
+
+    fn unreadable(&self, text: &str, error: UnitError) -> Diagnostic {
+        let shown = quote(text);
+        match error {
+            UnitError::Unknown(symbol) => {
+                let message = format!("unknown unit {} in {shown}; {} is expected", quote(&symbol), self.expected());
+                let own = self.dimension.map_or::<&[&str], _>(&[], |dimension| dimension.describe().1);
+                Diagnostic::new(message).help(match declare::error::nearest(&symbol, units::symbols()) {
+                    Some(near) => format!("did you mean `{near}`?"),
+                    None => suggest(&symbol, own.iter().copied()),
+                })
+            }
+            UnitError::Malformed(unit) => {
+                let message =
+                    format!("{} in {shown} cannot be read as a unit; {} is expected", quote(&unit), self.expected());
+                Diagnostic::new(message).help("units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`")
+            }
+            UnitError::NotFinite => {
+                Diagnostic::new(format!("{shown} is too large a number; {} is expected", self.expected()))
+            }
+            UnitError::NotANumber(_) | UnitError::Missing => {
+                let endless = matches!(
+                    text.trim_start_matches(['+', '-', '.']).to_ascii_lowercase().as_str(),
+                    "nan" | "inf" | "infinity"
+                );
+                let is = if endless { "is not finite" } else { "is not a number" };
+                Diagnostic::new(format!("{shown} {is}; {} is expected", self.expected()))
+            }
+        }
+    }
+
+    fn outside(&self, text: &str) -> Diagnostic {
+        let admissible = self.range().unwrap_or_else(|| "finite".to_owned());
+        Diagnostic::new(format!("{} must be {admissible}, not {}", quote(self.name), quote(text)))
+    }
+
+    fn range(&self) -> Option<String> {
+        words::range(self.least, self.most, |value| match self.dimension {
+            Some(dimension) => words::quantity(value, dimension),
+            None => words::number(value),
+        })
+    }
+
+    fn expected(&self) -> String {
+        words::measure(self.dimension, self.least, self.most)
+    }
+
+    /// `[a, b, …]` in any order, without repeats.
+    fn list(&self, node: &Node, items: &[Node]) -> Result<Value, Diagnostic> {
+        let mut values =
+            items.iter().map(|item| Ok((self.single(item)?, item))).collect::<Result<Vec<_>, Diagnostic>>()?;
+        if values.is_empty() {
+            let message = format!("{} is an empty list; at least one value is expected", quote(self.name));
+            return Err(Diagnostic::new(message).at(node.place));
+        }
+        if values.len() > MOST_POINTS {
+            return Err(self.too_many(&values.len().to_string()).at(node.place));
+        }
+        values.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.place.offset.cmp(&b.1.place.offset)));
+        #[allow(clippy::float_cmp)] // the same point twice, not a point nearby
+        if let Some(pair) = values.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            let message = format!("{} already has this value: {}", quote(self.name), pair[1].1.describe());
+            return Err(Diagnostic::new(message).at(pair[1].1.place).help("keep one of them"));
+        }
+        Ok(Value::Axis(values.into_iter().map(|(value, _)| value).collect()))
+    }
+
+    /// `{ from, to, count }`, both ends included.
+    fn spaced(&self, node: &Node) -> Result<Value, Diagnostic> {
+        let Content::Mapping(pairs) = &node.content else {
+            return self.single(node).map(|value| Value::Axis(vec![value]));
+        };
+        let names = ["from", "to", "count"];
+        if let Some(pair) = pairs.iter().find(|pair| !names.contains(&pair.key.as_str())) {
+            let message = format!("unknown field {} of {}", quote(&pair.key), quote(self.name));
+            return Err(Diagnostic::new(message).at(pair.place).help(suggest(&pair.key, names)));
+        }
+        let part = |name: &str| {
+            let found = pairs.iter().find(|pair| pair.key == name && !pair.node.is_null());
+            found.map(|pair| &pair.node).ok_or_else(|| {
+                let message = format!("{} has no {}", quote(self.name), quote(name));
+                Diagnostic::new(message).at(node.place).help("evenly spaced values are `{ from: …, to: …, count: … }`")
+            })
+        };
+        let (from, to, count) = (part("from")?, part("to")?, part("count")?);
+        let (first, last) = (self.single(from)?, self.single(to)?);
+        if first >= last {
+            let message = format!("`to` ({}) must be above `from` ({})", to.describe(), from.describe());
+            return Err(Diagnostic::new(message).at(to.place));
+        }
+        let Content::Scalar { text, .. } = &count.content else {
+            return Err(Diagnostic::new("`count` is a whole number").at(count.place));
+        };
+        if let Some(help) = notation::help(text) {
+            return Err(Diagnostic::new("`count` is a whole number in digits").at(count.place).help(help));
+        }
+        let points = text.parse::<usize>().ok().filter(|points| (2..=MOST_POINTS).contains(points));
+        let Some(points) = points else { return Err(self.too_many(text).at(count.place)) };
+        let mut values: Vec<f64> = (0..points).map(|at| between(from, to, first, last, at, points)).collect();
+        (values[0], values[points - 1]) = (first, last);
+        if values.windows(2).any(|pair| pair[0] >= pair[1]) {
+            let message =
+                format!("{points} different values do not fit between {} and {}", from.describe(), to.describe());
+            return Err(Diagnostic::new(message).at(count.place));
+        }
+        Ok(Value::Axis(values))
+    }
+
+    fn too_many(&self, found: &str) -> Diagnostic {
+        let message =
+            format!("{} must have between 2 and {MOST_POINTS} values, not {}", quote(self.name), quote(found));
+        Diagnostic::new(message)
+    }
+
+    /// `[least, most]`.
+    fn bounds(&self, node: &Node, items: &[Node]) -> Result<Value, Diagnostic> {
+        let [least, most] = items else {
+            let message = format!("{} takes a range `[least, most]`, not a list of {}", quote(self.name), items.len());
+            return Err(Diagnostic::new(message).at(node.place));
+        };
+        let (low, high) = (self.single(least)?, self.single(most)?);
+        if low >= high {
+            let message = format!("a range is `[least, most]`; {} is not below {}", least.describe(), most.describe());
+            return Err(Diagnostic::new(message)
+                .at(node.place)
+                .help("a value that is fixed is written without brackets"));
+        }
+        Ok(Value::Range(low, high))
+    }
+}
+
+/// Point `at` of `points`. Where both ends have the same unit the point is found in that unit, to the 15 digits that a
+/// binary number keeps, and read as if it were written there, so `{ from: 25 mm, to: 100 mm, count: 16 }` holds the
+/// bits of `50 mm`.
+fn between(from: &Node, to: &Node, first: f64, last: f64, at: usize, points: usize) -> f64 {
+    let share = |low: f64, high: f64| low + (high - low) * at as f64 / (points - 1) as f64;
+    let written = |node: &Node| match &node.content {
+        Content::Scalar { text, .. } => {
+            let (number, unit) = split_quantity(text);
+            number.parse::<f64>().ok().map(|number| (number, unit.to_owned()))
+        }
+        _ => None,
+    };
+    if let (Some((low, unit)), Some((high, other))) = (written(from), written(to))
+        && unit == other
+        && let Ok(point) = parse_quantity(&format!("{:.14e} {unit}", share(low, high)))
+    {
+        return point.value;
+    }
+    share(first, last)
+}

@@ -1,0 +1,80 @@
+//! A file becomes text, or one message that says why not.
+
+use std::fs::File;
+use std::io::{self, Read};
+use std::path::Path;
+
+use super::LoadError;
+use super::document::place_at;
+use declare::error::{Diagnostic, nearest};
+
+/// Bytes of a study. The largest that anybody wrote has a few ten thousand.
+const LARGEST: u64 = 1 << 20;
+
+/// Reads a whole file of UTF-8.
+///
+/// # Errors
+/// When it cannot be read, is no file, is too large or is not UTF-8.
+pub fn read(path: &Path) -> Result<String, LoadError> {
+    let refused = |diagnostic: Diagnostic| LoadError::new(path, String::new(), diagnostic);
+    if path.is_dir() {
+        return Err(refused(Diagnostic::new("this is a directory; a study is one YAML file").help(in_folder(path))));
+    }
+    let bytes = bytes(path).map_err(|error| refused(unreadable(path, &error)))?;
+    if bytes.len() as u64 > LARGEST {
+        let message = format!("this file is larger than {} KiB, too large for a study", LARGEST >> 10);
+        return Err(refused(Diagnostic::new(message).help("a study only describes; its data are computed")));
+    }
+    String::from_utf8(bytes).map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
+}
+
+fn bytes(path: &Path) -> io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    // One byte more than is allowed shows that there is more, even where the file has no size of its own.
+    File::open(path)?.take(LARGEST + 1).read_to_end(&mut bytes)?;
+    Ok(bytes)
+}
+
+fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
+    if error.kind() != io::ErrorKind::NotFound {
+        return Diagnostic::new(format!("this file cannot be read: {error}"));
+    }
+    let missing = Diagnostic::new("there is no such file");
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+    let found = studies(folder);
+    match nearest(&wanted, found.iter().map(String::as_str)) {
+        Some(near) => missing.help(format!("did you mean `{}`?", path.with_file_name(near).display())),
+        None => missing,
+    }
+}
+
+fn in_folder(folder: &Path) -> String {
+    match studies(folder).first() {
+        Some(first) => format!("name a file in it, for example `{}`", folder.join(first).display()),
+        None => "there is no YAML file in it".to_owned(),
+    }
+}
+
+/// Names of the YAML files in a folder, sorted.
+fn studies(folder: &Path) -> Vec<String> {
+    let entries = folder.read_dir().into_iter().flatten().flatten();
+    let mut names: Vec<_> = entries
+        .filter(|entry| entry.path().extension().is_some_and(|extension| extension == "yaml" || extension == "yml"))
+        .map(|entry| entry.file_name().to_string_lossy().into_owned())
+        .collect();
+    names.sort();
+    names
+}
+
+fn not_utf8(path: &Path, bytes: &[u8], valid: usize) -> LoadError {
+    // What comes before the wrong byte keeps its place; each wrong byte becomes one mark.
+    let text = String::from_utf8_lossy(bytes).into_owned();
+    let place = place_at(&text, valid, char::REPLACEMENT_CHARACTER.len_utf8());
+    let diagnostic = if bytes.starts_with(&[0xFF, 0xFE]) || bytes.starts_with(&[0xFE, 0xFF]) {
+        Diagnostic::new("this file is UTF-16, not UTF-8")
+    } else {
+        Diagnostic::new(format!("this file is not UTF-8: the byte 0x{:02X} cannot stand here", bytes[valid]))
+    };
+    LoadError::new(path, text, diagnostic.at(place).help("save it as UTF-8"))
+}

@@ -1,0 +1,289 @@
+//! The JSON schema (draft 2020-12) of a study, made from the declarations that also read it, for editors.
+//!
+//! What JSON can say is said: names, required fields, words, numbers, the look of a quantity. The order follows the
+//! declarations, so the same program always gives the same text. Must not know: any kind by name.
+
+use serde_json::{Map, Value, json};
+
+use super::assemble::{KEYS, NAME_PATTERN};
+use super::document::{Content, Node, parse};
+use super::words;
+use crate::stage::Kind;
+use declare::parameter::{Field, Member, Presence, Shape, Span};
+use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, parse_unit, symbols};
+
+const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
+
+/// The schema of studies made of stages of these kinds.
+#[must_use]
+pub fn schema(kinds: &[&'static Kind]) -> Value {
+    let mut families = Families::default();
+    let mut properties = families.properties(KEYS, false);
+    let names: Vec<_> = kinds.iter().map(|kind| json!({ "const": kind.name, "description": kind.summary })).collect();
+    properties.insert(
+        "stages".to_owned(),
+        json!({
+            "description": "The stages by name; each reads the tables of others.",
+            "type": "object",
+            "minProperties": 1,
+            "propertyNames": { "pattern": NAME_PATTERN },
+            "additionalProperties": { "$ref": "#/$defs/stage" },
+        }),
+    );
+    if let Some(Value::Object(study)) = properties.get_mut("study") {
+        study.insert("type".to_owned(), json!("string"));
+        study.insert("pattern".to_owned(), json!(NAME_PATTERN));
+    }
+    let conditions: Vec<_> = kinds
+        .iter()
+        .map(|kind| {
+            json!({
+                "if": { "properties": { "kind": { "const": kind.name } }, "required": ["kind"] },
+                "then": { "$ref": format!("#/$defs/kind_{}", kind.name) },
+            })
+        })
+        .collect();
+    let mut definitions = Map::new();
+    definitions.insert(
+        "stage".to_owned(),
+        json!({
+            "type": "object",
+            "required": ["kind"],
+            "properties": { "kind": { "description": "What the stage computes.", "oneOf": names } },
+            "allOf": conditions,
+        }),
+    );
+    for kind in kinds {
+        let mut object = families.object(kind.fields, false);
+        object["description"] = json!(kind.summary);
+        if let Some(Value::Object(properties)) = object.get_mut("properties") {
+            properties.shift_insert(0, "kind".to_owned(), json!({ "const": kind.name }));
+        }
+        definitions.insert(format!("kind_{}", kind.name), object);
+    }
+    for (name, definition) in families.finish() {
+        definitions.insert(name, definition);
+    }
+    let mut required: Vec<_> = required(KEYS);
+    required.push("stages");
+    json!({
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A study of gearstudy",
+        "type": "object",
+        "required": required,
+        "additionalProperties": false,
+        "properties": properties,
+        "$defs": definitions,
+    })
+}
+
+/// The same as text, as it is kept in a file.
+#[must_use]
+pub fn schema_text(kinds: &[&'static Kind]) -> String {
+    format!("{:#}\n", schema(kinds))
+}
+
+fn required(fields: &[Field]) -> Vec<&'static str> {
+    fields.iter().filter(|field| field.presence == Presence::Required).map(|field| field.name).collect()
+}
+
+/// Families that have been met: each is defined once, for it may hold itself.
+#[derive(Default)]
+struct Families {
+    met: Vec<Family>,
+}
+
+struct Family {
+    key: (Vec<&'static str>, bool),
+    name: String,
+    schema: Value,
+}
+
+impl Families {
+    fn finish(self) -> impl Iterator<Item = (String, Value)> {
+        self.met.into_iter().map(|family| (family.name, family.schema))
+    }
+
+    /// A mapping of declared fields and nothing else.
+    fn object(&mut self, fields: &'static [Field], chooses: bool) -> Value {
+        let properties = self.properties(fields, chooses);
+        let mut object = json!({ "type": "object", "additionalProperties": false, "properties": properties });
+        let required = required(fields);
+        if !required.is_empty() {
+            object["required"] = json!(required);
+        }
+        object
+    }
+
+    fn properties(&mut self, fields: &'static [Field], chooses: bool) -> Map<String, Value> {
+        fields.iter().map(|field| (field.name.to_owned(), self.field(field, chooses))).collect()
+    }
+
+    fn field(&mut self, field: &'static Field, chooses: bool) -> Value {
+        let mut described = Map::new();
+        described.insert("description".to_owned(), json!(description(field)));
+        let shape = self.shape(&field.shape, field, chooses || field.chooses);
+        if let Value::Object(shape) = shape {
+            described.extend(shape);
+        }
+        if let Presence::Default(text) = field.presence
+            && let Ok(Some(node)) = parse(text)
+        {
+            described.insert("default".to_owned(), plain(&node));
+            // The default is the better example.
+            described.shift_remove("examples");
+        }
+        Value::Object(described)
+    }
+
+    fn shape(&mut self, shape: &'static Shape, field: &Field, chooses: bool) -> Value {
+        match shape {
+            Shape::Quantity { dimension, least, most } => spread(&quantity(*dimension, *least, *most), field, chooses),
+            Shape::Number { least, most } => spread(&bounded("number", *least, *most), field, chooses),
+            Shape::AnyQuantity => json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") }),
+            Shape::Integer { least, most } => {
+                let mut integer = json!({ "type": "integer" });
+                if *least != i64::MIN {
+                    integer["minimum"] = json!(least);
+                }
+                if *most != i64::MAX {
+                    integer["maximum"] = json!(most);
+                }
+                integer
+            }
+            Shape::Flag => json!({ "type": "boolean" }),
+            Shape::Text => json!({ "type": ["string", "number", "boolean"] }),
+            Shape::Choice(choices) => {
+                let choices =
+                    choices.iter().map(|choice| json!({ "const": choice.name, "description": choice.summary }));
+                json!({ "oneOf": choices.collect::<Vec<_>>() })
+            }
+            Shape::Reference(_) => json!({ "type": "string", "pattern": NAME_PATTERN }),
+            Shape::List(item) => {
+                let item = self.shape(item, field, chooses);
+                json!({ "anyOf": [{ "type": "array", "items": item }, item] })
+            }
+            Shape::Map(item) => json!({ "type": "object", "additionalProperties": self.shape(item, field, chooses) }),
+            Shape::Group(fields) => self.object(fields, chooses),
+            Shape::Member(members) => json!({ "$ref": format!("#/$defs/{}", self.family(members(), field, chooses)) }),
+            // Which fields there are depends on the kind of the other stage, which no schema can look up.
+            Shape::Overrides(_) => json!({ "type": "object", "propertyNames": { "not": { "const": "kind" } } }),
+        }
+    }
+
+    /// The name under which a family is defined.
+    fn family(&mut self, members: &'static [Member], field: &Field, chooses: bool) -> String {
+        let key = (members.iter().map(|member| member.name).collect::<Vec<_>>(), chooses);
+        if let Some(family) = self.met.iter().find(|family| family.key == key) {
+            return family.name.clone();
+        }
+        let mut name = format!("family_{}", field.name);
+        while self.met.iter().any(|family| family.name == name) {
+            name.push('_');
+        }
+        let at = self.met.len();
+        self.met.push(Family { key, name: name.clone(), schema: Value::Null });
+
+        let mut alternatives: Vec<Value> = Vec::new();
+        let mut properties = Map::new();
+        for member in members {
+            if required(member.fields).is_empty() {
+                alternatives.push(json!({ "const": member.name, "description": member.summary }));
+            }
+            let mut object = self.object(member.fields, chooses);
+            if required(member.fields).is_empty() {
+                object["type"] = json!(["object", "null"]);
+            }
+            object["description"] = json!(member.summary);
+            properties.insert(member.name.to_owned(), object);
+        }
+        alternatives.push(json!({
+            "type": "object",
+            "minProperties": 1,
+            "maxProperties": 1,
+            "additionalProperties": false,
+            "properties": properties,
+        }));
+        self.met[at].schema = json!({ "anyOf": alternatives });
+        name
+    }
+}
+
+/// The summary, and what the schema cannot say.
+fn description(field: &Field) -> String {
+    let range = match field.shape {
+        Shape::Quantity { dimension, least, most } => {
+            words::range(least, most, |value| words::quantity(value, dimension))
+        }
+        Shape::Reference(kinds) => Some(words::stage_of(kinds)),
+        _ => None,
+    };
+    range.map_or(field.summary.to_owned(), |range| format!("{} ({range})", field.summary))
+}
+
+/// One value, and the other ways in which a field's span lets it be given.
+fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
+    match field.span {
+        Span::Axis { .. } => json!({ "anyOf": [
+            single,
+            { "type": "array", "minItems": 1, "items": single },
+            {
+                "type": "object",
+                "required": ["from", "to", "count"],
+                "additionalProperties": false,
+                "properties": { "from": single, "to": single, "count": { "type": "integer", "minimum": 2 } },
+            },
+        ] }),
+        Span::Range if chooses => {
+            json!({ "anyOf": [single, { "type": "array", "minItems": 2, "maxItems": 2, "items": single }] })
+        }
+        Span::Single | Span::Range => single.clone(),
+    }
+}
+
+fn bounded(kind: &str, least: f64, most: f64) -> Value {
+    let mut schema = json!({ "type": kind });
+    if least.is_finite() {
+        schema["minimum"] = json!(least);
+    }
+    if most.is_finite() {
+        schema["maximum"] = json!(most);
+    }
+    schema
+}
+
+fn quantity(dimension: Dimension, least: f64, most: f64) -> Value {
+    if dimension == RATIO {
+        let percent = json!({ "type": "string", "pattern": format!("^{NUMBER} *%$") });
+        return json!({ "anyOf": [bounded("number", least, most), percent] });
+    }
+    // Simple dimensions have their few units; in others units are put together, and only the reader knows them all.
+    let units = if [LENGTH, ANGLE, FORCE, TIME].contains(&dimension) {
+        let fits = |symbol: &&str| parse_unit(symbol).is_ok_and(|unit| unit.dimension == dimension);
+        symbols().filter(fits).collect::<Vec<_>>().join("|")
+    } else {
+        "[A-Za-zµμ1].*".to_owned()
+    };
+    let mut schema = json!({ "type": "string", "pattern": format!("^{NUMBER} *({units})$") });
+    if let Some(example) = words::example(dimension, least, most) {
+        schema["examples"] = json!([example]);
+    }
+    schema
+}
+
+/// A tree as JSON, as far as YAML itself would tell numbers from words.
+pub(super) fn plain(node: &Node) -> Value {
+    match &node.content {
+        _ if node.is_null() => Value::Null,
+        Content::Scalar { text, quoted: false } => match text.as_str() {
+            "true" => json!(true),
+            "false" => json!(false),
+            number => number.parse::<serde_json::Number>().map_or_else(|_| json!(text), Value::Number),
+        },
+        Content::Scalar { text, .. } => json!(text),
+        Content::Sequence(items) => items.iter().map(plain).collect(),
+        Content::Mapping(pairs) => {
+            pairs.iter().map(|pair| (pair.key.clone(), plain(&pair.node))).collect::<Map<_, _>>().into()
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! Words that messages, the schema and the descriptions of kinds share: quoted text, ranges, what a field expects.
+//!
+//! Values come in SI and are shown in the unit in which they are shortest. Must not know: YAML, stages.
+
+use declare::parameter::{Field, Shape};
+use declare::units::{Dimension, RATIO, in_unit};
+
+/// Characters of a user's text that a message repeats.
+const LONGEST_QUOTE: usize = 60;
+
+/// Names that a message lists.
+const MOST_NAMES: usize = 30;
+
+/// The text in backticks, on one line, cut when long.
+pub fn quote(text: &str) -> String {
+    let mut shown = String::new();
+    for (at, character) in text.chars().enumerate() {
+        if at == LONGEST_QUOTE {
+            shown.push('…');
+            break;
+        }
+        if character.is_control() {
+            shown.extend(character.escape_default());
+        } else {
+            shown.push(character);
+        }
+    }
+    format!("`{shown}`")
+}
+
+/// `` `a`, `b` or `c` ``.
+pub fn alternatives<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
+    let mut names: Vec<_> = names.into_iter().map(quote).collect();
+    if names.len() > MOST_NAMES {
+        let others = format!("one of {} others", names.len() - MOST_NAMES);
+        names.truncate(MOST_NAMES);
+        names.push(others);
+    }
+    match names.as_slice() {
+        [] => "nothing".to_owned(),
+        [only] => only.clone(),
+        [front @ .., last] => format!("{} or {last}", front.join(", ")),
+    }
+}
+
+/// `a`, `an` in front of a word.
+pub fn article(word: &str) -> &'static str {
+    if word.trim_start_matches('`').starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" }
+}
+
+/// A number with at most 12 digits that count, without the noise of binary fractions.
+pub fn number(value: f64) -> String {
+    let rounded: f64 = format!("{value:.11e}").parse().unwrap_or(value);
+    let size = rounded.abs();
+    if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{rounded:e}") } else { format!("{rounded}") }
+}
+
+/// A quantity in the unit of its dimension that makes it shortest.
+pub fn quantity(si: f64, dimension: Dimension) -> String {
+    let (_, units) = dimension.describe();
+    if dimension == RATIO || units.is_empty() {
+        return number(si);
+    }
+    if si == 0.0 {
+        return format!("0 {}", units[0]);
+    }
+    let shown = units.iter().map(|unit| (number(in_unit(si, unit)), unit));
+    shown
+        .min_by_key(|(text, _)| (text.contains('e'), text.len()))
+        .map_or_else(String::new, |(text, unit)| format!("{text} {unit}"))
+}
+
+/// `between 0.01 mm and 1 m`, `at least 0`; `None` when everything finite is allowed.
+pub fn range(least: f64, most: f64, show: impl Fn(f64) -> String) -> Option<String> {
+    match (least.is_finite(), most.is_finite()) {
+        (true, true) => Some(format!("between {} and {}", show(least), show(most))),
+        (true, false) => Some(format!("at least {}", show(least))),
+        (false, true) => Some(format!("at most {}", show(most))),
+        (false, false) => None,
+    }
+}
+
+/// The same for whole numbers, where the widest values mean that there is no bound.
+pub fn integer_range(least: i64, most: i64) -> Option<String> {
+    match (least != i64::MIN, most != i64::MAX) {
+        (true, true) => Some(format!("between {least} and {most}")),
+        (true, false) => Some(format!("at least {least}")),
+        (false, true) => Some(format!("at most {most}")),
+        (false, false) => None,
+    }
+}
+
+/// A quantity that would be accepted.
+pub fn example(dimension: Dimension, least: f64, most: f64) -> Option<String> {
+    let (_, units) = dimension.describe();
+    units.iter().find_map(|unit| {
+        let fits = |amount: &&str| with_unit(amount, unit, dimension, least, most).is_some();
+        ["3", "20", "200", "1", "0.5", "0.1", "0"].into_iter().find(fits).map(|amount| format!("{amount} {unit}"))
+    })
+}
+
+/// The user's own number with the first unit that makes it acceptable, or any acceptable quantity.
+pub fn example_like(amount: &str, dimension: Dimension, least: f64, most: f64) -> Option<String> {
+    let own = dimension.describe().1.iter().find_map(|unit| with_unit(amount, unit, dimension, least, most));
+    own.or_else(|| example(dimension, least, most))
+}
+
+fn with_unit(amount: &str, unit: &str, dimension: Dimension, least: f64, most: f64) -> Option<String> {
+    let text = format!("{amount} {unit}");
+    let read = declare::units::parse_quantity(&text).ok()?;
+    (read.dimension == dimension && (least..=most).contains(&read.value) && amount.len() < 20).then_some(text)
+}
+
+/// What a number must be: `` a length (for example `3 mm`) ``; no dimension means a plain number.
+pub fn measure(dimension: Option<Dimension>, least: f64, most: f64) -> String {
+    match dimension {
+        None => "a plain number".to_owned(),
+        Some(RATIO) => "a ratio (a plain number or one with `%`)".to_owned(),
+        Some(dimension) => {
+            let example = example(dimension, least, most);
+            let example = example.map_or(String::new(), |text| format!(" (for example `{text}`)"));
+            format!("{}{example}", dimension.describe().0)
+        }
+    }
+}
+
+/// What a shape holds, as the subject of "is expected".
+pub fn expected(shape: &Shape) -> String {
+    match shape {
+        Shape::Quantity { dimension, least, most } => measure(Some(*dimension), *least, *most),
+        Shape::AnyQuantity => "a number, with its unit if it has one,".to_owned(),
+        Shape::Number { least, most } => measure(None, *least, *most),
+        Shape::Integer { .. } => "a whole number".to_owned(),
+        Shape::Flag => "`true` or `false`".to_owned(),
+        Shape::Text => "text".to_owned(),
+        Shape::Choice(choices) => alternatives(choices.iter().map(|choice| choice.name)),
+        Shape::Reference(kinds) => stage_of(kinds),
+        Shape::List(_) => "a list".to_owned(),
+        Shape::Map(_) => "a mapping from names".to_owned(),
+        Shape::Group(fields) => format!("a mapping with the fields {}", names(fields)),
+        Shape::Member(members) => alternatives(members().iter().map(|member| member.name)),
+        Shape::Overrides(of) => format!("a mapping from fields of the stage in {} to other values", quote(of)),
+    }
+}
+
+/// `` the name of a `geometry` stage ``.
+pub fn stage_of(kinds: &[&str]) -> String {
+    if kinds.is_empty() {
+        return "the name of a stage".to_owned();
+    }
+    let kinds = alternatives(kinds.iter().copied());
+    format!("the name of {} {kinds} stage", article(&kinds))
+}
+
+fn names(fields: &[Field]) -> String {
+    fields.iter().map(|field| quote(field.name)).collect::<Vec<_>>().join(", ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use declare::units::{ANGLE, FORCE, LENGTH, STRESS};
+
+    #[test]
+    fn quantities_are_shown_in_the_unit_that_makes_them_shortest() {
+        assert_eq!(quantity(1e-5, LENGTH), "10 um");
+        assert_eq!(quantity(1.0, LENGTH), "1 m");
+        assert_eq!(quantity(0.02, LENGTH), "20 mm");
+        assert_eq!(quantity(std::f64::consts::FRAC_PI_4, ANGLE), "45 deg");
+        assert_eq!(quantity(206e9, STRESS), "206 GPa");
+        assert_eq!(quantity(0.01, RATIO), "0.01");
+        assert_eq!(quantity(0.0, LENGTH), "0 mm");
+    }
+
+    #[test]
+    fn an_example_is_acceptable_and_keeps_the_users_number_when_it_can() {
+        assert_eq!(example_like("3", LENGTH, 1e-4, 0.1).as_deref(), Some("3 mm"));
+        assert_eq!(example_like("206", STRESS, 1e9, 1e12).as_deref(), Some("206 GPa"));
+        assert_eq!(example_like("-5", FORCE, 0.0, 1e6).as_deref(), Some("3 N"));
+        assert_eq!(example(LENGTH, 1e-7, 1e-6).as_deref(), Some("1 um"));
+    }
+
+    #[test]
+    fn ranges_leave_out_the_bound_that_is_none() {
+        assert_eq!(range(0.0, f64::INFINITY, number).as_deref(), Some("at least 0"));
+        assert_eq!(range(f64::NEG_INFINITY, 2.5, number).as_deref(), Some("at most 2.5"));
+        assert_eq!(range(f64::NEG_INFINITY, f64::INFINITY, number), None);
+        assert_eq!(integer_range(1, i64::MAX).as_deref(), Some("at least 1"));
+        assert_eq!(integer_range(1, 9).as_deref(), Some("between 1 and 9"));
+    }
+
+    #[test]
+    fn quotes_are_one_short_line() {
+        assert_eq!(quote("a\nb"), "`a\\nb`");
+        assert_eq!(quote(&"µ".repeat(1000)).chars().count(), LONGEST_QUOTE + 3);
+    }
+}

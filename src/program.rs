@@ -1,0 +1,79 @@
+//! This program: its kinds of stages, and what it knows of itself since it was built.
+//!
+//! Must not know: what any of it is for.
+
+use std::path::Path;
+
+use crate::stage::kinds::KINDS;
+use studygraph::about::About;
+use studygraph::program::Program;
+use studygraph::study::{self, LoadError, Study};
+
+/// What studies are run with.
+pub static PROGRAM: Program = Program {
+    kinds: KINDS,
+    code_of: code_digest,
+    about: About {
+        version: env!("CARGO_PKG_VERSION"),
+        summary: env!("CARGO_PKG_DESCRIPTION"),
+        license: env!("CARGO_PKG_LICENSE"),
+        citation: include_str!("../CITATION.cff"),
+        code: env!("GEARSTUDY_CODE"),
+        commit: commit(),
+        rustc: env!("GEARSTUDY_RUSTC"),
+        profile: env!("GEARSTUDY_PROFILE"),
+        dependencies: env!("GEARSTUDY_DEPENDENCIES"),
+    },
+};
+
+const fn commit() -> Option<(&'static str, bool)> {
+    let (commit, changed) = (env!("GEARSTUDY_COMMIT"), env!("GEARSTUDY_CHANGED"));
+    // `true` or `false`.
+    if commit.is_empty() { None } else { Some((commit, changed.len() == 4)) }
+}
+
+/// Reads and checks a study of this program.
+///
+/// # Errors
+/// As [`study::load`].
+pub fn load(path: &Path) -> Result<Study, LoadError> {
+    study::load(path, &PROGRAM)
+}
+
+/// Checks a study of this program, whose text was read from `path`.
+///
+/// # Errors
+/// As [`study::load`].
+pub fn load_text(text: &str, path: &Path) -> Result<Study, LoadError> {
+    study::load_text(text, path, &PROGRAM)
+}
+
+/// The digest of the code that the tables of a kind come from, made when the program was built.
+#[must_use]
+pub fn code_digest(kind: &str) -> String {
+    let own = code::KIND_CODE.iter().find(|(name, _)| *name == kind).map_or("", |(_, digest)| digest);
+    format!("{}{own}", code::SHARED_CODE)
+}
+
+mod code {
+    include!(concat!(env!("OUT_DIR"), "/code.rs"));
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_citation_file_says_who_and_what() {
+        let about = &PROGRAM.about;
+        assert_eq!(about.cited("name"), Some("The gearstudy authors"));
+        assert!(about.cited("title").is_some_and(|title| title.starts_with("gearstudy: ") && !title.contains('"')));
+        assert_eq!(about.cited("version"), Some(about.version), "CITATION.cff and Cargo.toml disagree");
+        assert_eq!(about.cited("nothing"), None);
+        // `[MIT, Apache-2.0]` and `MIT OR Apache-2.0` are the same licences.
+        let license = about.cited("license").unwrap();
+        assert!(about.license.split(" OR ").all(|one| license.contains(one)), "{license}");
+        assert_eq!((about.dependencies.len(), about.code.len()), (64, 32));
+        assert!(about.commit.is_none_or(|(commit, _)| commit.len() >= 40));
+    }
+}
