@@ -68,7 +68,7 @@ impl Cache {
                     .tables
                     .iter()
                     .filter(|table| table.body.is_some())
-                    .find_map(|table| self.table(entry.key, &table.name).err().map(|error| error.to_string())),
+                    .find_map(|table| self.bytes(entry.key, &table.name).err().map(|error| error.to_string())),
             };
             if let Some(problem) = problem {
                 if remove {
