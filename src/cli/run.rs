@@ -52,7 +52,7 @@ fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     };
     let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
     let (jobs, keep_going, limits) = (how.jobs.unwrap_or(0), how.keep_going, limits(&how.limits));
-    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits, ..Options::default() })
+    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits })
 }
 
 fn wanted(name: &str) -> Result<Wanted, Ending> {
