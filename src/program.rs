@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use crate::stage::kinds::KINDS;
+use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
 use studygraph::program::Program;
 use studygraph::study::{self, LoadError, Study};
@@ -13,6 +14,7 @@ use studygraph::study::{self, LoadError, Study};
 pub static PROGRAM: Program = Program {
     kinds: KINDS,
     code_of: code_digest,
+    counters: &COUNTERS,
     about: About {
         version: env!("CARGO_PKG_VERSION"),
         summary: env!("CARGO_PKG_DESCRIPTION"),

@@ -187,7 +187,7 @@ impl Watcher {
 impl Observer for Watcher {
     fn event(&self, event: &Event<'_>) {
         match event {
-            Event::Planned { .. } | Event::Hit { .. } => {}
+            Event::Hit { .. } => {}
             Event::Started { stage, why, .. } => {
                 let bar = self.bar(stage);
                 let (why, since) = ((*why).to_owned(), Some(Instant::now()));

@@ -4,8 +4,7 @@
 
 use serde::Serialize;
 
-use super::page::seconds;
-use super::{ReportError, flags, floats, texts};
+use super::{ReportError, flags, floats, seconds, texts};
 use declare::number::significant;
 use studygraph::store::manifest::Manifest;
 use studygraph::table::data::Table;

@@ -4,7 +4,7 @@
 
 use std::fmt::Write;
 
-use super::plot::{CHARACTER, at, escape};
+use super::svg::{CHARACTER, at, escape};
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colour {

@@ -4,7 +4,8 @@
 
 use std::fmt::Write;
 
-use super::plot::{Frame, Kind, Plot, Series, at, escape};
+use super::plot::{Frame, Kind, Plot, Series};
+use super::svg::{at, escape};
 
 impl Plot {
     /// A series of a drawing that is made of single points is named where it stands, not in the legend.

@@ -11,12 +11,14 @@ mod marks;
 mod page;
 mod plot;
 mod scale;
+mod svg;
 pub mod text;
 mod thin;
 mod verdict;
 
 use std::cell::RefCell;
 
+use declare::number::{significant, with_unit};
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
 
@@ -133,5 +135,14 @@ fn flags<'a>(table: &'a Table, name: &str) -> Result<&'a [bool], ReportError> {
     match column(table, name)? {
         Data::Flag(values) => Ok(values),
         _ => Err(wrong_type(table, name)),
+    }
+}
+
+/// A time as pages write it.
+fn seconds(seconds: f64) -> String {
+    if seconds < 0.1 {
+        with_unit(&significant(1e3 * seconds, 3), "ms")
+    } else {
+        with_unit(&significant(seconds, 3), "s")
     }
 }

@@ -9,8 +9,8 @@ use serde::Serialize;
 
 use super::choice::{self, Choice};
 use super::figure::Figure;
-use super::{ReportError, flags, integers, plot, texts, verdict};
-use declare::number::{significant, unit_symbol, with_unit};
+use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
+use declare::number::{significant, unit_symbol};
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
 use studygraph::table::data::{Data, Table};
 
@@ -236,12 +236,4 @@ fn table_view<'a>(record: &'a TableRecord, tables: &dyn Fn(&str) -> Option<Table
 
 fn short(digest: &str) -> String {
     digest.chars().take(12).collect()
-}
-
-pub(super) fn seconds(seconds: f64) -> String {
-    if seconds < 0.1 {
-        with_unit(&significant(1e3 * seconds, 3), "ms")
-    } else {
-        with_unit(&significant(seconds, 3), "s")
-    }
 }

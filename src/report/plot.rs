@@ -9,6 +9,7 @@ use std::fmt::Write;
 use super::drawing::true_to_scale;
 use super::legend::{self, Colour, Item, Sign};
 use super::scale::{Scale, Tick};
+use super::svg::{CHARACTER, at, escape};
 use declare::number::{superscript, unit_symbol};
 
 /// Colours, type and strokes of every figure; light, dark and print.
@@ -17,8 +18,6 @@ pub const STYLE: &str = include_str!("plot.css");
 const WIDTH: f64 = 860.0;
 const PLOT_HEIGHT: f64 = 340.0;
 const RIGHT: f64 = 18.0;
-/// Average width of a character at the size of a label: browsers differ, so places that depend on it leave room.
-pub const CHARACTER: f64 = 7.0;
 /// Series beyond this many are coloured along a ramp.
 const COLOURS: usize = 8;
 
@@ -63,32 +62,6 @@ pub struct Plot {
     pub marks: Vec<Mark>,
     /// Names under the bars; the x of a point is their index.
     pub categories: Vec<String>,
-}
-
-/// Text as it may stand in an element or an attribute.
-#[must_use]
-pub fn escape(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '&' => escaped.push_str("&amp;"),
-            '<' => escaped.push_str("&lt;"),
-            '>' => escaped.push_str("&gt;"),
-            '"' => escaped.push_str("&quot;"),
-            '\'' => escaped.push_str("&#39;"),
-            // Not allowed in XML at all.
-            control if control.is_control() && !matches!(control, '\n' | '\t') => escaped.push('\u{fffd}'),
-            other => escaped.push(other),
-        }
-    }
-    escaped
-}
-
-/// A coordinate with two decimals and no negative zero.
-pub fn at(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
 /// The frame in which points are placed.

@@ -6,13 +6,13 @@ use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
 use declare::record::Record;
-use declare::work::Counter;
 use gearmesh::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
 use gearmesh::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
 use gearmesh::gear::geometry::Pair;
 use gearmesh::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::trace::NODES;
+use gearmesh::gear::work::CONTACT_SOLVES;
 
 /// How the teeth of a pair deflect; read by [`teeth`].
 pub const TEETH: &[Field] = &[
@@ -151,7 +151,7 @@ const CORNER_SOLVES: f64 = 8.0;
 /// What the settings leave out.
 pub fn corner_contact_left_out(settings: Settings) -> Option<Omission> {
     let none = settings.corner_contact == CornerContact::None;
-    let saved = Saved::For { done: Counter::ContactSolves, saved: Counter::ContactSolves, times: CORNER_SOLVES - 1.0 };
+    let saved = Saved::For { done: &CONTACT_SOLVES, saved: &CONTACT_SOLVES, times: CORNER_SOLVES - 1.0 };
     let omission = Omission::new("corner contact", "`corner_contact` is `none`: flanks touch from A to E only");
     none.then(|| omission.saving(Some(saved)))
 }

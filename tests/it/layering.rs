@@ -147,7 +147,8 @@ fn faults(path: &str, text: &str) -> Vec<String> {
             faults.push(format!("{line}: `{word}` has no place in `{kernel}`, which only computes"));
         }
     }
-    let own: Vec<_> = paths(&code, "crate").into_iter().flat_map(|(_, path)| path).collect();
+    let own: Vec<_> = ["crate", "studygraph"].into_iter().flat_map(|root| paths(&code, root)).collect();
+    let own: Vec<_> = own.into_iter().flat_map(|(_, path)| path).collect();
     for (owned, owners) in OWNERS {
         // A file that imports a module of ours by that name (`store::parquet`) means the module.
         if !owners.iter().any(|owner| path.starts_with(owner)) && !own.iter().any(|part| part == owned) {

@@ -50,6 +50,6 @@ fn read(shape: &Shape, text: &str) -> Value {
 
 /// A study as a program with other code reads it.
 pub fn with_code(study: Study, code_of: fn(&str) -> String) -> Study {
-    let program = Program { kinds: PROGRAM.kinds, code_of, about: PROGRAM.about };
+    let program = Program { kinds: PROGRAM.kinds, code_of, counters: PROGRAM.counters, about: PROGRAM.about };
     Study { program: Box::leak(Box::new(program)), ..study }
 }

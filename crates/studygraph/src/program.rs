@@ -4,6 +4,7 @@
 
 use crate::about::About;
 use crate::stage::Kind;
+use declare::work::Counter;
 
 /// A program that runs studies.
 pub struct Program {
@@ -11,6 +12,8 @@ pub struct Program {
     pub kinds: &'static [&'static Kind],
     /// The digest of the code that the tables of a kind, called by its name, come from; part of every cache key.
     pub code_of: fn(&str) -> String,
+    /// What its stages count of their work.
+    pub counters: &'static [&'static Counter],
     pub about: About,
 }
 

@@ -16,7 +16,7 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS};
-use declare::work::{Counter, Work};
+use declare::work::Work;
 use drawn::Drawn;
 use gearmesh::gear::geometry::error::GeometryError;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
@@ -27,6 +27,7 @@ use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::Template;
+use gearmesh::gear::work::OUTLINES;
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::Schema;
 
@@ -235,7 +236,7 @@ impl Stage for Geometry {
     }
 
     fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
-        OF_OUTLINES.contains(&table).then_some(Saved::Fixed(Counter::Outlines, self.gears.len() as f64))
+        OF_OUTLINES.contains(&table).then_some(Saved::Fixed(&OUTLINES, self.gears.len() as f64))
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
@@ -270,7 +271,7 @@ impl Stage for Geometry {
                 estimate.rows(demand, schema, rows)
             };
             if OF_OUTLINES.contains(&name.as_str()) {
-                estimate = estimate.work(&Work::of(Counter::Outlines, self.gears.len()), 1.0);
+                estimate = estimate.work(&Work::of(&OUTLINES, self.gears.len()), 1.0);
             }
         }
         estimate
@@ -298,7 +299,7 @@ impl Stage for Geometry {
         }
         for schema in schemas {
             if OF_OUTLINES.contains(&schema.name.as_str()) {
-                context.work.add(&Work::of(Counter::Outlines, self.gears.len()));
+                context.work.add(&Work::of(&OUTLINES, self.gears.len()));
             }
             if schema.name == "outline" {
                 let columns = drawn::outline_columns(

@@ -17,13 +17,13 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape, count, joined};
 use declare::record::{Record, Value};
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
-use declare::work::Counter;
 use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::loading::Loading;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::Schema;
@@ -193,8 +193,8 @@ impl Stage for Ste {
             SliceCoupling::Plate => "one does for designs that do not vary across the face",
         };
         let sliced = Saved::For {
-            done: Counter::ContactSolves,
-            saved: Counter::ContactSolves,
+            done: &CONTACT_SOLVES,
+            saved: &CONTACT_SOLVES,
             times: PER_SLICE * self.settings.slices as f64,
         };
         let mut omissions = vec![Omission::new("slices across the face", slices).saving(Some(sliced))];
@@ -206,15 +206,15 @@ impl Stage for Ste {
     }
 
     fn saved(&self, demand: &Demand, table: &str, column: Option<&str>) -> Option<Saved> {
-        let for_each_solve = |saved, times| Some(Saved::For { done: Counter::ContactSolves, saved, times });
+        let for_each_solve = |saved, times| Some(Saved::For { done: &CONTACT_SOLVES, saved, times });
         match (table, column) {
             // Either column takes all pressures.
             ("summary", Some("largest_pressure")) if !demand.column("curve", "pressure") => {
-                for_each_solve(Counter::ContactPressures, 1.0)
+                for_each_solve(&CONTACT_PRESSURES, 1.0)
             }
             ("samples", None) if !demand.table("sample_summary") => {
                 let curve = SOLVES_PER_POSITION * self.settings.positions as f64;
-                for_each_solve(Counter::ContactSolves, self.samples as f64 / curve)
+                for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
             }
             _ => None,
         }

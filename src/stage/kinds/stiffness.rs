@@ -10,12 +10,13 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE, in_unit};
-use declare::work::{Counter, Work};
+use declare::work::Work;
 use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
 use gearmesh::gear::geometry::Pair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::stiffness::stiffness;
+use gearmesh::gear::work::{CONTACT_SOLVES, MESH_FACTORISATIONS};
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -270,7 +271,7 @@ impl Stage for Stiffness {
         let foreseen = (self.method.foresee)(&self.options, self.assumptions);
         let curve = common::curve_rows(self.settings, 0);
         let meshed = self.method.root_stress.is_some();
-        let solves = Work::of(Counter::ContactSolves, 2 * curve);
+        let solves = Work::of(&CONTACT_SOLVES, 2 * curve);
         let mut estimate =
             Estimate::new(false).work(&foreseen.work, foreseen.times).work(&solves, 1.0).holding(foreseen.memory);
         for schema in self.outputs() {
@@ -287,7 +288,7 @@ impl Stage for Stiffness {
         }
         if demand.table("root_stress") {
             let meshes = if self.assumptions.accuracy.is_some() { 6 } else { 2 };
-            estimate = estimate.work(&Work::of(Counter::MeshFactorisations, meshes), foreseen.times);
+            estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
         }
         estimate
     }
@@ -296,7 +297,7 @@ impl Stage for Stiffness {
         let mut omissions = Vec::new();
         if self.method.root_stress.is_none() {
             let reason = format!("method `{}` needs none", self.method.member.name);
-            let saved = Some(Saved::Fixed(Counter::MeshFactorisations, USUAL_FACTORISATIONS));
+            let saved = Some(Saved::Fixed(&MESH_FACTORISATIONS, USUAL_FACTORISATIONS));
             omissions.push(Omission::new("finite-element mesh and factorisation", reason).saving(saved));
         }
         if self.method.whole_pair {
@@ -311,7 +312,7 @@ impl Stage for Stiffness {
     }
 
     fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
-        (table == "root_stress").then_some(Saved::Fixed(Counter::MeshFactorisations, 2.0))
+        (table == "root_stress").then_some(Saved::Fixed(&MESH_FACTORISATIONS, 2.0))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

@@ -15,3 +15,4 @@ pub mod problem;
 pub(crate) mod random;
 pub mod stability;
 pub mod transmission_error;
+pub mod work;

@@ -12,10 +12,10 @@
 use std::sync::Arc;
 
 use super::events::{Event, Observer};
+use super::fault::Fault;
 use super::graph::Graph;
 use super::key::{self, Part, Why, explain, phrase};
 use super::options::Options;
-use super::outcome::Fault;
 use crate::store::cache::{Cache, Lookup};
 use crate::store::entry::{Entry, OfRun, StoredTable};
 use crate::store::journal::{Journal, JournalStage};
@@ -23,7 +23,7 @@ use crate::study::Study;
 use crate::table::data::Table;
 use declare::digest::Digest;
 use declare::error::Diagnostic;
-use declare::work::Work;
+use declare::work::{Counter, Work};
 
 /// Where a stage stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -355,8 +355,8 @@ impl Progress {
     }
 
     /// The work that was counted, of all parts that are known.
-    pub fn work(&self) -> Work {
-        self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work)))
+    pub fn work(&self, counters: &[&'static Counter]) -> Work {
+        self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work, counters)))
     }
 
     /// What is told of the parts that are known.

@@ -3,16 +3,11 @@
 //! Events of one stage come in order, from any thread; whoever receives them must be quick. Must not know: bars, lines,
 //! terminals.
 
-use super::outcome::Fault;
-use super::plan::Plan;
+use super::fault::Fault;
 
 /// Something happened.
 #[derive(Debug)]
 pub enum Event<'a> {
-    /// First of all: what is going to be done.
-    Planned {
-        plan: &'a Plan,
-    },
     /// A stage is up to date; comes for those that could not be planned because their inputs were not known.
     Hit {
         stage: &'a str,

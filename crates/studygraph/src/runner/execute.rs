@@ -4,28 +4,27 @@
 //! and the next one goes on from there. Failures are never kept. Tables stay in memory only while a stage that is not
 //! finished reads them. Order and number of threads enter no result. Must not know: how progress is drawn.
 
-use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
 use rayon::{ScopeFifo, ThreadPoolBuilder};
 
 use super::board::{Board, State, Step};
 use super::events::{Event, Observer, Silent};
+use super::fault::Fault;
 use super::options::Options;
-use super::outcome::{Fault, Outcome};
+use super::outcome::Outcome;
 use super::plan;
-use super::work::{Ended, message};
+use super::work::{Ended, Run, message};
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
 use crate::store::results::{Draw, Folder, Published, Source};
 use crate::study::Study;
-use crate::table::data::Table;
 use declare::error::Diagnostic;
 
 /// Why a run could not even be begun or ended.
@@ -123,7 +122,6 @@ pub fn execute(
     if let Some(refused) = plan.refused {
         return Err(RunError::Beyond(Box::new(refused)));
     }
-    observer.event(&Event::Planned { plan: &plan });
     if !queued.is_empty() {
         let threads = options.threads();
         let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("stage {index}")).build();
@@ -151,39 +149,7 @@ pub fn execute(
     Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
 }
 
-/// Tables by node and name.
-pub(super) type Loaded = BTreeMap<(usize, String), Arc<Table>>;
-
-pub(super) struct Run<'a> {
-    pub(super) cache: &'a Cache,
-    options: &'a Options,
-    pub(super) observer: &'a dyn Observer,
-    pub(super) stop: &'a AtomicBool,
-    /// Locked only for moments, and before `loaded`.
-    board: Mutex<Board<'a>>,
-    loaded: Mutex<Loaded>,
-    /// By node and part, 0 to 1.
-    pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
-    turns: Mutex<Turns>,
-}
-
-/// Who is at work, and who waits until nobody is.
-#[derive(Default)]
-struct Turns {
-    running: usize,
-    /// Stages that run alone, in the order in which they became ready.
-    waiting: VecDeque<usize>,
-}
-
 impl<'a> Run<'a> {
-    pub(super) fn board(&self) -> MutexGuard<'_, Board<'a>> {
-        self.board.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
-    pub(super) fn loaded(&self) -> MutexGuard<'_, Loaded> {
-        self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
-    }
-
     /// Starts what was queued, after `finished` stages came to their end. Stages that run alone wait until no other one
     /// runs or can. They are held back here and not by a lock in the stage: a thread that waits for parts of one stage
     /// takes up another one meanwhile, which must never wait for the first.

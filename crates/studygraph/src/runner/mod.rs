@@ -6,6 +6,7 @@ pub mod board;
 pub mod chunk;
 pub mod events;
 pub mod execute;
+pub mod fault;
 pub mod foresee;
 pub mod graph;
 pub mod key;

@@ -3,6 +3,7 @@
 //! Must not know: how it is shown; threads.
 
 use super::board::{Board, State};
+use super::fault::Fault;
 use super::key::phrase;
 use super::plan::left_out;
 use crate::stage::Omission;
@@ -16,35 +17,6 @@ use crate::table::data::Table;
 use crate::table::schema::Schema;
 use declare::digest::Digest;
 use declare::work::Work;
-
-/// Why a stage gave no tables.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum Fault {
-    /// The stage's own finding.
-    #[error("{0}")]
-    Failed(String),
-    /// A mistake of this program.
-    #[error("this is a bug: {0}")]
-    Bug(String),
-    #[error("{0}")]
-    NotDeterministic(String),
-    #[error("{0}")]
-    Store(String),
-}
-
-impl From<StoreError> for Fault {
-    fn from(error: StoreError) -> Self {
-        let message = error.to_string();
-        match error {
-            StoreError::NotDeterministic { .. } => Self::NotDeterministic(message),
-            StoreError::Format { .. } => Self::Bug(message),
-            StoreError::Io { .. }
-            | StoreError::Damaged { .. }
-            | StoreError::Stopped { .. }
-            | StoreError::InUse { .. } => Self::Store(message),
-        }
-    }
-}
 
 /// What came of a run.
 #[derive(Debug)]
@@ -113,7 +85,7 @@ impl Outcome {
                 chunks: progress.parts.len(),
                 ran: progress.ran,
                 seconds: progress.seconds(),
-                work: progress.work(),
+                work: progress.work(board.study.program.counters),
                 warnings,
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),

@@ -114,7 +114,7 @@ pub fn of(board: &Board, options: &Options) -> Plan {
             expected: foresight.stages[node].take(),
             left_out: left_out(board, node),
             seconds: progress.seconds(),
-            work: progress.work(),
+            work: progress.work(board.study.program.counters),
         }
     });
     Plan { stages: stages.collect(), total: foresight.total, refused }

@@ -233,8 +233,8 @@ impl Spec {
     }
 }
 
-static PROGRAM: Program = Program { kinds: &[], code_of: |_| String::from("code"), about: ABOUT };
-static OTHER: Program = Program { kinds: &[], code_of: |_| String::from("other code"), about: ABOUT };
+static PROGRAM: Program = Program { kinds: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT };
+static OTHER: Program = Program { kinds: &[], code_of: |_| String::from("other code"), counters: &[], about: ABOUT };
 
 /// A folder with a cache, and the studies run on it.
 struct Bench {

@@ -4,16 +4,20 @@
 //! again on the spot. Must not know: which part is next.
 
 use std::any::Any;
+use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::atomic::AtomicBool;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
-use super::board::Known;
-use super::events::Event;
-use super::execute::Run;
+use super::board::{Board, Known};
+use super::events::{Event, Observer};
+use super::fault::Fault;
 use super::key::{Part, Why};
-use super::outcome::{Fault, together};
+use super::options::Options;
+use super::outcome::together;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
+use crate::store::cache::Cache;
 use crate::store::entry::{OfRun, part};
 use crate::store::error::StoreError;
 use crate::table::data::Table;
@@ -22,6 +26,40 @@ use declare::error::Failure;
 use declare::record::Record;
 use declare::seed::Seed;
 use declare::work::Tally;
+
+/// Tables by node and name.
+pub(super) type Loaded = BTreeMap<(usize, String), Arc<Table>>;
+
+pub(super) struct Run<'a> {
+    pub(super) cache: &'a Cache,
+    pub(super) options: &'a Options,
+    pub(super) observer: &'a dyn Observer,
+    pub(super) stop: &'a AtomicBool,
+    /// Locked only for moments, and before `loaded`.
+    pub(super) board: Mutex<Board<'a>>,
+    pub(super) loaded: Mutex<Loaded>,
+    /// By node and part, 0 to 1.
+    pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
+    pub(super) turns: Mutex<Turns>,
+}
+
+/// Who is at work, and who waits until nobody is.
+#[derive(Default)]
+pub(super) struct Turns {
+    pub(super) running: usize,
+    /// Stages that run alone, in the order in which they became ready.
+    pub(super) waiting: VecDeque<usize>,
+}
+
+impl<'a> Run<'a> {
+    pub(super) fn board(&self) -> MutexGuard<'_, Board<'a>> {
+        self.board.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    pub(super) fn loaded(&self) -> MutexGuard<'_, Loaded> {
+        self.loaded.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
 
 /// Why a part gave no tables.
 pub(super) enum Ended {

@@ -5,6 +5,7 @@
 //! `known` says which files are as listed, `publish` brings the folder up to date. Must not know: the cache (tables come
 //! through a closure), stages, how anything is drawn.
 
+mod changes;
 mod known;
 mod publish;
 mod remove;
@@ -13,10 +14,11 @@ mod tests;
 
 use std::path::{Path, PathBuf};
 
+pub use changes::Changes;
 pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
-pub use publish::{Bytes, Changes, Draw, Drawn, Published, Source, Tables};
+pub use publish::{Bytes, Draw, Drawn, Published, Source, Tables};
 
 use super::error::StoreError;
 use super::file;

@@ -4,8 +4,9 @@
 
 use std::path::Path;
 
-use super::decode::{Decoder, Reference};
+use super::decode::Decoder;
 use super::document::{Content, Node as Tree, Pair, parse};
+use super::links::Draft;
 use super::overrides::Stages;
 use super::words::{alternatives, quote};
 use super::{Node, Source, Study, links, settings};
@@ -43,15 +44,6 @@ pub static KEYS: &[Field] = &[
     )
     .optional(),
 ];
-
-/// A stage whose fields are read but which is not built yet.
-pub struct Draft {
-    pub name: String,
-    pub place: Place,
-    pub kind: &'static Kind,
-    pub record: Record,
-    pub references: Vec<Reference>,
-}
 
 /// Makes a study of a text.
 ///

@@ -5,10 +5,9 @@
 use std::collections::BTreeMap;
 
 use super::Node;
-use super::assemble::Draft;
 use super::decode::Reference;
 use super::words::{alternatives, article, quote, stage_of};
-use crate::stage::{Port, Want};
+use crate::stage::{Kind, Port, Want};
 use crate::table::schema::Schema;
 use crate::table::tolerance::Allowance;
 use declare::error::{Diagnostic, Place, nearest, suggest};
@@ -19,6 +18,15 @@ type Edge = (usize, Place);
 
 /// Checks the fields that name a stage.
 ///
+/// A stage whose fields are read but which is not built yet.
+pub struct Draft {
+    pub name: String,
+    pub place: Place,
+    pub kind: &'static Kind,
+    pub record: Record,
+    pub references: Vec<Reference>,
+}
+
 /// # Errors
 /// When the stage is missing or of a wrong kind, or the stages read each other in a circle.
 pub fn check_references(drafts: &[Draft]) -> Result<(), Diagnostic> {

@@ -5,7 +5,8 @@
 use super::Optimizer;
 use crate::stage::designs::{designs_schema, elements_schema, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
-use declare::work::{Counter, Work};
+use declare::work::Work;
+use gearmesh::gear::work::CONTACT_SOLVES;
 use gearmesh::optimize;
 
 /// Solves for the objective under one torque: so many, and so many for each position.
@@ -28,7 +29,7 @@ impl Optimizer {
         let solves = (foreseen.evaluations as f64 * self.torques.len() as f64 * each) as usize;
         let kept = if demand.table("evaluations") { foreseen.evaluations as u64 } else { 0 };
         Estimate::new(true)
-            .work(&Work::of(Counter::ContactSolves, solves), common::solve_times(self.settings))
+            .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))
             .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
             .rows(demand, self.best_schema(), Rows::exact(1))
             .rows(demand, self.history_schema(), as_many(foreseen.batches))

@@ -5,8 +5,9 @@
 use super::tables::{cost_schema, curve_schema, harmonics_schema, summary_schema};
 use super::{OF_CURVES, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
-use declare::work::{Counter, Work};
+use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
+use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
 
 /// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
 const SOLVES_PER_ROW: f64 = 2.3;
@@ -27,8 +28,8 @@ impl Ste {
         // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
-        let work = Work::of(Counter::ContactSolves, solves.saturating_add(sampled))
-            .with(Counter::ContactPressures, if pressures { rows.index() } else { 0 });
+        let work = Work::of(&CONTACT_SOLVES, solves.saturating_add(sampled))
+            .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 });
         let [sample_rows, sample_summary] = samples::schemas();
         Estimate::new(true)
             .work(&work, common::solve_times(self.settings))

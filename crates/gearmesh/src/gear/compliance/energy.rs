@@ -12,12 +12,13 @@ use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabu
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::surface::Surface;
 use declare::parameter::{Choice, Field, Member};
 use declare::record::Record;
-use declare::work::{Counter, Work};
+use declare::work::Work;
 
 /// Points per piece of the root: twice what 1e-12 takes.
 const ROOT_POINTS: usize = 40;
@@ -86,7 +87,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
     let [pinion, gear] = of_both(pair, side)?;
     let Assumptions { contact, coupled, .. } = assumptions;
     let compliance = PairCompliance { pinion, gear, contact, coupled };
-    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
     Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new(), work })
 }
 

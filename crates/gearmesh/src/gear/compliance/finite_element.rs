@@ -18,11 +18,12 @@ use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::surface::Surface;
 use declare::parameter::{Field, Member};
 use declare::record::Record;
-use declare::work::{Counter, Work};
+use declare::work::Work;
 
 /// Nodes along the flank: interpolation between them is exact to 1e-4, which a test holds.
 const ROLLS: usize = 16;
@@ -73,7 +74,7 @@ fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
     Foreseen {
         nodes: 48,
         neighbours,
-        work: Work::of(Counter::MeshFactorisations, meshes).with(Counter::ComplianceEvaluations, meshes * ROLLS),
+        work: Work::of(&MESH_FACTORISATIONS, meshes).with(&COMPLIANCE_EVALUATIONS, meshes * ROLLS),
         times: (even(told) as f64 / USUAL).powi(2),
         memory: (finest * finest * MESH_BYTES) as u64,
     }
@@ -104,7 +105,7 @@ fn root_stress(
         let task = Task::new(options, pair, side, assumptions)?;
         let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
         let module = task.gear.specification.module;
-        work = work.and(&Work::of(Counter::MeshFactorisations, 1));
+        work.add(&Work::of(&MESH_FACTORISATIONS, 1));
         let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
         let row = |(&roll, points): (&f64, &Vec<_>)| {
             let (stress, radius) = root_stress::largest(points)?;
@@ -163,8 +164,8 @@ impl<'a> Task<'a> {
 
     fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
         let model = self.model(across)?;
-        let done = Work::of(Counter::MeshFactorisations, 1).with(Counter::ComplianceEvaluations, self.rolls.len());
-        *work = work.and(&done);
+        let done = Work::of(&MESH_FACTORISATIONS, 1).with(&COMPLIANCE_EVALUATIONS, self.rolls.len());
+        work.add(&done);
         let found = model.influences(&self.rolls, self.neighbours).map_err(|error| self.failed(across, error))?;
         let facts = MeshFacts {
             side: self.side,

@@ -10,10 +10,11 @@
 
 use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
 use crate::gear::geometry::{Pair, Side, Specification};
+use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use declare::parameter::{Field, Member};
 use declare::record::Record;
-use declare::work::{Counter, Work};
+use declare::work::Work;
 
 const FIELDS: &[Field] = &[
     Field::number("correction_factor", 0.1, 2.0, "C_M: measured over theoretical stiffness").default("0.8"),
@@ -164,7 +165,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
         coupled: false,
     };
     let warnings = warnings(&inputs, pair, assumptions.torque);
-    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
     Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
 }
 

@@ -17,12 +17,13 @@ use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
 use super::geometry::{Pair, Side};
+use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST;
 use crate::numeric::surface::Surface;
 use declare::parameter::{Choice, Member};
 use declare::record::Record;
-use declare::work::{Counter, Work};
+use declare::work::Work;
 
 /// Every way to the compliance of a pair, one line per member.
 pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD, finite_element::METHOD];
@@ -45,7 +46,7 @@ pub struct Method {
 }
 
 /// What a method takes, before it runs.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Foreseen {
     /// Nodes of the series of both teeth, about.
     pub nodes: usize,
@@ -64,7 +65,7 @@ pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
     Foreseen {
         nodes: 128,
         neighbours: if assumptions.coupled { 3000 } else { 0 },
-        work: Work::of(Counter::ComplianceEvaluations, 224),
+        work: Work::of(&COMPLIANCE_EVALUATIONS, 224),
         times: if assumptions.coupled { 4.0 } else { 1.0 },
         memory: 4 << 20,
     }

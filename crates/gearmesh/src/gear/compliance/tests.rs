@@ -11,11 +11,11 @@ use crate::gear::contact::flattening;
 use crate::gear::fixtures::STEEL;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::crossing::bracketed;
 use crate::numeric::quadrature::GaussLegendre;
 use declare::error::Place;
 use declare::record::{Entry, Record, Value};
-use declare::work::Counter;
 
 /// 19/48, m 3 mm, widths 20/18 mm; the rack's tip round is c m/(1 − sin α), its bores r_f/`bore_ratio`.
 fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
@@ -429,13 +429,13 @@ fn gears_that_are_alike_take_half_of_the_evaluations() {
     };
     for name in ["energy", "weber_banaschek"] {
         let found = |pair: &Pair| (method(name).unwrap().tabulate)(&options("sainsot"), pair, SUMMED).unwrap();
-        let evaluations = |tabulated: &Tabulated| tabulated.work.count(Counter::ComplianceEvaluations);
+        let evaluations = |tabulated: &Tabulated| tabulated.work.count(&COMPLIANCE_EVALUATIONS);
         let (one, two) = (found(&alike([25, 25])), found(&alike([24, 25])));
         // 24 teeth take as many nodes as 25, and as many again.
         assert!(evaluations(&one) > 0, "{name}");
         assert_eq!(2 * evaluations(&one), evaluations(&two), "{name}");
         assert_eq!(one.compliance.gear, two.compliance.gear, "{name}");
         assert_eq!(one.compliance.pinion, one.compliance.gear, "{name}");
-        assert_eq!(one.work.count(Counter::MeshFactorisations), 0, "{name}");
+        assert_eq!(one.work.count(&MESH_FACTORISATIONS), 0, "{name}");
     }
 }

@@ -26,12 +26,13 @@ use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabu
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::crossing::bracketed;
 use crate::numeric::surface::Surface;
 use declare::parameter::Member;
 use declare::record::Record;
-use declare::work::{Counter, Work};
+use declare::work::Work;
 
 /// 2.4/(1 − ν) over what makes it a compliance in shear.
 const SHEAR_FACTOR: f64 = 1.2;
@@ -56,7 +57,7 @@ fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<
     let [pinion, gear] = of_both(pair, |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations))?;
     let Assumptions { contact, coupled, .. } = assumptions;
     let compliance = PairCompliance { pinion, gear, contact, coupled };
-    let work = Work::of(Counter::ComplianceEvaluations, evaluations);
+    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
     Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
 }
 

@@ -107,12 +107,6 @@ impl Gear {
             height_rate: self.base_radius * roll * cosine,
         }
     }
-
-    /// x_min: the least profile shift \[modules\] at which this rack does not undercut this number of teeth.
-    #[must_use]
-    pub fn least_shift_without_undercut(&self) -> f64 {
-        super::trochoid::least_shift_without_undercut(&self.specification)
-    }
 }
 
 #[cfg(test)]

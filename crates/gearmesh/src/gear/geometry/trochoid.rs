@@ -49,7 +49,15 @@ pub(in crate::gear) fn full_round(specification: &Specification) -> f64 {
     (0.25 * PI * cosine - specification.rack.dedendum * sine) / (1.0 - sine)
 }
 
-pub(super) fn least_shift_without_undercut(specification: &Specification) -> f64 {
+impl Gear {
+    /// x_min: the least profile shift \[modules\] at which this rack does not undercut this number of teeth.
+    #[must_use]
+    pub fn least_shift_without_undercut(&self) -> f64 {
+        least_shift_without_undercut(&self.specification)
+    }
+}
+
+fn least_shift_without_undercut(specification: &Specification) -> f64 {
     let sine = libm::sin(specification.pressure_angle);
     let rack = &specification.rack;
     rack.dedendum - rack.tip_radius * (1.0 - sine) - 0.5 * f64::from(specification.teeth) * sine * sine

@@ -4,7 +4,8 @@
 
 use std::cell::Cell;
 
-use declare::work::{Counter, Tally, Work};
+use crate::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, SLICES};
+use declare::work::{Tally, Work};
 
 #[derive(Debug)]
 pub(super) struct Count<'a> {
@@ -40,8 +41,8 @@ impl Drop for Count<'_> {
     fn drop(&mut self) {
         let (solves, pressures) = (self.solves.get(), self.pressures.get());
         if solves > 0 {
-            let work = Work::of(Counter::ContactSolves, solves).with(Counter::Slices, self.slices);
-            self.total.add(&work.with(Counter::ContactPressures, pressures));
+            let work = Work::of(&CONTACT_SOLVES, solves).with(&SLICES, self.slices);
+            self.total.add(&work.with(&CONTACT_PRESSURES, pressures));
         }
     }
 }

@@ -2,10 +2,9 @@
 //!
 //! Must not know: which positions are looked at, what is done with the values.
 
-use super::across::Sliced;
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
-use super::walk::CLOSEST;
+use super::sliced::Sliced;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
@@ -14,6 +13,9 @@ use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST, PerSpring, Springs};
+
+/// Places closer than this share of the base pitch are one.
+pub(super) const CLOSEST: f64 = 1e-10;
 
 /// A design under a torque.
 #[derive(Clone)]

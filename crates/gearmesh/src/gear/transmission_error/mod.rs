@@ -12,6 +12,7 @@ pub mod cycle;
 pub mod loading;
 mod path;
 pub mod sampling;
+mod sliced;
 pub mod stiffness;
 #[cfg(test)]
 mod tests;

@@ -4,11 +4,9 @@
 //! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
 //! everything is smooth. Must not know: how a balance is found, what is done with the values.
 
-use super::loading::{Loading, State};
+use super::loading::{CLOSEST, Loading, State};
 use super::trace::{NODES, Span, Trace};
 
-/// Cuts closer than this share of the base pitch are one.
-pub(super) const CLOSEST: f64 = 1e-10;
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
 /// Roundings of a path position, from the roll angle where a modification starts and back.

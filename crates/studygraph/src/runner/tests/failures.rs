@@ -5,8 +5,8 @@ use std::path::Path;
 
 use super::*;
 use crate::runner::board::State;
+use crate::runner::fault::Fault;
 use crate::runner::options::Force;
-use crate::runner::outcome::Fault;
 use crate::store::results::Folder;
 
 fn with_fault(mode: &str) -> Vec<Spec> {

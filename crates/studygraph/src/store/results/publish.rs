@@ -11,7 +11,8 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::{FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, complete, held_text, here, is_drawn, split};
+use super::changes::{compare, essence, with_earlier_tables};
+use super::{Changes, FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, held_text, here, is_drawn, split};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
 use crate::store::file::{self, Durability};
@@ -19,7 +20,7 @@ use crate::store::file::{self, Durability};
 use crate::store::hdf5;
 use crate::store::index::{self, Index, Seen};
 use crate::store::lock;
-use crate::store::manifest::{FileRecord, Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
+use crate::store::manifest::{FileRecord, Manifest, TableRecord};
 use crate::table::data::Table;
 
 /// Gives the Parquet file of (stage, table).
@@ -59,24 +60,6 @@ pub struct Drawn {
     pub varies: bool,
 }
 
-/// What publishing would write and remove.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changes {
-    /// Whether the manifest says something new; always so when anything else changes.
-    pub manifest: bool,
-    /// Parquet files to write.
-    pub tables: Vec<String>,
-    /// Files to write whose lines tables hold.
-    pub files: Vec<String>,
-    pub hdf5: bool,
-    /// Page and figures.
-    pub drawn: bool,
-    /// Files of tables that are no more.
-    pub remove: Vec<String>,
-    /// Files that somebody else changed.
-    pub foreign: Vec<String>,
-}
-
 /// What publishing did.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Published {
@@ -95,13 +78,6 @@ struct Listed {
 }
 
 impl Folder {
-    /// What [`Folder::publish`] would do. Reads the manifest, and of the files what has to be read.
-    #[must_use]
-    pub fn changes(&self, manifest: &Manifest, draws: bool) -> Changes {
-        let old = self.known().ok().flatten();
-        compare(old.as_ref(), &with_earlier_tables(old.as_ref(), manifest.clone()), draws, self)
-    }
-
     /// Brings the folder up to date. `manifest` comes without facts and files; `facts` is asked only when something is
     /// written.
     ///
@@ -404,75 +380,9 @@ pub fn hdf5_bytes(
     writer.finish()
 }
 
-/// Stages without tables of their own take those of the earlier manifest that are still there.
-fn with_earlier_tables(old: Option<&Known>, mut new: Manifest) -> Manifest {
-    let Some(old) = old else { return new };
-    for stage in new.stages.iter_mut().filter(|stage| !complete(stage)) {
-        let mut stages = old.manifest.stages.iter();
-        let earlier = stages.find(|earlier| earlier.name == stage.name && earlier.kind == stage.kind);
-        let intact = |table: &TableRecord| old.table_state(table) == FileState::Intact;
-        if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(intact)) {
-            let StageRecord { status, why, .. } = std::mem::replace(stage, earlier.clone());
-            *stage = StageRecord { status, why, ..stage.clone() };
-        }
-    }
-    new
-}
-
-fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: &Folder) -> Changes {
-    let new_tables: Vec<&TableRecord> = new.stages.iter().flat_map(|stage| &stage.tables).collect();
-    let old_files = || old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone());
-    let old_tables: Vec<&TableRecord> =
-        old.iter().flat_map(|old| &old.manifest.stages).flat_map(|stage| &stage.tables).collect();
-    let intact = |file: &str| old.is_some_and(|old| old.state(file) == FileState::Intact);
-    let intact_table = |table: &TableRecord| {
-        old_tables.contains(&table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact)
-    };
-    let tables: Vec<String> =
-        new_tables.iter().filter(|table| !intact_table(table)).map(|table| table.file.clone()).collect();
-    let held = |table: &&TableRecord| {
-        let known = old_tables.contains(table);
-        table.files.iter().filter(|file| !(known && intact(file))).cloned().collect::<Vec<_>>()
-    };
-    let files: Vec<String> = new_tables.iter().flat_map(held).collect();
-    let with_hdf5 = cfg!(feature = "hdf5");
-    let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&folder.hdf5_file()));
-    let listed = |file: &str| {
-        let of_table = |table: &&TableRecord| table.file == file || table.files.iter().any(|held| held == file);
-        new_tables.iter().any(of_table) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file)
-    };
-    let remove: Vec<String> = old_files().filter(|file| !listed(file) && here(file)).collect();
-    let says_something_new = old.is_none_or(|old| essence(&old.manifest) != essence(new));
-    let any = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();
-    let pictures: Vec<String> = old_files().filter(|file| is_drawn(file)).collect();
-    let drawn =
-        draws && (any || !pictures.iter().any(|file| file == PAGE) || !pictures.iter().all(|file| intact(file)));
-    let mut foreign = old.map_or_else(Vec::new, Known::changed);
-    foreign.retain(|file| !remove.contains(file) && (draws || !is_drawn(file)));
-    Changes { manifest: any || drawn, tables, files, hdf5, drawn, remove, foreign }
-}
-
 fn manifest_bytes(manifest: &Manifest) -> Result<Vec<u8>, StoreError> {
     let mut bytes = serde_json::to_vec_pretty(manifest)
         .map_err(|error| StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() })?;
     bytes.push(b'\n');
     Ok(bytes)
-}
-
-/// A manifest without what may differ although the results are the same.
-fn essence(manifest: &Manifest) -> Manifest {
-    let mut essence = manifest.clone();
-    (essence.program, essence.machine) = (Program::default(), Machine::default());
-    essence.study_folder = StudyFolder::default();
-    (essence.written, essence.seconds) = (String::new(), 0.0);
-    essence.files.clear();
-    for stage in &mut essence.stages {
-        stage.seconds = 0.0;
-        stage.left_out.iter_mut().for_each(|left_out| left_out.saved_seconds = None);
-        if complete(stage) {
-            stage.status.clear();
-            stage.why.clear();
-        }
-    }
-    essence
 }

@@ -6,9 +6,9 @@ use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Pair, Side, Specification};
 use crate::gear::material::Material;
+use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use declare::error::Place;
 use declare::record::{Entry, Record, Value};
-use declare::work::Counter;
 
 const COUPLED: Assumptions =
     Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None, accuracy: None };
@@ -179,7 +179,7 @@ fn what_cannot_be_solved_is_refused() {
 fn root_stress_is_where_and_as_large_as_it_should_be() {
     let pair = pair([17, 48], 2.0);
     let (found, work) = super::root_stress(&options("strain", 16), &pair, COUPLED).unwrap();
-    assert_eq!(work.count(Counter::MeshFactorisations), 2);
+    assert_eq!(work.count(&MESH_FACTORISATIONS), 2);
     assert_eq!(found.len(), 2 * super::ROLLS);
     for row in &found {
         let gear = pair.side(row.side);
@@ -198,7 +198,7 @@ fn root_stress_is_where_and_as_large_as_it_should_be() {
 fn gears_that_are_alike_are_meshed_once() {
     let counts = |pair: &Pair| {
         let found = finite_element(pair, 6, Assumptions { coupled: false, ..COUPLED }).unwrap();
-        let counters = [Counter::MeshFactorisations, Counter::ComplianceEvaluations];
+        let counters = [&MESH_FACTORISATIONS, &COMPLIANCE_EVALUATIONS];
         (counters.map(|counter| found.work.count(counter)), found)
     };
     let (alike, of_alike) = counts(&pair([21, 21], 1.4));

@@ -4,7 +4,7 @@ use super::*;
 use crate::gear::contact::SliceCoupling;
 use crate::gear::fixtures::Part;
 use crate::gear::transmission_error::curve::Summary;
-use declare::work::Counter;
+use crate::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, SLICES};
 
 const TORQUE: f64 = 50.0;
 
@@ -15,7 +15,7 @@ fn counted(contact: ContactLaw, settings: Settings, parts: &[Part], pressure: bo
     let design = design(&pair, parts).unwrap();
     let summary = Loading::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure });
     let work = cycle.work();
-    (summary, [Counter::Slices, Counter::ContactSolves, Counter::ContactPressures].map(|counter| work.count(counter)))
+    (summary, [&SLICES, &CONTACT_SOLVES, &CONTACT_PRESSURES].map(|counter| work.count(counter)))
 }
 
 fn amount(value: f64) -> (&'static str, declare::record::Value) {

@@ -3,8 +3,10 @@
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
 use super::*;
+use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::fixtures::{Part, constant, coupled, design, pair, pair_with_contact_ratio, varying};
+use crate::gear::geometry::Pair;
 use crate::gear::transmission_error::curve::{Summary, Wanted};
 use crate::gear::transmission_error::cycle::Settings;
 use crate::gear::transmission_error::loading::Loading;

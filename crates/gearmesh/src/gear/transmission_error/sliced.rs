@@ -1,0 +1,196 @@
+//! Slices of the face that hold each other: equilibrium at one position.
+//!
+//! A load that is spread evenly gives what it gives without coupling. On a face that is the same on either side of its
+//! middle, two slices that mirror each other are one. Must not know: how lengths are found.
+
+use super::across::Across;
+use super::cycle::{Elasticity, MeshCycle};
+use crate::gear::contact::face::Face;
+use crate::gear::contact::flattening::Logarithmic;
+use crate::gear::contact::slices::{Slice, Slices};
+use crate::gear::modification::Design;
+use crate::numeric::complementarity::{Balance, MOST, PerSpring, Springs};
+use crate::numeric::layer::add_influences;
+use crate::numeric::many_springs;
+
+/// The slices of a design.
+#[derive(Clone)]
+pub(super) struct Sliced<'a> {
+    across: &'a Across,
+    faces: Vec<Face<'a>>,
+    /// The smallest deviation of each slice, above that of the whole face.
+    lows: Vec<f64>,
+    /// How many slices of the face each stands for: itself, or itself and its mirror image.
+    stands_for: Vec<f64>,
+    /// The width of that \[m\].
+    widths: Vec<f64>,
+    /// Slices of the whole face.
+    whole: usize,
+    /// Influences of the wind-up.
+    body: Vec<f64>,
+}
+
+impl<'a> Sliced<'a> {
+    /// None where slices are independent, or one does for all.
+    pub(super) fn new(cycle: &'a MeshCycle, design: &Design, whole: &Face) -> Option<Self> {
+        let across = cycle.across.as_ref().filter(|_| !whole.is_flat())?;
+        let count = cycle.settings.slices.max(1);
+        let kept = if design.lead_is_even() { count.div_ceil(2) } else { count };
+        let stands_for = |slice: usize| if kept == count || slice == count - 1 - slice { 1.0 } else { 2.0 };
+        let place = |index: usize| cycle.face_width * (index as f64 / count as f64 - 0.5);
+        let strip = |slice: usize| Face::between(design, [place(slice), place(slice + 1)], &across.rule);
+        let faces: Vec<Face> = (0..kept).map(strip).collect();
+        let lows = faces.iter().map(|face| (face.offset - whole.offset).max(0.0)).collect();
+        let stands_for: Vec<f64> = (0..kept).map(stands_for).collect();
+        let widths = stands_for.iter().map(|stands_for| stands_for * cycle.face_width / count as f64).collect();
+        let mut body = vec![0.0; count * count];
+        add_influences(across.reach, 1.0, count, count, &mut body);
+        Some(Self { across, faces, lows, stands_for, widths, whole: count, body })
+    }
+
+    /// How many slices are looked at.
+    pub(super) fn count(&self) -> usize {
+        self.faces.len()
+    }
+
+    /// Equilibrium of the pairs `springs` at `positions` behind `gaps`, and the largest load per width of each, as a mean
+    /// over a slice. `above`: an approach that is large enough.
+    pub(super) fn balance(
+        &self,
+        cycle: &MeshCycle,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        [force, above]: [f64; 2],
+    ) -> (Balance, PerSpring) {
+        let count = self.faces.len();
+        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
+        let (approach, slope) = (found.approach + smallest, found.slope);
+        let mut balance = Balance { approach, loads: [0.0; MOST], interference: [0.0; MOST], slope };
+        let mut peaks = [0.0; MOST];
+        let pairs = found.loads.chunks(count).zip(found.interference.chunks(count));
+        for (pair, (loads, interference)) in pairs.enumerate() {
+            let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            balance.loads[pair] = loads.iter().sum();
+            balance.interference[pair] = largest(interference);
+            let per_width = loads.iter().zip(&self.widths).map(|(load, width)| load / width);
+            peaks[pair] = per_width.fold(f64::NEG_INFINITY, f64::max);
+        }
+        (balance, peaks)
+    }
+
+    /// Equilibrium of all slices, pair by pair, its approach counted from the smallest gap of a slice, and that gap.
+    fn slices(
+        &self,
+        cycle: &MeshCycle,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        [force, above]: [f64; 2],
+    ) -> (many_springs::Balance, f64) {
+        let (matrix, own) = self.matrix(cycle, springs, positions);
+        // The lowest place of the face is one of a slice but for rounding.
+        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
+        let smallest = behind().fold(f64::INFINITY, f64::min);
+        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
+        let slices = self.springs(cycle, positions, &own);
+        (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
+    }
+
+    /// The load over the force that a slice carries and its interference, recomputed from loads, gaps and influences, does
+    /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
+    pub(super) fn unexplained(
+        &self,
+        cycle: &MeshCycle,
+        springs: &[usize],
+        positions: &[f64],
+        gaps: &[f64],
+        [force, above]: [f64; 2],
+    ) -> [f64; 2] {
+        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
+        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
+        let (matrix, own) = self.matrix(cycle, springs, positions);
+        let slices = self.springs(cycle, positions, &own);
+        let mut worst = [0.0, 1.0];
+        for (slice, &load) in found.loads.iter().enumerate() {
+            let row = &matrix[slice * size..][..size];
+            let others: f64 = row.iter().zip(&found.loads).map(|(influence, load)| influence * load).sum();
+            let gap = gaps[slice / count] + self.lows[slice % count] - smallest;
+            let interference = found.approach - gap - others;
+            let (carried, rise) =
+                if interference > 0.0 { slices.response(slice, interference) } else { (0.0, 1.0 / own[slice]) };
+            let value = (carried - load).abs() / force;
+            let scale = 1.0 + rise * (found.approach + gap + others.abs()) / force;
+            if value * worst[1] >= worst[0] * scale {
+                worst = [value, scale];
+            }
+        }
+        worst
+    }
+
+    /// What each slice carries by itself.
+    fn springs(&self, cycle: &MeshCycle, positions: &[f64], own: &[f64]) -> Slices<'_> {
+        let mut slices = Vec::with_capacity(own.len());
+        for (&s, own) in positions.iter().zip(own.chunks(self.count())) {
+            let own = own.iter().zip(&self.widths);
+            match &cycle.elasticity {
+                Elasticity::Linear(_) => {
+                    slices.extend(own.map(|(own, width)| Slice::Linear(1.0 / (own + self.across.contact / width))));
+                }
+                Elasticity::Logarithmic { constant, rate, .. } => {
+                    let law = Logarithmic { constant: constant.value(s), rate: *rate };
+                    slices.extend(own.map(|(own, width)| Slice::Logarithmic(law.in_series(own * width))));
+                }
+            }
+        }
+        Slices { slices, faces: &self.faces, widths: &self.widths }
+    }
+
+    /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
+    /// slice by its own load, which is not in it.
+    fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let (across, count) = (self.across, self.faces.len());
+        let size = positions.len() * count;
+        let (mut matrix, mut own) = (vec![0.0; size * size], Vec::with_capacity(size));
+        let mut block = vec![0.0; self.body.len()];
+        for (pair, &s) in positions.iter().enumerate() {
+            block.fill(0.0);
+            for (compliance, length) in across.teeth.iter().zip(&across.lengths) {
+                add_influences(length.value(s), compliance.value(s), self.whole, self.whole, &mut block);
+            }
+            for (entry, influence) in block.iter_mut().zip(&self.body) {
+                *entry += across.wind_up * influence;
+            }
+            for (slice, stands_for) in self.stands_for.iter().enumerate() {
+                let at = slice * (self.whole + 1);
+                own.push(block[at] / stands_for);
+                block[at] = 0.0;
+            }
+            self.put(&block, 1.0, &mut matrix, [pair, pair], size);
+            for ahead in pair + 1..positions.len() {
+                let influence = cycle.coupling(s, springs[ahead] - springs[pair]);
+                for place in [[pair, ahead], [ahead, pair]] {
+                    self.put(&self.body, influence, &mut matrix, place, size);
+                }
+            }
+        }
+        (matrix, own)
+    }
+
+    /// Puts influences between all slices of two pairs, given by their places, into the matrix of those that are looked at:
+    /// what a load that is shared with the mirror image does to either of the two.
+    fn put(&self, block: &[f64], scale: f64, matrix: &mut [f64], [by, on]: [usize; 2], size: usize) {
+        let count = self.faces.len();
+        for (slice, influences) in block.chunks(self.whole).take(count).enumerate() {
+            let start = (by * count + slice) * size + on * count;
+            let mirrored = influences.iter().rev();
+            let entries = matrix[start..start + count].iter_mut().zip(&self.stands_for);
+            for ((entry, stands_for), (near, far)) in entries.zip(influences.iter().zip(mirrored)) {
+                *entry = scale * if *stands_for > 1.0 { 0.5 * (near + far) } else { *near };
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
