@@ -1,10 +1,11 @@
 //! Slices of the face that hold each other: what a cycle knows of it, and equilibrium at one position.
 //!
-//! Compliances of a pair are layers in series: the tooth of either gear with the body under it, and the wind-up of both
+//! Compliances of a pair are layers in series: the tooth of each gear with the body under it, and the wind-up of both
 //! bodies. Each spreads a load along the face by its own length. What neighbouring teeth do to each other goes through
 //! the bodies, so it spreads as the wind-up does; since that is the longest length, the matrix of all slices of all pairs
-//! is positive definite where the one of whole pairs is. A load that is spread evenly gives what it gives without
-//! coupling. On a face that is the same on either side of its middle, two slices that mirror each other are one. Must not know: how lengths are found.
+//! is positive definite where the one of whole pairs is. An evenly spread load gives the same as without coupling.
+//! On a face that is the same on both sides of its middle, two slices that mirror each other are one.
+//! Must not know: how lengths are found.
 
 use super::cycle::{Elasticity, MeshCycle};
 use super::path::Path;
@@ -45,7 +46,7 @@ pub(super) struct Across {
 
 impl Across {
     /// # Errors
-    /// When the compliances know the pair as a whole only.
+    /// When the compliances know the pair only as a whole.
     pub(super) fn new(pair: &Pair, compliance: &PairCompliance, path: &Path, face_width: f64) -> Result<Self, Failure> {
         if compliance.contact == ContactLaw::Included {
             return Err(Failure::new(
@@ -105,7 +106,7 @@ pub(super) struct Sliced<'a> {
 }
 
 impl<'a> Sliced<'a> {
-    /// None where slices are independent, or one does for all.
+    /// None where slices are independent, or where one slice is enough.
     pub(super) fn new(cycle: &'a MeshCycle, design: &Design, whole: &Face) -> Option<Self> {
         let across = cycle.across.as_ref().filter(|_| !whole.is_flat())?;
         let count = cycle.settings.slices.max(1);
@@ -122,7 +123,7 @@ impl<'a> Sliced<'a> {
         Some(Self { across, faces, lows, stands_for, widths, whole: count, body })
     }
 
-    /// How many slices are looked at.
+    /// How many slices are computed.
     pub(super) fn count(&self) -> usize {
         self.faces.len()
     }
@@ -171,8 +172,8 @@ impl<'a> Sliced<'a> {
         (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
     }
 
-    /// The load over the force that a slice carries and its interference, recomputed from loads, gaps and influences, does
-    /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
+    /// The load, over the force, that a slice carries and that its interference, recomputed from loads, gaps and influences,
+    /// does not explain; and how much of it rounding may leave. Both are of the slice that uses up most of that allowance.
     pub(super) fn unexplained(
         &self,
         cycle: &MeshCycle,
@@ -202,7 +203,7 @@ impl<'a> Sliced<'a> {
         worst
     }
 
-    /// What each slice carries by itself.
+    /// What each slice carries on its own.
     fn springs(&self, cycle: &MeshCycle, positions: &[f64], own: &[f64]) -> Slices<'_> {
         let mut slices = Vec::with_capacity(own.len());
         for (&s, own) in positions.iter().zip(own.chunks(self.count())) {
@@ -220,8 +221,8 @@ impl<'a> Sliced<'a> {
         Slices { slices, faces: &self.faces, widths: &self.widths }
     }
 
-    /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
-    /// slice by its own load, which is not in it.
+    /// Interference of each slice, pair by pair, per load on each \[m/N\], without contact, by rows. And the interference of
+    /// each slice by its own load, which is not in the former.
     fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (across, count) = (self.across, self.faces.len());
         let size = positions.len() * count;
@@ -251,8 +252,8 @@ impl<'a> Sliced<'a> {
         (matrix, own)
     }
 
-    /// Puts influences between all slices of two pairs, given by their places, into the matrix of those that are looked at:
-    /// what a load that is shared with the mirror image does to either of the two.
+    /// Puts influences between all slices of two pairs, given by their places, into the matrix of those that are computed:
+    /// what a load that is shared with the mirror image does to each of the two.
     fn put(&self, block: &[f64], scale: f64, matrix: &mut [f64], [by, on]: [usize; 2], size: usize) {
         let count = self.faces.len();
         for (slice, influences) in block.chunks(self.whole).take(count).enumerate() {

@@ -1,13 +1,13 @@
 //! The walk over the whole mesh cycle of a design under a torque, in smooth spans.
 //!
 //! The cycle is cut at the ends of its zones, where a modification starts or ends, where flanks begin to touch at another
-//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
-//! everything is smooth. Must not know: how a balance is found, what is done with the values.
+//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding. In between
+//! everything is smooth. Must not know: how equilibrium is found, what is done with the values.
 
 use super::loading::{Loading, State};
 use super::trace::{NODES, Span, Trace};
 
-/// Cuts closer than this share of the base pitch are one.
+/// Cuts closer together than this share of the base pitch count as one.
 pub(super) const CLOSEST: f64 = 1e-10;
 /// Cuts that one span may be given for pairs that take up or lose load.
 const MOST_CUTS: usize = 24;
