@@ -140,7 +140,7 @@ fn every_column_leads_to_its_method_its_bar_and_its_test() {
 fn pages_name_tests_and_sections_that_exist() {
     let known = tests();
     let mut files: Vec<PathBuf> = Vec::new();
-    for folder in ["docs", "docs/papers"] {
+    for folder in ["docs", "docs/decisions", "docs/papers"] {
         let entries = fs::read_dir(root().join(folder)).unwrap().flatten().map(|entry| entry.path());
         files.extend(entries.filter(|path| path.extension().is_some_and(|ending| ending == "md")));
     }

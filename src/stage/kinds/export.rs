@@ -5,7 +5,7 @@
 //! or the whole gear is drawn, and with which root, is said where the outline is made. The files travel as lines of a
 //! table: they are cached, compared, archived and removed like any other result.
 //!
-//! Why there is no STEP, ARCHITECTURE.md says. Must not know: how a profile is made.
+//! Why there is no STEP: docs/decisions/no-step.md. Must not know: how a profile is made.
 
 mod contour;
 mod dxf;

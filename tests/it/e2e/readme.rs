@@ -13,7 +13,8 @@ use gearstudy::program;
 fn documents() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = vec![root.join("README.md"), root.join("ARCHITECTURE.md")];
-    let docs = fs::read_dir(root.join("docs")).into_iter().flatten().flatten().map(|entry| entry.path());
+    let folders = ["docs", "docs/decisions"].into_iter().flat_map(|folder| fs::read_dir(root.join(folder)).unwrap());
+    let docs = folders.map(|entry| entry.unwrap().path());
     paths.extend(docs.filter(|path| path.extension().is_some_and(|extension| extension == "md")));
     paths.sort();
     paths.into_iter().map(|path| (path.clone(), fs::read_to_string(&path).unwrap())).collect()

@@ -63,8 +63,8 @@ pub fn pair() -> Pair {
     }
 }
 
-/// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker so that as much angle of their
-/// tips is left.
+/// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker, so that the angle of their
+/// tips is unchanged.
 pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
     let mut pair = pair();
     let involute = |pair: &Pair| {
@@ -111,7 +111,7 @@ pub fn constant(pair: &Pair, stiffness: f64) -> PairCompliance {
     PairCompliance { pinion: tooth(|_| half), gear: tooth(|_| half), contact: ContactLaw::Linear, coupled: false }
 }
 
-/// Teeth that get softer towards their tips, near enough to real ones.
+/// Teeth that get softer towards their tips, much like real ones.
 pub fn varying() -> PairCompliance {
     let pinion = tooth(|u| 0.8e-9 + 2.4e-9 * u * u + 1.5e-9 * u * u * u);
     let gear = tooth(|u| 0.5e-9 + 3.0e-9 * u * u);

@@ -38,7 +38,7 @@ impl Random {
         choices[index]
     }
 
-    /// A pair that can be: 12 to 60 teeth with up to five times as many, module 1 to 8 mm, shifted or not.
+    /// A possible pair: 12 to 60 teeth with up to five times as many, module 1 to 8 mm, shifted or not.
     pub fn pair(&mut self) -> Pair {
         loop {
             let module = self.scaled(1e-3, 8e-3);

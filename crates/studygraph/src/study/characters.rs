@@ -1,7 +1,7 @@
 //! Characters that no text of a study can hold, as they are or as escapes, and where they stand.
 //!
 //! Titles, names, reasons and labels go into files of every format that is published. What one of those cannot hold is
-//! refused before anything runs; see `base/text.rs`. Must not know: fields.
+//! refused before anything runs; see `text.rs` of `declare`. Must not know: fields.
 
 use super::document::place_at;
 use declare::error::{Diagnostic, Place};

@@ -9,7 +9,7 @@
 //!   the sections; θ begins with that of the half plane under the root, above the load it stays;
 //! - body under the tooth: it shifts with the root by v and less and less down to the depth d: μ s_f d/3 · v²; d is the
 //!   distance to the bore, and no more than the face is wide;
-//! - wind-up of the ring, a layer by itself since it reaches much farther: μ ∫ (θ r)² dA with its own θ(r).
+//! - wind-up of the ring, a separate layer since it reaches much farther: μ ∫ (θ r)² dA with its own θ(r).
 //!
 //! The shape is that of `weber_banaschek`, of the tooth that the rack cuts; c is that of the tables, whatever their method.
 //! Source: Vlasov and Leontiev, Beams, Plates and Shells on Elastic Foundations, 1966 (reduction); the formulas of the
@@ -34,7 +34,7 @@ const SHEAR_FACTOR: f64 = 1.2;
 /// One gear's layers.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layers {
-    /// Wind-up of the ring \[m/N\], in the compliance of the tooth already; no more than what its body has.
+    /// Wind-up of the ring \[m/N\], already in the compliance of the tooth; no more than what its body has.
     pub wind_up: f64,
     /// ℓ of the wind-up \[m\].
     pub wind_up_length: f64,
@@ -60,7 +60,7 @@ impl Layers {
         }
     }
 
-    /// ℓ \[m\] of the tooth with the body under it, whose compliance is `compliance` \[m/N\], wind-up left out.
+    /// ℓ \[m\] of the tooth with the body under it, whose compliance is `compliance` \[m/N\], without the wind-up.
     #[must_use]
     pub fn length(&self, roll: f64, compliance: f64) -> f64 {
         (self.reach.value(roll) / (compliance * self.face_width)).sqrt()
@@ -91,7 +91,7 @@ struct Shape<'a> {
     /// Height, extent along the height, thickness.
     sections: Vec<[f64; 3]>,
     clamped: Body,
-    /// Area of the body that moves like the root would have it \[m²\].
+    /// Area of the body, weighted by how much it moves with the root \[m²\].
     moved: f64,
 }
 

@@ -20,14 +20,14 @@ use declare::parameter::{Choice, Field, Member};
 use declare::record::Record;
 use declare::work::Work;
 
-/// Points per piece of the root: twice what 1e-12 takes.
+/// Points per piece of the root: twice as many as 1e-12 takes.
 const ROOT_POINTS: usize = 40;
-/// Below these bore ratios the fitted body formula gives 1.3 to 1.8 times what the ring it was fitted to gives, and it does
+/// Below these bore ratios the fitted body formula gives 1.3 to 1.8 times as much as the ring it was fitted to, and it does
 /// not vanish as the bore reaches the root. Up to the upper end it stays within a sixth of the ring; from there on its
-/// square of the ratio runs away, to a thousand times the ring's at a ratio of a thousand.
+/// square of the ratio runs away, to a thousand times the ring's value at a ratio of a thousand.
 const BORE_RATIOS: [f64; 2] = [1.2, 20.0];
-/// θ_f \[rad\] below which the fitted formula is all 1/θ_f²: half of what it was fitted for. It goes negative there, and
-/// for still more teeth comes back hundreds of times too large.
+/// θ_f \[rad\] below which 1/θ_f² dominates the fitted formula: half of the least it was fitted for. It goes negative there,
+/// and for still more teeth it comes back hundreds of times too large.
 const LEAST_HALF_ANGLE: f64 = 0.005;
 
 const BODIES: &[Choice] = &[
@@ -121,7 +121,7 @@ fn integrands(gear: &Gear, section: Section) -> [f64; 4] {
 }
 
 impl<'a> Beam<'a> {
-    /// `None` when the flank cannot be integrated to rounding: the tip is all but pointed.
+    /// `None` when the flank cannot be integrated to rounding because the tip is almost pointed.
     #[must_use]
     pub fn new(gear: &'a Gear, root: &Root, shear_factor: f64) -> Option<Self> {
         Self::continued(gear, root, shear_factor, root.form_roll)
@@ -189,7 +189,7 @@ impl<'a> Beam<'a> {
     }
 }
 
-/// The gear body by either theory.
+/// The gear body by one of the two theories.
 enum Foundation {
     Formula(Body),
     Ring,

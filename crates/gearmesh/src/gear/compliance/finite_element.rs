@@ -1,7 +1,7 @@
 //! The finite-element method: tooth and gear body as one elastic body, the whole gear, clamped at its bore.
 //!
 //! `finite_elements` gives the influences of unit loads on a flank; here they become the pair's tables. What a load does
-//! to its own tooth is one number, so all of it stands in `body`, and bending, shear and compression are zero. It is the
+//! to its own tooth is one number, so all of it is in `body`, and bending, shear and compression are zero. It is the
 //! displacement of the centreline along the load line; the contact law adds the approach of the flank, to the depth
 //! `contact_depth`, so nothing is counted twice. Must not know: how it is solved.
 
@@ -27,7 +27,7 @@ use declare::work::Work;
 
 /// Nodes along the flank: interpolation between them is exact to 1e-4, which a test holds.
 const ROLLS: usize = 16;
-/// Elements across with which a mesh still is one.
+/// The fewest elements across that still make a mesh.
 const LEAST: usize = 4;
 const MOST: usize = 64;
 /// ν up to which plane strain does not lock.

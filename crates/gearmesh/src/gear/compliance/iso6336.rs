@@ -1,10 +1,10 @@
 //! ISO 6336-1:2019, clause 9 (method B): stiffness of a pair of teeth and of the mesh, per face width.
 //!
 //! c′ = c′_th C_M C_R C_B cos β · E/E_St is the largest stiffness of one pair, c_γα = c′(0.75 ε_α + 0.25) the mean of the
-//! mesh. The standard says nothing of the curve between. As a method the pair's stiffness is the parabola over the path of
+//! mesh. The standard says nothing about the curve between. As a method the pair's stiffness is the parabola over the path of
 //! contact that has both: k = c′[1 − 3(1 − m) ξ²], ξ from −1 at A to 1 at E, m = c_γα/(c′ ε_α); its largest value is c′, and
 //! its mean over the path times ε_α is c_γα. (Cai and Hayashi, Journal of Mechanical Design 116 (1994) 558–564, take a
-//! parabola that falls to 0.55 of its top whatever ε_α is; it holds one of the two numbers only.) The flattening of the
+//! parabola that falls to 0.55 of its top whatever ε_α is; it has only one of the two numbers.) The flattening of the
 //! flanks is in c′. For standard basic rack teeth, x1 ≥ x2, −0.5 ≤ x1 + x2 ≤ 2, F_t/b ≥ 100 N/mm, ε_α of 1.2 and more.
 //! Must not know: the tooth's shape beyond teeth numbers and shifts. Results in SI, N/(m·m) = Pa: 1 N/(mm µm) = 1e9 Pa.
 
@@ -39,14 +39,14 @@ pub const METHOD: Method = Method {
 const STEEL_MODULUS: f64 = 206e9;
 /// N/(mm µm) in Pa.
 const PER_MILLIMETRE_AND_MICROMETRE: f64 = 1e9;
-/// F_t/b \[N/m\] from which on c′ does not depend on the load.
+/// F_t/b \[N/m\] above which c′ does not depend on the load.
 const LEAST_SPECIFIC_LOAD: f64 = 100e3;
 /// ε_α for which the mean is given.
 const CONTACT_RATIOS: std::ops::RangeInclusive<f64> = 1.2..=2.5;
 /// x1 + x2.
 const SHIFT_SUMS: std::ops::RangeInclusive<f64> = -0.5..=2.0;
 
-/// What clause 9 asks of a pair.
+/// What clause 9 needs to know of a pair.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Inputs {
     /// z1, z2 (virtual numbers of teeth z_n for helical gears).
@@ -70,8 +70,8 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// Those of a spur pair, with the factors of the method's `options`; a record of another method has none, and the
-    /// standard's own stand for them.
+    /// The facts of a spur pair, with the factors of the method's `options`; a record of another method does not have them,
+    /// and the standard's own take their place.
     #[must_use]
     pub fn of(pair: &Pair, options: &Record) -> Self {
         let mut both = [&pair.pinion.specification, &pair.gear.specification];

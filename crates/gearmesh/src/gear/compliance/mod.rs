@@ -32,12 +32,12 @@ pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso633
 #[derive(Clone, Copy)]
 pub struct Method {
     pub member: Member,
-    /// Whether it knows a pair of teeth as a whole only, so that root, contact law and coupling have no meaning for it.
+    /// Whether it knows a pair of teeth only as a whole, so that root, contact law and coupling mean nothing to it.
     pub whole_pair: bool,
-    /// Whether a root with a sharp corner, the shape `base_circle`, is beyond it.
+    /// Whether it cannot treat a root with a sharp corner, the shape `base_circle`.
     pub needs_fillet: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
-    /// method does not hold for this pair. The record holds what this method alone can be told.
+    /// method does not hold for this pair. The record holds the options of this method alone.
     pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
     /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
     pub root_stress: Option<RootStresses>,
@@ -48,9 +48,9 @@ pub struct Method {
 /// What a method takes, before it runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Foreseen {
-    /// Nodes of the series of both teeth, about.
+    /// About how many nodes the series of both teeth have.
     pub nodes: usize,
-    /// Nodes of the tables of neighbours of both, at most about; 0 where there are none.
+    /// About the most nodes that the tables of neighbours of both have; 0 where there are none.
     pub neighbours: usize,
     pub work: Work,
     /// How many times as long as usual a unit of work takes.
@@ -59,8 +59,8 @@ pub struct Foreseen {
     pub memory: u64,
 }
 
-/// What methods take that integrate along a tooth: series of some dozens of nodes, and where teeth are coupled a table of
-/// every pair of them for up to three neighbours.
+/// What methods take that integrate along a tooth: series of some dozens of nodes and, where teeth are coupled, a table of
+/// every pair of nodes for up to three neighbours.
 pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
     Foreseen {
         nodes: 128,
@@ -81,11 +81,11 @@ pub struct Assumptions {
     pub contact: ContactLaw,
     /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
     pub coupled: bool,
-    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say of its range, never for a
+    /// Torque on the pinion \[N m\] where the study names one: for what a method has to say about its range, never for a
     /// compliance.
     pub torque: Option<f64>,
-    /// Wanted error of a tooth's compliances, relative to its own; a method takes the cheapest settings that meet it, or
-    /// those it is told and those it has where there is none.
+    /// Wanted error of a tooth's compliances, relative to its own; a method takes the cheapest settings that meet it. Without
+    /// one it takes those it is told, and its defaults.
     pub accuracy: Option<f64>,
 }
 
@@ -138,7 +138,7 @@ pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|method| method.member.name == name)
 }
 
-/// What `tooth` gives for both gears; for gears that are alike it is asked once.
+/// What `tooth` gives for both gears; for gears that are alike it is called once.
 ///
 /// # Errors
 /// Those of `tooth`.
@@ -163,7 +163,7 @@ pub fn members() -> &'static [Member] {
     &MEMBERS
 }
 
-/// Why a method gives no compliance for a pair.
+/// Why a method cannot give a compliance for a pair.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ComplianceError {
     #[error(transparent)]
@@ -237,8 +237,8 @@ impl ToothCompliance {
     }
 }
 
-/// How many teeth to one side of a loaded one can be loaded with it: as many pairs as share the contact, and one more
-/// in corner contact at either end.
+/// How many teeth to one side of a loaded one can be loaded with it: as many pairs as share the contact, and in corner
+/// contact one more at each end.
 #[must_use]
 pub fn neighbours(pair: &Pair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
@@ -255,7 +255,7 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
-    /// The compliances of the teeth hold it already: methods that know a pair as a whole. No study chooses it.
+    /// The compliances of the teeth already include it, for methods that know a pair as a whole. No study chooses it.
     Included,
 }
 

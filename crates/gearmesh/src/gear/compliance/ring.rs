@@ -20,8 +20,8 @@ use crate::gear::geometry::Gear;
 /// Harmonics kept, times the half root angle: waves much shorter than the root arc.
 pub const HARMONICS: f64 = 100.0;
 /// What is cut off, times the third power of that number, in units of a root's own influence: a series whose terms fall as
-/// n^−3 and change their sign with the root arc. Of a root's own the mean of what is cut off is added, of a neighbour's
-/// not. The largest of hundreds of random gears from 10 to 200, which a test holds.
+/// n^−3 and change their sign with the root arc. For a root's own the mean of what is cut off is added, for a neighbour's
+/// it is not. The largest of hundreds of random gears from 10 to 200, which a test holds.
 const CUT_OFF: [f64; 2] = [0.8, 3.5];
 /// Below this a field that decays from one rim does not reach the other.
 const UNFELT: f64 = 1e-18;
@@ -93,7 +93,7 @@ impl Ring {
         (on[0] * moved[0] + on[1] * moved[1] + on[2] * moved[2]) * self.flexibility
     }
 
-    /// The influence of the tractions of a tooth at the angle 0 on the roots that stand `offsets` behind it
+    /// The influence of the tractions of a tooth at the angle 0 on the roots that are `offsets` behind it
     /// (in the direction against a positive torque), rows by the affected root's traction.
     #[must_use]
     pub fn influences(&self, offsets: &[f64]) -> Vec<Matrix3> {
@@ -228,8 +228,8 @@ fn count(by_angle: f64, half_angle: f64) -> usize {
     count
 }
 
-/// How far influences are off with so many harmonics times the half root angle, in units of a root's own; of neighbours
-/// too, or of a root's own alone.
+/// How far influences are off with this many harmonics times the half root angle, in units of a root's own: those of
+/// neighbours too, or only a root's own.
 #[must_use]
 pub fn error(by_angle: f64, neighbours: bool) -> f64 {
     CUT_OFF[usize::from(neighbours)] / (by_angle * by_angle * by_angle)

@@ -46,7 +46,7 @@ impl Body {
         bracket / (gear.specification.material.youngs_modulus * gear.specification.face_width)
     }
 
-    /// A sentence where the formula is used outside the range it was fitted in.
+    /// A sentence where the formula is used outside the range it was fitted for.
     #[must_use]
     pub fn range_warning(&self) -> Option<String> {
         let inside = (0.01..=0.12).contains(&self.half_angle) && (1.4..=7.0).contains(&self.bore_ratio);

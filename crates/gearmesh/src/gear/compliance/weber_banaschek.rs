@@ -11,10 +11,10 @@
 //!
 //! The arm cos γ (y_p − y) is r_b − y cos γ, so the tooth is the beam of `energy` with 1 − ν² on bending and compression
 //! (2.4/(1 − ν) is a shear factor of 1.2 already), up to y_p: what lies between there and the flank is in the contact
-//! law. Where the load line crosses the centreline below the joint of involute and root curve (low on teeth of gears
-//! with many), or below the clamped end, the last bit is integrated along the involute continued downwards, so that
-//! the tables stay smooth. The half plane moves no other tooth; the wind-up is a rotation of the whole gear and moves all
-//! alike. Must not know: modification, load.
+//! law. Where the load line crosses the centreline below the joint of involute and root curve (low on the teeth of gears
+//! with many teeth), or below the clamped end, the last bit is integrated along the involute continued downwards, so that
+//! the tables stay smooth. The half plane does not move other teeth; the wind-up is a rotation of the whole gear and moves
+//! all alike. Must not know: modification, load.
 
 #[cfg(test)]
 mod tests;
@@ -110,7 +110,7 @@ fn plane_strain(gear: &Gear) -> f64 {
     (1.0 - nu) * (1.0 + nu)
 }
 
-/// What a tooth is clamped in.
+/// The body that a tooth is clamped in.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Body {
     /// Height of the clamped end above the gear's centre \[m\]: where the root curve touches the root circle, or, for a
@@ -148,7 +148,7 @@ impl Body {
         plane_strain(gear) / stretch * half_plane + self.wind_up
     }
 
-    /// Whether the body ends at its bore nearer to the tooth than the tooth is thick.
+    /// Whether the body, down to its bore, is less deep than the tooth is thick.
     fn is_shallow(&self, gear: &Gear) -> bool {
         gear.root_radius - gear.specification.bore_radius < self.chord
     }

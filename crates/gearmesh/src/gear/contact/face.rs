@@ -3,7 +3,7 @@
 //! A tooth pair is a row of independent slices: under the interference w its load is its stiffness times
 //! Φ(w) = 1/b ∫ max(0, w − h(z)) dz, where h is the deviation of both flanks above its smallest value. Where h is
 //! piecewise quadratic Φ has a closed form (for crowning alone w t − C_β t³/3 with t = min(1, √(w/C_β))); other shapes
-//! are cut into slices. Where h(−z) = h(z), half of the face is looked at. Lengths in m. Must not know: stiffness, profile.
+//! are cut into slices. Where h(−z) = h(z), only half of the face is used. Lengths in m. Must not know: stiffness, profile.
 
 use crate::gear::modification::Design;
 use crate::numeric::lobatto::Rule;
@@ -330,8 +330,8 @@ mod tests {
         }
     }
 
-    /// The slope of a sum over few slices of a law that is no polynomial is that of the sum, not of the integral: central
-    /// differences tell, since seventeen slices of w/(1 − ln w) are off by 1e-4.
+    /// The slope of a sum over few slices of a law that is not a polynomial is that of the sum, not of the integral. Central
+    /// differences show it, since seventeen slices of w/(1 − ln w) are off by 1e-4.
     #[test]
     fn the_slope_is_that_of_the_sum_of_slices() {
         let law = |w: f64| {

@@ -83,12 +83,12 @@ impl Logarithmic {
     }
 }
 
-/// Flanks and teeth in series, ready to be inverted many times.
+/// Flanks and teeth in series, prepared for many inversions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InSeries {
     pub law: Logarithmic,
     pub compliance: f64,
-    /// The load per width from which on the flanks' approach stays.
+    /// The load per width above which the flanks' approach is constant.
     last: f64,
     /// ln(c + β).
     start: f64,
@@ -178,7 +178,7 @@ mod tests {
         }
     }
 
-    /// The words of the law, term by term, at one load.
+    /// The law as written, term by term, at one load.
     #[test]
     fn the_load_dependent_law_is_webers() {
         let (radius, load, depths) = (7e-3, 1e5, [2.5e-3, 3e-3]);

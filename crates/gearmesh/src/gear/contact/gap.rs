@@ -16,14 +16,14 @@ const SAMPLES: usize = 8;
 const STEP: f64 = 1e-3;
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
-/// Places between two known breaks, as shares of the way, at which it is asked where the flanks touch: denser towards
-/// both ends, since the least relief holds on for a moment only.
+/// Places between two known breaks, as shares of the way, at which the spot of contact is determined: denser towards
+/// both ends, since the least relief lasts only for a moment.
 const PROBES: [f64; 11] = {
     let [a, b, c, d, e] = [1.0 / 512.0, 1.0 / 128.0, 1.0 / 32.0, 1.0 / 8.0, 0.3];
     [a, b, c, d, e, 0.5, 1.0 - e, 1.0 - d, 1.0 - c, 1.0 - b, 1.0 - a]
 };
 
-/// Where on the flanks a pair touches: the same number all over a stretch on which the gap is smooth.
+/// Where on the flanks a pair touches: the same value all over a stretch on which the gap is smooth.
 type Spot = u32;
 /// On the line of action.
 const NOMINAL: Spot = 0;
@@ -69,7 +69,7 @@ enum Shape {
     Other,
 }
 
-/// The state of a search: the point in hand, its smooth piece, and the least gap so far.
+/// The state of a search: the current point, its smooth piece, and the least gap so far.
 struct Search<'a, 'b> {
     way: &'b Way<'a>,
     nominal: f64,
@@ -174,7 +174,7 @@ impl<'a> Gaps<'a> {
     }
 }
 
-/// Pieces are few.
+/// Pieces are few, so a number always fits.
 fn index(piece: usize) -> Spot {
     u32::try_from(piece).unwrap_or(0)
 }
@@ -253,7 +253,7 @@ impl Search<'_, '_> {
         (at, there, [false, true])
     }
 
-    /// Offers the minima between two places of one smooth piece, looked for in equal parts.
+    /// Offers the minima between two places of one smooth piece, searched in equal parts.
     fn descend(&mut self, from: (f64, Touch), to: (f64, Touch), parts: u32) {
         let width = (to.0 - from.0) / f64::from(parts);
         let mut lower = (from.0, self.pull(from.0, &from.1));

@@ -2,14 +2,14 @@
 //!
 //! At the path position s unmodified flanks touch at one point of the line of action. Any other flank point of one gear
 //! stands clear of the other gear's flank by a separation that grows with the square of its distance. It decides where
-//! relieved flanks touch, and when a tip corner touches before A or after E. The flank point is taken to where its gear
-//! carries it; the involute through it has the rotation coordinate r_b(θ − atan u + u), u = √(ρ²/r_b² − 1), θ and ρ its
-//! polar coordinates about the other gear's centre, and the separation is that coordinate less s: the turn of the other
+//! relieved flanks touch, and when a tip corner touches before A or after E. The flank point is placed where its gear
+//! carries it. The involute through it has the rotation coordinate r_b(θ − atan u + u), u = √(ρ²/r_b² − 1), with θ and ρ
+//! its polar coordinates about the other gear's centre. The separation is that coordinate less s: the turn of the other
 //! flank along the base circle, which is the normal distance. Lengths in m. Source: the involute's property that its
 //! normals touch the base circle (ISO 21771-1:2024, section 5); no iteration. Must not know: modification, load.
 //!
 //! First order: forces act along the line of action with the base radii as arms wherever the flanks touch. At a corner the
-//! point's gear has in truth the arm r_b(1 − dS/de), e the distance before A or after E.
+//! true arm of the point's gear is r_b(1 − dS/de), with e the distance before A or after E.
 
 use crate::gear::geometry::{Pair, Side};
 
@@ -17,7 +17,7 @@ use crate::gear::geometry::{Pair, Side};
 /// they are its radii of curvature on the line of action; for points of the gear they are path positions s.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Facing {
-    /// r_b of the gear whose points are looked at.
+    /// r_b of the gear that the points belong to.
     point_radius: f64,
     /// r_b of the gear whose flank they meet.
     flank_radius: f64,
@@ -62,7 +62,7 @@ impl Facing {
         }
     }
 
-    /// A path position in these positions, and back; `side` as in [`Facing::new`].
+    /// A path position as one of these positions, and back; `side` as in [`Facing::new`].
     #[must_use]
     pub fn turned(&self, side: Side, position: f64) -> f64 {
         if side == Side::Gear { position } else { self.tangent_length - position }

@@ -21,7 +21,7 @@ pub struct Slices<'a> {
     pub slices: Vec<Slice>,
     /// The deviations within each slice, the same for all pairs.
     pub faces: &'a [Face<'a>],
-    /// Width of each of these slices \[m\]; of two where one stands for both.
+    /// Width of each of these slices \[m\]; the width of two where one stands for both.
     pub widths: &'a [f64],
 }
 

@@ -1,7 +1,7 @@
 //! A gear's teeth under unit loads: what a load on a flank does to its own tooth and to the teeth that follow.
 //!
 //! The own compliance is the displacement of the point Q where the load line crosses the tooth's centreline, which local
-//! flattening does not reach: the contact laws hold the approach of the flank to it. Source of this split: Weber and
+//! flattening does not reach: the contact laws contain the approach of the flank to it. Source of this split: Weber and
 //! Banaschek, 1953. A neighbour's is that of its flank point, along its own load line.
 //! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
 
@@ -16,8 +16,8 @@ use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{Millimetres, Plain};
 use crate::gear::geometry::root::Root;
 
-/// Relative error of compliances by rounding, over the square of teeth times root radius over bore radius: a large gear on
-/// a small bore is turned by far less force than its elements need to be strained by as much. Measured up to 1000 teeth.
+/// Relative error of compliances by rounding, over the square of teeth times root radius over bore radius: it takes far less
+/// force to turn a large gear on a small bore than to strain its elements by as much. Measured up to 1000 teeth.
 const ROUNDING: f64 = 5e-15;
 const MOST_ROUNDING: f64 = 1e-2;
 
@@ -31,7 +31,7 @@ pub struct GearModel<'a> {
     pub sector: Sector,
 }
 
-/// What loads at several places of a flank do.
+/// The effects of loads at several places of a flank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influences {
     /// At the loaded tooth's Q, per place.
@@ -162,7 +162,7 @@ impl GearModel<'_> {
     }
 }
 
-/// The edge that holds a height, and the place s on it; the ends where it lies beyond.
+/// The edge that contains a height, and the place s on it; an end where the height lies beyond.
 fn find<'a>(mesh: &Mesh, edges: &'a [Edge], height: f64) -> (&'a Edge, f64) {
     let above = edges.partition_point(|edge| mesh.nodes[edge.nodes[2]][1] < height).min(edges.len() - 1);
     let edge = &edges[above];

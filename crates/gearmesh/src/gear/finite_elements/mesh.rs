@@ -12,7 +12,7 @@ use super::outline::{Outline, divide};
 /// How much steeper than the circumference the cut curve dips at its ends \[rad\]: the angles about its end are then
 /// 45°, 67.5° and 67.5°.
 const DIP: f64 = std::f64::consts::PI / 8.0;
-/// Sizes for one element across; they fall in proportion to the elements across.
+/// Sizes for one element across; they are inversely proportional to the number of elements across.
 /// Length of an element along the flank over the tooth's thickness there.
 const ALONG: f64 = 1.2;
 /// Turn of the outline along one element \[rad\].
@@ -27,11 +27,11 @@ const PROPORTION: f64 = 3.2;
 /// Sizes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sizing {
-    /// From the right flank (0) to the left (1), at corners and middles alternating; symmetric, with ½ at a corner.
+    /// From the right flank (0) to the left (1), corners and middles alternating; symmetric, with ½ at a corner.
     pub across: Vec<f64>,
-    /// Elements across if they were all alike: what all other sizes follow from.
+    /// Elements across if they were all alike; all other sizes follow from it.
     pub level: f64,
-    /// Element length along the flank near a height \[modules\], and the height, where the mesh is to be finer.
+    /// Element length along the flank near a height \[modules\], and the height, where the mesh must be finer.
     pub focus: Option<[f64; 2]>,
 }
 
@@ -72,7 +72,7 @@ pub struct Mesh {
     pub half_pitch: f64,
 }
 
-/// A block of elements as a grid of node numbers; the middles of elements have none.
+/// A block of elements as a grid of node numbers; the middles of elements have no number.
 struct Grid {
     columns: usize,
     numbers: Vec<usize>,
@@ -234,7 +234,7 @@ impl Mesh {
     }
 }
 
-/// The points of a chain of stretches; where two meet there is one.
+/// The points of a chain of stretches; where two meet there is only one.
 fn chain(
     stretches: &[super::outline::Stretch],
     divide: impl Fn(&super::outline::Stretch) -> Vec<f64>,

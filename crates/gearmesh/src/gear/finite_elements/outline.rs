@@ -15,7 +15,7 @@ use crate::gear::geometry::root::{Piece, Root};
 
 /// Samples of a curve from which its length and direction are taken.
 const SAMPLES: usize = 400;
-/// Land \[modules\] that is none.
+/// Width \[modules\] below which there is no land.
 const NO_LAND: f64 = 1e-6;
 /// Inclination against the circumference at which the tooth is cut off the body.
 const CUT_INCLINATION: f64 = FRAC_PI_4;
@@ -57,7 +57,7 @@ pub struct Outline {
     pub tip_half_angle: f64,
 }
 
-/// A curve by its samples: parameter, length and turning up to there.
+/// A curve by its samples: parameter, and length and turning up to it.
 struct Samples {
     points: Vec<[f64; 2]>,
     parameters: Vec<f64>,
@@ -90,7 +90,7 @@ impl Outline {
     /// The outline of a gear's teeth with a root.
     ///
     /// # Errors
-    /// When the root has a re-entrant corner, or the tooth no full profile.
+    /// When the root has a re-entrant corner, or the tooth does not have a full profile.
     pub fn new(gear: &Gear, root: &Root) -> Result<Self, MeshError> {
         let module = gear.specification.module;
         let smooth = matches!(root.pieces.first(), Some(Piece::Trochoid(_) | Piece::Arc { .. }));

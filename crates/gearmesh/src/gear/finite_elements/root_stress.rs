@@ -1,6 +1,6 @@
 //! The stress on the surface of a tooth's root under a load on its flank.
 //!
-//! The surface carries no load, so its stress is one stress along it, E′ times the strain along it, which is the rate of
+//! The surface carries no load, so its only stress is along it: E′ times the strain along it, which is the rate of
 //! the nodes' displacement. On an edge of three nodes that rate is most accurate at the two Gauss points (Barlow,
 //! International Journal for Numerical Methods in Engineering 10 (1976) 243–251).
 //! Stresses times the module over the load per width. Must not know: strength.

@@ -1,4 +1,4 @@
-//! One sector's stiffness: factorised once, its inside eliminated on to the two radial edges.
+//! One sector's stiffness: factorised once, its inside eliminated onto the two radial edges.
 //!
 //! Freedoms of the edges are radial and clockwise, so that they are the same seen from either sector that shares them.
 //! Nondimensional: E = 1, lengths in modules, forces per width. Must not know: the ring of sectors, gears.
@@ -21,8 +21,8 @@ use super::mesh::Mesh;
 
 /// Columns solved for at a time.
 const BLOCK: usize = 32;
-/// Springs to ground on the freedoms of the edges, in units of E: a sector by itself, a sliver of a large gear, would
-/// be too floppy to be factorised to rounding. They are taken off again.
+/// Springs to ground on the freedoms of the edges, in units of E: a sector on its own, a sliver of a large gear, would
+/// be too floppy to be factorised to rounding. They are removed again.
 const SUPPORT: f64 = 1.0;
 
 /// Where a freedom belongs.
@@ -34,8 +34,8 @@ enum Freedom {
     Edge(usize),
 }
 
-/// In which order the sums of a factorisation are made. All but the first are there to see by how much that moves results:
-/// so does a processor that the library takes other instructions for.
+/// In which order the sums of a factorisation are made. All but the first exist to see by how much the order moves results,
+/// as a processor does for which the library uses other instructions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Order {
     /// Dense blocks of columns.
@@ -65,7 +65,7 @@ pub struct Sector {
 /// A load (or what measures a displacement by its work) as forces at nodes.
 pub type NodalForces = Vec<(usize, [f64; 2])>;
 
-/// What a load does to the sector by itself, on its supports.
+/// What a load does to the sector on its own, on its supports.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Response {
     /// Displacements, of the inside and then of the edges.
@@ -128,7 +128,7 @@ impl Sector {
         stiffness
     }
 
-    /// What loads do to the sector by itself.
+    /// What loads do to the sector on its own.
     #[must_use]
     pub fn responses(&self, loads: &[NodalForces]) -> Vec<Response> {
         let size = self.inside + 2 * self.edge;
@@ -299,7 +299,7 @@ impl Factor {
         Ok(Self { symbolic, values })
     }
 
-    /// What is left of the matrix for the freedoms from `first` on when the others are eliminated: L_EE L_EEᵀ, by columns.
+    /// What remains of the matrix for the freedoms from `first` on when the others are eliminated: L_EE L_EEᵀ, by columns.
     fn trailing(&self, first: usize) -> Vec<Vec<f64>> {
         let size = self.symbolic.nrows() - first;
         let mut lower = vec![vec![0.0; size]; size];
@@ -339,7 +339,7 @@ impl Factor {
         product
     }
 
-    /// Displacements in place of forces; one column after the other.
+    /// Replaces forces by displacements, one column after the other.
     fn solve(&self, columns: &mut [f64]) {
         let size = self.symbolic.nrows();
         let count = columns.len() / size;

@@ -1,4 +1,4 @@
-//! Why a gear or a pair cannot be: the values, the admissible range, and the parameter to change.
+//! Why a gear or a pair is impossible: the values, the admissible range, and the parameter to change.
 //!
 //! Must not know: where a study states the parameter. Lengths and angles arrive in SI and are shown in mm and degrees.
 
@@ -10,12 +10,12 @@ use super::Side;
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[error("{}{problem}", side_prefix(*.side))]
 pub struct GeometryError {
-    /// The gear that is meant; `None` when it stands alone or when the pair is meant.
+    /// The gear that is meant; `None` when there is only one gear or when the pair is meant.
     pub side: Option<Side>,
     pub problem: Problem,
 }
 
-/// A length, shown in mm with the digits that tell.
+/// A length, shown in mm with its significant digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Millimetres(pub f64);
 
@@ -23,7 +23,7 @@ pub struct Millimetres(pub f64);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Degrees(pub f64);
 
-/// A plain number, shown with the digits that tell.
+/// A plain number, shown with its significant digits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain(pub f64);
 
@@ -101,7 +101,7 @@ pub enum Reached {
     InsideBaseCircle,
 }
 
-/// What a user states of gears.
+/// What a user states about gears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     Teeth,
@@ -138,7 +138,7 @@ impl Parameter {
         }
     }
 
-    /// The field's name, behind `pinion.` or `gear.` where each gear has its own.
+    /// The field's name, after `pinion.` or `gear.` where each gear has its own.
     fn field(self, side: Option<Side>) -> &'static str {
         let [alone, pinion, gear] = match self {
             Self::Teeth => ["teeth", "pinion.teeth", "gear.teeth"],

@@ -1,4 +1,4 @@
-//! One gear from its specification, or why there is none.
+//! One gear from its specification, or why it is impossible.
 //!
 //! r = m z/2, r_b = r cos α, r_a = r + m(h_aP + x), r_f = r − m(h_fP − x), ψ_b = (π/2 + 2x tan α)/z + inv α.
 //! Source: ISO 21771-1:2024, sections 5 and 7. Must not know: the mate.

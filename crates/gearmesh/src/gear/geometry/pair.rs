@@ -23,12 +23,12 @@ pub struct ZonePoints {
     pub e: f64,
 }
 
-/// How much nearer than without backlash the gears may stand \[modules\]: room for a rounded centre distance.
+/// How much nearer the gears may be than without backlash \[modules\]: room for a rounded centre distance.
 const OVERLAP: f64 = 1e-3;
 
 impl Pair {
     /// # Errors
-    /// When a gear cannot be, the gears do not belong together, the teeth do not fit into each other, contact would
+    /// When a gear is impossible, the gears do not belong together, the teeth do not fit into each other, contact would
     /// lie below a form radius, or the contact ratio is not above 1.
     pub fn new(
         pinion: Specification,

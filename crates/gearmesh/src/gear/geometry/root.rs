@@ -3,8 +3,8 @@
 //! - `Trochoid`: what the rack cuts; clamped where it touches the root circle.
 //! - `CircularFillet`: an arc of the rack's tip radius ρ_fP, tangent to the root circle and to the flank, the flank
 //!   being the involute and, below the base circle, the radial line at ψ_b; clamped at the root circle.
-//! - `BaseCircle`: no root at all, the involute clamped at the base circle, or at the root circle where that is larger
-//!   (from 42 teeth on with a dedendum of 1.25): a tooth clamped inside its own body would be integrated through it.
+//! - `BaseCircle`: no root at all; the involute is clamped at the base circle, or at the root circle where that is larger
+//!   (from 42 teeth on with a dedendum of 1.25), since a tooth clamped inside its own body would be integrated through it.
 //!
 //! Must not know: stiffness, load.
 
@@ -158,7 +158,7 @@ impl Gear {
             .unwrap_or(0.0)
     }
 
-    /// How far the arcs of neighbouring teeth overlap on the root circle \[m\]; negative where land is left.
+    /// How far the arcs of neighbouring teeth overlap on the root circle \[m\]; negative where some land remains.
     fn overlap(&self, root: &Root) -> f64 {
         2.0 * self.root_radius * (root.half_angle - PI / f64::from(self.specification.teeth))
     }

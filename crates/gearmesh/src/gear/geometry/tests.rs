@@ -208,7 +208,7 @@ fn pairs_that_cannot_run_are_refused() {
     assert_eq!(Pair::new(deep(40), deep(48), None).unwrap_err().field(), "pinion.profile_shift");
 }
 
-/// As deep a tooth as the space that is cut for it leaves a clearance of 0, whatever rounding makes of it.
+/// A tooth as deep as the space that is cut for it leaves a clearance of 0, whatever rounding makes of it.
 #[test]
 fn a_clearance_of_exactly_nothing_is_kept() {
     let (mut below, mut tried) = (0, 0);

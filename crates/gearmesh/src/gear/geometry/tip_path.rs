@@ -1,12 +1,12 @@
 //! The way of the mate's tip through a gear's spaces, and how far it stays from the root: the clearance of a drawn root.
 //!
 //! Seen from the gear, a point of the mate moves on an extended epicycloid, whose normal always passes through the pitch
-//! point. So the foot of a root's point on that path is where the root's point, the corner and the pitch point are in one
-//! line: one equation for β, the corner's angle from the line of centres, solved by Newton's method in three to five
-//! steps. Along the root the distance is searched on each curve from [`LOOKS`] intervals. A rounding is a circle that
+//! point. So the foot of a root's point on that path is where the root's point, the corner and the pitch point are on one
+//! line. This is one equation for β, the corner's angle from the line of centres, solved by Newton's method in three to
+//! five steps. Along the root the distance is searched on each curve from [`LOOKS`] intervals. A rounding is a circle that
 //! moves with its centre; it lies inside the tooth, and whether the flank beside it reaches too low is another question.
 //! Between two corners of a tip the mate is farther away, since roots are concave, and the tip circle is nearest in the
-//! middle of the space. The flanks are taken as touching on the side of the root, unmodified.
+//! middle of the space. The flanks are assumed to touch on the side of the root, unmodified.
 //! Source: Litvin and Fuentes, Gear Geometry and Applied Theory (2004), section 10.9. Must not know: which root it is.
 
 use std::f64::consts::PI;
@@ -16,7 +16,7 @@ use super::outline::curve::{Curve, Part, Segment};
 use super::{Gear, Pair, Side};
 use crate::numeric::crossing;
 
-/// Intervals of each curve that are looked at; the least one is refined.
+/// Intervals of each curve in which the distance is sampled; the one with the least is refined.
 const LOOKS: usize = 8;
 /// A step of β \[rad\] after which Newton's method is done: the distance is off by its square.
 const SETTLED: f64 = 1e-8;
@@ -24,7 +24,7 @@ const SETTLED: f64 = 1e-8;
 const STRIDE: f64 = 0.2;
 const MOST_STEPS: u32 = 30;
 
-/// What a tip is to the mate's root: a corner, or a rounding about a centre; in the frame of its own tooth.
+/// What the mate's root meets of a tip: a corner, or a rounding about a centre; in the frame of its own tooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner {
     /// Distance from its gear's centre \[m\].
@@ -82,7 +82,7 @@ pub struct TipPath {
 }
 
 impl TipPath {
-    /// Of the mate of a gear, with the corners of the mate's tip.
+    /// The tip of a gear's mate, with the corners of that tip.
     #[must_use]
     pub fn new(pair: &Pair, side: Side, corners: Vec<Corner>) -> Self {
         let (own, mate) = (pair.side(side), pair.side(side.other()));

@@ -64,7 +64,7 @@ fn least_shift_without_undercut(specification: &Specification) -> f64 {
 }
 
 impl Trochoid {
-    /// The root curve of a gear whose rack and circles are known to be possible.
+    /// The root curve of a gear whose rack and circles have been checked.
     pub(super) fn generate(specification: &Specification, base_radius: f64) -> (Self, Joint) {
         let module = specification.module;
         let rack = &specification.rack;

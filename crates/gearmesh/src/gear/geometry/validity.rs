@@ -1,4 +1,4 @@
-//! How far a gear with its full profile is from what it must not be, alone and with its mate.
+//! How far a gear with its full profile is from being invalid, alone and with its mate.
 //!
 //! Lengths in m, angles in rad. Source: Zhai, Liang and Fu 2020, equation 23, for the least shift of a sharp rack; ISO
 //! 21771-1:2024 for the rest. Must not know: tables, what is done about a gear that is not valid.
@@ -7,7 +7,7 @@ use super::outline::Outline;
 use super::tip_path::{Corner, TipPath};
 use super::{Gear, Pair, Side};
 
-/// What is below this is rounding: roll angles \[rad\], and lengths in modules.
+/// Anything below this is rounding: roll angles \[rad\], and lengths in modules.
 const ROUNDING: f64 = 1e-12;
 
 /// One gear alone.
@@ -19,7 +19,7 @@ pub struct Validity {
     pub least_shift: f64,
     /// Where the flank begins in the profile as drawn.
     pub form_radius: f64,
-    /// How far the bottom of the space as drawn lies above the root circle.
+    /// How far the bottom of the space in the profile as drawn lies above the root circle.
     pub root_gap: f64,
     pub tip_thickness: f64,
     /// Where the flanks would meet in a point.
@@ -31,13 +31,13 @@ pub struct Validity {
 pub struct Mating {
     /// Where the mate's tip reaches on the flank.
     pub active_radius: f64,
-    /// Roll angle from where the drawn flank begins to there.
+    /// Roll angle from the beginning of the drawn flank to there.
     pub contact_reserve: f64,
     /// Least distance of the mate's tip from the drawn root, on its whole way; negative where it cuts in.
     pub root_distance: f64,
     /// Between the root circle and the mate's tip.
     pub clearance: f64,
-    /// By how many modules the mate's tip is to be lower for the rack's own clearance.
+    /// By how many modules the mate's tip must be lowered for the rack's own clearance.
     pub missing_tip_shortening: f64,
 }
 
@@ -59,7 +59,7 @@ impl Validity {
 }
 
 impl Mating {
-    /// Of the gear on a side of a pair, with its own outline and its mate's.
+    /// The validity of the gear on a side of a pair, with its own outline and its mate's.
     #[must_use]
     pub fn new(pair: &Pair, side: Side, outline: &Outline, mate: &Outline) -> Self {
         let (gear, other) = (pair.side(side), pair.side(side.other()));

@@ -1,6 +1,6 @@
 //! How a relief grows from its start to its end: a curve from (0, 0) to (1, 1).
 //!
-//! Parabolic: 0.44 t + 0.56 t², the article `energy_ga`. Must not know: which flank, which direction.
+//! Parabolic: 0.44 t + 0.56 t², from the article `energy_ga`. Must not know: which flank, which direction.
 
 use declare::error::Diagnostic;
 use declare::parameter::{Choice, Field};

@@ -16,7 +16,7 @@ pub struct Flank {
     pub base_pitch: f64,
     /// p_b(ε_α − 1): the length of long relief.
     pub long_relief: f64,
-    /// From either end of the flank to the nearest zone with the fewest pairs in contact, p_b(ε_α − ⌊ε_α⌋); for
+    /// From each end of the flank to the nearest zone with the fewest pairs in contact, p_b(ε_α − ⌊ε_α⌋); for
     /// 1 < ε_α < 2 that is the single-contact zone.
     pub outer_zone: f64,
     /// b of this gear.

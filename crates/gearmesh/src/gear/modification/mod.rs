@@ -154,9 +154,9 @@ impl Design {
         Ok(())
     }
 
-    /// Half of the tooth must be left, since the other flank may be modified alike: no point of the flank may pass the
-    /// tooth's centreline, up to the normal through the middle of the tip land, u_a + ψ_a, where r_b ψ_a is left to take.
-    /// Depths nowhere add material to the active flank, so a part that is refused cannot be mended by one that follows.
+    /// Half of the tooth must be left, since the other flank may be modified the same way: no point of the flank may pass
+    /// the tooth's centreline, up to the normal through the middle of the tip land, u_a + ψ_a, where r_b ψ_a is left to take.
+    /// Depths nowhere add material to the active flank, so a part that is refused cannot be saved by one that follows.
     fn check_room(&self, side: Side, pair: &Pair) -> Result<(), Diagnostic> {
         let (gear, flank, parts) = (pair.side(side), Flank::new(pair, side), self.side(side));
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
@@ -211,7 +211,7 @@ impl Design {
     }
 }
 
-/// The ends of a range, what lies inside of `breaks`, and equidistant places between.
+/// The ends of a range, the `breaks` inside it, and equidistant places between.
 fn looks((from, to): (f64, f64), breaks: impl Iterator<Item = Option<f64>>) -> impl Iterator<Item = f64> {
     let inside = breaks.flatten().filter(move |place| *place > from && *place < to);
     let between = (1..LOOKS).map(move |look| from + (to - from) * f64::from(look) / f64::from(LOOKS));

@@ -1,4 +1,4 @@
-//! Profile crowning C_α: a parabola over the active flank, nothing in its middle (ISO 21771-1).
+//! Profile crowning C_α: a parabola over the active flank, zero in its middle (ISO 21771-1).
 //!
 //! Must not know: compliance, load.
 

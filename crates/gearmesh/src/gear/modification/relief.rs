@@ -102,7 +102,7 @@ pub const COUNTED_FROM_ROOT: Field = Field::choice(
 
 const STARTS: [&str; 4] = [LENGTH.name, FRACTION.name, START_ROLL_ANGLE.name, START_DIAMETER.name];
 
-/// A relief shorter than this share of the base pitch is none.
+/// A relief shorter than this share of the base pitch counts as no relief.
 const SHORTEST: f64 = 1e-9;
 
 /// Which end of the flank the relief runs to.

@@ -1,4 +1,4 @@
-//! A design with some of its values left open: what an optimiser varies, and a fixed design as the case with none open.
+//! A design with some of its values left open for an optimiser to vary; a fixed design is the case without open values.
 //!
 //! Must not know: optimisers, compliance, load.
 
@@ -12,7 +12,7 @@ use declare::units::{Dimension, RATIO};
 /// One open value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Variable {
-    /// `family.field`, behind the gear where that is not both; with a number behind it where it would not be unique.
+    /// `family.field`, after the gear where that is not both, and with a number at the end where it would not be unique.
     pub name: String,
     pub dimension: Dimension,
     /// SI.
@@ -65,17 +65,17 @@ impl Template {
         }
     }
 
-    /// What is open.
+    /// The open values.
     #[must_use]
     pub fn variables(&self) -> &[Variable] {
         &self.variables
     }
 
-    /// The design with `values` (SI) in the place of the variables.
+    /// The design with `values` (SI) in place of the variables.
     ///
     /// # Errors
-    /// When a modification does not fit the pair: a relief longer than the flank, say. Most bounds are on one value
-    /// alone; the start of an `arc` or `parabola` bounds its amount.
+    /// When a modification does not fit the pair, for example a relief longer than the flank. Most bounds are on a single
+    /// value; the start of an `arc` or `parabola` bounds its amount.
     ///
     /// # Panics
     /// When there are fewer values than variables.

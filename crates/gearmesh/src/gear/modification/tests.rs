@@ -206,7 +206,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     assert!(message.contains("0 to 10.000000 mm"), "{message}");
 }
 
-/// Half of the tooth, with the place where it ends found apart: the flank's normal is followed point by point until the
+/// Half of the tooth, with its end found independently: the flank's normal is followed point by point until the
 /// point's polar angle passes the centreline.
 fn room_by_bisection(pair: &Pair, side: Side, roll: f64) -> f64 {
     let gear = pair.side(side);

@@ -65,7 +65,7 @@ const FORMULAS: Field = Field::choice(
 )
 .default("derived");
 
-/// The fields of both families, behind `gear`.
+/// The fields of both families, after `gear`.
 pub(super) const FIELDS: [Field; 6] = [super::GEAR, TIP_SHARE, TIP_AMOUNT, LENGTH_SHARE, START_DIAMETER, FORMULAS];
 
 /// xx X² + 2 xy XY + yy Y² + 2 x X + 2 y Y + constant, 0 on the curve, positive outside the tooth.
@@ -80,8 +80,8 @@ pub(super) struct Conic {
 }
 
 impl Conic {
-    /// The same curve with the origin moved to `origin` and the axes turned by the angle of the tangent at t, where its
-    /// own are those of the article.
+    /// The same curve, given in the frame of the article, with the origin moved to `origin` and the axes turned by the
+    /// angle of the tangent at t.
     fn seen_from(self, origin: [f64; 2], t: f64) -> Self {
         let Self { xx, xy, yy, x, y, constant } = self;
         let [a, b] = origin;
@@ -116,7 +116,7 @@ pub(super) struct Ends {
     pub start: f64,
     /// Roll angle of the nominal corner.
     tip: f64,
-    /// σ: by which A is turned from the nominal corner.
+    /// σ: the angle by which A is turned from the nominal corner.
     pub shift: f64,
 }
 
@@ -181,7 +181,7 @@ fn lag(v: f64) -> f64 {
     LAG.iter().rev().fold(0.0, |sum, coefficient| coefficient + square * sum) * square * v
 }
 
-/// What one of the two families adds: its curve by either set of formulas.
+/// What one of the two families adds: its curve by each set of formulas.
 pub(super) struct Shape {
     /// Seen from B.
     pub derived: fn(&Ends) -> Conic,
@@ -196,10 +196,10 @@ pub(super) struct TipCurve {
     conic: Conic,
 }
 
-/// How many places the curve is looked at before it is accepted.
+/// At how many places the curve is checked before it is accepted.
 const LOOKS: u32 = 64;
 
-/// A curve that passes farther from B than this share of the base radius does not pass through it.
+/// A curve whose distance from B is more than this share of the base radius does not pass through B.
 const THROUGH: f64 = 1e-9;
 
 pub(super) fn check(record: &Record) -> Result<(), Diagnostic> {
@@ -272,7 +272,7 @@ impl TipCurve {
         (slope > 0.0 && root >= 0.0).then(|| value / (slope + root.sqrt()))
     }
 
-    /// Why the curve is none that material can be taken off by.
+    /// Why material cannot be taken off along the curve.
     fn fault(&self) -> Option<String> {
         let Ends { base_radius, start, .. } = self.ends;
         let corner = self.ends.corner();
@@ -326,7 +326,7 @@ fn range(most: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     Some((edge(first, first.checked_sub(1)), edge(last, (last < 50).then_some(last + 1))))
 }
 
-/// By which share of the tip thickness A is moved, and the field that gives it.
+/// The share of the tip thickness by which A is moved, and the field that gives it.
 fn tip_share(record: &Record, gear: &Gear) -> Result<(f64, &'static str), Diagnostic> {
     if let Some(share) = record.maybe_number(TIP_SHARE.name) {
         return Ok((share, TIP_SHARE.name));

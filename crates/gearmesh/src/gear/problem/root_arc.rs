@@ -1,10 +1,10 @@
 //! The article's optimisation of the root arc, equations 26 to 30, as printed and as corrected.
 //!
 //! As printed: least F = √(r_f² − x_c²) − y_c + r_c (28), r_c ≥ h_f (29), x_a ≤ x_c ≤ (x_a + x_a1)/2 with C on the line of
-//! (30), which gives y_c. A stands at the angle π/z + inv α/2 (26), past the middle of the space, so that no x_c is left,
-//! whatever the gear. As corrected: A stands at π/(2z) + inv α (more with a profile shift), the circle passes through it
-//! along the flank, which gives x_c and y_c from r_c; its centre lies between tooth and middle of the space; and what is
-//! to be least is the distance between circle and root circle, not a difference of heights that may be negative. Source:
+//! (30), which gives y_c. A is at the angle π/z + inv α/2 (26), past the middle of the space, so that no x_c is left,
+//! whatever the gear. As corrected: A is at π/(2z) + inv α (more with a profile shift), the circle passes through it
+//! along the flank, which gives x_c and y_c from r_c; its centre lies between tooth and middle of the space; and the
+//! distance between circle and root circle must be least, not a difference of heights that may be negative. Source:
 //! Zhai, Liang and Fu, Mathematical Problems in Engineering 2020. Must not know: how the arc is drawn.
 
 use std::f64::consts::PI;
@@ -92,7 +92,7 @@ impl RootArc {
         [circle.radius - self.dedendum, 0.5 * (own + next) - x, x - own]
     }
 
-    /// The article's inequalities with A where it is.
+    /// The article's inequalities with A in its true place.
     #[must_use]
     pub fn inequalities_derived(&self, circle: Circle) -> [f64; 3] {
         self.inequalities(self.base.angle, circle)

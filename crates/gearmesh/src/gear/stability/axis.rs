@@ -1,7 +1,7 @@
 //! The box of cases: a point in it, its axes with their ranges, and the case that a point stands for.
 //!
 //! A point names a pair by what does not depend on its size (bores as parts of the root circle, contact ratio), so that
-//! one coordinate can move from end to end while the rest stay possible. Pairs stand without backlash. Must not know: what
+//! one coordinate can move from end to end while the rest stay possible. Pairs have no backlash. Must not know: what
 //! is checked.
 
 use std::f64::consts::PI;
@@ -146,7 +146,7 @@ impl Point {
         }
     }
 
-    /// E of both gears around what it is, as far as the range of a material goes.
+    /// E of both gears around its present value, as far as the range of a material goes.
     fn set_stiffness_ratio(&mut self, ratio: f64) {
         let mean = (self.material[0].youngs_modulus * self.material[1].youngs_modulus).sqrt();
         let moduli = [mean * ratio.sqrt(), mean / ratio.sqrt()];
@@ -229,7 +229,7 @@ impl Point {
         rack
     }
 
-    /// ε_α for an addendum, whatever else would forbid it; 0 where there is no working pressure angle.
+    /// ε_α for an addendum, even if something else would forbid it; 0 where there is no working pressure angle.
     fn contact_ratio_with(&self, addendum: f64) -> f64 {
         let angle = self.pressure_angle;
         let teeth = self.teeth[0] + self.teeth[1];

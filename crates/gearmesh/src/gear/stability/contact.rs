@@ -1,4 +1,4 @@
-//! What an equilibrium must fulfil, recomputed from the tables it was solved from.
+//! The conditions that an equilibrium must meet, recomputed from the tables it was solved from.
 //!
 //! Gaps come from the design, compliances from the tables of the teeth, the passage through a crowned face from its
 //! closed form; the solver's own quick copies are not used. Must not know: how an equilibrium is found.
@@ -13,7 +13,7 @@ use crate::gear::transmission_error::curve::Wanted;
 use crate::gear::transmission_error::loading::{Loading, State};
 use crate::numeric::complementarity::MOST;
 
-/// Where in a zone it is looked at.
+/// The places in a zone that are checked.
 const SHARES: [f64; 9] = [0.0, 1e-9, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0 - 1e-9, 1.0];
 /// Distance from a zone's end, in base pitches, and how many deflections per base pitch a curve may rise there besides
 /// what reliefs make it rise.
@@ -86,8 +86,8 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
     found
 }
 
-/// Mean and peak-to-peak transmission error, and a finding for each invariant; why there is none where flanks approach by
-/// more than what is modelled.
+/// Mean and peak-to-peak transmission error, and a finding for each invariant; or, where flanks approach by more than
+/// what is modelled, why there is none.
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
     let loading = Loading::new(&built.cycle, &built.design, case.torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true });
@@ -173,8 +173,8 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     Ok([summary.mean, summary.peak_to_peak])
 }
 
-/// With corner contact pairs come and go off the line of action: nothing jumps where a zone ends and the next begins, the
-/// first after the last included. What is left are quick copies, and reliefs over the rounding of a path position.
+/// With corner contact pairs come and go off the line of action: nothing jumps where a zone ends and the next begins,
+/// including the first after the last. What remains are quick copies, and reliefs over the rounding of a path position.
 fn across_zones(case: &Case, built: &Built, loading: &Loading) -> Finding {
     let zones = &built.cycle.zones;
     let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);

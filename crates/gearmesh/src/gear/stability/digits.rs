@@ -1,6 +1,6 @@
 //! The kernels' numbers against those of the second evaluation, as decimal digits lost.
 //!
-//! Must not know: how either comes about.
+//! Must not know: how either is computed.
 
 use super::precise::{GEOMETRIC, NAMES, Quantities};
 use super::{Built, Case, DigitsLost, Finding, MOST_LOST, Report};

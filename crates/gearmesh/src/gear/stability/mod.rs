@@ -1,4 +1,4 @@
-//! What must hold of any pair under any load, however extreme: invariants checked on a case, each with its limit.
+//! What must hold for any pair under any load, however extreme: invariants checked on a case, each with its limit.
 //!
 //! A case is a pair, a load, modifications, and a model. [`check()`] runs the chain from geometry to transmission error on
 //! it and gives one finding per invariant: `Holds`, `Broken`, or `Refused` where physics or the model excludes the case,
@@ -31,7 +31,7 @@ use precise::Rule;
 #[derive(Clone)]
 pub struct Model {
     pub method: &'static Method,
-    /// What the method alone is told.
+    /// The options of the method alone.
     pub options: Record,
     pub assumptions: Assumptions,
     pub settings: Settings,
@@ -55,7 +55,7 @@ pub struct Case {
     pub model: Model,
 }
 
-/// What is said of an invariant.
+/// The finding about an invariant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
     Holds,
@@ -104,7 +104,7 @@ pub struct DigitsLost {
     pub quantity: &'static str,
     pub value: f64,
     pub exact: f64,
-    /// 15.95 + log10 of the relative difference, 0 at least.
+    /// 15.95 + log10 of the relative difference, at least 0.
     pub lost: f64,
     /// Relative change per relative change of the inputs.
     pub condition: f64,
@@ -118,7 +118,7 @@ pub struct Report {
 }
 
 /// Digits that may be lost on top of what the condition number takes: log10 of 2¹³ roundings that all go one way, more
-/// than any number of the chain has behind it.
+/// than any number of the chain has gone through.
 pub const MOST_LOST: f64 = 4.0;
 /// Roundings in a path position.
 const ROUNDINGS: f64 = 4.0;
@@ -135,7 +135,7 @@ pub(crate) struct Built {
     pub cycle: MeshCycle,
 }
 
-/// Why a case cannot be: which step refuses it.
+/// Why a case is impossible: which step refuses it.
 pub(crate) type Refusal = (&'static str, String);
 
 impl Case {
@@ -147,7 +147,7 @@ impl Case {
         Pair::new(self.gears[0], self.gears[1], None).map_err(|error| error.to_string())
     }
 
-    /// Modifications of both gears alike.
+    /// The same modifications on both gears.
     ///
     /// # Errors
     /// When one does not fit the pair.

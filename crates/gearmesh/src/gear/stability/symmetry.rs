@@ -1,6 +1,6 @@
 //! What no choice of units and no name of a gear may change: everything scaled, and the gears in each other's place.
 //!
-//! Scaled by a power of two every rounding is the same, so whatever differs comes from a length or a load that somebody
+//! Scaled by a power of two every rounding is the same, so any difference comes from a length or a load that somebody
 //! wrote into the code. With the gears swapped the same contact runs backwards. Must not know: the second evaluation.
 
 use super::{Case, Finding, MOST_LOST};

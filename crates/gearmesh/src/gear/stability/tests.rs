@@ -112,7 +112,7 @@ fn the_base_case_holds() {
     }
 }
 
-/// What was found with the second evaluation and mended in the kernels; digits lost before are named.
+/// What was found with the second evaluation and repaired in the kernels; digits lost before are named.
 #[test]
 fn what_was_mended_stays_mended() {
     let rules = Rules::new();
@@ -168,8 +168,8 @@ fn few_positions_lose_nothing() {
     }
 }
 
-/// On tiny bores all teeth turn together, so that own and mutual compliances agree to a thousandth and better: what is
-/// left decides how slices of a crowned face share the load. The peak-to-peak was 4e-4 off.
+/// On tiny bores all teeth turn together, so that own and mutual compliances agree to a thousandth or better. The remaining
+/// difference decides how slices of a crowned face share the load. The peak-to-peak was 4e-4 off.
 #[test]
 fn teeth_that_turn_together_share_the_load_exactly() {
     let rules = Rules::new();
@@ -192,7 +192,7 @@ fn teeth_that_turn_together_share_the_load_exactly() {
     }
 }
 
-/// Tip corners, and slices that hold each other, hold what every pair must, and what is beyond the model is told.
+/// Every invariant holds with tip corners and with slices that hold each other, and what is beyond the model is reported.
 #[test]
 fn corners_and_plates_hold_every_invariant() {
     let rules = Rules::new();
@@ -221,7 +221,7 @@ fn corners_and_plates_hold_every_invariant() {
     }
 }
 
-/// Every check is able to fail: a report with a wrong number in it is broken.
+/// Every check can fail: a report with a wrong number in it is broken.
 #[test]
 fn findings_break_where_a_value_is_above_its_limit_or_no_number() {
     for (value, verdict) in [(1.0, Verdict::Holds), (1.1, Verdict::Broken), (f64::NAN, Verdict::Broken)] {

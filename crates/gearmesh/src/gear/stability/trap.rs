@@ -1,7 +1,7 @@
 //! Named cases that naive programs get wrong: undercut, interference, pointed tips, vanishing loads and modifications,
 //! contact ratios at whole numbers.
 //!
-//! Must not know: what is checked, but for the continuity in the contact ratio, which takes two cases.
+//! Must not know: what is checked, except for the continuity in the contact ratio, which takes two cases.
 
 use super::axis::Point;
 use super::symmetry::values;
@@ -82,8 +82,8 @@ pub fn traps(base: &Point, model: &Model) -> Vec<Case> {
     cases
 }
 
-/// Ends of the axes at which the pair in the middle of a grid cannot be, on pairs that can: the rack, the teeth or the gear
-/// body are chosen for the end.
+/// Ends of the axes at which the pair in the middle of a grid is impossible, on pairs that are possible: the rack, the teeth
+/// or the gear body are chosen for the end.
 fn ends(model: &Model, add: &mut impl FnMut(&str, &Model, &dyn Fn(&mut Point))) {
     // The teeth of a rack at 20 deg end in a point before they are deep enough.
     add("contact ratio 3 at 14 deg", model, &|point| {
@@ -128,8 +128,8 @@ pub struct Continuity {
     pub finding: Finding,
 }
 
-/// The mean is continuous where the contact ratio is a whole number, though the peak-to-peak is not: a zone shorter by a
-/// share h of the base pitch changes the mean by h times the peak-to-peak at most.
+/// The mean is continuous where the contact ratio is a whole number, although the peak-to-peak is not: a zone shorter by a
+/// share h of the base pitch changes the mean by at most h times the peak-to-peak.
 #[must_use]
 pub fn continuity(base: &Point, model: &Model, whole: f64) -> Continuity {
     let mut point = base.clone();

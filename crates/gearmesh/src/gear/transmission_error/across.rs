@@ -1,6 +1,6 @@
 //! Slices of the face that hold each other: what a cycle knows of it, whatever the design.
 //!
-//! Compliances of a pair are layers in series: the tooth of either gear with the body under it, and the wind-up of both
+//! Compliances of a pair are layers in series: the tooth of each gear with the body under it, and the wind-up of both
 //! bodies. Each spreads a load along the face by its own length. What neighbouring teeth do to each other goes through
 //! the bodies, so it spreads as the wind-up does; since that is the longest length, the matrix of all slices of all pairs
 //! is positive definite where the one of whole pairs is. Must not know: designs, loads.
@@ -8,7 +8,7 @@
 use super::path::Path;
 use crate::gear::compliance::across_face::Layers;
 use crate::gear::compliance::{ContactLaw, PairCompliance};
-use crate::gear::contact::flattening::{self};
+use crate::gear::contact::flattening;
 use crate::gear::geometry::Pair;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
@@ -37,7 +37,7 @@ pub(super) struct Across {
 
 impl Across {
     /// # Errors
-    /// When the compliances know the pair as a whole only.
+    /// When the compliances know the pair only as a whole.
     pub(super) fn new(pair: &Pair, compliance: &PairCompliance, path: &Path, face_width: f64) -> Result<Self, Failure> {
         if compliance.contact == ContactLaw::Included {
             return Err(Failure::new(

@@ -1,4 +1,4 @@
-//! Where the set of loaded pairs changes, or a face comes into contact all along: the ends of smooth spans.
+//! Where the set of loaded pairs changes, or a face comes into contact over its whole width: the ends of smooth spans.
 //!
 //! Must not know: what is done with the values.
 
@@ -13,7 +13,7 @@ const CLOSEST: f64 = 1e-14;
 const ROUNDINGS: f64 = 4.0;
 
 impl Loading<'_> {
-    /// How near to the end of a span a change belongs to that end: path positions are not known any better.
+    /// How near to the end of a span a change counts as being at that end: path positions are not known any better.
     fn closest(&self) -> f64 {
         let pair = &self.cycle.pair;
         (CLOSEST * pair.base_pitch).max(ROUNDINGS * f64::EPSILON * pair.tangent_length)

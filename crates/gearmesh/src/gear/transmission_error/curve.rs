@@ -64,7 +64,7 @@ pub struct Summary {
     pub largest_pressure: Option<Extremum>,
 }
 
-/// What a summary holds beyond the least.
+/// What a summary holds beyond the minimum.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Wanted {
     /// How many harmonics.
@@ -73,14 +73,14 @@ pub struct Wanted {
 }
 
 impl Point {
-    /// What all pairs carry together \[N\]: the load, but for rounding.
+    /// What all pairs carry together \[N\]: the load, up to rounding.
     #[must_use]
     pub fn load(&self) -> f64 {
         self.loads.iter().sum()
     }
 
-    /// The largest share that one pair has of what all carry: a sum of what is not negative is rounded to no less than any
-    /// of its terms, so no share exceeds 1, and one pair alone has all of it.
+    /// The largest share that one pair has of what all carry. A sum of terms that are not negative is rounded to no less than
+    /// any of them, so no share exceeds 1, and a single pair has all of it.
     fn largest_share(&self) -> f64 {
         let load = self.load();
         if load > 0.0 { self.loads.iter().copied().fold(0.0, f64::max) / load } else { 0.0 }
@@ -92,7 +92,7 @@ impl Point {
 }
 
 impl Loading<'_> {
-    /// The curve at the positions of the spans alone.
+    /// The curve at the positions of the spans only.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
         let mut points = self.no_points(wanted);
@@ -107,7 +107,7 @@ impl Loading<'_> {
         self.curve_and_summary(wanted).1
     }
 
-    /// Both, from the same positions; the curve has the points of its extrema besides.
+    /// Both, from the same positions; the curve also has the points of its extrema.
     #[must_use]
     pub fn curve_and_summary(&self, wanted: Wanted) -> (Vec<Point>, Summary) {
         let cycle = self.cycle;
@@ -151,7 +151,7 @@ impl Loading<'_> {
         (points, summary)
     }
 
-    /// The peak-to-peak transmission error \[m\], infinite beyond what is modelled: the lean path for optimisers.
+    /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
         self.between(self.for_extrema().extremes())
@@ -200,7 +200,7 @@ impl Loading<'_> {
         harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
     }
 
-    /// Room for the curve: spans at zone ends, relief starts and first touches come on top.
+    /// Room for the curve: spans at zone ends, relief starts and first touches are added.
     fn no_points(&self, wanted: Wanted) -> Vec<Point> {
         let spans = self.cycle.period() / self.span_length(wanted.harmonics) + 8.0;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2^53

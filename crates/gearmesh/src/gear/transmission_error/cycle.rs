@@ -23,7 +23,7 @@ use crate::numeric::lobatto::Rule;
 use declare::error::Failure;
 use declare::work::{Tally, Work};
 
-/// Zones shorter than this share of the base pitch are not there: a contact ratio of 2 up to rounding is 2.
+/// Zones shorter than this share of the base pitch are ignored: a contact ratio of 2 up to rounding is 2.
 const SHORTEST_ZONE: f64 = 1e-9;
 
 /// Pairs in corner contact: one before A and one after E.
@@ -32,7 +32,7 @@ const CORNERS: usize = 2;
 /// How a mesh cycle is computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
-    /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
+    /// Positions per base pitch; zone ends, relief starts, first touches and extrema are added.
     pub positions: usize,
     /// Slices on each smooth stretch of the face that is in contact, where there is no closed form; where slices are
     /// coupled, equal ones on the whole face.
@@ -60,7 +60,7 @@ pub struct Zone {
 pub struct MeshCycle {
     pub pair: Pair,
     pub settings: Settings,
-    /// How many pairs are looked at in every position, where that is not the number in the zone.
+    /// How many pairs are considered in every position, where that is not the number in the zone.
     springs: Option<usize>,
     /// The common face width \[m\].
     pub face_width: f64,

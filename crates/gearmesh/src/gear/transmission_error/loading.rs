@@ -1,6 +1,6 @@
 //! One design under one torque: equilibrium at any position of the mesh cycle.
 //!
-//! Must not know: which positions are looked at, what is done with the values.
+//! Must not know: which positions are computed, what is done with the values.
 
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
@@ -80,7 +80,7 @@ impl State {
 }
 
 impl<'a> Loading<'a> {
-    /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair only touches.
+    /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair just touches.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
         let face = Face::new(design, cycle.face_width, &cycle.slices);
@@ -175,8 +175,8 @@ impl<'a> Loading<'a> {
             || (!self.face.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
     }
 
-    /// Whether an approach is within what is modelled: with corner contact, below the gap at which a pair would touch that
-    /// is no longer looked at, or whose tip would pass the other one.
+    /// Whether an approach is within the model: with corner contact, below the gap at which a pair that is no longer
+    /// considered would touch, or a tip would pass the other one.
     #[must_use]
     pub fn holds(&self, transmission_error: f64) -> bool {
         transmission_error <= self.largest_approach()
@@ -188,7 +188,7 @@ impl<'a> Loading<'a> {
         self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
     }
 
-    /// The same without the cuts that only integrals need: extrema are refined on the function itself.
+    /// The same without the cuts that only integrals need, since extrema are refined on the function itself.
     #[must_use]
     pub fn for_extrema(&self) -> Self {
         Self { levels: Vec::new(), refines: false, ..self.clone() }
@@ -240,7 +240,7 @@ impl<'a> Loading<'a> {
         State { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
     }
 
-    /// Where slices hold each other, the load over the force that one carries and its recomputed interference does not
+    /// Where slices hold each other: the load, over the force, that a slice carries and its recomputed interference does not
     /// explain, and its limit in roundings.
     #[must_use]
     pub fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
@@ -252,7 +252,7 @@ impl<'a> Loading<'a> {
         Some(slices.unexplained(self.cycle, &springs[..count], positions, gaps, given))
     }
 
-    /// The pairs that can touch at all; with corner contact only those that come near enough.
+    /// The pairs that can touch at all; with corner contact, only those that come near enough.
     fn carried(&self, position: f64, pairs: usize) -> Carried {
         let mut carried = Carried {
             count: 0,

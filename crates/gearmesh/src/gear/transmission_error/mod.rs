@@ -2,7 +2,7 @@
 //!
 //! The transmission error is the approach δ of the gears along the line of action \[m\], positive where the driven gear
 //! lags. [`cycle::MeshCycle`] holds what no modification changes, [`loading::Loading`] one design under one torque;
-//! curves, summaries and objectives come from it. Must not know: how compliances or modifications come about.
+//! curves, summaries and objectives come from it. Must not know: where compliances or modifications come from.
 
 mod across;
 mod change;

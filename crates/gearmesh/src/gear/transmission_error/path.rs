@@ -1,7 +1,7 @@
 //! Where along the path a pair can touch, at which points of its flanks, and quick copies of functions of the path.
 //!
 //! From A to E unmodified flanks touch on the line of action. Corner contact adds a stretch before A, where the gear's tip
-//! corner stands against the pinion's flank, and one after E with the roles exchanged; there the roll angles are those of
+//! corner touches the pinion's flank, and one after E with the roles exchanged; there the roll angles are those of
 //! the corner and of the flank point before it. Reliefs shift the contact a little along the flanks; compliances do not
 //! follow that, so that they belong to the pair and not to the design. Must not know: modification, load.
 
@@ -12,7 +12,7 @@ use crate::numeric::graded::Graded;
 
 /// Relative accuracy of the quick copies.
 const ACCURACY: f64 = 1e-14;
-/// Relative accuracy where a corner is in contact: roots of rolls near the base circle would take ever more panels.
+/// Relative accuracy where a corner is in contact: square roots near the base circle would take ever more panels.
 const CORNER_ACCURACY: f64 = 1e-12;
 
 /// The path of contact with what corner contact adds to it.
@@ -65,8 +65,8 @@ impl Path {
         (pinion / self.base_radii[0], gear / self.base_radii[1])
     }
 
-    /// A quick copy of a function of the path position of a pair, and of one that is `ahead` of it; nothing when two such
-    /// pairs never touch at once.
+    /// A quick copy of a function of the path position of a pair and of the one that is `ahead` of it; none when two such
+    /// pairs never touch at the same time.
     pub(super) fn fit(&self, ahead: f64, function: &dyn Fn(f64) -> f64) -> Option<Graded> {
         let window = self.window();
         let (lower, upper) = (window.0, window.1 - ahead);

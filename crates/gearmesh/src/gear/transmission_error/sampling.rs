@@ -1,31 +1,31 @@
-//! How far sampling puts a number of the mesh cycle off, and the coarsest sampling that meets an accuracy.
+//! By how much sampling changes a number of the mesh cycle, and the coarsest sampling that meets an accuracy.
 //!
-//! The number is taken at several samplings. From coarser ones: the error is what halving, quartering … changes, each
-//! halving trusted to cost 2^(3/2) times the error; of several the largest, for on faces that are cut into slices a single
-//! change can be small by chance. Slices are compared with twice as many too: where the number is smooth they tell the error
-//! itself, where coarser ones tell that of their own. What lies between two slices no other sampling sees; it is added.
-//! From a finer one, four times as fine: dearer, but right for means and variances too, which few spans hold as well as half
-//! of them. Must not know: what the number is.
+//! The number is computed with several samplings. With coarser ones, the error is what halving, quartering … changes; each
+//! halving is assumed to cost 2^(3/2) times the error. The largest of several counts, since on faces that are cut into
+//! slices a single change can be small by chance. Slices are compared with twice as many too: where the number is smooth
+//! those show the error itself, and coarser ones only their own. No other sampling sees what lies between two slices; it is
+//! added. A finer sampling, four times as fine, is dearer, but right for means and variances too, which few spans hold no
+//! better than half of them do. Must not know: what the number is.
 
 use super::cycle::Settings;
 use crate::gear::contact::{MOST_COUPLED_SLICES, SliceCoupling};
 
-/// The estimate over the largest of the changes, from coarser samplings and from a finer one, which is alone.
+/// The estimate over the largest of the changes: from coarser samplings, and from a single finer one.
 const SAFETY: f64 = 2.25;
 const SAFETY_OF_FINER: f64 = 4.0;
-/// By how much a halving is trusted to change the error: load begins at an edge as the 3/2 power of the way in, so 2^(3/2).
+/// By how much a halving is assumed to change the error: load begins at an edge as the 3/2 power of the way in, so 2^(3/2).
 const FALL: f64 = 2.83;
-/// Coarser samplings that are looked at: slices change a number by chance, positions hardly at all.
+/// How many coarser samplings are used: slices change a number by chance, positions hardly at all.
 const HALVINGS_OF_POSITIONS: usize = 1;
 const HALVINGS_OF_SLICES: usize = 3;
-/// Relative error that is left when sampling adds none: an extremum is refined to 1e-5 of the distance of two nodes, over
-/// which a curve may bend by a few of its peak-to-peaks.
+/// Relative error that remains when sampling adds none: an extremum is refined to 1e-5 of the distance of two nodes, over
+/// which a curve may bend by a few times its peak-to-peak.
 const ROUNDING: f64 = 5e-10;
-/// The fewest positions of which half are another sampling: with fewer every smooth stretch is one span.
+/// The fewest positions for which half as many are another sampling: with fewer, every smooth stretch is one span.
 const LEAST_POSITIONS: usize = 16;
 const MOST_POSITIONS: usize = 4096;
 const LEAST_SLICES: usize = 9;
-/// From here on slices that hold each other are compared with coarser ones alone: twice as many take eight times as long.
+/// From here on slices that hold each other are compared only with coarser ones: twice as many take eight times as long.
 const ENOUGH_COUPLED_SLICES: usize = 17;
 const MOST_SLICES: usize = 1025;
 
@@ -50,7 +50,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         Self { number, sliced, against, known: Vec::new() }
     }
 
-    /// Says what the number is with some settings, so that it need not be computed.
+    /// Gives the number for some settings, so that it need not be computed.
     pub fn know(&mut self, settings: Settings, value: f64) {
         self.known.push((settings, value));
     }
@@ -73,7 +73,7 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
         }
     }
 
-    /// Estimated relative error with these settings, 1 at most: more says that nothing is known.
+    /// Estimated relative error with these settings, at most 1: more would say that nothing is known.
     pub fn error(&mut self, settings: Settings) -> f64 {
         (ROUNDING + self.by_positions(settings) + self.by_slices(settings)).min(1.0)
     }
@@ -142,8 +142,8 @@ impl<F: FnMut(Settings) -> f64> Sampled<F> {
     }
 }
 
-/// What half of the distance between the last two slices of a stretch may hide: load begins at an edge from nothing, so what
-/// stands on a strip there is of second order in its width. Equal slices are 1/s wide, Lobatto's nodes 3.7/s² at the ends.
+/// What half of the distance between the last two slices of a stretch may hide: load begins at an edge from nothing, so the
+/// load on a strip there is of second order in its width. Equal slices are 1/s wide, Lobatto's nodes 3.7/s² at the ends.
 fn unseen(settings: Settings) -> f64 {
     let slices = settings.slices.max(2) as f64;
     let half = match settings.slice_coupling {

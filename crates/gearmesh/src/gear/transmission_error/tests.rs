@@ -242,7 +242,7 @@ fn peak_to_peak_agrees_with_a_brute_grid() {
     }
 }
 
-/// Driving and driven gear may change places: the path is then run through backwards.
+/// Driving and driven gear may change places; the path is then run through backwards.
 #[test]
 fn swapping_the_gears_changes_nothing() {
     let pair = pair();

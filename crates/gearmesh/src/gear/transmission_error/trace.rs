@@ -12,7 +12,7 @@ use crate::numeric::lobatto::{Rule, legendre};
 /// Nodes of a span.
 pub const NODES: usize = 8;
 
-/// How far beyond a node the function may rise before the next, in falls from that node to its neighbours.
+/// How far above a node the function may rise before the next one, in units of the falls from that node to its neighbours.
 const OVERSHOOT: f64 = 4.0;
 /// Distance of the probes that tell a kink from a maximum nearby, in distances of nodes.
 const PROBE: f64 = 1e-6;
@@ -113,7 +113,7 @@ pub struct Extremum {
     pub value: f64,
 }
 
-/// A node among its neighbours; `None` beyond the end of a zone, where the function jumps.
+/// A node with its neighbours; `None` beyond the end of a zone, where the function jumps.
 struct Neighbourhood {
     before: Option<(f64, f64)>,
     at: (f64, f64),

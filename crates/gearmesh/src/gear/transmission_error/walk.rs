@@ -1,8 +1,8 @@
 //! The walk over the whole mesh cycle of a design under a torque, in smooth spans.
 //!
 //! The cycle is cut at the ends of its zones, where a modification starts or ends, where flanks begin to touch at another
-//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding; in between
-//! everything is smooth. Must not know: how a balance is found, what is done with the values.
+//! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding. In between
+//! everything is smooth. Must not know: how equilibrium is found, what is done with the values.
 
 use super::loading::{CLOSEST, Loading, State};
 use super::trace::{NODES, Span, Trace};

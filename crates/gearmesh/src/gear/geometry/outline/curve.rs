@@ -1,6 +1,6 @@
 //! The exact curves a profile is made of: point, direction and curvature at a parameter.
 //!
-//! Tooth frame: y along the tooth's centreline from the gear's centre, x across. The gear's outline is travelled
+//! Tooth frame: y along the tooth's centreline from the gear's centre, x across. The gear's outline runs
 //! counterclockwise, so the right half of a tooth goes upwards, the body is on the left, and a curvature is positive
 //! where the profile is convex. Source of the involute: ISO 21771-1:2024, section 5. Must not know: what a curve is part
 //! of, how many points are wanted.
@@ -11,7 +11,7 @@ use std::sync::Arc as Shared;
 
 use crate::gear::geometry::trochoid::Trochoid;
 
-/// Step of the roll angle \[rad\] by which the slope and the bend of a relief are taken: the rounding of a depth of 1e-5 m
+/// Step of the roll angle \[rad\] for the slope and the bend of a relief: the rounding of a depth of 1e-5 m
 /// and the next term of the difference are both below 1e-9 of the direction and 1e-4 of the curvature.
 const STEP: f64 = 1e-4;
 
@@ -35,11 +35,11 @@ pub enum Curve {
     Trochoid(Trochoid),
     /// Over the roll angle.
     Involute { base_radius: f64, half_base_angle: f64 },
-    /// The same, with a relief taken off along its normals that is smooth between the two roll angles of `smooth`.
+    /// The same, with a relief taken off along its normals; the relief is smooth between the two roll angles of `smooth`.
     Modified { base_radius: f64, half_base_angle: f64, relief: Shared<dyn Relief>, smooth: [f64; 2] },
 }
 
-/// What a curve is at a parameter.
+/// Where a curve is at a parameter, and how it runs there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Local {
     /// \[m\].
@@ -146,7 +146,7 @@ impl Curve {
     }
 }
 
-/// A stretch of a curve, travelled from one parameter to the other.
+/// A stretch of a curve, from one parameter to the other.
 #[derive(Clone, Debug)]
 pub struct Segment {
     pub part: Part,
@@ -155,7 +155,7 @@ pub struct Segment {
     pub to: f64,
 }
 
-/// What a segment is to the tooth.
+/// Which part of the tooth a segment is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Part {
     RootLand,
@@ -182,8 +182,8 @@ impl Part {
 }
 
 impl Segment {
-    /// The parameter at a share of the way, 0 to 1: equal shares are equal lengths, but on a trochoid, where they are
-    /// equal steps of q, and but for what a relief adds.
+    /// The parameter at a share of the way, 0 to 1. Equal shares are equal lengths, except on a trochoid, where they are
+    /// equal steps of q, and except for what a relief adds.
     #[must_use]
     pub fn parameter(&self, share: f64) -> f64 {
         let blend = |from: f64, to: f64| from * (1.0 - share) + to * share;

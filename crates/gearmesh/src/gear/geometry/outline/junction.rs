@@ -1,6 +1,6 @@
 //! Where two segments of an outline meet: how far apart they are, and by how much the direction turns.
 //!
-//! Must not know: what is a good junction.
+//! Must not know: what makes a junction good.
 
 use std::f64::consts::PI;
 
@@ -42,14 +42,14 @@ impl Junction {
         libm::atan2(a * d - b * c, a * c + b * d)
     }
 
-    /// Whether the segments meet, within `length` \[m\], and go on in the same direction, within `angle` \[rad\].
+    /// Whether the segments meet, within `length` \[m\], and continue in the same direction, within `angle` \[rad\].
     #[must_use]
     pub fn is_smooth(&self, length: f64, angle: f64) -> bool {
         self.position_jump() <= length && self.tangent_jump().abs() <= angle
     }
 }
 
-/// The mirror image in the line through the gear's centre at an angle from the y axis, travelled the other way.
+/// The mirror image in the line through the gear's centre at an angle from the y axis, run through the other way.
 fn mirrored(local: Local, angle: f64) -> Local {
     let (sine, cosine) = libm::sincos(2.0 * angle);
     let image = |[x, y]: [f64; 2]| [-cosine * x + sine * y, sine * x + cosine * y];

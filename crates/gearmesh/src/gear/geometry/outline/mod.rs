@@ -20,9 +20,9 @@ use curve::{Curve, Part, Relief, Segment};
 use roots::Toe;
 use tip::Tip;
 
-/// Angle \[rad\] of a land that is none.
+/// Angle \[rad\] below which there is no land.
 const NO_LAND: f64 = 1e-9;
-/// Step \[m\] between two curves that is none.
+/// Distance \[m\] between two curves below which there is no step.
 const NO_STEP: f64 = 1e-13;
 
 /// The right half of a tooth, and how often the gear repeats it.
@@ -85,7 +85,7 @@ impl Outline {
     }
 }
 
-/// The part of the root circle that the root leaves, if any.
+/// The part of the root circle that the root leaves free, if any.
 fn land(root: &[Segment], half_pitch: f64) -> Vec<Segment> {
     let Some([x, y]) = root.first().map(Segment::start) else { return Vec::new() };
     let angle = libm::atan2(x, y);

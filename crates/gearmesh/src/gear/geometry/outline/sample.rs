@@ -1,4 +1,4 @@
-//! Points on an outline: so many per tooth, or as many as keep every chord within a distance of its curve.
+//! Points on an outline: a number per tooth, or as many as keep every chord within a distance of its curve.
 //!
 //! The points are exact; only the chords between them are not. Must not know: files, drawings.
 
@@ -16,7 +16,7 @@ pub struct Density {
     pub chord_error: Option<f64>,
 }
 
-/// The most chords of a segment: what a chord error that cannot be met ends at.
+/// The most chords of a segment, used when a chord error cannot be met.
 const MOST_CHORDS: usize = 1 << 14;
 
 /// A point of an outline.

@@ -11,7 +11,7 @@ use declare::parameter::{Field, Member};
 use declare::record::Record;
 use declare::units::LENGTH;
 
-/// What is done to the corner.
+/// What becomes of the corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tip {
     Land,

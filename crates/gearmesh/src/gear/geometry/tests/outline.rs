@@ -310,7 +310,7 @@ fn arcs_that_do_not_exist_are_refused_with_numbers() {
     assert_eq!(largest.segments[0].part, Part::Root);
 }
 
-/// The tip's break: as large as was asked for, and refused with the largest where it does not fit.
+/// The tip's break is as large as asked for, and is refused with the largest where it does not fit.
 #[test]
 fn tips_are_broken_as_asked() {
     let gear = gear(19, 3.0, 0.0);
@@ -335,7 +335,7 @@ fn tips_are_broken_as_asked() {
     }
 }
 
-/// Points asked for are points given, and a chord error asked for is kept, by a finer look at every chord.
+/// As many points are given as asked for, and a chord error asked for is met, by a finer check of every chord.
 #[test]
 fn points_are_as_many_and_chords_as_near_as_asked() {
     let gear = gear(19, 3.0, 0.0);

@@ -9,9 +9,9 @@ use super::tooth::{Tooth, inverse_involute};
 use super::{GearInputs, Inputs};
 use crate::numeric::double_double::Double;
 
-/// Steps between a span's ends at which a touch or an extremum is looked for.
+/// Steps between a span's ends at which a touch or an extremum is searched for.
 const STEPS: usize = 24;
-/// Zones shorter than this share of the base pitch are not there, as a definition.
+/// Zones shorter than this share of the base pitch do not exist, by definition.
 const SHORTEST_ZONE: f64 = 1e-9;
 
 /// The pair on its path of contact.
@@ -88,7 +88,7 @@ impl Spring {
         (stiffness * passed, stiffness * share)
     }
 
-    /// An interference at which it carries `load` or more.
+    /// An interference at which the pair carries `load` or more.
     fn above(&self, load: Double, crown: Double) -> Double {
         let flat = match self {
             Self::Linear { stiffness } => load / *stiffness,

@@ -1,4 +1,4 @@
-//! The chain from geometry to transmission error once more, in twice the precision: what the kernels' digits are held to.
+//! The chain from geometry to transmission error a second time, in twice the precision: the kernels are held to its digits.
 //!
 //! It is compact and slow, and shares no code with the kernels: roots by bisection, integrals by composite Gauss–Legendre
 //! rules of high order, contact by Newton's method on the load of all pairs. It covers gears with the generated root,
@@ -26,7 +26,7 @@ pub struct GearInputs {
     pub round: f64,
     /// r_a where it was given.
     pub tip_radius: Option<Double>,
-    /// Factor on the tip radius: 1, but for finding out how much depends on its last digit.
+    /// Factor on the tip radius: 1, except to find out how much depends on its last digit.
     pub tip_scale: Double,
     pub face_width: f64,
     pub bore_radius: f64,
@@ -76,7 +76,7 @@ pub const NAMES: [&str; 13] = [
 /// One value per name.
 pub type Quantities<T> = [T; NAMES.len()];
 
-/// How many of the quantities are of geometry alone.
+/// How many of the quantities belong to geometry alone.
 pub const GEOMETRIC: usize = 7;
 
 /// Everything at once.
@@ -108,8 +108,8 @@ pub fn evaluate(inputs: &Inputs, rule: &Rule) -> Quantities<Double> {
 
 /// Relative changes per relative change of what rounding touches first: pressure angle, profile shifts (as parts of a
 /// module), tip radii, relief, where it starts (as a part of the reference diameter, which is the size of the path
-/// positions), crowning and torque. Their sum is the condition number of each quantity; a coarse rule
-/// will do, since it serves both sides of each difference.
+/// positions), crowning and torque. Their sum is the condition number of each quantity. A coarse rule
+/// is enough, since it serves both sides of each difference.
 pub fn conditions(inputs: &Inputs, rule: &Rule) -> Quantities<f64> {
     const STEP: f64 = 1e-14;
     let scale = Double::ONE + STEP;

@@ -2,7 +2,7 @@
 //!
 //! Formulas are those of ISO 21771-1, of a rack's tip round in polar coordinates, and of Yang and Lin (see
 //! `compliance/energy.rs`), with the root's slope from polar derivatives, the flank on panels that shrink towards the
-//! pointed tip, and composite Gauss–Legendre rules: none of it is the kernels' own way. Must not know: the kernels.
+//! pointed tip, and composite Gauss–Legendre rules; the kernels do none of this. Must not know: the kernels.
 
 use super::Inputs;
 use super::rules::{Panel, Rule};

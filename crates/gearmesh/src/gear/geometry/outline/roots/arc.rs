@@ -1,6 +1,6 @@
 //! The article's arc: from the base circle to a point H = r_b − r_f lower on the page (equations 17 to 20).
 //!
-//! Its lowest point is that far below A in y, not in radius, so it never meets the root circle on a tangent: it crosses
+//! Its lowest point is that far below A in y, not in radius, so it is never tangent to the root circle: it crosses
 //! it, ends above it (a step remains), or meets its neighbour in the middle of the space first (a notch remains). As
 //! printed, equation 20 has the sign that puts the centre above A; the flank then has a corner of 2θ there. Source: Zhai,
 //! Liang and Fu 2020, as in `base_arc.rs`. Must not know: other roots.
@@ -31,7 +31,7 @@ const FIELDS: &[Field] = &[Field::choice(
 )
 .default("derived")];
 
-/// The article's circle by either sign of equation 20.
+/// The article's circle with either sign in equation 20.
 #[must_use]
 pub fn circle(base: &Base, printed: bool) -> Circle {
     let circle = base.article_circle();

@@ -129,7 +129,7 @@ impl Base {
     }
 }
 
-/// Angle \[rad\] within which two ends of an arc are the same: where circles touch, roundings count by their roots.
+/// Angle \[rad\] within which two ends of an arc are the same: where circles touch, errors are the roots of roundings.
 const SAME_PLACE: f64 = 1e-6;
 
 /// The direction in which equation 18 has B below C: down the page.

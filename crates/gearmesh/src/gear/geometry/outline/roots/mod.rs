@@ -27,7 +27,7 @@ pub struct Toe {
 /// A family as registered.
 pub struct Family {
     pub member: Member,
-    /// The root of a gear, or why there is none, with numbers.
+    /// The root of a gear, or why it does not exist, with numbers.
     pub build: fn(&Record, &Gear) -> Result<Toe, GeometryError>,
 }
 

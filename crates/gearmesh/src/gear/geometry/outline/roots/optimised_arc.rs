@@ -1,10 +1,10 @@
 //! The article's optimisation, solved: the arc tangent to the flank on the base circle that comes nearest to the root circle.
 //!
 //! Equations 27 to 30 as corrected: the circle passes through A along the flank, its centre lies between the tooth and the
-//! middle of the space, and the distance between its lowest point and the root circle is to be least. That distance falls
-//! as r_c grows to (r_b² − r_f²)/(2 r_f), where it is zero, so the best radius is that or, where the space is too narrow,
-//! r_b tan(π/z − ψ_b), with the centre in the middle of the space. Then the root lies above the root circle, and is smooth
-//! all the same. Source: Zhai, Liang and Fu 2020, section 5. Must not know: other roots.
+//! middle of the space, and the distance between its lowest point and the root circle must be least. That distance falls
+//! as r_c grows to (r_b² − r_f²)/(2 r_f), where it is zero. So the best radius is that or, where the space is too narrow,
+//! r_b tan(π/z − ψ_b), with the centre in the middle of the space. Then the root lies above the root circle, but is still
+//! smooth. Source: Zhai, Liang and Fu 2020, section 5. Must not know: other roots.
 
 use std::f64::consts::PI;
 

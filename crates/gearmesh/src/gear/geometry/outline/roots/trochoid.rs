@@ -1,4 +1,4 @@
-//! What a rack cuts: the trochoid of its tip round, with the rack's own round, a sharp corner or a full round.
+//! What a rack cuts: the trochoid of its tip round, which is the rack's own round, a sharp corner or a full round.
 //!
 //! Where the rack undercuts, the trochoid ends where it crosses the involute, and the profile has a corner there. Must not
 //! know: other roots.
