@@ -149,7 +149,7 @@ pub fn execute(
     Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
 }
 
-impl<'a> Run<'a> {
+impl Run<'_> {
     /// Starts what was queued, after `finished` stages came to their end. Stages that run alone wait until no other one
     /// runs or can. They are held back here and not by a lock in the stage: a thread that waits for parts of one stage
     /// takes up another one meanwhile, which must never wait for the first.
