@@ -8,7 +8,7 @@ use declare::error::Failure;
 use declare::record::Value;
 use declare::seed::Seed;
 use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::{METHODS, optimizer};
+use gearmesh::optimize::{self, METHODS};
 
 criterion_group!(name = benches; config = brief(); targets = methods);
 
@@ -16,13 +16,13 @@ fn methods(criterion: &mut Criterion) {
     let bench = |criterion: &mut Criterion, name: &str, method: &str, given: &[(&str, Value)]| {
         let fields =
             METHODS.iter().find(|entry| entry.member.name == method).map_or(&[][..], |entry| entry.member.fields);
-        let record = record(fields, given);
+        let method = optimize::method(method, &record(fields, given)).expect("the method is registered");
         criterion.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let bounds =
                     Bounds::new(vec![(0.0, 8e-6), (0.0, 6e-3), (0.0, 8e-6)]).expect("the bounds are ascending");
                 let seed = Seed::of_stage(7, "optimum");
-                let mut search = optimizer(method, &record, bounds, seed).expect("the method is registered");
+                let mut search = optimize::search(&*method, bounds, seed).expect("it fits three variables");
                 search.run(|points| Ok::<_, Failure>(points.iter().map(|point| objective(point)).collect()))
             });
         });

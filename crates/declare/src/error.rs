@@ -19,6 +19,8 @@ pub struct Diagnostic {
     pub message: String,
     /// Where; `None` only when the whole file is meant.
     pub place: Option<Place>,
+    /// The field that is meant, where whoever found it knows no places.
+    pub field: Option<&'static str>,
     /// What to write instead.
     pub help: Option<String>,
 }
@@ -26,7 +28,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), place: None, help: None }
+        Self { message: message.into(), place: None, field: None, help: None }
     }
 
     #[must_use]
@@ -39,6 +41,13 @@ impl Diagnostic {
     #[must_use]
     pub fn or_at(mut self, place: Place) -> Self {
         self.place.get_or_insert(place);
+        self
+    }
+
+    /// About a field, called by its name.
+    #[must_use]
+    pub fn of(mut self, field: &'static str) -> Self {
+        self.field = Some(field);
         self
     }
 

@@ -3,6 +3,7 @@
 //!
 //! Must not know: gears, graphs, files, YAML.
 
+pub mod declared;
 pub mod digest;
 pub mod error;
 pub mod number;
@@ -13,3 +14,5 @@ pub mod seed;
 pub mod text;
 pub mod units;
 pub mod work;
+
+pub use declare_derive::{Declared, Words};

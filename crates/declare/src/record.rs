@@ -7,7 +7,7 @@
 use std::collections::BTreeSet;
 
 use super::digest::Writer;
-use super::error::Place;
+use super::error::{Diagnostic, Place};
 use super::units::Dimension;
 
 /// One value.
@@ -97,6 +97,13 @@ impl Record {
     #[must_use]
     pub fn place_of(&self, name: &str) -> Place {
         self.entry(name).map_or(self.place, |entry| entry.place)
+    }
+
+    /// What was found wrong with what was read from here, with the place of the field that is meant.
+    #[must_use]
+    pub fn locate(&self, wrong: Diagnostic) -> Diagnostic {
+        let place = wrong.field.map_or(self.place, |field| self.place_of(field));
+        wrong.or_at(place)
     }
 
     getter!(

@@ -19,7 +19,7 @@ use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::loading::Loading;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Optimizer as Search, Reason};
-use gearmesh::optimize::{self};
+use gearmesh::optimize::{self, Method};
 use studygraph::table::data::{Data, Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -80,7 +80,7 @@ const COMBINE: &[Choice] =
 
 struct Optimizer {
     stiffness: String,
-    method: (&'static str, Record),
+    method: Box<dyn Method>,
     objective: &'static str,
     torques: Vec<f64>,
     worst: bool,
@@ -127,7 +127,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }
     let optimizer = Optimizer {
         stiffness: record.reference("stiffness").to_owned(),
-        method: (method, options.clone()),
+        method: optimize::method(method, options)?,
         objective: record.choice("minimize"),
         torques: at.axis("torque").to_vec(),
         worst: at.choice("combine") == "worst",
@@ -140,7 +140,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's. Its
     // points are drawn when the stage runs.
     optimizer.bounds()?;
-    optimize::foreseen(method, options, optimizer.template.variables().len())?;
+    optimizer.method.foresee(optimizer.template.variables().len()).map_err(|wrong| options.locate(wrong))?;
     Ok(Box::new(optimizer))
 }
 
@@ -164,7 +164,7 @@ impl Optimizer {
     }
 
     fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
-        optimize::optimizer(self.method.0, &self.method.1, self.bounds()?, seed)
+        optimize::search(&*self.method, self.bounds()?, seed)
     }
 
     fn objective_unit(&self) -> &'static str {

@@ -13,10 +13,10 @@ use declare::seed::Seed;
 use declare::units::{LENGTH, in_unit};
 use gearmesh::gear::geometry::{Gear, Side};
 use gearmesh::gear::problem::{self, Family, Problem, Variable, Worth};
-use gearmesh::optimize;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::search::{Candidate, Reason};
+use gearmesh::optimize::{self, Method};
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -49,7 +49,9 @@ struct RootOptimizer {
     pair: String,
     side: Side,
     problem: (&'static Family, Record),
-    method: (&'static str, Record),
+    method: Box<dyn Method>,
+    /// Where its settings stand.
+    how: Record,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
@@ -61,7 +63,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         pair: record.reference("pair").to_owned(),
         side: if record.choice("gear") == "gear" { Side::Gear } else { Side::Pinion },
         problem: (family, options.clone()),
-        method: (method, how.clone()),
+        method: optimize::method(method, how)?,
+        how: how.clone(),
     }))
 }
 
@@ -196,7 +199,7 @@ impl RootOptimizer {
 
     fn search(&self, variables: &[Variable], seed: Seed) -> Result<optimize::search::Optimizer, Diagnostic> {
         let bounds = variables.iter().map(|variable| (variable.least, variable.most)).collect();
-        optimize::optimizer(self.method.0, &self.method.1, Bounds::new(bounds)?, seed)
+        optimize::search(&*self.method, Bounds::new(bounds)?, seed).map_err(|wrong| self.how.locate(wrong))
     }
 }
 
@@ -212,7 +215,7 @@ impl Stage for RootOptimizer {
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let (family, options) = &self.problem;
         let [variables, constraints] = family.most;
-        let Ok(foreseen) = optimize::foreseen(self.method.0, &self.method.1, variables) else {
+        let Ok(foreseen) = self.method.foresee(variables) else {
             return Estimate::new(true);
         };
         let kept = (foreseen.evaluations as u64).saturating_mul(120);

@@ -6,14 +6,14 @@ use std::collections::BTreeMap;
 use proptest::prelude::*;
 use rayon::prelude::*;
 
-use super::{choice, integer, run, search};
+use super::{choice, integer, run, search, with};
 use crate::support::record;
 use declare::error::{Failure, Place};
 use declare::record::{Entry, Value};
 use declare::seed::Seed;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Optimizer, Reason};
-use gearmesh::optimize::{METHODS, foreseen, members, optimizer};
+use gearmesh::optimize::{self, METHODS, members};
 
 /// Short runs of every method, and of the variants that take another path.
 fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
@@ -109,8 +109,7 @@ proptest! {
 fn what_a_method_asks_for_is_foreseen() {
     let bounds = [(0.0, 8e-6), (0.0, 6e-3), (-1.0, 1.0)];
     for (method, given) in variants() {
-        let fields = METHODS.iter().find(|entry| entry.member.name == method).unwrap().member.fields;
-        let foreseen = foreseen(method, &record(fields, &given), bounds.len()).unwrap();
+        let foreseen = with(method, &given).foresee(bounds.len()).unwrap();
         let (met, done) = points(search(method, &given, &bounds, 5), noise);
         let asked = (met.len(), done.history().len());
         assert_eq!(foreseen.evaluations, done.budget(), "{method}");
@@ -299,7 +298,8 @@ fn impossible_set_ups_are_refused() {
     let refusal = |method: &str, given: &[(&str, Value)], dimension: usize| {
         let fields = members().iter().find(|member| member.name == method).map_or(&[][..], |member| member.fields);
         let bounds = Bounds::new(vec![(0.0, 1.0); dimension]).unwrap();
-        let refused = optimizer(method, &record(fields, given), bounds, Seed::of_stage(1, "optimum"));
+        let method_of = optimize::method(method, &record(fields, given));
+        let refused = method_of.and_then(|method| optimize::search(&*method, bounds, Seed::of_stage(1, "optimum")));
         refused.err().unwrap_or_else(|| panic!("{method} was accepted")).message
     };
     let list = |levels: &[i64]| {

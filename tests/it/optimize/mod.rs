@@ -10,15 +10,20 @@ use crate::support::record;
 use declare::error::Failure;
 use declare::record::Value;
 use declare::seed::Seed;
+use gearmesh::optimize;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::Optimizer;
-use gearmesh::optimize::{METHODS, optimizer};
+use gearmesh::optimize::{METHODS, Method};
 
 /// A method with some parameters set, on a box.
 fn search(method: &str, given: &[(&str, Value)], bounds: &[(f64, f64)], seed: u64) -> Optimizer {
-    let fields = METHODS.iter().find(|entry| entry.member.name == method).unwrap().member.fields;
     let bounds = Bounds::new(bounds.to_vec()).unwrap();
-    optimizer(method, &record(fields, given), bounds, Seed::of_stage(seed, "optimum")).unwrap()
+    optimize::search(&*with(method, given), bounds, Seed::of_stage(seed, "optimum")).unwrap()
+}
+
+fn with(method: &str, given: &[(&str, Value)]) -> Box<dyn Method> {
+    let fields = METHODS.iter().find(|entry| entry.member.name == method).unwrap().member.fields;
+    optimize::method(method, &record(fields, given)).unwrap()
 }
 
 /// Runs a search to its end on one thread.

@@ -6,47 +6,62 @@
 
 use super::latin_hypercube;
 use super::local::Limits;
-use super::nelder_mead::NelderMead;
+use super::nelder_mead::SimplexSearch;
 use super::random::{below, chance};
 use super::restarts::Restarted;
 use super::search::Reason;
-use super::{Foreseen, Method, Strategy, count, points_held};
+use super::{Foreseen, Method, Strategy, points_held};
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
+use declare::{Declared, Words};
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "differential_evolution",
-        summary: "global search by differences within a population",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
+/// global search by differences within a population
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "differential_evolution")]
+pub struct DifferentialEvolution {
+    /// individuals per generation; ten per variable is usual
+    #[declared(least = 4, most = 100_000, default = "60")]
+    pub population: usize,
+    /// most generations, the first one included
+    #[declared(least = 1, most = 1_000_000, default = "200")]
+    pub generations: usize,
+    /// how a mutant is made
+    #[declared(default = "rand")]
+    pub mutant: Mutant,
+    /// F, the weight of a difference
+    #[declared(least = 0.0, most = 2.0, default = "0.7")]
+    pub weight: f64,
+    /// CR, the probability that a variable is taken from the mutant
+    #[declared(least = 0.0, most = 1.0, default = "0.9")]
+    pub crossover: f64,
+    /// spread of the values, as a share of the best, at which it has converged
+    #[declared(least = 0.0, most = 1.0, default = "1e-8")]
+    pub tolerance: f64,
+    /// local search from the best individual
+    #[declared(default = "none")]
+    pub polish: Polish,
+    /// most evaluations of the local search
+    #[declared(least = 10, most = 10_000_000, default = "2000")]
+    pub polish_evaluations: usize,
+}
 
-const FIELDS: &[Field] = &[
-    Field::integer("population", 4, 100_000, "individuals per generation; ten per variable is usual").default("60"),
-    Field::integer("generations", 1, 1_000_000, "most generations, the first one included").default("200"),
-    Field::choice("mutant", MUTANTS, "how a mutant is made").default("rand"),
-    Field::number("weight", 0.0, 2.0, "F, the weight of a difference").default("0.7"),
-    Field::number("crossover", 0.0, 1.0, "CR, the probability that a variable is taken from the mutant").default("0.9"),
-    Field::number("tolerance", 0.0, 1.0, "spread of the values, as a share of the best, at which it has converged")
-        .default("1e-8"),
-    Field::choice("polish", POLISHES, "local search from the best individual").default("none"),
-    Field::integer("polish_evaluations", 10, 10_000_000, "most evaluations of the local search").default("2000"),
-];
+/// How a mutant is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Mutant {
+    /// a random individual plus one weighted difference: rand/1/bin
+    Rand,
+    /// moved towards the best, plus one difference: current-to-best/1/bin
+    CurrentToBest,
+}
 
-const MUTANTS: &[Choice] = &[
-    Choice { name: "rand", summary: "a random individual plus one weighted difference: rand/1/bin" },
-    Choice { name: "current_to_best", summary: "moved towards the best, plus one difference: current-to-best/1/bin" },
-];
-
-const POLISHES: &[Choice] = &[
-    Choice { name: "none", summary: "no local search" },
-    Choice { name: "nelder_mead", summary: "a simplex as large as the last population" },
-];
+/// Local search from the best individual.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Polish {
+    /// no local search
+    None,
+    /// a simplex as large as the last population
+    NelderMead,
+}
 
 /// Extent at which the population or the polishing simplex has shrunk to a point, as a share of each range.
 const POINT: f64 = 1e-10;
@@ -54,68 +69,61 @@ const POINT: f64 = 1e-10;
 /// Largest and smallest edge of the polishing simplex, as a share of each range.
 const EDGES: (f64, f64) = (1e-3, 0.1);
 
-struct DifferentialEvolution {
+struct EvolutionSearch {
+    settings: DifferentialEvolution,
     seed: Seed,
-    generations: usize,
-    towards_best: bool,
-    weight: f64,
-    crossover: f64,
-    tolerance: f64,
-    polish: Option<usize>,
-
     population: Vec<Vec<f64>>,
     /// Empty until the first generation is told.
     values: Vec<f64>,
     trials: Vec<Vec<f64>>,
     told: usize,
     ended: Option<Reason>,
-    polishing: Option<Restarted<NelderMead>>,
+    polishing: Option<Restarted<SimplexSearch>>,
 }
 
-/// Evaluations of the polish, where there is one.
-fn polish(record: &Record) -> Option<usize> {
-    (record.choice("polish") == "nelder_mead").then(|| count(record, "polish_evaluations"))
-}
-
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    let polish = polish(record);
-    if polish.is_some_and(|evaluations| evaluations < dimension) {
-        return Err(Diagnostic::new(format!("too few evaluations to polish {dimension} variables"))
-            .at(record.place_of("polish_evaluations"))
-            .help(format!("give at least {dimension}")));
+impl DifferentialEvolution {
+    /// Evaluations of the polish, where there is one.
+    fn polishing(&self) -> Option<usize> {
+        match self.polish {
+            Polish::None => None,
+            Polish::NelderMead => Some(self.polish_evaluations),
+        }
     }
-    let (size, generations) = (count(record, "population"), count(record, "generations"));
-    let polishing = polish.unwrap_or(0);
-    Ok(Foreseen {
-        evaluations: size.saturating_mul(generations).saturating_add(polishing),
-        batches: generations.saturating_add(polishing),
-        exact: false,
-        // Population, trials, and these in the box; the first time as a hypercube.
-        memory: points_held(4 * size, dimension),
-    })
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
-    let population = latin_hypercube::points(count(record, "population"), dimension, &mut seed.generator(0));
-    let polish = polish(record);
-    Box::new(DifferentialEvolution {
-        seed,
-        generations: count(record, "generations"),
-        towards_best: record.choice("mutant") == "current_to_best",
-        weight: record.number("weight"),
-        crossover: record.number("crossover"),
-        tolerance: record.number("tolerance"),
-        polish,
-        trials: population.clone(),
-        population,
-        values: Vec::new(),
-        told: 0,
-        ended: None,
-        polishing: None,
-    })
+impl Method for DifferentialEvolution {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        if self.polishing().is_some_and(|evaluations| evaluations < dimension) {
+            return Err(Diagnostic::new(format!("too few evaluations to polish {dimension} variables"))
+                .of(Self::NAMES.polish_evaluations)
+                .help(format!("give at least {dimension}")));
+        }
+        let polishing = self.polishing().unwrap_or(0);
+        Ok(Foreseen {
+            evaluations: self.population.saturating_mul(self.generations).saturating_add(polishing),
+            batches: self.generations.saturating_add(polishing),
+            exact: false,
+            // Population, trials, and these in the box; the first time as a hypercube.
+            memory: points_held(4 * self.population, dimension),
+        })
+    }
+
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+        let population = latin_hypercube::points(self.population, dimension, &mut seed.generator(0));
+        Box::new(EvolutionSearch {
+            settings: self.clone(),
+            seed,
+            trials: population.clone(),
+            population,
+            values: Vec::new(),
+            told: 0,
+            ended: None,
+            polishing: None,
+        })
+    }
 }
 
-impl Strategy for DifferentialEvolution {
+impl Strategy for EvolutionSearch {
     fn batch(&self) -> &[Vec<f64>] {
         self.polishing.as_ref().map_or(&self.trials, |polishing| polishing.batch())
     }
@@ -128,7 +136,7 @@ impl Strategy for DifferentialEvolution {
         self.told += 1;
         self.ended = if self.converged() {
             Some(Reason::Converged)
-        } else if self.told == self.generations {
+        } else if self.told == self.settings.generations {
             Some(Reason::Generations)
         } else {
             self.trials = self.next_trials();
@@ -148,11 +156,11 @@ impl Strategy for DifferentialEvolution {
     }
 
     fn budget(&self) -> usize {
-        self.population.len() * self.generations + self.polish.unwrap_or(0)
+        self.population.len() * self.settings.generations + self.settings.polishing().unwrap_or(0)
     }
 }
 
-impl DifferentialEvolution {
+impl EvolutionSearch {
     /// A trial replaces its parent unless it is worse: equal ones may drift across a plateau.
     fn select(&mut self, values: &[f64]) {
         if self.values.is_empty() {
@@ -183,7 +191,7 @@ impl DifferentialEvolution {
     fn converged(&self) -> bool {
         let lowest = self.values[self.best()];
         let highest = self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        highest - lowest <= self.tolerance * lowest.abs() || self.extent() <= POINT
+        highest - lowest <= self.settings.tolerance * lowest.abs() || self.extent() <= POINT
     }
 
     fn next_trials(&self) -> Vec<Vec<f64>> {
@@ -203,13 +211,15 @@ impl DifferentialEvolution {
                 let certain = below(&mut generator, parent.len());
                 (0..parent.len())
                     .map(|axis| {
-                        if !chance(&mut generator, self.crossover) && axis != certain {
+                        if !chance(&mut generator, self.settings.crossover) && axis != certain {
                             return parent[axis];
                         }
-                        reflect(if self.towards_best {
-                            parent[axis] + self.weight * (best[axis] - parent[axis]) + self.weight * (a[axis] - b[axis])
+                        reflect(if self.settings.mutant == Mutant::CurrentToBest {
+                            parent[axis]
+                                + self.settings.weight * (best[axis] - parent[axis])
+                                + self.settings.weight * (a[axis] - b[axis])
                         } else {
-                            a[axis] + self.weight * (b[axis] - c[axis])
+                            a[axis] + self.settings.weight * (b[axis] - c[axis])
                         })
                     })
                     .collect()
@@ -219,13 +229,13 @@ impl DifferentialEvolution {
 
     fn begin_polishing(&mut self) {
         let best = self.best();
-        if let Some(evaluations) = self.polish
+        if let Some(evaluations) = self.settings.polishing()
             && self.values[best].is_finite()
         {
             let edge = self.extent().clamp(EDGES.0, EDGES.1);
             let limits = Limits { tolerance: POINT, restarts: 3, evaluations };
             let start = self.population[best].clone();
-            let simplex = NelderMead::new(start, Some(self.values[best]), edge, POINT);
+            let simplex = SimplexSearch::new(start, Some(self.values[best]), edge, POINT);
             self.polishing = Some(Restarted::new(simplex, edge, limits));
         }
     }
@@ -246,14 +256,9 @@ mod tests {
 
     #[test]
     fn a_trial_replaces_its_parent_unless_it_is_worse() {
-        let mut search = DifferentialEvolution {
+        let mut search = EvolutionSearch {
+            settings: DifferentialEvolution::default(),
             seed: Seed::of_stage(1, "select"),
-            generations: 1,
-            towards_best: false,
-            weight: 0.7,
-            crossover: 0.9,
-            tolerance: 0.0,
-            polish: None,
             population: vec![vec![0.1], vec![0.2], vec![0.3]],
             values: vec![1.0, 2.0, 3.0],
             trials: vec![vec![0.4], vec![0.5], vec![0.6]],

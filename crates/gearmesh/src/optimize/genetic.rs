@@ -14,64 +14,82 @@ use rand_chacha::ChaCha8Rng;
 
 use super::random::{below, chance, uniform};
 use super::search::Reason;
-use super::{Foreseen, Method, Strategy, count, points_held};
+use super::{Foreseen, Method, Strategy, points_held};
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
+use declare::{Declared, Words};
 
-pub const METHOD: Method = Method {
-    member: Member { name: "genetic", summary: "genetic algorithm on binary chromosomes", fields: FIELDS },
-    foresee,
-    build,
-};
+/// genetic algorithm on binary chromosomes
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "genetic")]
+pub struct Genetic {
+    /// individuals per generation
+    #[declared(least = 2, most = 100_000, default = "100")]
+    pub population: usize,
+    /// generations, the first random one included
+    #[declared(least = 1, most = 1_000_000, default = "100")]
+    pub generations: usize,
+    /// bits per variable: its range in 2^bits values, bounds included
+    #[declared(least = 1, most = 32, default = "10")]
+    pub bits: usize,
+    /// how bits stand for a number
+    #[declared(default = "binary")]
+    pub coding: Coding,
+    /// how parents are chosen
+    #[declared(default = "roulette")]
+    pub selection: Selection,
+    /// probability that two parents exchange what follows a random cut
+    #[declared(least = 0.0, most = 1.0, default = "0.5")]
+    pub crossover: f64,
+    /// probability of a mutation
+    #[declared(least = 0.0, most = 1.0, default = "0.5")]
+    pub mutation: f64,
+    /// what the probability of a mutation is of
+    #[declared(default = "offspring")]
+    pub mutation_of: MutationOf,
+    /// best individuals that live on unchanged
+    #[declared(least = 0, most = 100_000, default = "0")]
+    pub elite: usize,
+    /// ends after this many generations without improvement
+    #[declared(least = 1, most = 1_000_000)]
+    pub converged_after: Option<usize>,
+    /// share of the best value below which a gain is no improvement
+    #[declared(least = 0.0, most = 1.0, default = "0")]
+    pub least_improvement: f64,
+}
 
-const FIELDS: &[Field] = &[
-    Field::integer("population", 2, 100_000, "individuals per generation").default("100"),
-    Field::integer("generations", 1, 1_000_000, "generations, the first random one included").default("100"),
-    Field::integer("bits", 1, 32, "bits per variable: its range in 2^bits values, bounds included").default("10"),
-    Field::choice("coding", CODINGS, "how bits stand for a number").default("binary"),
-    Field::choice("selection", SELECTIONS, "how parents are chosen").default("roulette"),
-    Field::number("crossover", 0.0, 1.0, "probability that two parents exchange what follows a random cut")
-        .default("0.5"),
-    Field::number("mutation", 0.0, 1.0, "probability of a mutation").default("0.5"),
-    Field::choice("mutation_of", MUTATIONS, "what the probability of a mutation is of").default("offspring"),
-    Field::integer("elite", 0, 100_000, "best individuals that live on unchanged").default("0"),
-    Field::integer("converged_after", 1, 1_000_000, "ends after this many generations without improvement").optional(),
-    Field::number("least_improvement", 0.0, 1.0, "share of the best value below which a gain is no improvement")
-        .default("0"),
-];
+/// How bits stand for a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Coding {
+    /// plain binary
+    Binary,
+    /// Gray code: neighbouring values differ in one bit
+    Gray,
+}
 
-const CODINGS: &[Choice] = &[
-    Choice { name: "binary", summary: "plain binary" },
-    Choice { name: "gray", summary: "Gray code: neighbouring values differ in one bit" },
-];
+/// How parents are chosen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Selection {
+    /// in proportion to fitness, 1/objective
+    Roulette,
+    /// the better of two drawn at random
+    Tournament,
+}
 
-const SELECTIONS: &[Choice] = &[
-    Choice { name: "roulette", summary: "in proportion to fitness, 1/objective" },
-    Choice { name: "tournament", summary: "the better of two drawn at random" },
-];
-
-const MUTATIONS: &[Choice] = &[
-    Choice { name: "offspring", summary: "one random bit of an offspring flips, with this probability" },
-    Choice { name: "bit", summary: "every bit flips with this probability" },
-];
+/// What the probability of a mutation is of.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum MutationOf {
+    /// one random bit of an offspring flips, with this probability
+    Offspring,
+    /// every bit flips with this probability
+    Bit,
+}
 
 type Chromosome = Vec<bool>;
 
-struct Genetic {
+struct GeneticSearch {
+    settings: Genetic,
     seed: Seed,
-    generations: usize,
-    bits: usize,
-    gray: bool,
-    roulette: bool,
-    crossover: f64,
-    mutation: f64,
-    mutate_each_bit: bool,
-    elite: usize,
-    patience: Option<usize>,
-    least_improvement: f64,
-
     population: Vec<Chromosome>,
     batch: Vec<Vec<f64>>,
     /// Generations told.
@@ -81,54 +99,45 @@ struct Genetic {
     stalled: usize,
 }
 
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    let (size, elite, bits) = (count(record, "population"), count(record, "elite"), count(record, "bits"));
-    if elite >= size {
-        let message = format!("an elite of {elite} leaves no room for offspring in a population of {size}");
-        return Err(Diagnostic::new(message)
-            .at(record.place_of("elite"))
-            .help(format!("the elite may be 0 to {} here", size - 1)));
+impl Method for Genetic {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        let (size, elite) = (self.population, self.elite);
+        if elite >= size {
+            let message = format!("an elite of {elite} leaves no room for offspring in a population of {size}");
+            let help = format!("the elite may be 0 to {} here", size.saturating_sub(1));
+            return Err(Diagnostic::new(message).of(Self::NAMES.elite).help(help));
+        }
+        // Two generations of chromosomes, one decoded twice: here and in the box.
+        let memory = size * 2 * (self.bits * dimension + 40) + points_held(2 * size, dimension);
+        let exact = self.converged_after.is_none();
+        let evaluations = size.saturating_mul(self.generations);
+        Ok(Foreseen { evaluations, batches: self.generations, exact, memory })
     }
-    let generations = count(record, "generations");
-    // Two generations of chromosomes, one decoded twice: here and in the box.
-    let memory = size * 2 * (bits * dimension + 40) + points_held(2 * size, dimension);
-    let exact = record.maybe_integer("converged_after").is_none();
-    Ok(Foreseen { evaluations: size.saturating_mul(generations), batches: generations, exact, memory })
+
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+        let mut generator = seed.generator(0);
+        let mut chromosome = || (0..self.bits * dimension).map(|_| chance(&mut generator, 0.5)).collect();
+        let mut search = GeneticSearch {
+            settings: self.clone(),
+            seed,
+            population: (0..self.population).map(|_| chromosome()).collect(),
+            batch: Vec::new(),
+            told: 0,
+            best: f64::INFINITY,
+            stalled: 0,
+        };
+        search.decode_all();
+        Box::new(search)
+    }
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
-    let (size, elite, bits) = (count(record, "population"), count(record, "elite"), count(record, "bits"));
-    let mut generator = seed.generator(0);
-    let population = (0..size).map(|_| (0..bits * dimension).map(|_| chance(&mut generator, 0.5)).collect()).collect();
-    let mut genetic = Genetic {
-        seed,
-        generations: count(record, "generations"),
-        bits,
-        gray: record.choice("coding") == "gray",
-        roulette: record.choice("selection") == "roulette",
-        crossover: record.number("crossover"),
-        mutation: record.number("mutation"),
-        mutate_each_bit: record.choice("mutation_of") == "bit",
-        elite,
-        patience: record.maybe_integer("converged_after").and_then(|after| usize::try_from(after).ok()),
-        least_improvement: record.number("least_improvement"),
-        population,
-        batch: Vec::new(),
-        told: 0,
-        best: f64::INFINITY,
-        stalled: 0,
-    };
-    genetic.decode_all();
-    Box::new(genetic)
-}
-
-impl Strategy for Genetic {
+impl Strategy for GeneticSearch {
     fn batch(&self) -> &[Vec<f64>] {
         &self.batch
     }
 
     fn learn(&mut self, values: &[f64]) -> Result<(), String> {
-        if self.roulette
+        if self.settings.selection == Selection::Roulette
             && let Some(negative) = values.iter().find(|value| **value < 0.0)
         {
             return Err(format!(
@@ -139,7 +148,8 @@ impl Strategy for Genetic {
         let lowest = values.iter().copied().fold(f64::INFINITY, f64::min);
         let gain = self.best - lowest;
         // From +∞ any number is a gain; +∞ − +∞ is NaN and none.
-        let improved = gain > 0.0 && (self.best.is_infinite() || gain >= self.least_improvement * self.best.abs());
+        let improved =
+            gain > 0.0 && (self.best.is_infinite() || gain >= self.settings.least_improvement * self.best.abs());
         self.stalled = if improved { 0 } else { self.stalled + 1 };
         self.best = self.best.min(lowest);
         self.told += 1;
@@ -151,9 +161,9 @@ impl Strategy for Genetic {
     }
 
     fn finished(&self) -> Option<Reason> {
-        if self.told >= self.generations {
+        if self.told >= self.settings.generations {
             Some(Reason::Generations)
-        } else if self.patience.is_some_and(|patience| self.stalled >= patience) {
+        } else if self.settings.converged_after.is_some_and(|patience| self.stalled >= patience) {
             Some(Reason::Converged)
         } else {
             None
@@ -161,13 +171,14 @@ impl Strategy for Genetic {
     }
 
     fn budget(&self) -> usize {
-        self.population.len() * self.generations
+        self.population.len() * self.settings.generations
     }
 }
 
-impl Genetic {
+impl GeneticSearch {
     fn decode_all(&mut self) {
-        self.batch = self.population.iter().map(|chromosome| decode(chromosome, self.bits, self.gray)).collect();
+        let (bits, coding) = (self.settings.bits, self.settings.coding);
+        self.batch = self.population.iter().map(|chromosome| decode(chromosome, bits, coding)).collect();
     }
 
     /// The generation after the one with these values: the elite, then children in pairs.
@@ -175,21 +186,24 @@ impl Genetic {
         let mut generator = self.seed.generator(self.told as u64);
         let size = self.population.len();
         let mut next = Vec::with_capacity(size + 1);
-        if self.elite > 0 {
+        if self.settings.elite > 0 {
             let mut order: Vec<usize> = (0..size).collect();
             order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));
-            next.extend(order[..self.elite].iter().map(|at| self.population[*at].clone()));
+            next.extend(order[..self.settings.elite].iter().map(|at| self.population[*at].clone()));
         }
         let wheel = Wheel::new(values);
         while next.len() < size {
             let mut parent = || {
-                let at = if self.roulette { wheel.spin(&mut generator) } else { tournament(values, &mut generator) };
+                let at = match self.settings.selection {
+                    Selection::Roulette => wheel.spin(&mut generator),
+                    Selection::Tournament => tournament(values, &mut generator),
+                };
                 self.population[at].clone()
             };
             let mut pair = [parent(), parent()];
-            cross(&mut pair, self.crossover, &mut generator);
+            cross(&mut pair, self.settings.crossover, &mut generator);
             for mut child in pair {
-                mutate(&mut child, self.mutation, self.mutate_each_bit, &mut generator);
+                mutate(&mut child, self.settings.mutation, self.settings.mutation_of, &mut generator);
                 next.push(child);
             }
         }
@@ -199,26 +213,30 @@ impl Genetic {
     }
 }
 
-fn mutate(child: &mut Chromosome, probability: f64, each_bit: bool, generator: &mut ChaCha8Rng) {
-    if each_bit {
-        for bit in child {
-            *bit ^= chance(generator, probability);
+fn mutate(child: &mut Chromosome, probability: f64, of: MutationOf, generator: &mut ChaCha8Rng) {
+    match of {
+        MutationOf::Bit => child.iter_mut().for_each(|bit| *bit ^= chance(generator, probability)),
+        MutationOf::Offspring => {
+            if chance(generator, probability) {
+                let at = below(generator, child.len());
+                child[at] = !child[at];
+            }
         }
-    } else if chance(generator, probability) {
-        let at = below(generator, child.len());
-        child[at] = !child[at];
     }
 }
 
 /// Each variable's bits, most significant first, as a share of the largest number: all zeros is 0, and all ones (in Gray
 /// code: a one and zeros) is 1.
-fn decode(chromosome: &[bool], bits: usize, gray: bool) -> Vec<f64> {
+fn decode(chromosome: &[bool], bits: usize, coding: Coding) -> Vec<f64> {
     let most = (1_u64 << bits) - 1;
     chromosome
         .chunks_exact(bits)
         .map(|gene| {
             let (number, _) = gene.iter().fold((0_u64, false), |(number, above), &bit| {
-                let digit = if gray { bit ^ above } else { bit };
+                let digit = match coding {
+                    Coding::Gray => bit ^ above,
+                    Coding::Binary => bit,
+                };
                 (number << 1 | u64::from(digit), digit)
             });
             number as f64 / most as f64
@@ -344,44 +362,63 @@ mod tests {
     #[test]
     fn mutation_strikes_as_often_and_as_evenly_as_it_should() {
         let (length, children) = (8, 40_000);
-        let strike = |probability, each_bit| {
+        let strike = |probability, of: MutationOf| {
             let mut generator = generator("mutate");
             let (mut struck, mut flips) = (0_usize, vec![0_usize; length]);
             for _ in 0..children {
                 let mut child = vec![false; length];
-                mutate(&mut child, probability, each_bit, &mut generator);
+                mutate(&mut child, probability, of, &mut generator);
                 struck += usize::from(child.contains(&true));
-                assert!(each_bit || child.iter().filter(|bit| **bit).count() <= 1);
+                assert!(of == MutationOf::Bit || child.iter().filter(|bit| **bit).count() <= 1);
                 flips.iter_mut().zip(child).for_each(|(flips, bit)| *flips += usize::from(bit));
             }
             (struck, flips)
         };
         // One offspring in two; each bit in one of sixteen. Binomial deviations 100 and 48.
-        let (struck, flips) = strike(0.5, false);
+        let (struck, flips) = strike(0.5, MutationOf::Offspring);
         assert!(struck.abs_diff(20_000) < 400, "{struck}");
         assert!(flips.iter().all(|flips| flips.abs_diff(2_500) < 192), "{flips:?}");
         // Each bit one time in ten: deviation 60. Some bit in 1 − 0.9⁸ = 0.56953 of the children: deviation 99.
-        let (struck, flips) = strike(0.1, true);
+        let (struck, flips) = strike(0.1, MutationOf::Bit);
         assert!(flips.iter().all(|flips| flips.abs_diff(4_000) < 240), "{flips:?}");
         assert!(struck.abs_diff(22_781) < 396, "{struck}");
-        assert_eq!((strike(0.0, false).0, strike(0.0, true).0), (0, 0));
-        assert_eq!((strike(1.0, false).0, strike(1.0, true).1), (children, vec![children; length]));
+        assert_eq!((strike(0.0, MutationOf::Offspring).0, strike(0.0, MutationOf::Bit).0), (0, 0));
+        assert_eq!(
+            (strike(1.0, MutationOf::Offspring).0, strike(1.0, MutationOf::Bit).1),
+            (children, vec![children; length])
+        );
+    }
+
+    /// What a setting is for, seen from outside: without mutation only crossing makes a child that is no parent.
+    #[test]
+    fn the_probability_of_crossing_is_the_one_that_was_set() {
+        let unlike_parents = |crossover| {
+            let settings = Genetic { population: 4000, bits: 20, mutation: 0.0, crossover, ..Genetic::default() };
+            let mut search = settings.strategy(2, Seed::of_stage(11, "crossing"));
+            let parents = search.batch().to_vec();
+            search.learn(&vec![1.0; parents.len()]).unwrap();
+            search.batch().iter().filter(|child| !parents.contains(child)).count()
+        };
+        assert_eq!(unlike_parents(0.0), 0);
+        // Of 40 bits half differ, so a cut nearly always makes two new children. Binomial: 1000 ± 39 of 4000 in pairs.
+        let [quarter, all] = [0.25, 1.0].map(unlike_parents);
+        assert!(quarter.abs_diff(1000) < 156 && all > 3900, "{quarter}, {all}");
     }
 
     #[test]
     fn codes_end_on_the_bounds_and_gray_neighbours_differ_in_one_bit() {
         for bits in [1, 10, 32] {
-            assert_eq!(decode(&vec![false; bits], bits, false), [0.0]);
-            assert_eq!(decode(&vec![true; bits], bits, false), [1.0]);
+            assert_eq!(decode(&vec![false; bits], bits, Coding::Binary), [0.0]);
+            assert_eq!(decode(&vec![true; bits], bits, Coding::Binary), [1.0]);
             let mut top = vec![false; bits];
             top[0] = true;
-            assert_eq!(decode(&top, bits, true), [1.0]);
+            assert_eq!(decode(&top, bits, Coding::Gray), [1.0]);
         }
         let chromosome = |number: u32| (0..4).rev().map(|bit| number >> bit & 1 == 1).collect::<Chromosome>();
-        assert_eq!(decode(&chromosome(5), 4, false), [5.0 / 15.0]);
+        assert_eq!(decode(&chromosome(5), 4, Coding::Binary), [5.0 / 15.0]);
         for number in 0..16_u32 {
-            assert_eq!(decode(&chromosome(number ^ (number >> 1)), 4, true), [f64::from(number) / 15.0]);
+            assert_eq!(decode(&chromosome(number ^ (number >> 1)), 4, Coding::Gray), [f64::from(number) / 15.0]);
         }
-        assert_eq!(decode(&[true, true, false, true], 2, false), [1.0, 1.0 / 3.0]);
+        assert_eq!(decode(&[true, true, false, true], 2, Coding::Binary), [1.0, 1.0 / 3.0]);
     }
 }

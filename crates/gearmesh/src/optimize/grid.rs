@@ -4,63 +4,49 @@
 
 use super::sampling::{self, Sample};
 use super::{Foreseen, Method, Strategy};
+use declare::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member, Shape};
-use declare::record::{Record, Value};
 use declare::seed::Seed;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "grid",
-        summary: "every combination of equally spaced levels, bounds included",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
+/// every combination of equally spaced levels, bounds included
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "grid")]
+pub struct Grid {
+    /// number of levels: one for all variables, or one for each
+    #[declared(least = 2, most = 100_000, default = "11")]
+    pub levels: Vec<usize>,
+}
 
-const FIELDS: &[Field] = &[Field::new(
-    "levels",
-    Shape::List(&Shape::Integer { least: 2, most: 100_000 }),
-    "number of levels: one for all variables, or one for each",
-)
-.default("11")];
-
-/// The levels of each variable.
-fn levels(record: &Record, dimension: usize) -> Result<Vec<usize>, Diagnostic> {
-    let given: Vec<usize> = record
-        .list("levels")
-        .iter()
-        .filter_map(|entry| match entry.value {
-            Value::Integer(levels) => usize::try_from(levels).ok(),
-            _ => None,
-        })
-        .collect();
-    match given[..] {
-        [all] => Ok(vec![all; dimension]),
-        _ if given.len() == dimension => Ok(given),
-        _ => {
-            let message = format!("{} levels are given for {dimension} variables", given.len());
-            Err(Diagnostic::new(message)
-                .at(record.place_of("levels"))
-                .help("give one number for all variables, or one for each"))
+impl Grid {
+    /// The levels of each variable.
+    fn of_each(&self, dimension: usize) -> Result<Vec<usize>, Diagnostic> {
+        match self.levels[..] {
+            [all] => Ok(vec![all; dimension]),
+            _ if self.levels.len() == dimension => Ok(self.levels.clone()),
+            _ => {
+                let message = format!("{} levels are given for {dimension} variables", self.levels.len());
+                Err(Diagnostic::new(message).help("give one number for all variables, or one for each"))
+            }
         }
+    }
+}
+
+impl Method for Grid {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        let levels = self.of_each(dimension);
+        let foreseen = levels.and_then(|levels| sampling::foreseen(combinations(&levels), dimension, 0));
+        foreseen.map_err(|wrong| wrong.of(Self::NAMES.levels))
+    }
+
+    fn strategy(&self, dimension: usize, _: Seed) -> Box<dyn Strategy> {
+        let levels = self.of_each(dimension).unwrap_or_default();
+        let count = combinations(&levels).unwrap_or(0);
+        Box::new(Sample::new(count, Box::new(move |index| point(&levels, index))))
     }
 }
 
 fn combinations(levels: &[usize]) -> Option<usize> {
     levels.iter().try_fold(1_usize, |count, levels| count.checked_mul(*levels))
-}
-
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    let count = combinations(&levels(record, dimension)?);
-    sampling::foreseen(count, dimension, 0).map_err(|wrong| wrong.at(record.place_of("levels")))
-}
-
-fn build(record: &Record, dimension: usize, _: Seed) -> Box<dyn Strategy> {
-    let levels = levels(record, dimension).unwrap_or_default();
-    let count = combinations(&levels).unwrap_or(0);
-    Box::new(Sample::new(count, Box::new(move |index| point(&levels, index))))
 }
 
 /// The digits of `index` in the mixed radix of `levels`, as shares of the highest digit.

@@ -6,33 +6,31 @@ use rand_core::Rng;
 
 use super::random::{permutation, uniform};
 use super::sampling::{self, MOST_POINTS, Sample};
-use super::{Foreseen, Method, Strategy, count};
+use super::{Foreseen, Method, Strategy};
+use declare::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "latin_hypercube",
-        summary: "random points, one in each stratum of every variable",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
-
-const FIELDS: &[Field] = &[Field::integer("points", 1, MOST_POINTS, "number of points").default("256")];
-
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    // A number for each variable, and while one is drawn its strata.
-    sampling::foreseen(Some(count(record, "points")), dimension, 8 * (dimension + 1))
+/// random points, one in each stratum of every variable
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "latin_hypercube")]
+pub struct LatinHypercube {
+    /// number of points
+    #[declared(least = 1, most = MOST_POINTS, default = "256")]
+    pub points: usize,
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
-    let count = count(record, "points");
-    let columns = columns(count, dimension, &mut seed.generator(0));
-    Box::new(Sample::new(count, Box::new(move |index| columns.iter().map(|column| column[index]).collect())))
+impl Method for LatinHypercube {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        // A number for each variable, and while one is drawn its strata.
+        sampling::foreseen(Some(self.points), dimension, 8 * (dimension + 1))
+    }
+
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+        let columns = columns(self.points, dimension, &mut seed.generator(0));
+        let layout = move |index: usize| columns.iter().map(|column| column[index]).collect();
+        Box::new(Sample::new(self.points, Box::new(layout)))
+    }
 }
 
 /// `count` points of the unit cube, coordinates in 0..1.

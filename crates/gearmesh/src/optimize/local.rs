@@ -3,10 +3,9 @@
 //! Lengths are shares of each variable's range. Must not know: how any of them searches.
 
 use super::random::uniform;
-use super::{Foreseen, count, points_held};
+use super::{Foreseen, points_held};
+use declare::Words;
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field};
-use declare::record::Record;
 use declare::seed::Seed;
 
 /// A search from one point until it has converged by its own measure; what then becomes of it, [`super::restarts`] says.
@@ -30,23 +29,25 @@ pub trait Search: Send {
     fn begin(&mut self, at: Vec<f64>, value: Option<f64>, down: Option<Vec<f64>>);
 }
 
-pub const START: Field = Field::choice("start", STARTS, "where it starts").default("centre");
-
-const STARTS: &[Choice] = &[
-    Choice { name: "centre", summary: "the middle of every range" },
-    Choice { name: "random", summary: "a random point, from the seed" },
-];
-
-/// From `least` upwards.
-pub const fn tolerance(least: f64, summary: &'static str) -> Field {
-    Field::number("tolerance", least, 0.1, summary).default("1e-8")
+/// Where a local search starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Start {
+    /// the middle of every range
+    Centre,
+    /// a random point, from the seed
+    Random,
 }
 
-pub const fn restarts(summary: &'static str) -> Field {
-    Field::integer("restarts", 0, 1000, summary).default("30")
+impl Start {
+    /// The point of the unit cube.
+    pub(super) fn point(self, dimension: usize, seed: Seed) -> Vec<f64> {
+        let mut generator = seed.generator(0);
+        match self {
+            Self::Centre => vec![0.5; dimension],
+            Self::Random => (0..dimension).map(|_| uniform(&mut generator)).collect(),
+        }
+    }
 }
-
-pub const EVALUATIONS: Field = Field::integer("evaluations", 10, 10_000_000, "most evaluations").default("5000");
 
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
@@ -61,11 +62,10 @@ pub struct Limits {
 ///
 /// # Errors
 /// With too few evaluations to begin.
-pub fn foresee(record: &Record, dimension: usize, (least, what): (usize, &str)) -> Result<Foreseen, Diagnostic> {
-    let evaluations = count(record, "evaluations");
+pub fn foresee(evaluations: usize, dimension: usize, (least, what): (usize, &str)) -> Result<Foreseen, Diagnostic> {
     if evaluations < least {
         let message = format!("{evaluations} evaluations are too few for {what} {dimension} variables");
-        return Err(Diagnostic::new(message).at(record.place_of("evaluations")).help(format!("give at least {least}")));
+        return Err(Diagnostic::new(message).help(format!("give at least {least}")));
     }
     // Simplex or directions, and the gradients of all looks at a kink.
     let memory = points_held(MOST_HELD * (dimension + 1), dimension);
@@ -74,21 +74,6 @@ pub fn foresee(record: &Record, dimension: usize, (least, what): (usize, &str)) 
 
 /// Points that a local search keeps for each variable, at most.
 const MOST_HELD: usize = 64;
-
-/// Start and limits, from [`START`], [`tolerance`], [`restarts`] and [`EVALUATIONS`].
-pub fn read(record: &Record, dimension: usize, seed: Seed) -> (Vec<f64>, Limits) {
-    let limits = Limits {
-        tolerance: record.number("tolerance"),
-        restarts: count(record, "restarts"),
-        evaluations: count(record, "evaluations"),
-    };
-    let mut generator = seed.generator(0);
-    let start = match record.choice("start") {
-        "random" => (0..dimension).map(|_| uniform(&mut generator)).collect(),
-        _ => vec![0.5; dimension],
-    };
-    (start, limits)
-}
 
 /// Onto the range.
 pub fn clip(coordinate: f64) -> f64 {

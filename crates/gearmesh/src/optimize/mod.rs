@@ -31,15 +31,15 @@ pub mod sampling;
 pub mod search;
 pub mod sobol;
 
+use std::fmt::Debug;
+
 use bounds::Bounds;
+use declare::declared::Declared;
 use declare::error::{Diagnostic, suggest};
 use declare::parameter::Member;
 use declare::record::Record;
 use declare::seed::Seed;
 use search::{Optimizer, Reason};
-
-/// Sets a method up for a number of variables.
-pub type Build = fn(&Record, usize, Seed) -> Box<dyn Strategy>;
 
 /// What a method will ask for, known from its parameters and the number of variables, before a point is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,26 +54,40 @@ pub struct Foreseen {
     pub memory: usize,
 }
 
-/// Looks ahead; refuses what no declaration can express.
-pub type Foresee = fn(&Record, usize) -> Result<Foreseen, Diagnostic>;
+/// A method of minimisation with its settings: a declared struct, which anybody can make.
+pub trait Method: Debug + Send + Sync {
+    /// What it will ask for with `dimension` variables, before a point is drawn.
+    ///
+    /// # Errors
+    /// Settings that make no sense together, or for this number of variables, which no range can express.
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic>;
+
+    /// Sets itself up for a number of variables. Never called with what [`Method::foresee`] refuses.
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy>;
+}
 
 /// A method as registered.
-pub struct Method {
+pub struct Registered {
     pub member: Member,
-    pub foresee: Foresee,
-    /// Never called with what [`Method::foresee`] refuses.
-    pub build: Build,
+    /// The method, as a record that was decoded by `member` says.
+    pub read: fn(&Record) -> Box<dyn Method>,
+}
+
+impl Registered {
+    const fn of<T: Declared + Method + 'static>() -> Self {
+        Self { member: T::MEMBER, read: |record| Box::new(T::read(record)) }
+    }
 }
 
 /// Every method, in the order in which `gearstudy kinds` lists them.
-pub const METHODS: &[&Method] = &[
-    &genetic::METHOD,
-    &differential_evolution::METHOD,
-    &nelder_mead::METHOD,
-    &powell::METHOD,
-    &grid::METHOD,
-    &latin_hypercube::METHOD,
-    &sobol::METHOD,
+pub const METHODS: &[Registered] = &[
+    Registered::of::<genetic::Genetic>(),
+    Registered::of::<differential_evolution::DifferentialEvolution>(),
+    Registered::of::<nelder_mead::NelderMead>(),
+    Registered::of::<powell::Powell>(),
+    Registered::of::<grid::Grid>(),
+    Registered::of::<latin_hypercube::LatinHypercube>(),
+    Registered::of::<sobol::Sobol>(),
 ];
 
 /// What a method does: proposes points of the unit cube and learns their values. Deterministic: the same values give
@@ -122,29 +136,37 @@ pub fn members() -> &'static [Member] {
     &MEMBERS
 }
 
-/// What the method `name`, set up as `record` says, will ask for with `dimension` variables.
+/// The method `name`, as `record` says.
 ///
 /// # Errors
-/// When there is no such method, or its parameters make no sense together or for this number of variables.
-pub fn foreseen(name: &str, record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    (method(name, record)?.foresee)(record, dimension).map_err(|wrong| wrong.or_at(record.place))
-}
-
-/// The method `name`, set up as `record` says, ready to search `bounds`.
-///
-/// # Errors
-/// As [`foreseen`].
-pub fn optimizer(name: &str, record: &Record, bounds: Bounds, seed: Seed) -> Result<Optimizer, Diagnostic> {
-    foreseen(name, record, bounds.dimension())?;
-    let strategy = (method(name, record)?.build)(record, bounds.dimension(), seed);
-    Ok(Optimizer::new(strategy, bounds))
-}
-
-fn method(name: &str, record: &Record) -> Result<&'static Method, Diagnostic> {
-    METHODS.iter().copied().find(|method| method.member.name == name).ok_or_else(|| {
+/// When there is no such method.
+pub fn method(name: &str, record: &Record) -> Result<Box<dyn Method>, Diagnostic> {
+    let found = METHODS.iter().find(|method| method.member.name == name);
+    found.map(|method| (method.read)(record)).ok_or_else(|| {
         let known = METHODS.iter().map(|method| method.member.name);
         Diagnostic::new(format!("there is no optimisation method `{name}`")).at(record.place).help(suggest(name, known))
     })
+}
+
+/// A search of `bounds` by a method whose settings were read from a study, where their ranges were checked.
+///
+/// # Errors
+/// As [`Method::foresee`].
+pub fn search(method: &dyn Method, bounds: Bounds, seed: Seed) -> Result<Optimizer, Diagnostic> {
+    method.foresee(bounds.dimension())?;
+    Ok(Optimizer::new(method.strategy(bounds.dimension(), seed), bounds))
+}
+
+/// A search of `bounds` by a method with any settings.
+///
+/// # Errors
+/// A setting outside its range; as [`Method::foresee`].
+pub fn optimizer<M: Declared + Method + Clone>(
+    method: &M,
+    bounds: Bounds,
+    seed: Seed,
+) -> Result<Optimizer, Diagnostic> {
+    search(&method.clone().checked()?, bounds, seed)
 }
 
 /// Bytes of so many points as vectors of coordinates, with what the allocator keeps of each.
@@ -152,7 +174,37 @@ fn points_held(count: usize, dimension: usize) -> usize {
     count.saturating_mul(8 * dimension + 40)
 }
 
-/// A field declared as an integer from zero or one upwards.
-fn count(record: &Record, name: &str) -> usize {
-    usize::try_from(record.integer(name)).expect("the declared range of a count is not negative")
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use declare::error::Failure;
+    use genetic::{Genetic, Selection};
+
+    /// What a study would read, and what somebody writes in Rust, are one search.
+    #[test]
+    fn a_method_can_be_made_without_a_study() {
+        let settings =
+            Genetic { population: 20, generations: 5, selection: Selection::Tournament, ..Genetic::default() };
+        let seed = || Seed::of_stage(7, "optimum");
+        let bounds = || Bounds::new(vec![(-1.0, 2.0)]).unwrap();
+        let best = |mut search: Optimizer| {
+            search.run(|points| Ok::<_, Failure>(points.iter().map(|point| point[0] * point[0]).collect())).unwrap();
+            search.best().cloned()
+        };
+        let read = method("genetic", &settings.record()).unwrap();
+        let typed = best(optimizer(&settings, bounds(), seed()).unwrap());
+        assert!(typed.is_some() && typed == best(search(&*read, bounds(), seed()).unwrap()));
+        let wrong = Genetic { crossover: 1.5, ..settings.clone() };
+        assert!(optimizer(&wrong, bounds(), seed()).is_err_and(|error| error.message == "`crossover` is 1.5"));
+        let elite = Genetic { elite: 20, ..settings };
+        assert!(optimizer(&elite, bounds(), seed()).is_err_and(|error| error.field == Some("elite")));
+    }
+
+    #[test]
+    fn every_method_and_its_record_say_the_same() {
+        for method in METHODS {
+            let record = declare::declared::defaults(method.member.fields);
+            assert!((method.read)(&record).foresee(3).is_ok(), "{}", method.member.name);
+        }
+    }
 }

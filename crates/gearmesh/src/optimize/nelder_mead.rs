@@ -8,40 +8,45 @@
 //!
 //! Must not know: randomness, but for a random start.
 
-use super::local::{self, Search, clip};
+use super::local::{self, Limits, Search, Start, clip};
 use super::restarts::Restarted;
 use super::{Foreseen, Method, Strategy};
+use declare::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "nelder_mead",
-        summary: "local search by a moving simplex, without derivatives",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
-
-const FIELDS: &[Field] = &[
-    local::START,
-    Field::number("edge", 1e-6, 1.0, "edge of the first simplex, as a share of each range").default("0.1"),
-    local::tolerance(1e-14, "the simplex's extent, as a share of each range, at which it has converged"),
-    local::restarts("most restarts around the best point, or along a kink; with 0 it is not checked"),
-    local::EVALUATIONS,
-];
-
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    local::foresee(record, dimension, (dimension + 1, "a simplex in"))
+/// local search by a moving simplex, without derivatives
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "nelder_mead")]
+pub struct NelderMead {
+    /// where it starts
+    #[declared(default = "centre")]
+    pub start: Start,
+    /// edge of the first simplex, as a share of each range
+    #[declared(least = 1e-6, most = 1.0, default = "0.1")]
+    pub edge: f64,
+    /// the simplex's extent, as a share of each range, at which it has converged
+    #[declared(least = 1e-14, most = 0.1, default = "1e-8")]
+    pub tolerance: f64,
+    /// most restarts around the best point, or along a kink; with 0 it is not checked
+    #[declared(least = 0, most = 1000, default = "30")]
+    pub restarts: usize,
+    /// most evaluations
+    #[declared(least = 10, most = 10_000_000, default = "5000")]
+    pub evaluations: usize,
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
-    let (start, limits) = local::read(record, dimension, seed);
-    let edge = record.number("edge");
-    Box::new(Restarted::new(NelderMead::new(start, None, edge, limits.tolerance), edge, limits))
+impl Method for NelderMead {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        let foreseen = local::foresee(self.evaluations, dimension, (dimension + 1, "a simplex in"));
+        foreseen.map_err(|wrong| wrong.of(Self::NAMES.evaluations))
+    }
+
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+        let limits = Limits { tolerance: self.tolerance, restarts: self.restarts, evaluations: self.evaluations };
+        let start = self.start.point(dimension, seed);
+        Box::new(Restarted::new(SimplexSearch::new(start, None, self.edge, self.tolerance), self.edge, limits))
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -66,7 +71,7 @@ enum Step {
 }
 
 /// The search; also used to polish what another method found.
-pub struct NelderMead {
+pub struct SimplexSearch {
     edge: f64,
     tolerance: f64,
     expansion: f64,
@@ -79,7 +84,7 @@ pub struct NelderMead {
     step: Step,
 }
 
-impl NelderMead {
+impl SimplexSearch {
     /// Starts at `start`, whose value may be known, with a simplex of edge `edge` along the axes.
     #[must_use]
     pub fn new(start: Vec<f64>, value: Option<f64>, edge: f64, tolerance: f64) -> Self {
@@ -182,7 +187,7 @@ impl NelderMead {
     }
 }
 
-impl Search for NelderMead {
+impl Search for SimplexSearch {
     fn batch(&self) -> &[Vec<f64>] {
         &self.batch
     }

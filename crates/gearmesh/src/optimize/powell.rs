@@ -8,40 +8,45 @@
 //! shares of each variable's range. Must not know: randomness, but for a random start.
 
 use super::line::Line;
-use super::local::{self, Search, clip, ends, moved};
+use super::local::{self, Limits, Search, Start, clip, ends, moved};
 use super::restarts::Restarted;
 use super::{Foreseen, Method, Strategy};
+use declare::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "powell",
-        summary: "local search along directions that become conjugate, without derivatives",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
-
-const FIELDS: &[Field] = &[
-    local::START,
-    Field::number("step", 1e-6, 1.0, "first step along each axis, as a share of each range").default("0.1"),
-    local::tolerance(1e-12, "a cycle's way, as a share of each range, at which it has converged"),
-    local::restarts("most restarts around the best point, along the axes or a kink; with 0 it is not checked"),
-    local::EVALUATIONS,
-];
-
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    local::foresee(record, dimension, (2 * dimension + 1, "a line along each of"))
+/// local search along directions that become conjugate, without derivatives
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "powell")]
+pub struct Powell {
+    /// where it starts
+    #[declared(default = "centre")]
+    pub start: Start,
+    /// first step along each axis, as a share of each range
+    #[declared(least = 1e-6, most = 1.0, default = "0.1")]
+    pub step: f64,
+    /// a cycle's way, as a share of each range, at which it has converged
+    #[declared(least = 1e-12, most = 0.1, default = "1e-8")]
+    pub tolerance: f64,
+    /// most restarts around the best point, along the axes or a kink; with 0 it is not checked
+    #[declared(least = 0, most = 1000, default = "30")]
+    pub restarts: usize,
+    /// most evaluations
+    #[declared(least = 10, most = 10_000_000, default = "5000")]
+    pub evaluations: usize,
 }
 
-fn build(record: &Record, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
-    let (start, limits) = local::read(record, dimension, seed);
-    let step = record.number("step");
-    Box::new(Restarted::new(Powell::new(start, step, limits.tolerance), step, limits))
+impl Method for Powell {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        let foreseen = local::foresee(self.evaluations, dimension, (2 * dimension + 1, "a line along each of"));
+        foreseen.map_err(|wrong| wrong.of(Self::NAMES.evaluations))
+    }
+
+    fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
+        let limits = Limits { tolerance: self.tolerance, restarts: self.restarts, evaluations: self.evaluations };
+        let start = self.start.point(dimension, seed);
+        Box::new(Restarted::new(DirectionSearch::new(start, self.step, self.tolerance), self.step, limits))
+    }
 }
 
 /// A direction whose largest component is 1, and the length of the first step along it.
@@ -62,7 +67,7 @@ enum Phase {
     Way(Direction),
 }
 
-struct Powell {
+struct DirectionSearch {
     step: f64,
     tolerance: f64,
     directions: Vec<Direction>,
@@ -77,7 +82,7 @@ struct Powell {
     largest: (usize, f64),
 }
 
-impl Powell {
+impl DirectionSearch {
     fn new(start: Vec<f64>, step: f64, tolerance: f64) -> Self {
         let axis = |axis| {
             let along = (0..start.len()).map(|other| if other == axis { 1.0 } else { 0.0 }).collect();
@@ -196,7 +201,7 @@ impl Powell {
     }
 }
 
-impl Search for Powell {
+impl Search for DirectionSearch {
     fn batch(&self) -> &[Vec<f64>] {
         &self.batch
     }
@@ -276,8 +281,8 @@ mod tests {
     }
 
     /// The search after a number of cycles, or at its end.
-    fn after(cycles: usize, function: &Quadratic) -> Powell {
-        let mut search = Powell::new(vec![0.5; function.0.len()], 0.1, 1e-9);
+    fn after(cycles: usize, function: &Quadratic) -> DirectionSearch {
+        let mut search = DirectionSearch::new(vec![0.5; function.0.len()], 0.1, 1e-9);
         let mut begun = 0;
         while !search.converged() && begun <= cycles {
             let before = search.began.clone();

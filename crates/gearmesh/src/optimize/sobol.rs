@@ -4,23 +4,19 @@
 //! their set D6; the order is that of the Gray code (Antonov and Saleev 1979). Must not know: seeds.
 
 use super::sampling::{self, MOST_POINTS, Sample};
-use super::{Foreseen, Method, Strategy, count};
+use super::{Foreseen, Method, Strategy};
+use declare::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
 use declare::seed::Seed;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "sobol",
-        summary: "evenly spread points, best when their number is a power of two",
-        fields: FIELDS,
-    },
-    foresee,
-    build,
-};
-
-const FIELDS: &[Field] = &[Field::integer("points", 1, MOST_POINTS, "number of points").default("256")];
+/// evenly spread points, best when their number is a power of two
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "sobol")]
+pub struct Sobol {
+    /// number of points
+    #[declared(least = 1, most = MOST_POINTS, default = "256")]
+    pub points: usize,
+}
 
 const BITS: u32 = 32;
 
@@ -44,21 +40,23 @@ const DIRECTIONS: &[(u32, &[u32])] = &[
     (16, &[1, 3, 1, 13, 27, 49]),
 ];
 
-fn foresee(record: &Record, dimension: usize) -> Result<Foreseen, Diagnostic> {
-    let most = DIRECTIONS.len() + 1;
-    if dimension > most {
-        return Err(Diagnostic::new(format!(
-            "Sobol points are tabulated for at most {most} variables, not {dimension}"
-        ))
-        .help("use `latin_hypercube`"));
+impl Method for Sobol {
+    fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
+        let most = DIRECTIONS.len() + 1;
+        if dimension > most {
+            return Err(Diagnostic::new(format!(
+                "Sobol points are tabulated for at most {most} variables, not {dimension}"
+            ))
+            .help("use `latin_hypercube`"));
+        }
+        sampling::foreseen(Some(self.points), dimension, 0)
     }
-    sampling::foreseen(Some(count(record, "points")), dimension, 0)
-}
 
-fn build(record: &Record, dimension: usize, _: Seed) -> Box<dyn Strategy> {
-    let columns: Vec<[u32; BITS as usize]> = (0..dimension).map(directions).collect();
-    let layout = Box::new(move |index| columns.iter().map(|column| coordinate(column, index)).collect());
-    Box::new(Sample::new(count(record, "points"), layout))
+    fn strategy(&self, dimension: usize, _: Seed) -> Box<dyn Strategy> {
+        let columns: Vec<[u32; BITS as usize]> = (0..dimension).map(directions).collect();
+        let layout = Box::new(move |index| columns.iter().map(|column| coordinate(column, index)).collect());
+        Box::new(Sample::new(self.points, layout))
+    }
 }
 
 /// v₁ … v₃₂ of one variable, as fractions of 2³².

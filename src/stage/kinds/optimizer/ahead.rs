@@ -7,7 +7,6 @@ use crate::stage::designs::{designs_schema, elements_schema, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, Rows, common};
 use declare::work::Work;
 use gearmesh::gear::work::CONTACT_SOLVES;
-use gearmesh::optimize;
 
 /// Solves for the objective under one torque: so many, and so many for each position.
 const SOLVES: f64 = 50.0;
@@ -19,7 +18,7 @@ impl Optimizer {
     pub fn ahead(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let dimension = self.template.variables().len();
         // What the method refuses was refused when the stage was built.
-        let Ok(foreseen) = optimize::foreseen(self.method.0, &self.method.1, dimension) else {
+        let Ok(foreseen) = self.method.foresee(dimension) else {
             return Estimate::new(true);
         };
         let as_many = |count| if foreseen.exact { Rows::exact(count) } else { Rows::at_most(count) };

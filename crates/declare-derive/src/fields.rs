@@ -1,0 +1,262 @@
+//! Structs whose fields are parameters.
+//!
+//! Must not know: who reads them.
+
+use proc_macro2::TokenStream;
+use quote::{format_ident, quote};
+use syn::{
+    Data, DeriveInput, Error, Expr, Field, Fields, GenericArgument, Ident, LitStr, PathArguments, Type, Visibility,
+};
+
+use crate::doc::sentence;
+
+/// What stands on a field.
+#[derive(Default)]
+struct Marks {
+    least: Option<Expr>,
+    most: Option<Expr>,
+    dimension: Option<Expr>,
+    default: Option<LitStr>,
+    axis: Option<Expr>,
+    range: bool,
+}
+
+impl Marks {
+    fn of(field: &Field) -> Result<Self, Error> {
+        let mut marks = Self::default();
+        for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("declared")) {
+            attribute.parse_nested_meta(|meta| {
+                let name = meta.path.get_ident().map(Ident::to_string).unwrap_or_default();
+                match name.as_str() {
+                    "least" => marks.least = Some(meta.value()?.parse()?),
+                    "most" => marks.most = Some(meta.value()?.parse()?),
+                    "dimension" => marks.dimension = Some(meta.value()?.parse()?),
+                    "default" => marks.default = Some(meta.value()?.parse()?),
+                    "axis" => marks.axis = Some(meta.value()?.parse()?),
+                    "range" => marks.range = true,
+                    _ => return Err(meta.error("it is `least`, `most`, `dimension`, `default`, `axis` or `range`")),
+                }
+                Ok(())
+            })?;
+        }
+        Ok(marks)
+    }
+
+    /// The range of a number.
+    fn bounds(&self, owner: &Ident) -> Result<(&Expr, &Expr), Error> {
+        match (&self.least, &self.most) {
+            (Some(least), Some(most)) => Ok((least, most)),
+            _ => Err(Error::new(owner.span(), "a number has a range: `least` and `most`")),
+        }
+    }
+}
+
+/// How a type is declared, read from a `value: &Value`, and written from a `value: &T`.
+struct Kind {
+    shape: TokenStream,
+    read: TokenStream,
+    write: TokenStream,
+    /// What must hold when it is compiled.
+    proof: TokenStream,
+}
+
+pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
+    let name = &input.ident;
+    let Data::Struct(data) = &input.data else { return Err(Error::new(name.span(), "what is declared is a struct")) };
+    let Fields::Named(fields) = &data.fields else { return Err(Error::new(name.span(), "its fields have names")) };
+    let (member, summary) = (member(input)?, sentence(&input.attrs, name)?);
+    let names = format_ident!("{name}Names");
+    let visibility = &input.vis;
+    let mut all_default = true;
+    let (mut declared, mut read, mut written, mut proofs) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut idents, mut texts) = (Vec::new(), Vec::new());
+    for field in &fields.named {
+        let Some(ident) = &field.ident else { continue };
+        if !matches!(field.vis, Visibility::Public(_)) {
+            return Err(Error::new(ident.span(), "a parameter is public: it can be given without a study"));
+        }
+        let (marks, text, summary) = (Marks::of(field)?, ident.to_string(), sentence(&field.attrs, ident)?);
+        let inner = argument(&field.ty, "Option");
+        let kind = kind(inner.unwrap_or(&field.ty), &marks, ident)?;
+        let Kind { shape, read: from, write, proof } = kind;
+        let mut field = quote!(::declare::parameter::Field::new(#text, #shape, #summary));
+        match (&marks.default, inner) {
+            (Some(text), None) => field = quote!(#field.default(#text)),
+            (Some(text), Some(_)) => return Err(Error::new(text.span(), "an `Option` has no default")),
+            (None, Some(_)) => field = quote!(#field.optional()),
+            (None, None) => all_default = false,
+        }
+        if marks.range {
+            field = quote!(#field.range());
+        }
+        if let Some(chunk) = &marks.axis {
+            field = quote!(#field.axis(#chunk));
+        }
+        declared.push(field);
+        proofs.push(proof);
+        if inner.is_some() {
+            read.push(quote!(#ident: record.entry(#text).map(|entry| { let value = &entry.value; #from })));
+            written.push(quote!(if let ::core::option::Option::Some(value) = &self.#ident {
+                fields.push((#text, ::declare::declared::entry(#write)));
+            }));
+        } else {
+            read.push(quote!(#ident: { let value = ::declare::declared::value(record, #text); #from }));
+            written
+                .push(quote!({ let value = &self.#ident; fields.push((#text, ::declare::declared::entry(#write))); }));
+        }
+        idents.push(ident);
+        texts.push(text);
+    }
+    let default = all_default.then(|| {
+        quote! {
+            impl ::core::default::Default for #name {
+                fn default() -> Self {
+                    <Self as ::declare::declared::Declared>::read(&::declare::declared::defaults(
+                        <Self as ::declare::declared::Declared>::MEMBER.fields,
+                    ))
+                }
+            }
+        }
+    });
+    let note = format!("The names of the fields of [`{name}`], as a study writes them.");
+    Ok(quote! {
+        #[doc = #note]
+        #[allow(dead_code)]
+        #visibility struct #names { #(#[doc(hidden)] pub #idents: &'static str),* }
+
+        impl #name {
+            /// The names of its fields, for messages about them.
+            #[allow(dead_code)] // not every field has a message of its own
+            #visibility const NAMES: #names = #names { #(#idents: #texts),* };
+        }
+
+        #(#proofs)*
+
+        impl ::declare::declared::Declared for #name {
+            const MEMBER: ::declare::parameter::Member =
+                ::declare::parameter::Member { name: #member, summary: #summary, fields: &[#(#declared),*] };
+
+            fn read(record: &::declare::record::Record) -> Self {
+                Self { #(#read),* }
+            }
+
+            fn record(&self) -> ::declare::record::Record {
+                let mut fields = ::std::vec::Vec::new();
+                #(#written)*
+                ::declare::record::Record { fields, place: ::core::default::Default::default() }
+            }
+        }
+
+        impl ::declare::declared::Parameter for #name {
+            const SHAPE: ::declare::parameter::Shape =
+                ::declare::parameter::Shape::Group(<Self as ::declare::declared::Declared>::MEMBER.fields);
+
+            fn of_value(value: &::declare::record::Value) -> Self {
+                ::declare::declared::group(value)
+            }
+
+            fn to_value(&self) -> ::declare::record::Value {
+                ::declare::record::Value::Group(::declare::declared::Declared::record(self))
+            }
+        }
+
+        #default
+    })
+}
+
+/// The name of a member of a family; empty for what is none.
+fn member(input: &DeriveInput) -> Result<String, Error> {
+    let mut member = String::new();
+    for attribute in input.attrs.iter().filter(|attribute| attribute.path().is_ident("declared")) {
+        attribute.parse_nested_meta(|meta| {
+            if !meta.path.is_ident("name") {
+                return Err(meta.error("it is `name`"));
+            }
+            member = meta.value()?.parse::<LitStr>()?.value();
+            Ok(())
+        })?;
+    }
+    Ok(member)
+}
+
+fn kind(ty: &Type, marks: &Marks, owner: &Ident) -> Result<Kind, Error> {
+    if let Some(item) = argument(ty, "Vec") {
+        let Kind { shape, read, write, proof } = kind(item, marks, owner)?;
+        return Ok(Kind {
+            shape: quote!(::declare::parameter::Shape::List(&#shape)),
+            read: quote!(::declare::declared::items(value).map(|value| #read).collect()),
+            write: quote!(::declare::record::Value::List(
+                value.iter().map(|value| ::declare::declared::entry(#write)).collect()
+            )),
+            proof,
+        });
+    }
+    let word = match ty {
+        Type::Path(path) => path.path.get_ident().map(Ident::to_string).unwrap_or_default(),
+        _ => String::new(),
+    };
+    Ok(match word.as_str() {
+        "f64" => {
+            let (least, most) = marks.bounds(owner)?;
+            match &marks.dimension {
+                Some(dimension) => Kind {
+                    shape: quote!(::declare::parameter::Shape::Quantity {
+                        dimension: #dimension, least: #least, most: #most
+                    }),
+                    read: quote!(::declare::declared::quantity(value)),
+                    write: quote!(::declare::record::Value::Quantity(*value)),
+                    proof: TokenStream::new(),
+                },
+                None => Kind {
+                    shape: quote!(::declare::parameter::Shape::Number { least: #least, most: #most }),
+                    read: quote!(::declare::declared::number(value)),
+                    write: quote!(::declare::record::Value::Number(*value)),
+                    proof: TokenStream::new(),
+                },
+            }
+        }
+        "u8" | "u16" | "u32" | "u64" | "usize" | "i8" | "i16" | "i32" | "i64" => {
+            let (least, most) = marks.bounds(owner)?;
+            let fits = format!("every value of `{owner}` fits its type");
+            Kind {
+                shape: quote!(::declare::parameter::Shape::Integer { least: #least, most: #most }),
+                read: quote!(::declare::declared::integer::<#ty>(value)),
+                write: quote!(::declare::declared::of_integer(*value)),
+                proof: quote!(
+                    const _: () = assert!(
+                        #least as i128 >= <#ty>::MIN as i128 && #most as i128 <= <#ty>::MAX as i128, #fits
+                    );
+                ),
+            }
+        }
+        "bool" => Kind {
+            shape: quote!(::declare::parameter::Shape::Flag),
+            read: quote!(::declare::declared::flag(value)),
+            write: quote!(::declare::record::Value::Flag(*value)),
+            proof: TokenStream::new(),
+        },
+        "String" => Kind {
+            shape: quote!(::declare::parameter::Shape::Text),
+            read: quote!(::declare::declared::text(value)),
+            write: quote!(::declare::record::Value::Text(value.clone())),
+            proof: TokenStream::new(),
+        },
+        _ => Kind {
+            shape: quote!(<#ty as ::declare::declared::Parameter>::SHAPE),
+            read: quote!(<#ty as ::declare::declared::Parameter>::of_value(value)),
+            write: quote!(::declare::declared::Parameter::to_value(value)),
+            proof: TokenStream::new(),
+        },
+    })
+}
+
+/// `T` of `Outer<T>`.
+fn argument<'a>(ty: &'a Type, outer: &str) -> Option<&'a Type> {
+    let Type::Path(path) = ty else { return None };
+    let last = path.path.segments.last().filter(|last| last.ident == outer)?;
+    let PathArguments::AngleBracketed(arguments) = &last.arguments else { return None };
+    match arguments.args.first()? {
+        GenericArgument::Type(inner) => Some(inner),
+        _ => None,
+    }
+}

@@ -1,0 +1,31 @@
+//! A struct is the declaration of its parameters, an enum that of its words: derives for `declare`.
+//!
+//! Names, ranges and defaults stand on the fields, the sentences for users are the doc comments, so a renamed field is an
+//! error of the compiler and nothing is written twice. What the derives generate is in `declare::declared`, which has the
+//! traits. Must not know: what any parameter means.
+
+mod doc;
+mod fields;
+mod words;
+
+use proc_macro::TokenStream;
+use syn::{DeriveInput, Error, parse_macro_input};
+
+/// Implements `declare::Declared` for a struct with named fields.
+///
+/// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `least`, `most` (numbers, in
+/// SI), `dimension` (of `declare::units`, for quantities), `default` (as in a study), `range` (an optimiser may choose),
+/// `axis = N`. The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of these, words, and
+/// structs that are declared themselves. Where every field has a default, `Default` is implemented too.
+#[proc_macro_derive(Declared, attributes(declared))]
+pub fn declared(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    fields::expand(&input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+/// Implements `declare::Words` for an enum without fields: each variant is a word, in small letters with `_`.
+#[proc_macro_derive(Words)]
+pub fn words(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    words::expand(&input).unwrap_or_else(Error::into_compile_error).into()
+}

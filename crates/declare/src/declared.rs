@@ -1,0 +1,199 @@
+//! Structs that are their own declaration: what the derives implement, and what they call.
+//!
+//! A record comes from a study, a struct from anybody; either can be made of the other, and both have the same digest. Must
+//! not know: YAML, and what any parameter means.
+
+use crate::error::{Diagnostic, Place};
+use crate::parameter::{Choice, Field, Member, Presence, Shape};
+use crate::record::{Entry, Record, Value};
+use crate::units::parse_quantity;
+
+/// A struct whose fields are parameters.
+pub trait Declared: Sized {
+    /// Its name among the members of its family (empty for what is none), what it is, and its fields.
+    const MEMBER: Member;
+
+    /// Itself, as a record that was decoded by [`Declared::MEMBER`] says.
+    fn read(record: &Record) -> Self;
+
+    /// The record that says the same.
+    fn record(&self) -> Record;
+
+    /// Itself, when every number is within its declared range.
+    ///
+    /// # Errors
+    /// The first number that is not, with what it may be; lengths and the like in SI.
+    fn checked(self) -> Result<Self, Diagnostic> {
+        check(&self.record(), Self::MEMBER.fields)?;
+        Ok(self)
+    }
+}
+
+/// An enum whose variants are words.
+pub trait Words: Copy + Sized {
+    const CHOICES: &'static [Choice];
+
+    /// The variant that is this word.
+    fn of(word: &str) -> Option<Self>;
+
+    /// As a study writes it.
+    fn word(self) -> &'static str;
+}
+
+/// What a field may be beside numbers, flags and texts.
+pub trait Parameter: Sized {
+    const SHAPE: Shape;
+
+    /// From a value of this shape.
+    fn of_value(value: &Value) -> Self;
+
+    fn to_value(&self) -> Value;
+}
+
+/// The record of fields that all have a default or are optional.
+///
+/// # Panics
+/// When one must be given, or a default cannot be read: mistakes of a declaration, which its tests find.
+#[must_use]
+pub fn defaults(fields: &[Field]) -> Record {
+    let entry_of = |field: &Field| match field.presence {
+        Presence::Optional => None,
+        Presence::Required => panic!("`{}` has no default", field.name),
+        Presence::Default(text) => Some((field.name, entry(default(&field.shape, text)))),
+    };
+    Record { fields: fields.iter().filter_map(entry_of).collect(), place: Place::default() }
+}
+
+/// A default as a study would write it.
+///
+/// # Panics
+/// As [`defaults`].
+#[must_use]
+pub fn default(shape: &Shape, text: &str) -> Value {
+    let read = match shape {
+        Shape::Number { .. } => text.parse().ok().map(Value::Number),
+        Shape::Integer { .. } => text.parse().ok().map(Value::Integer),
+        Shape::Flag => text.parse().ok().map(Value::Flag),
+        Shape::Text => Some(Value::Text(text.to_owned())),
+        Shape::Quantity { .. } => parse_quantity(text).ok().map(|quantity| Value::Quantity(quantity.value)),
+        Shape::Choice(choices) => {
+            choices.iter().find(|choice| choice.name == text).map(|choice| Value::Choice(choice.name))
+        }
+        Shape::List(_) if text == "[]" => Some(Value::List(Vec::new())),
+        Shape::List(item) => Some(Value::List(vec![entry(default(item, text))])),
+        Shape::Group(fields) if text == "{}" => Some(Value::Group(defaults(fields))),
+        Shape::Member(members) => {
+            let member = members().iter().find(|member| member.name == text);
+            member.map(|member| Value::Member(member.name, defaults(member.fields)))
+        }
+        _ => None,
+    };
+    read.unwrap_or_else(|| panic!("the default `{text}` cannot be read"))
+}
+
+fn check(record: &Record, fields: &[Field]) -> Result<(), Diagnostic> {
+    for field in fields {
+        let Some(entry) = record.entry(field.name) else { continue };
+        check_value(&entry.value, &field.shape, field.name)?;
+    }
+    Ok(())
+}
+
+fn check_value(value: &Value, shape: &Shape, name: &str) -> Result<(), Diagnostic> {
+    let outside = |value: String, least: String, most: String| {
+        Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be {least} to {most}")))
+    };
+    match (value, shape) {
+        (Value::Quantity(value), Shape::Quantity { least, most, .. })
+        | (Value::Number(value), Shape::Number { least, most })
+            if !(*least..=*most).contains(value) =>
+        {
+            outside(value.to_string(), least.to_string(), most.to_string())
+        }
+        (Value::Integer(value), Shape::Integer { least, most }) if !(*least..=*most).contains(value) => {
+            outside(value.to_string(), least.to_string(), most.to_string())
+        }
+        (Value::Group(record), Shape::Group(fields)) => check(record, fields),
+        (Value::List(items), Shape::List(item)) => {
+            items.iter().try_for_each(|entry| check_value(&entry.value, item, name))
+        }
+        _ => Ok(()),
+    }
+}
+
+// What follows is called by derived code. A record was decoded by the declaration that was derived with the code, so none
+// of the panics can be reached by a study.
+
+fn mistyped(value: &Value) -> ! {
+    panic!("a record of another declaration: {value:?}")
+}
+
+/// The value of a field that is always there.
+///
+/// # Panics
+/// When the record is of another declaration.
+#[must_use]
+pub fn value<'a>(record: &'a Record, name: &str) -> &'a Value {
+    record.entry(name).map_or_else(|| panic!("a record of another declaration has no `{name}`"), |entry| &entry.value)
+}
+
+/// A value that stands nowhere.
+#[must_use]
+pub fn entry(value: Value) -> Entry {
+    Entry { value, place: Place::default() }
+}
+
+#[must_use]
+pub fn quantity(value: &Value) -> f64 {
+    if let Value::Quantity(value) = value { *value } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn number(value: &Value) -> f64 {
+    if let Value::Number(value) = value { *value } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn integer<T: TryFrom<i64>>(value: &Value) -> T {
+    if let Value::Integer(integer) = value
+        && let Ok(integer) = T::try_from(*integer)
+    {
+        return integer;
+    }
+    mistyped(value)
+}
+
+/// What does not fit is far beyond any declared range, and found outside of it.
+#[must_use]
+pub fn of_integer<T: TryInto<i64>>(value: T) -> Value {
+    Value::Integer(value.try_into().unwrap_or(i64::MAX))
+}
+
+#[must_use]
+pub fn flag(value: &Value) -> bool {
+    if let Value::Flag(value) = value { *value } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn text(value: &Value) -> String {
+    if let Value::Text(value) = value { value.clone() } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn word<T: Words>(value: &Value) -> T {
+    if let Value::Choice(word) = value
+        && let Some(word) = T::of(word)
+    {
+        return word;
+    }
+    mistyped(value)
+}
+
+#[must_use]
+pub fn group<T: Declared>(value: &Value) -> T {
+    if let Value::Group(record) = value { T::read(record) } else { mistyped(value) }
+}
+
+pub fn items(value: &Value) -> impl Iterator<Item = &Value> {
+    if let Value::List(items) = value { items.iter().map(|entry| &entry.value) } else { mistyped(value) }
+}

@@ -1,0 +1,123 @@
+//! What the derives make of a struct and an enum, against declarations written by hand.
+
+#![allow(clippy::float_cmp, reason = "values are copied, not computed")]
+
+use declare::declared::{Declared, Words};
+use declare::digest::Writer;
+use declare::parameter::{Field, Presence, Shape, Span};
+use declare::record::{Record, Value};
+use declare::units::LENGTH;
+use declare::{Declared, Words};
+
+/// Where a search starts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Start {
+    /// the middle of every range
+    Centre,
+    /// a random point,
+    /// from the seed
+    ///
+    /// Not for users.
+    AtRandom,
+}
+
+/// what holds the ends
+#[derive(Clone, Debug, PartialEq, Declared)]
+struct Ends {
+    /// whether both are held
+    #[declared(default = "true")]
+    pub both: bool,
+}
+
+/// a search that exists only here
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "toy")]
+struct Toy {
+    /// individuals
+    #[declared(least = 2, most = 100, default = "10")]
+    pub population: u32,
+    /// first step
+    #[declared(least = 0.0, most = 1e-3, dimension = LENGTH, default = "30 um", range)]
+    pub step: f64,
+    /// where it starts
+    #[declared(default = "centre")]
+    pub start: Start,
+    /// patience
+    #[declared(least = 1, most = 9)]
+    pub patience: Option<usize>,
+    /// levels
+    #[declared(least = 2, most = 50, default = "11")]
+    pub levels: Vec<usize>,
+    /// the ends
+    #[declared(default = "{}")]
+    pub ends: Ends,
+}
+
+fn written(record: &Record) -> String {
+    let mut writer = Writer::new("test");
+    record.write(&mut writer);
+    writer.finish().to_string()
+}
+
+#[test]
+fn a_struct_declares_what_a_table_of_fields_would() {
+    let Toy { .. } = Toy::default();
+    let member = Toy::MEMBER;
+    assert_eq!((member.name, member.summary), ("toy", "a search that exists only here"));
+    let names: Vec<_> = member.fields.iter().map(|field| field.name).collect();
+    assert_eq!(names, ["population", "step", "start", "patience", "levels", "ends"]);
+    let by_hand = [
+        Field::integer("population", 2, 100, "individuals").default("10"),
+        Field::quantity("step", LENGTH, 0.0, 1e-3, "first step").default("30 um").range(),
+    ];
+    for (derived, by_hand) in member.fields.iter().zip(&by_hand) {
+        assert_eq!((derived.name, derived.summary), (by_hand.name, by_hand.summary));
+        assert!(derived.presence == by_hand.presence && derived.span == by_hand.span && !derived.chooses);
+    }
+    assert!(matches!(member.fields[0].shape, Shape::Integer { least: 2, most: 100 }));
+    assert!(matches!(member.fields[1].shape, Shape::Quantity { dimension: LENGTH, least: 0.0, most: 1e-3 }));
+    assert!(matches!(member.fields[3].presence, Presence::Optional) && member.fields[3].span == Span::Single);
+    assert!(matches!(member.fields[4].shape, Shape::List(Shape::Integer { least: 2, most: 50 })));
+    assert!(matches!(member.fields[5].shape, Shape::Group(fields) if fields[0].name == "both"));
+    let Shape::Choice(choices) = member.fields[2].shape else { panic!("words") };
+    let choices: Vec<_> = choices.iter().map(|choice| (choice.name, choice.summary)).collect();
+    assert_eq!(choices, [("centre", "the middle of every range"), ("at_random", "a random point, from the seed")]);
+    assert_eq!(Toy::NAMES.population, "population");
+}
+
+#[test]
+fn a_struct_and_its_record_say_the_same() {
+    let toy = Toy::default();
+    let expected = Toy {
+        population: 10,
+        step: 30e-6,
+        start: Start::Centre,
+        patience: None,
+        levels: vec![11],
+        ends: Ends { both: true },
+    };
+    assert_eq!(toy, expected);
+    let other = Toy { start: Start::AtRandom, patience: Some(4), levels: vec![3, 4], step: 1e-4, ..toy.clone() };
+    for toy in [&toy, &other] {
+        assert_eq!(Toy::read(&toy.record()), *toy);
+    }
+    assert_ne!(written(&toy.record()), written(&other.record()));
+    assert_eq!(other.record().choice("start"), "at_random");
+    assert!(matches!(other.record().list("levels")[1].value, Value::Integer(4)));
+    assert_eq!([Start::of("at_random"), Start::of("random")], [Some(Start::AtRandom), None]);
+    assert_eq!(Start::AtRandom.word(), "at_random");
+}
+
+#[test]
+fn a_number_outside_its_range_is_refused() {
+    let refused = |toy: Toy| toy.checked().err().map(|error| format!("{}; {}", error.message, error.help.unwrap()));
+    assert_eq!(refused(Toy::default()), None);
+    let few = Toy { population: 1, ..Toy::default() };
+    assert_eq!(refused(few).as_deref(), Some("`population` is 1; it may be 2 to 100"));
+    let long = Toy { step: f64::NAN, ..Toy::default() };
+    assert_eq!(refused(long).as_deref(), Some("`step` is NaN; it may be 0 to 0.001"));
+    let level = Toy { levels: vec![5, 51], ..Toy::default() };
+    assert_eq!(refused(level).as_deref(), Some("`levels` is 51; it may be 2 to 50"));
+    let impatient = Toy { patience: Some(0), ..Toy::default() };
+    assert_eq!(refused(impatient).as_deref(), Some("`patience` is 0; it may be 1 to 9"));
+}
