@@ -311,6 +311,47 @@ mod tests {
         assert!(tables(&pair([19, 48], [0.0; 2], 1.0), Some(51.4)).warnings.is_empty());
     }
 
+    /// Tier: published; ISO 6336-1:2019, clause 9.3, C1 to C9 as printed, each from differences that leave it alone.
+    #[test]
+    fn every_constant_of_the_flexibility_is_the_standard_s() {
+        let steel = Inputs::of(&pair([19, 48], [0.0; 2], 1.0), &Record::default());
+        let q = |teeth, profile_shift| {
+            PER_MILLIMETRE_AND_MICROMETRE / stiffness(&Inputs { teeth, profile_shift, ..steel }).theoretical
+        };
+        let rack = f64::INFINITY;
+        let c1 = q([rack, rack], [0.0, 0.0]);
+        let odd = |teeth, [x1, x2]: [f64; 2]| 0.5 * (q(teeth, [x1, x2]) - q(teeth, [-x1, -x2]));
+        let even = |[x1, x2]: [f64; 2]| 0.5 * (q([rack, rack], [x1, x2]) + q([rack, rack], [-x1, -x2])) - c1;
+        let (c4, c6) = (odd([rack, rack], [1.0, 0.0]), odd([rack, rack], [0.0, 1.0]));
+        let found = [
+            c1,
+            q([1.0, rack], [0.0, 0.0]) - c1,
+            q([rack, 1.0], [0.0, 0.0]) - c1,
+            c4,
+            odd([1.0, rack], [1.0, 0.0]) - c4,
+            c6,
+            odd([rack, 1.0], [0.0, 1.0]) - c6,
+            even([1.0, 0.0]),
+            even([0.0, 1.0]),
+        ];
+        let printed = [0.04723, 0.15551, 0.25791, -0.00635, -0.11654, -0.00193, -0.24188, 0.00529, 0.00182];
+        for (number, (found, printed)) in found.into_iter().zip(printed).enumerate() {
+            assert!((found - printed).abs() < 1e-14, "C{}: {found} for {printed}", number + 1);
+        }
+        // C_B of the basic rack: 1 for h_fP 1.2 and 20°, 2 % less for each degree below, half of what h_fP is below 1.2 more.
+        let single = |dedendum, degrees: f64| {
+            let inputs = Inputs { dedendum, pressure_angle: degrees.to_radians(), ..steel };
+            stiffness(&inputs).single
+        };
+        let base = single([1.2; 2], 20.0);
+        let shares = [([1.2; 2], 19.0, 0.98), ([1.0; 2], 20.0, 1.1), ([1.0, 1.2], 20.0, 1.05)];
+        for (dedendum, degrees, share) in shares {
+            assert!((single(dedendum, degrees) / base - share).abs() < 1e-13, "{dedendum:?}, {degrees}°");
+        }
+        let found = stiffness(&Inputs { contact_ratio: 1.8, ..steel });
+        assert!((found.mesh / found.single - 1.6).abs() < 1e-14);
+    }
+
     /// Tier: the standard's factor for other materials, ξ = E/E_St with E = 2E1E2/(E1 + E2), and its two other factors.
     #[test]
     fn factors_multiply() {
