@@ -32,7 +32,7 @@ fn specification(teeth: u32, profile_shift: f64, tip_radius: f64) -> Specificati
 fn outline(gear: &Gear) -> Option<Outline> {
     let family = roots::family("trochoid").expect("it is registered");
     let options = record(family.member.fields, &[]);
-    let toe = (family.build)(&options, gear).ok()?;
+    let toe = (family.read)(&options).toe(gear).ok()?;
     Outline::new(gear, toe, Tip::Land, None).ok()
 }
 

@@ -136,11 +136,13 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
             const MEMBER: ::declare::parameter::Member =
                 ::declare::parameter::Member { name: #member, summary: #summary, fields: &[#(#declared),*] };
 
+            #[allow(unused_variables)] // where there are no fields
             fn read(record: &::declare::record::Record) -> Self {
                 Self { #(#read),* }
             }
 
             fn record(&self) -> ::declare::record::Record {
+                #[allow(unused_mut)]
                 let mut fields = ::std::vec::Vec::new();
                 #(#written)*
                 ::declare::record::Record { fields, place: ::core::default::Default::default() }

@@ -157,7 +157,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         let (name, root) = stated.maybe_member("root").unwrap_or_else(|| options.member("root"));
         // The decoder lets only registered families through.
         let family = roots::family(name).ok_or_else(|| Diagnostic::new(format!("there is no root `{name}`")))?;
-        let outline = (family.build)(root, &gear)
+        let outline = (family.read)(root)
+            .toe(&gear)
             .and_then(|toe| Outline::new(&gear, toe, Tip::of(options.member("tip")), design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })

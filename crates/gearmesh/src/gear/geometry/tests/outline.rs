@@ -24,7 +24,7 @@ pub fn options(values: &[(&'static str, Value)]) -> Record {
 /// The outline of a gear with a root of a family and its one option that is a word.
 pub fn outlined(gear: &Gear, family: &str, option: (&'static str, &'static str)) -> Result<Outline, GeometryError> {
     let options = options(&[(option.0, Value::Choice(option.1))]);
-    let toe = (roots::family(family).unwrap().build)(&options, gear)?;
+    let toe = (roots::family(family).unwrap().read)(&options).toe(gear)?;
     Outline::new(gear, toe, Tip::Land, None)
 }
 
@@ -125,7 +125,7 @@ proptest! {
             let option = options(&[
                 ("rack_tip", Value::Choice("given")), ("formulas", Value::Choice("derived")), ("size", Value::Choice("largest")),
             ]);
-            let Ok(toe) = (family.build)(&option, &gear) else { continue };
+            let Ok(toe) = (family.read)(&option).toe(&gear) else { continue };
             for relief in [None, Some(Shared::clone(&relief))] {
                 let Ok(outline) = Outline::new(&gear, toe.clone(), tip, relief) else { continue };
                 let r = gear.tip_radius;
@@ -188,7 +188,8 @@ fn check_rates(segment: &Segment, size: f64) -> Result<(), String> {
 fn tangents_and_curvatures_are_rates() {
     let gear = gear(23, 3.0, 0.2);
     let relief: Shared<dyn Relief> = Shared::new(Linear { start: 0.0, slope: 2e-4 });
-    let toe = |family| (roots::family(family).unwrap().build)(&options(&[("rack_tip", Value::Choice("given"))]), &gear);
+    let toe =
+        |family| (roots::family(family).unwrap().read)(&options(&[("rack_tip", Value::Choice("given"))])).toe(&gear);
     let plain = Outline::new(&gear, toe("trochoid").unwrap(), Tip::Rounding(2e-4), None).unwrap();
     let modified = Outline::new(&gear, toe("trochoid").unwrap(), Tip::Chamfer(2e-4), Some(relief)).unwrap();
     let mut seen = std::collections::BTreeSet::new();
@@ -315,7 +316,8 @@ fn arcs_that_do_not_exist_are_refused_with_numbers() {
 fn tips_are_broken_as_asked() {
     let gear = gear(19, 3.0, 0.0);
     let with = |tip| {
-        let toe = (roots::family("trochoid").unwrap().build)(&options(&[("rack_tip", Value::Choice("given"))]), &gear);
+        let toe =
+            (roots::family("trochoid").unwrap().read)(&options(&[("rack_tip", Value::Choice("given"))])).toe(&gear);
         Outline::new(&gear, toe.unwrap(), tip, None)
     };
     let chamfered = with(Tip::Chamfer(0.3e-3)).unwrap();

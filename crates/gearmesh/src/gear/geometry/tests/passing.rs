@@ -73,8 +73,8 @@ fn brute(pair: &Pair, side: Side, outline: &Outline, mate: &Outline) -> f64 {
 
 fn with_tip(gear: &Gear, family: &str, tip: Tip) -> Outline {
     let words = [("rack_tip", "given"), ("formulas", "derived"), ("size", "largest")];
-    let toe =
-        (roots::family(family).unwrap().build)(&options(&words.map(|(name, word)| (name, Value::Choice(word)))), gear);
+    let toe = (roots::family(family).unwrap().read)(&options(&words.map(|(name, word)| (name, Value::Choice(word)))))
+        .toe(gear);
     Outline::new(gear, toe.unwrap(), tip, None).unwrap()
 }
 

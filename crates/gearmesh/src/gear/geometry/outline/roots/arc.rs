@@ -6,41 +6,46 @@
 //! Liang and Fu 2020, as in `base_arc.rs`. Must not know: other roots.
 
 use super::base_arc::{Base, Circle, DOWN_THE_PAGE};
-use super::{Family, Toe};
+use super::{Family, Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
-use declare::parameter::{Choice, Field, Member};
-use declare::record::Record;
+use declare::{Declared, Words};
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "arc",
-        summary: "Arc from the base circle down by r_b − r_f, as in zhai2020; it need not meet the root circle.",
-        fields: FIELDS,
-    },
-    build,
-};
+pub const FAMILY: Family = Family::of::<Arc>();
 
-const FIELDS: &[Field] = &[Field::choice(
-    "formulas",
-    &[
-        Choice { name: "derived", summary: "the centre at Y_A − r_c sin θ, so that flank and arc share a tangent" },
-        Choice { name: "printed", summary: "the centre at Y_A + r_c sin θ, as equation 20 has it" },
-    ],
-    "Which sign equation 20 has.",
-)
-.default("derived")];
+/// Arc from the base circle down by r_b − r_f, as in zhai2020; it need not meet the root circle.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "arc")]
+pub struct Arc {
+    /// Which sign equation 20 has.
+    #[declared(default = "derived")]
+    pub formulas: Formulas,
+}
+
+/// Which sign equation 20 has.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Formulas {
+    /// the centre at Y_A − r_c sin θ, so that flank and arc share a tangent
+    Derived,
+    /// the centre at Y_A + r_c sin θ, as equation 20 has it
+    Printed,
+}
 
 /// The article's circle with either sign in equation 20.
 #[must_use]
-pub fn circle(base: &Base, printed: bool) -> Circle {
+pub fn circle(base: &Base, formulas: Formulas) -> Circle {
     let circle = base.article_circle();
-    let y = if printed { 2.0 * base.a[1] - circle.centre[1] } else { circle.centre[1] };
+    let y = match formulas {
+        Formulas::Derived => circle.centre[1],
+        Formulas::Printed => 2.0 * base.a[1] - circle.centre[1],
+    };
     Circle { centre: [circle.centre[0], y], ..circle }
 }
 
-fn build(record: &Record, gear: &Gear) -> Result<Toe, GeometryError> {
-    let base = Base::new(gear, "the arc of zhai2020")?;
-    let circle = circle(&base, record.choice("formulas") == "printed");
-    Ok(Toe { segments: base.segments(circle, DOWN_THE_PAGE), form_roll: 0.0 })
+impl Root for Arc {
+    fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
+        let base = Base::new(gear, "the arc of zhai2020")?;
+        let circle = circle(&base, self.formulas);
+        Ok(Toe { segments: base.segments(circle, DOWN_THE_PAGE), form_roll: 0.0 })
+    }
 }

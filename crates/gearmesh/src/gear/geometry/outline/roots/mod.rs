@@ -8,9 +8,12 @@ pub mod optimised_arc;
 pub mod tangent_arc;
 pub mod trochoid;
 
+use std::fmt::Debug;
+
 use super::curve::Segment;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
+use declare::declared::Declared;
 use declare::parameter::Member;
 use declare::record::Record;
 use declare::registry;
@@ -24,11 +27,26 @@ pub struct Toe {
     pub form_roll: f64,
 }
 
+/// A root with its settings: a declared struct, which anybody can make.
+pub trait Root: Debug + Send + Sync {
+    /// The root of a gear, or why it does not exist, with numbers.
+    ///
+    /// # Errors
+    /// When the gear has no such root.
+    fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError>;
+}
+
 /// A family as registered.
 pub struct Family {
     pub member: Member,
-    /// The root of a gear, or why it does not exist, with numbers.
-    pub build: fn(&Record, &Gear) -> Result<Toe, GeometryError>,
+    /// The root, as a record that was decoded by `member` says.
+    pub read: fn(&Record) -> Box<dyn Root>,
+}
+
+impl Family {
+    const fn of<T: Declared + Root + 'static>() -> Self {
+        Self { member: T::MEMBER, read: |record| Box::new(T::read(record)) }
+    }
 }
 
 registry!(Family: trochoid, arc, tangent_arc, optimised_arc);

@@ -9,20 +9,17 @@
 use std::f64::consts::PI;
 
 use super::base_arc::Base;
-use super::{Family, Toe};
+use super::{Family, Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Plain, Problem};
-use declare::parameter::Member;
-use declare::record::Record;
+use declare::Declared;
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "optimised_arc",
-        summary: "Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).",
-        fields: &[],
-    },
-    build,
-};
+pub const FAMILY: Family = Family::of::<OptimisedArc>();
+
+/// Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "optimised_arc")]
+pub struct OptimisedArc {}
 
 /// The best radius.
 ///
@@ -37,9 +34,11 @@ pub fn radius(base: &Base) -> Result<f64, GeometryError> {
     Ok(base.touching_radius().min(middle))
 }
 
-fn build(_record: &Record, gear: &Gear) -> Result<Toe, GeometryError> {
-    let base = Base::new(gear, "the optimised arc")?;
-    let circle = base.tangent_circle(radius(&base)?);
-    let lowest = libm::atan2(circle.centre[1], circle.centre[0]) + PI;
-    Ok(Toe { segments: base.segments(circle, lowest), form_roll: 0.0 })
+impl Root for OptimisedArc {
+    fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
+        let base = Base::new(gear, "the optimised arc")?;
+        let circle = base.tangent_circle(radius(&base)?);
+        let lowest = libm::atan2(circle.centre[1], circle.centre[0]) + PI;
+        Ok(Toe { segments: base.segments(circle, lowest), form_roll: 0.0 })
+    }
 }

@@ -5,40 +5,42 @@
 //! know: other roots.
 
 use super::base_arc::Base;
-use super::{Family, Toe};
+use super::{Family, Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
-use declare::parameter::{Choice, Field, Member};
-use declare::record::Record;
 use declare::units::LENGTH;
+use declare::{Declared, Words};
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "tangent_arc",
-        summary: "Arc tangent to the root circle and to the flank (or the radial line below the base circle).",
-        fields: FIELDS,
-    },
-    build,
-};
+pub const FAMILY: Family = Family::of::<TangentArc>();
 
-const FIELDS: &[Field] = &[
-    Field::choice(
-        "size",
-        &[
-            Choice { name: "base_circle", summary: "the arc begins on the base circle" },
-            Choice { name: "largest", summary: "neighbouring arcs meet in the middle of the space" },
-        ],
-        "How large the arc is, where no radius is given.",
-    )
-    .default("base_circle"),
-    Field::quantity("radius", LENGTH, 0.0, 100.0, "Radius of the arc.").optional(),
-];
+/// Arc tangent to the root circle and to the flank (or the radial line below the base circle).
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "tangent_arc")]
+pub struct TangentArc {
+    /// How large the arc is, where no radius is given.
+    #[declared(default = "base_circle")]
+    pub size: Size,
+    /// Radius of the arc.
+    #[declared(least = 0.0, most = 100.0, dimension = LENGTH)]
+    pub radius: Option<f64>,
+}
 
-fn build(record: &Record, gear: &Gear) -> Result<Toe, GeometryError> {
-    let radius = match (record.maybe_quantity("radius"), record.choice("size")) {
-        (Some(radius), _) => radius,
-        (None, "largest") => gear.largest_fillet(),
-        (None, _) => Base::new(gear, "a tangent arc from the base circle")?.touching_radius(),
-    };
-    Ok(Toe::of(&gear.fillet(radius)?))
+/// How large an arc is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Size {
+    /// the arc begins on the base circle
+    BaseCircle,
+    /// neighbouring arcs meet in the middle of the space
+    Largest,
+}
+
+impl Root for TangentArc {
+    fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
+        let radius = match (self.radius, self.size) {
+            (Some(radius), _) => radius,
+            (None, Size::Largest) => gear.largest_fillet(),
+            (None, Size::BaseCircle) => Base::new(gear, "a tangent arc from the base circle")?.touching_radius(),
+        };
+        Ok(Toe::of(&gear.fillet(radius)?))
+    }
 }
