@@ -11,7 +11,7 @@ use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape};
 use declare::record::{Entry, Record, Value, Variant};
-use declare::units::{parse_quantity, parse_unit, split_quantity};
+use declare::units::{UnitError, parse_quantity, parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -336,9 +336,23 @@ fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
         let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
         return Err(Diagnostic::new(message).at(node.place).help(help));
     }
-    let read = parse_quantity(text).map_err(|_| {
-        let message = format!("{} is not a number with a unit that is known; {name} needs one", quote(text));
-        Diagnostic::new(message).at(node.place).help("units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`")
+    let read = parse_quantity(text).map_err(|error| {
+        let unit = quote(split_quantity(text).1);
+        let (message, help) = match error {
+            UnitError::Ambiguous { readings, .. } => (
+                format!("{unit} in {} can be read in two ways", quote(text)),
+                words::unit_readings(text, &readings, None),
+            ),
+            UnitError::Malformed { why, instead, .. } => (
+                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
+                words::unit_instead(text, instead.as_deref()),
+            ),
+            _ => (
+                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
+                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
+            ),
+        };
+        Diagnostic::new(message).at(node.place).help(help)
     })?;
     let unit = split_quantity(text).1.to_owned();
     Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })

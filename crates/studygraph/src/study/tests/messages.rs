@@ -23,7 +23,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3 m(",
-        "8:13: `m(` in `3 m(` cannot be read as a unit; a length (for example `3 mm`) is expected\n  help: units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`",
+        "8:13: `m(` in `3 m(` cannot be read as a unit: a bracket is not closed; a length (for example `3 mm`) is expected\n  help: units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`",
     ),
     ("module: 3 mm", "module: .nan", "8:13: `.nan` is not finite; a length (for example `3 mm`) is expected"),
     ("module: 3 mm", "module: -.inf", "8:13: `-.inf` is not finite; a length (for example `3 mm`) is expected"),

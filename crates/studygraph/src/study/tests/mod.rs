@@ -6,6 +6,7 @@ mod messages;
 mod notation;
 mod properties;
 mod texts;
+mod units;
 mod values;
 
 use std::path::Path;
