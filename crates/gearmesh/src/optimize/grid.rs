@@ -21,7 +21,7 @@ pub const METHOD: Method = Method {
 
 const FIELDS: &[Field] = &[Field::new(
     "levels",
-    Shape::List(&Shape::Integer { least: 2, most: 100_000 }),
+    Shape::List(&Shape::Integer { least: 2, most: 100_000, multiple: 1 }),
     "number of levels: one for all variables, or one for each",
 )
 .default("11")];

@@ -122,7 +122,9 @@ impl<'a> Decoder<'a> {
                 measure.value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
-            Shape::Integer { least, most } => Value::Integer(integer(name, node, *least, *most)?),
+            Shape::Integer { least, most, multiple } => {
+                Value::Integer(integer(name, node, shape, (*least, *most), *multiple)?)
+            }
             Shape::Flag => match plain(node) {
                 Some("true" | "True" | "TRUE") => Value::Flag(true),
                 Some("false" | "False" | "FALSE") => Value::Flag(false),
@@ -288,8 +290,14 @@ fn plain(node: &Node) -> Option<&str> {
     }
 }
 
-fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagnostic> {
-    let text = scalar(name, node, &Shape::Integer { least, most })?;
+fn integer(
+    name: &str,
+    node: &Node,
+    shape: &Shape,
+    (least, most): (i64, i64),
+    multiple: i64,
+) -> Result<i64, Diagnostic> {
+    let text = scalar(name, node, shape)?;
     let shown = quote(text);
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     let other = notation::help(text);
@@ -317,13 +325,23 @@ fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagno
     let read = text.parse::<i64>();
     if let Ok(value) = read
         && (least..=most).contains(&value)
+        && value % multiple == 0
     {
         return Ok(value);
     }
     // A number that no computer word holds needs both bounds said, even where they are those of the word.
     let admissible = words::integer_range(least, most).filter(|_| read.is_ok());
     let admissible = admissible.unwrap_or_else(|| format!("between {least} and {most}"));
-    Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place))
+    if multiple == 1 {
+        return Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place));
+    }
+    let message = format!("{} must be {} {admissible}, not {shown}", quote(name), words::integer(multiple));
+    let wrong = Diagnostic::new(message).at(node.place);
+    let Ok(value) = read else { return Err(wrong) };
+    let below = value.clamp(least, most).div_euclid(multiple) * multiple;
+    let nearest = if below < value && below < most { vec![below, below + multiple] } else { vec![below] };
+    let nearest: Vec<String> = nearest.iter().map(i64::to_string).collect();
+    Err(wrong.help(format!("write {}", alternatives(nearest.iter().map(String::as_str)))))
 }
 
 fn is_digits(text: &str) -> bool {

@@ -90,6 +90,15 @@ pub fn integer_range(least: i64, most: i64) -> Option<String> {
     }
 }
 
+/// The whole numbers that are multiples of this one.
+pub fn integer(multiple: i64) -> String {
+    match multiple {
+        1 => "a whole number".to_owned(),
+        2 => "an even number".to_owned(),
+        _ => format!("a multiple of {multiple}"),
+    }
+}
+
 /// A quantity that would be accepted.
 pub fn example(dimension: Dimension, least: f64, most: f64) -> Option<String> {
     let (_, units) = dimension.describe();
@@ -157,7 +166,7 @@ pub fn expected(shape: &Shape) -> String {
         Shape::Quantity { dimension, least, most } => measure(Some(*dimension), *least, *most),
         Shape::AnyQuantity => "a number, with its unit if it has one,".to_owned(),
         Shape::Number { least, most } => measure(None, *least, *most),
-        Shape::Integer { .. } => "a whole number".to_owned(),
+        Shape::Integer { multiple, .. } => integer(*multiple),
         Shape::Flag => "`true` or `false`".to_owned(),
         Shape::Text => "text".to_owned(),
         Shape::Choice(choices) => alternatives(choices.iter().map(|choice| choice.name)),

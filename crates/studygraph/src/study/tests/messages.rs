@@ -359,6 +359,21 @@ const CHANGES: &[(&str, &str, &str)] = &[
         "study: a-name-that-is-longer-than-a-folder-of-results-should-have-it-here",
         "1:8: `a-name-that-is-longer-than-a-folder-of-results-should-have-i…` cannot be the name of a study\n  help: lower-case letters, digits, `-` and `_` make a name, at most 64 of them: for example `a-name-that-is-longer-than-a-folder-of-results-should-have-it-he`",
     ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 7",
+        "11:12: `bolts` must be an even number between 4 and 12, not `7`\n  help: write `6` or `8`",
+    ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 3",
+        "11:12: `bolts` must be an even number between 4 and 12, not `3`\n  help: write `4`",
+    ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 900",
+        "11:12: `bolts` must be an even number between 4 and 12, not `900`\n  help: write `12`",
+    ),
 ];
 
 #[test]

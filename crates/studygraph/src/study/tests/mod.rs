@@ -47,6 +47,7 @@ static GEOMETRY: &[Field] = &[
     )
     .default("right"),
     Field::new("note", Shape::Text, "Anything.").optional(),
+    Field::integer("bolts", 4, 12, "Bolts, in pairs.").multiple_of(2).optional(),
 ];
 
 static RELIEF: &[Field] = &[
