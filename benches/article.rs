@@ -1,7 +1,7 @@
 //! What the benches measure on: the study `energy_ga`, its stages run one by one, its pair and its design `ga`.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
 use crate::support::record;
@@ -42,7 +42,11 @@ impl Stages {
 
     /// The stages of another study.
     pub fn of(name: &str) -> Self {
-        let study = program::load(&study_path(name)).unwrap_or_else(|error| panic!("{error}"));
+        Self::at(&study_path(name))
+    }
+
+    pub fn at(path: &Path) -> Self {
+        let study = program::load(path).unwrap_or_else(|error| panic!("{error}"));
         Self { study, tables: BTreeMap::new() }
     }
 

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod article;
+mod designs;
 mod diff;
 mod finite_elements;
 mod geometry;
@@ -28,6 +29,7 @@ fn main() {
     optimize::benches();
     finite_elements::benches();
     storage::benches();
+    designs::benches();
     diff::benches();
     program::benches();
     brief().final_summary();
@@ -35,6 +37,7 @@ fn main() {
         let processes = program::processes();
         accuracy::print();
         finite_elements::print();
+        designs::print();
         summary::print(&processes);
     }
 }

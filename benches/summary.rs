@@ -24,6 +24,7 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("profile/whole gear, 17 teeth x 200 points", 100e-6, "exact points of all teeth, one thread"),
     ("profile/whole gear, 48 teeth x 200 points", 100e-6, "as before"),
     ("profile/sweep of 10,000 designs", 0.5, "pairs with both profiles and every check, one thread"),
+    ("designs/ste of 8,000", 0.8, "one torque, 64 positions, curves and harmonics as tables, all threads"),
     ("ste/curve uncoupled", 20e-6, "64 positions, crowned, both tips relieved, one thread"),
 ];
 

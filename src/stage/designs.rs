@@ -80,14 +80,20 @@ pub fn elements_schema() -> Schema {
 /// The two tables of a list of designs.
 ///
 /// # Errors
-/// When two designs have one name.
+/// When two designs have one name, or a parameter has a value that no row holds.
 pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
     let mut names: Vec<Row> = Vec::new();
     let mut rows: Vec<Row> = Vec::new();
     for (order, design) in designs.iter().enumerate() {
         names.push(vec![design.name.as_str().into(), (order + 1).into(), design.elements.len().into()]);
         for (index, element) in design.elements.iter().enumerate() {
-            for (parameter, value, word) in flattened("", &element.record) {
+            let mut flat = Vec::new();
+            flatten("", &element.record, &mut flat).map_err(|problem| TableError::Column {
+                table: "elements".to_owned(),
+                column: "value".to_owned(),
+                problem: format!("design `{}`, {}: {problem}", design.name, element.family),
+            })?;
+            for (parameter, value, word) in flat {
                 rows.push(vec![
                     design.name.as_str().into(),
                     (index + 1).into(),
@@ -105,32 +111,51 @@ pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
 /// How many rows of the table of elements a modification takes, ranges among its parameters included.
 #[must_use]
 pub fn rows_of(element: &Element) -> usize {
-    fn rows(record: &Record) -> usize {
-        let row = |(_, entry): &(&'static str, Entry)| match &entry.value {
-            Value::Group(record) => rows(record),
+    fn rows(value: &Value) -> usize {
+        match value {
+            Value::Group(record) => of(record),
+            Value::List(items) => 1 + items.iter().map(|item| rows(&item.value)).sum::<usize>(),
             _ => 1,
-        };
-        record.fields.iter().map(row).sum()
-    }
-    rows(&element.record)
-}
-
-fn flattened(prefix: &str, record: &Record) -> Vec<(String, f64, String)> {
-    let mut flat = Vec::new();
-    for (name, entry) in &record.fields {
-        let name = format!("{prefix}{name}");
-        match &entry.value {
-            Value::Quantity(value) | Value::Number(value) => flat.push((name, *value, String::new())),
-            Value::Integer(value) => flat.push((name, *value as f64, String::new())),
-            Value::Flag(value) => flat.push((name, f64::from(u8::from(*value)), String::new())),
-            Value::Choice(word) => flat.push((name, f64::NAN, (*word).to_owned())),
-            Value::Text(word) => flat.push((name, f64::NAN, word.clone())),
-            Value::Group(record) => flat.extend(flattened(&format!("{name}."), record)),
-            // Ranges are replaced before a design is written; the other shapes do not occur in a family.
-            _ => {}
         }
     }
-    flat
+    fn of(record: &Record) -> usize {
+        record.fields.iter().map(|(_, entry)| rows(&entry.value)).sum()
+    }
+    of(&element.record)
+}
+
+/// A row of a parameter: its name, its number, its word.
+type Flat = (String, f64, String);
+
+fn flatten(prefix: &str, record: &Record, flat: &mut Vec<Flat>) -> Result<(), String> {
+    record.fields.iter().try_for_each(|(name, entry)| flatten_value(format!("{prefix}{name}"), &entry.value, flat))
+}
+
+fn flatten_value(name: String, value: &Value, flat: &mut Vec<Flat>) -> Result<(), String> {
+    match value {
+        Value::Quantity(value) | Value::Number(value) => flat.push((name, *value, String::new())),
+        Value::Integer(value) => flat.push((name, *value as f64, String::new())),
+        Value::Flag(value) => flat.push((name, f64::from(u8::from(*value)), String::new())),
+        Value::Choice(word) => flat.push((name, f64::NAN, (*word).to_owned())),
+        Value::Text(word) => flat.push((name, f64::NAN, word.clone())),
+        Value::Group(record) => flatten(&format!("{name}."), record, flat)?,
+        // The length has a row of its own, so that an empty list comes back as one.
+        Value::List(items) => {
+            flat.push((name.clone(), items.len() as f64, String::new()));
+            for (item, place) in items.iter().zip(1..) {
+                flatten_value(format!("{name}[{place}]"), &item.value, flat)?;
+            }
+        }
+        // Ranges are replaced before a design is written. What no row holds must not vanish without a word.
+        Value::Range(..)
+        | Value::AnyQuantity { .. }
+        | Value::Axis(_)
+        | Value::Reference(_)
+        | Value::Map(_)
+        | Value::Member(..)
+        | Value::Variant(_) => return Err(format!("no row of a table holds the value of `{name}`: {value:?}")),
+    }
+    Ok(())
 }
 
 /// The rows of a table of elements by design and place in the design.
@@ -178,31 +203,49 @@ fn rebuilt<'a>(
 ) -> Result<Record, Failure> {
     let mut record = Record::default();
     for field in fields {
-        let name = format!("{prefix}{}", field.name);
-        let value = match (&field.shape, lookup(&name)) {
-            (Shape::Group(inner), _) => {
-                let inner = rebuilt(&format!("{name}."), inner, lookup)?;
-                (!inner.fields.is_empty()).then_some(Value::Group(inner))
-            }
-            (_, None) => None,
-            (Shape::Choice(choices), Some((_, word))) => {
-                let choice = choices.iter().find(|choice| choice.name == word);
-                let choice = choice.ok_or_else(|| Failure::new(format!("`{word}` is no value of `{name}`")))?;
-                Some(Value::Choice(choice.name))
-            }
-            (Shape::Quantity { .. }, Some((value, _))) => Some(Value::Quantity(value)),
-            (Shape::Number { .. }, Some((value, _))) => Some(Value::Number(value)),
-            // Whole by construction and far below 2^53.
-            #[allow(clippy::cast_possible_truncation)]
-            (Shape::Integer { .. }, Some((value, _))) => Some(Value::Integer(value as i64)),
-            (Shape::Flag, Some((value, _))) => Some(Value::Flag(value != 0.0)),
-            (_, Some((_, word))) => Some(Value::Text(word.to_owned())),
-        };
-        if let Some(value) = value {
+        if let Some(value) = rebuilt_value(&format!("{prefix}{}", field.name), &field.shape, lookup)? {
             record.fields.push((field.name, Entry { value, place: Place::default() }));
         }
     }
     Ok(record)
+}
+
+fn rebuilt_value<'a>(
+    name: &str,
+    shape: &Shape,
+    lookup: &impl Fn(&str) -> Option<(f64, &'a str)>,
+) -> Result<Option<Value>, Failure> {
+    Ok(match (shape, lookup(name)) {
+        (Shape::Group(inner), _) => {
+            let inner = rebuilt(&format!("{name}."), inner, lookup)?;
+            (!inner.fields.is_empty()).then_some(Value::Group(inner))
+        }
+        (_, None) => None,
+        // A length by construction.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        (Shape::List(item), Some((length, _))) => {
+            let mut items = Vec::new();
+            for place in 1..=length as usize {
+                let name = format!("{name}[{place}]");
+                let value = rebuilt_value(&name, item, lookup)?;
+                let value = value.ok_or_else(|| Failure::new(format!("`{name}` has no row")))?;
+                items.push(Entry { value, place: Place::default() });
+            }
+            Some(Value::List(items))
+        }
+        (Shape::Choice(choices), Some((_, word))) => {
+            let choice = choices.iter().find(|choice| choice.name == word);
+            let choice = choice.ok_or_else(|| Failure::new(format!("`{word}` is no value of `{name}`")))?;
+            Some(Value::Choice(choice.name))
+        }
+        (Shape::Quantity { .. }, Some((value, _))) => Some(Value::Quantity(value)),
+        (Shape::Number { .. }, Some((value, _))) => Some(Value::Number(value)),
+        // Whole by construction and far below 2^53.
+        #[allow(clippy::cast_possible_truncation)]
+        (Shape::Integer { .. }, Some((value, _))) => Some(Value::Integer(value as i64)),
+        (Shape::Flag, Some((value, _))) => Some(Value::Flag(value != 0.0)),
+        (_, Some((_, word))) => Some(Value::Text(word.to_owned())),
+    })
 }
 
 #[cfg(test)]
@@ -236,5 +279,49 @@ mod tests {
         let families = [Member { name: "relief", summary: "", fields: FIELDS }];
         assert_eq!(read(&names, &rows, &families).unwrap(), designs);
         assert!(read(&names, &rows, &[]).is_err());
+    }
+
+    const POINT: &[Field] = &[Field::number("x", 0.0, 9.0, ""), Field::integer("y", 0, 9, "").optional()];
+    const LISTS: &[Field] = &[
+        Field::new("depths", Shape::List(&Shape::Quantity { dimension: LENGTH, least: 0.0, most: 1.0 }), ""),
+        Field::new("points", Shape::List(&Shape::Group(POINT)), "").optional(),
+    ];
+
+    fn entry(value: Value) -> Entry {
+        Entry { value, place: Place::default() }
+    }
+
+    fn record(fields: Vec<(&'static str, Entry)>) -> Record {
+        Record { fields, place: Place::default() }
+    }
+
+    fn design(name: &str, fields: Vec<(&'static str, Entry)>) -> NamedDesign {
+        NamedDesign { name: name.into(), elements: vec![Element { family: "curve", record: record(fields) }] }
+    }
+
+    #[test]
+    fn lists_come_back_as_they_were_even_empty_ones() {
+        let list = |values: Vec<Value>| entry(Value::List(values.into_iter().map(entry).collect()));
+        let depths = |count: u32| list((0..count).map(|at| Value::Quantity(f64::from(at) * 1e-6)).collect());
+        let point = |x: f64, y: Option<i64>| {
+            let y = y.map(|y| ("y", entry(Value::Integer(y))));
+            Value::Group(record([("x", entry(Value::Number(x)))].into_iter().chain(y).collect()))
+        };
+        let points = list(vec![point(1.0, None), point(2.0, Some(3))]);
+        let designs = vec![
+            design("many", vec![("depths", depths(12)), ("points", points)]),
+            design("none", vec![("depths", depths(0))]),
+        ];
+        let [names, rows] = write(&designs).unwrap();
+        assert_eq!(rows.rows(), designs.iter().map(|design| rows_of(&design.elements[0])).sum::<usize>());
+        let families = [Member { name: "curve", summary: "", fields: LISTS }];
+        assert_eq!(read(&names, &rows, &families).unwrap(), designs);
+    }
+
+    #[test]
+    fn what_no_row_holds_is_an_error_and_not_dropped() {
+        let refused = write(&[design("a", vec![("amount", entry(Value::Range(0.0, 1.0)))])]).unwrap_err().to_string();
+        let said = "design `a`, curve: no row of a table holds the value of `amount`";
+        assert!(refused.contains(said), "{refused}");
     }
 }

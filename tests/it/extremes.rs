@@ -236,7 +236,7 @@ stages:
     pinion: {{ {pinion} }}
     gear: {{ {gear} }}
   k: &k {{ kind: stiffness, pair: pair, method: {FINITE_ELEMENT}, contact: load_dependent, torque: 20 N m }}
-  finer: {{ <<: *k, method: {{ finite_element: {{ elements_across: 9 }} }} }}
+  finer: {{ <<: *k, method: {{ finite_element: {{ elements_across: 10 }} }} }}
   designs:
     kind: modification
     pair: pair

@@ -34,9 +34,10 @@ fn read(shape: &Shape, text: &str) -> Value {
             assert!((*least..=*most).contains(&value), "the default {value} is outside {least}..={most}");
             Value::Number(value)
         }
-        Shape::Integer { least, most } => {
-            let value = text.parse().unwrap();
+        Shape::Integer { least, most, multiple } => {
+            let value: i64 = text.parse().unwrap();
             assert!((*least..=*most).contains(&value), "the default {value} is outside {least}..={most}");
+            assert_eq!(value % multiple, 0, "the default {value} is no multiple of {multiple}");
             Value::Integer(value)
         }
         Shape::Choice(choices) => {

@@ -18,6 +18,7 @@ struct Marks {
     dimension: Option<Expr>,
     default: Option<LitStr>,
     axis: Option<Expr>,
+    multiple: Option<Expr>,
     range: bool,
 }
 
@@ -33,8 +34,13 @@ impl Marks {
                     "dimension" => marks.dimension = Some(meta.value()?.parse()?),
                     "default" => marks.default = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
+                    "multiple" => marks.multiple = Some(meta.value()?.parse()?),
                     "range" => marks.range = true,
-                    _ => return Err(meta.error("it is `least`, `most`, `dimension`, `default`, `axis` or `range`")),
+                    _ => {
+                        return Err(
+                            meta.error("it is `least`, `most`, `multiple`, `dimension`, `default`, `axis` or `range`")
+                        );
+                    }
                 }
                 Ok(())
             })?;
@@ -220,8 +226,11 @@ fn kind(ty: &Type, marks: &Marks, owner: &Ident) -> Result<Kind, Error> {
         "u8" | "u16" | "u32" | "u64" | "usize" | "i8" | "i16" | "i32" | "i64" => {
             let (least, most) = marks.bounds(owner)?;
             let fits = format!("every value of `{owner}` fits its type");
+            let multiple = marks.multiple.as_ref().map_or_else(|| quote!(1), |multiple| quote!(#multiple));
             Kind {
-                shape: quote!(::declare::parameter::Shape::Integer { least: #least, most: #most }),
+                shape: quote!(::declare::parameter::Shape::Integer {
+                    least: #least, most: #most, multiple: #multiple
+                }),
                 read: quote!(::declare::declared::integer::<#ty>(value)),
                 write: quote!(::declare::declared::of_integer(*value)),
                 proof: quote!(

@@ -110,8 +110,11 @@ fn check_value(value: &Value, shape: &Shape, name: &str) -> Result<(), Diagnosti
         {
             outside(value.to_string(), least.to_string(), most.to_string())
         }
-        (Value::Integer(value), Shape::Integer { least, most }) if !(*least..=*most).contains(value) => {
+        (Value::Integer(value), Shape::Integer { least, most, .. }) if !(*least..=*most).contains(value) => {
             outside(value.to_string(), least.to_string(), most.to_string())
+        }
+        (Value::Integer(value), Shape::Integer { multiple, .. }) if value % multiple != 0 => {
+            Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be multiples of {multiple}")))
         }
         (Value::Group(record), Shape::Group(fields)) => check(record, fields),
         (Value::List(items), Shape::List(item)) => {

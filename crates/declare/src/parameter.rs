@@ -25,6 +25,8 @@ pub enum Shape {
     Integer {
         least: i64,
         most: i64,
+        /// Only multiples of this, 1 for all: two numbers that mean the same would be two keys of one result.
+        multiple: i64,
     },
     Flag,
     Text,
@@ -147,7 +149,16 @@ impl Field {
 
     #[must_use]
     pub const fn integer(name: &'static str, least: i64, most: i64, summary: &'static str) -> Self {
-        Self::new(name, Shape::Integer { least, most }, summary)
+        Self::new(name, Shape::Integer { least, most, multiple: 1 }, summary)
+    }
+
+    /// An integer of which only the multiples of `of` are taken; both its bounds are among them.
+    #[must_use]
+    pub const fn multiple_of(mut self, of: i64) -> Self {
+        let Shape::Integer { least, most, .. } = self.shape else { panic!("only an integer has multiples") };
+        assert!(least % of == 0 && most % of == 0, "the bounds are multiples");
+        self.shape = Shape::Integer { least, most, multiple: of };
+        self
     }
 
     #[must_use]

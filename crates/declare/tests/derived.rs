@@ -34,7 +34,7 @@ struct Ends {
 #[declared(name = "toy")]
 struct Toy {
     /// individuals
-    #[declared(least = 2, most = 100, default = "10")]
+    #[declared(least = 2, most = 100, multiple = 2, default = "10")]
     pub population: u32,
     /// first step
     #[declared(least = 0.0, most = 1e-3, dimension = LENGTH, default = "30 um", range)]
@@ -67,17 +67,17 @@ fn a_struct_declares_what_a_table_of_fields_would() {
     let names: Vec<_> = member.fields.iter().map(|field| field.name).collect();
     assert_eq!(names, ["population", "step", "start", "patience", "levels", "ends"]);
     let by_hand = [
-        Field::integer("population", 2, 100, "individuals").default("10"),
+        Field::integer("population", 2, 100, "individuals").multiple_of(2).default("10"),
         Field::quantity("step", LENGTH, 0.0, 1e-3, "first step").default("30 um").range(),
     ];
     for (derived, by_hand) in member.fields.iter().zip(&by_hand) {
         assert_eq!((derived.name, derived.summary), (by_hand.name, by_hand.summary));
         assert!(derived.presence == by_hand.presence && derived.span == by_hand.span && !derived.chooses);
     }
-    assert!(matches!(member.fields[0].shape, Shape::Integer { least: 2, most: 100 }));
+    assert!(matches!(member.fields[0].shape, Shape::Integer { least: 2, most: 100, multiple: 2 }));
     assert!(matches!(member.fields[1].shape, Shape::Quantity { dimension: LENGTH, least: 0.0, most: 1e-3 }));
     assert!(matches!(member.fields[3].presence, Presence::Optional) && member.fields[3].span == Span::Single);
-    assert!(matches!(member.fields[4].shape, Shape::List(Shape::Integer { least: 2, most: 50 })));
+    assert!(matches!(member.fields[4].shape, Shape::List(Shape::Integer { least: 2, most: 50, multiple: 1 })));
     assert!(matches!(member.fields[5].shape, Shape::Group(fields) if fields[0].name == "both"));
     let Shape::Choice(choices) = member.fields[2].shape else { panic!("words") };
     let choices: Vec<_> = choices.iter().map(|choice| (choice.name, choice.summary)).collect();
@@ -114,6 +114,8 @@ fn a_number_outside_its_range_is_refused() {
     assert_eq!(refused(Toy::default()), None);
     let few = Toy { population: 1, ..Toy::default() };
     assert_eq!(refused(few).as_deref(), Some("`population` is 1; it may be 2 to 100"));
+    let odd = Toy { population: 7, ..Toy::default() };
+    assert_eq!(refused(odd).as_deref(), Some("`population` is 7; it may be multiples of 2"));
     let long = Toy { step: f64::NAN, ..Toy::default() };
     assert_eq!(refused(long).as_deref(), Some("`step` is NaN; it may be 0 to 0.001"));
     let level = Toy { levels: vec![5, 51], ..Toy::default() };

@@ -11,7 +11,10 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use self::tables::{cost_row, cost_schema, curve_columns, curve_schema, harmonics_schema, summary_row, summary_schema};
+use self::tables::{
+    Keyed, cost_row, cost_schema, curve_columns, curve_schema, harmonics_columns, harmonics_schema, summary_row,
+    summary_schema,
+};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape, count, joined};
@@ -257,14 +260,11 @@ impl Stage for Ste {
             })
             .collect::<Result<_, Failure>>()?;
 
-        let (mut summaries, mut harmonics, mut costs): (Vec<Row>, Vec<Row>, Vec<Row>) = Default::default();
+        let (mut summaries, mut costs): (Vec<Row>, Vec<Row>) = Default::default();
         for (&(design, torque), answer) in answered.iter().zip(&answers) {
             let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
             summaries.push([key(), summary_row(answer, summary_pressure)].concat());
             costs.push([key(), cost_row(answer)].concat());
-            for (index, amplitude) in answer.summary.harmonics.iter().enumerate() {
-                harmonics.push([key(), vec![(index + 1).into(), in_unit(*amplitude, "um").into()]].concat());
-            }
             let (largest, module) = (answer.summary.largest.value, pair.pinion.specification.module);
             if largest > LARGE_APPROACH * module {
                 (context.warn)(format!(
@@ -287,15 +287,18 @@ impl Stage for Ste {
                 _ => (),
             }
         }
-        let keys: Vec<(&str, f64)> =
-            answered.iter().map(|&(design, torque)| (designs[design].1.as_str(), torque)).collect();
-        let curves = curve_columns(&keys, &answers, curve_pressure);
+        // Sorted while they are few: a table sorts by comparing the texts of every row.
+        let mut keyed: Vec<Keyed> = (answered.iter().zip(&answers))
+            .map(|(&(design, torque), answer)| (designs[design].1.as_str(), torque, answer))
+            .collect();
+        keyed.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
+        let (curves, harmonics) = rayon::join(|| curve_columns(&keyed, curve_pressure), || harmonics_columns(&keyed));
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
         let mut tables = vec![
             Table::from_rows(narrowed(summary_schema()), summaries).map_err(failed)?,
             Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
-            Table::from_rows(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
+            Table::from_columns(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
         ];
         if context.demand.table("cost") {
             tables.push(Table::from_rows(cost_schema(), costs).map_err(failed)?);

@@ -177,8 +177,9 @@ fn gather(fields: &'static [Field], record: &Record, path: &mut Vec<&'static str
         let Some(field) = fields.iter().find(|field| field.name == *name) else { continue };
         path.push(name);
         match (&field.shape, &entry.value) {
-            (Shape::Integer { least, .. }, Value::Integer(value)) => visit(path, entry.place, &|fits| {
-                Some(format!(": {}", rounded(largest(*least, *value, &|value| fits(Value::Integer(value)))?, *least)))
+            (Shape::Integer { least, multiple, .. }, Value::Integer(value)) => visit(path, entry.place, &|fits| {
+                let found = largest(*least, *value, &|value| fits(Value::Integer(value)))?;
+                Some(format!(": {}", rounded(found, *least) / multiple * multiple))
             }),
             (_, Value::Axis(values)) => visit(path, entry.place, &|fits| {
                 let most = i64::try_from(values.len()).ok()?;

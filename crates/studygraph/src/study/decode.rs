@@ -11,7 +11,7 @@ use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape};
 use declare::record::{Entry, Record, Value, Variant};
-use declare::units::{parse_quantity, parse_unit, split_quantity};
+use declare::units::{UnitError, parse_quantity, parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
 #[derive(Clone, Debug)]
@@ -122,7 +122,9 @@ impl<'a> Decoder<'a> {
                 measure.value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
-            Shape::Integer { least, most } => Value::Integer(integer(name, node, *least, *most)?),
+            Shape::Integer { least, most, multiple } => {
+                Value::Integer(integer(name, node, shape, (*least, *most), *multiple)?)
+            }
             Shape::Flag => match plain(node) {
                 Some("true" | "True" | "TRUE") => Value::Flag(true),
                 Some("false" | "False" | "FALSE") => Value::Flag(false),
@@ -288,8 +290,14 @@ fn plain(node: &Node) -> Option<&str> {
     }
 }
 
-fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagnostic> {
-    let text = scalar(name, node, &Shape::Integer { least, most })?;
+fn integer(
+    name: &str,
+    node: &Node,
+    shape: &Shape,
+    (least, most): (i64, i64),
+    multiple: i64,
+) -> Result<i64, Diagnostic> {
+    let text = scalar(name, node, shape)?;
     let shown = quote(text);
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     let other = notation::help(text);
@@ -317,13 +325,23 @@ fn integer(name: &str, node: &Node, least: i64, most: i64) -> Result<i64, Diagno
     let read = text.parse::<i64>();
     if let Ok(value) = read
         && (least..=most).contains(&value)
+        && value % multiple == 0
     {
         return Ok(value);
     }
     // A number that no computer word holds needs both bounds said, even where they are those of the word.
     let admissible = words::integer_range(least, most).filter(|_| read.is_ok());
     let admissible = admissible.unwrap_or_else(|| format!("between {least} and {most}"));
-    Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place))
+    if multiple == 1 {
+        return Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place));
+    }
+    let message = format!("{} must be {} {admissible}, not {shown}", quote(name), words::integer(multiple));
+    let wrong = Diagnostic::new(message).at(node.place);
+    let Ok(value) = read else { return Err(wrong) };
+    let below = value.clamp(least, most).div_euclid(multiple) * multiple;
+    let nearest = if below < value && below < most { vec![below, below + multiple] } else { vec![below] };
+    let nearest: Vec<String> = nearest.iter().map(i64::to_string).collect();
+    Err(wrong.help(format!("write {}", alternatives(nearest.iter().map(String::as_str)))))
 }
 
 fn is_digits(text: &str) -> bool {
@@ -336,9 +354,23 @@ fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
         let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
         return Err(Diagnostic::new(message).at(node.place).help(help));
     }
-    let read = parse_quantity(text).map_err(|_| {
-        let message = format!("{} is not a number with a unit that is known; {name} needs one", quote(text));
-        Diagnostic::new(message).at(node.place).help("units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`")
+    let read = parse_quantity(text).map_err(|error| {
+        let unit = quote(split_quantity(text).1);
+        let (message, help) = match error {
+            UnitError::Ambiguous { readings, .. } => (
+                format!("{unit} in {} can be read in two ways", quote(text)),
+                words::unit_readings(text, &readings, None),
+            ),
+            UnitError::Malformed { why, instead, .. } => (
+                format!("{unit} in {} cannot be read as a unit: {why}", quote(text)),
+                words::unit_instead(text, instead.as_deref()),
+            ),
+            _ => (
+                format!("{} is not a number with a unit that is known; {name} needs one", quote(text)),
+                "units are written like `um`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
+            ),
+        };
+        Diagnostic::new(message).at(node.place).help(help)
     })?;
     let unit = split_quantity(text).1.to_owned();
     Ok(Value::AnyQuantity { value: read.value + 0.0, dimension: read.dimension, unit })

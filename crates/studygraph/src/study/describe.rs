@@ -95,7 +95,9 @@ fn holds(shape: &Shape) -> String {
         }
         Shape::AnyQuantity => "a number, with or without a unit".to_owned(),
         Shape::Number { least, most } => with_range("a plain number", words::range(*least, *most, words::number)),
-        Shape::Integer { least, most } => with_range("a whole number", words::integer_range(*least, *most)),
+        Shape::Integer { least, most, multiple } => {
+            with_range(&words::integer(*multiple), words::integer_range(*least, *most))
+        }
         Shape::Flag => "true or false".to_owned(),
         Shape::Text => "text".to_owned(),
         Shape::Choice(_) => "one of these words".to_owned(),

@@ -103,10 +103,18 @@ impl Measure<'_> {
                     None => suggest(&symbol, own.iter().copied()),
                 })
             }
-            UnitError::Malformed(unit) => {
+            UnitError::Malformed { unit, why, instead } => {
+                let message = format!(
+                    "{} in {shown} cannot be read as a unit: {why}; {} is expected",
+                    quote(&unit),
+                    self.expected()
+                );
+                Diagnostic::new(message).help(words::unit_instead(text, instead.as_deref()))
+            }
+            UnitError::Ambiguous { unit, readings } => {
                 let message =
-                    format!("{} in {shown} cannot be read as a unit; {} is expected", quote(&unit), self.expected());
-                Diagnostic::new(message).help("units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`")
+                    format!("{} in {shown} can be read in two ways; {} is expected", quote(&unit), self.expected());
+                Diagnostic::new(message).help(words::unit_readings(text, &readings, self.dimension))
             }
             UnitError::NotFinite => {
                 Diagnostic::new(format!("{shown} is too large a number; {} is expected", self.expected()))

@@ -141,13 +141,16 @@ impl Families {
             Shape::Quantity { dimension, least, most } => spread(&quantity(*dimension, *least, *most), field, chooses),
             Shape::Number { least, most } => spread(&bounded("number", *least, *most), field, chooses),
             Shape::AnyQuantity => json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") }),
-            Shape::Integer { least, most } => {
+            Shape::Integer { least, most, multiple } => {
                 let mut integer = json!({ "type": "integer" });
                 if *least != i64::MIN {
                     integer["minimum"] = json!(least);
                 }
                 if *most != i64::MAX {
                     integer["maximum"] = json!(most);
+                }
+                if *multiple != 1 {
+                    integer["multipleOf"] = json!(multiple);
                 }
                 integer
             }

@@ -3,7 +3,7 @@
 //! Values come in SI and are shown in the unit in which they are shortest. Must not know: YAML, stages.
 
 use declare::parameter::{Field, Shape};
-use declare::units::{Dimension, RATIO, in_unit};
+use declare::units::{Dimension, RATIO, in_unit, parse_unit, split_quantity};
 
 /// Characters of a user's text that a message repeats.
 const LONGEST_QUOTE: usize = 60;
@@ -90,6 +90,15 @@ pub fn integer_range(least: i64, most: i64) -> Option<String> {
     }
 }
 
+/// The whole numbers that are multiples of this one.
+pub fn integer(multiple: i64) -> String {
+    match multiple {
+        1 => "a whole number".to_owned(),
+        2 => "an even number".to_owned(),
+        _ => format!("a multiple of {multiple}"),
+    }
+}
+
 /// A quantity that would be accepted.
 pub fn example(dimension: Dimension, least: f64, most: f64) -> Option<String> {
     let (_, units) = dimension.describe();
@@ -111,6 +120,33 @@ fn with_unit(amount: &str, unit: &str, dimension: Dimension, least: f64, most: f
     (read.dimension == dimension && (least..=most).contains(&read.value) && amount.len() < 20).then_some(text)
 }
 
+/// What to write instead of a quantity whose unit cannot be read.
+pub fn unit_instead(text: &str, instead: Option<&str>) -> String {
+    match (instead, split_quantity(text).0) {
+        (Some(unit), number) if number.len() < 20 => format!("write `{number} {unit}`"),
+        (Some(unit), _) => format!("write the unit as `{unit}`"),
+        (None, _) => "units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`".to_owned(),
+    }
+}
+
+/// What to write instead of a quantity whose unit can be read in two ways: both, or the one that is wanted.
+pub fn unit_readings(text: &str, readings: &[String; 2], wanted: Option<Dimension>) -> String {
+    const LONGEST: usize = 60;
+    let fits = |unit: &str| wanted.is_none_or(|wanted| parse_unit(unit).is_ok_and(|unit| unit.dimension == wanted));
+    let offered = match readings.each_ref().map(|unit| fits(unit)) {
+        [true, false] => &readings[..1],
+        [false, true] => &readings[1..],
+        _ => readings,
+    };
+    if readings.iter().any(|unit| unit.len() > LONGEST) {
+        return "put what it is divided by in brackets, as in `N/(mm um)`".to_owned();
+    }
+    match (offered, split_quantity(text).0) {
+        ([unit], number) if number.len() < 20 => format!("write `{number} {unit}`"),
+        _ => format!("write the unit as {}", alternatives(offered.iter().map(String::as_str))),
+    }
+}
+
 /// What a number must be: `` a length (for example `3 mm`) ``; no dimension means a plain number.
 pub fn measure(dimension: Option<Dimension>, least: f64, most: f64) -> String {
     match dimension {
@@ -130,7 +166,7 @@ pub fn expected(shape: &Shape) -> String {
         Shape::Quantity { dimension, least, most } => measure(Some(*dimension), *least, *most),
         Shape::AnyQuantity => "a number, with its unit if it has one,".to_owned(),
         Shape::Number { least, most } => measure(None, *least, *most),
-        Shape::Integer { .. } => "a whole number".to_owned(),
+        Shape::Integer { multiple, .. } => integer(*multiple),
         Shape::Flag => "`true` or `false`".to_owned(),
         Shape::Text => "text".to_owned(),
         Shape::Choice(choices) => alternatives(choices.iter().map(|choice| choice.name)),

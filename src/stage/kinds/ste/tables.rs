@@ -133,21 +133,29 @@ pub fn cost_row(answer: &Answer) -> Row {
     ]
 }
 
-/// By columns, not rows: curves are by far the longest tables.
-pub fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -> Vec<Data> {
-    let keyed = || keys.iter().zip(answers).flat_map(|(key, answer)| answer.points.iter().map(move |_| *key));
-    let points = || answers.iter().flat_map(|answer| &answer.points);
+/// Design, torque, and what they gave.
+pub type Keyed<'a> = (&'a str, f64, &'a Answer);
+
+/// By columns, not rows: curves are by far the longest tables. In the order of the keys, or the table sorts every row.
+pub fn curve_columns(answers: &[Keyed], pressure: bool) -> Vec<Data> {
+    let points = || answers.iter().flat_map(|(.., answer)| &answer.points);
+    let rows = answers.iter().map(|(.., answer)| answer.points.len()).sum();
     let shown = |unit: &str, value: fn(&Point) -> f64| {
         let show = showing(unit);
-        Data::Float(points().map(|point| show(value(point))).collect())
+        let mut values = Vec::with_capacity(rows);
+        values.extend(points().map(|point| show(value(point))));
+        Data::Float(values)
     };
     let counted = |value: fn(usize, &Point) -> usize| {
-        let values = answers.iter().flat_map(|answer| answer.points.iter().enumerate());
-        Data::Integer(values.map(|(index, point)| i64::try_from(value(index, point)).unwrap_or(i64::MAX)).collect())
+        let counts = answers.iter().flat_map(|(.., answer)| answer.points.iter().enumerate());
+        let mut values = Vec::with_capacity(rows);
+        values.extend(counts.map(|(index, point)| i64::try_from(value(index, point)).unwrap_or(i64::MAX)));
+        Data::Integer(values)
     };
+    let [designs, torques] = key_columns(answers, |answer| answer.points.len());
     let mut columns = vec![
-        Data::Text(keyed().map(|key| key.0.to_owned()).collect()),
-        Data::Float(keyed().map(|key| key.1).collect()),
+        designs,
+        torques,
         counted(|index, _| index + 1),
         shown("mm", |point| point.cycle_position),
         shown("deg", |point| point.roll_angle),
@@ -166,4 +174,28 @@ pub fn curve_columns(keys: &[(&str, f64)], answers: &[Answer], pressure: bool) -
         columns.push(shown("MPa", |point| point.pressure.unwrap_or(f64::NAN)));
     }
     columns
+}
+
+/// By columns, as the curves.
+pub fn harmonics_columns(answers: &[Keyed]) -> Vec<Data> {
+    let [designs, torques] = key_columns(answers, |answer| answer.summary.harmonics.len());
+    let harmonics = || answers.iter().flat_map(|(.., answer)| answer.summary.harmonics.iter().zip(1..));
+    let show = showing("um");
+    vec![
+        designs,
+        torques,
+        Data::Integer(harmonics().map(|(_, order)| order).collect()),
+        Data::Float(harmonics().map(|(amplitude, _)| show(*amplitude)).collect()),
+    ]
+}
+
+/// Design and torque of every row, where each answer has so many.
+fn key_columns(answers: &[Keyed], rows: fn(&Answer) -> usize) -> [Data; 2] {
+    let room = answers.iter().map(|(.., answer)| rows(answer)).sum();
+    let (mut designs, mut torques) = (Vec::with_capacity(room), Vec::with_capacity(room));
+    for (design, torque, answer) in answers {
+        designs.extend(std::iter::repeat_n(*design, rows(answer)).map(str::to_owned));
+        torques.extend(std::iter::repeat_n(*torque, rows(answer)));
+    }
+    [Data::Text(designs), Data::Float(torques)]
 }

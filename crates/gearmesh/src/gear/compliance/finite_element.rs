@@ -41,9 +41,10 @@ const FIELDS: &[Field] = &[
         "elements_across",
         6,
         64,
-        "elements across a tooth, taken as an even number; all other sizes follow from it; where an accuracy is wanted, \
-         from how many on",
+        "elements across a tooth, an even number; all other sizes follow from it; where an accuracy is wanted, from how \
+         many on",
     )
+    .multiple_of(2)
     .default("16"),
 ];
 

@@ -54,7 +54,7 @@ const FIELDS: &[Field] = &[
     Field::choice("minimize", OBJECTIVES, "what is to be small").default("stress"),
     Field::choice("load", LOADS, "where the load acts").default("single_contact"),
     Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
-    Field::integer("elements_across", 6, 64, "elements across a tooth, taken as an even number").default("12"),
+    Field::integer("elements_across", 6, 64, "elements across a tooth, an even number").multiple_of(2).default("12"),
 ];
 
 const ROOTS: &[Choice] = &[

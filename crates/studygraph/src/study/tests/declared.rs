@@ -58,6 +58,7 @@ fn accepts(root: &Value, schema: &Value, value: &Value) -> bool {
             .is_none_or(|items| value.as_array().is_none_or(|all| all.iter().all(|item| accepts(root, items, item))))
         && at_least("minimum", value.as_f64())
         && at_most("maximum", value.as_f64())
+        && schema["multipleOf"].as_i64().zip(value.as_i64()).is_none_or(|(of, value)| value % of == 0)
         && (!value.is_object() || at_least("minProperties", Some(count)) && at_most("maxProperties", Some(count)))
         && (!value.is_array() || at_least("minItems", Some(count)) && at_most("maxItems", Some(count)))
 }
@@ -76,7 +77,7 @@ fn the_schema_accepts_what_the_reader_accepts() {
         changed("amount: [0 um, 8 um]", "amount: 8 um"),
         changed("plain: []", "plain: nothing"),
         changed("plain: []", "plain: [nothing: ]"),
-        changed("overlap: 12.5 %", "overlap: 0.125\n    side: left\n    ground: true\n    note: 7"),
+        changed("overlap: 12.5 %", "overlap: 0.125\n    bolts: 6\n    side: left\n    ground: true\n    note: 7"),
     ] {
         assert!(load(&text).is_ok(), "{text}");
         assert!(fits(&text), "{text}");
@@ -100,6 +101,7 @@ fn the_schema_refuses_what_an_editor_should_underline() {
         ("{ addendum: 1.25 }", "{ dedendum: 1 }"),
         ("teeth: 19", "teeth: 19.5"),
         ("teeth: 19", "teeth: 3"),
+        ("overlap: 12.5 %", "bolts: 7"),
         ("overlap: 12.5 %", "side: up"),
         ("overlap: 12.5 %", "ground: 1"),
         ("plain: []", "plain: [tip_releif]"),

@@ -23,7 +23,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3 m(",
-        "8:13: `m(` in `3 m(` cannot be read as a unit; a length (for example `3 mm`) is expected\n  help: units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`",
+        "8:13: `m(` in `3 m(` cannot be read as a unit: a bracket is not closed; a length (for example `3 mm`) is expected\n  help: units are written like `mm`, `N m`, `N/(mm um)` or `1/um^2`",
     ),
     ("module: 3 mm", "module: .nan", "8:13: `.nan` is not finite; a length (for example `3 mm`) is expected"),
     ("module: 3 mm", "module: -.inf", "8:13: `-.inf` is not finite; a length (for example `3 mm`) is expected"),
@@ -358,6 +358,21 @@ const CHANGES: &[(&str, &str, &str)] = &[
         "study: small",
         "study: a-name-that-is-longer-than-a-folder-of-results-should-have-it-here",
         "1:8: `a-name-that-is-longer-than-a-folder-of-results-should-have-i…` cannot be the name of a study\n  help: lower-case letters, digits, `-` and `_` make a name, at most 64 of them: for example `a-name-that-is-longer-than-a-folder-of-results-should-have-it-he`",
+    ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 7",
+        "11:12: `bolts` must be an even number between 4 and 12, not `7`\n  help: write `6` or `8`",
+    ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 3",
+        "11:12: `bolts` must be an even number between 4 and 12, not `3`\n  help: write `4`",
+    ),
+    (
+        "overlap: 12.5 %",
+        "bolts: 900",
+        "11:12: `bolts` must be an even number between 4 and 12, not `900`\n  help: write `12`",
     ),
 ];
 

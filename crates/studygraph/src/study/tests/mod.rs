@@ -6,6 +6,7 @@ mod messages;
 mod notation;
 mod properties;
 mod texts;
+mod units;
 mod values;
 
 use std::path::Path;
@@ -46,6 +47,7 @@ static GEOMETRY: &[Field] = &[
     )
     .default("right"),
     Field::new("note", Shape::Text, "Anything.").optional(),
+    Field::integer("bolts", 4, 12, "Bolts, in pairs.").multiple_of(2).optional(),
 ];
 
 static RELIEF: &[Field] = &[
