@@ -19,6 +19,7 @@ const CRATES: &[(&str, Layers)] = &[
     (
         "crates/declare/src/",
         &[
+            ("declared", &["parameter", "record"]),
             ("digest", &[]),
             ("error", &[]),
             ("number", &["units"]),
@@ -31,6 +32,7 @@ const CRATES: &[(&str, Layers)] = &[
             ("work", &[]),
         ],
     ),
+    ("crates/declare-derive/src/", &[("doc", &[]), ("fields", &["doc"]), ("words", &["doc"])]),
     ("crates/gearmesh/src/", &[("gear", &["numeric"]), ("optimize", &["numeric"]), ("numeric", &[])]),
     (
         "crates/studygraph/src/",
