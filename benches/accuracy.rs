@@ -8,11 +8,11 @@ use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
 use gearmesh::gear::compliance::energy::Beam;
 use gearmesh::gear::compliance::sainsot::Body;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::transmission_error::curve::Wanted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::chebyshev::Series;
 
 pub fn print() {
@@ -48,7 +48,7 @@ pub fn relative(value: f64, reference: f64) -> f64 {
 fn positions(cycle: &MeshCycle, design: &Design) {
     let sampled = |positions| cycle.sampled(Settings { positions, ..cycle.settings });
     let converged = sampled(4096);
-    let reference = Loading::new(&converged, design, TORQUE).summary(Wanted::default());
+    let reference = LoadCase::new(&converged, design, TORQUE).summary(Wanted::default());
     println!(
         "\nPositions: relative error of peak-to-peak and variance, and time per curve (4096 positions: no error)\n"
     );
@@ -58,7 +58,7 @@ fn positions(cycle: &MeshCycle, design: &Design) {
     );
     for positions in [8, 16, 32, 64, 128, 256, 512] {
         let cycle = sampled(positions);
-        let loading = || Loading::new(&cycle, design, TORQUE);
+        let loading = || LoadCase::new(&cycle, design, TORQUE);
         let (points, summary) = loading().curve_and_summary(Wanted::default());
         let lean = seconds(|| loading().peak_to_peak());
         let whole = seconds(|| loading().curve(Wanted::default()));
@@ -79,7 +79,7 @@ fn positions(cycle: &MeshCycle, design: &Design) {
 }
 
 /// Peak-to-peak and variance from positions in equal steps.
-fn equal_steps(loading: &Loading, positions: usize) -> (f64, f64) {
+fn equal_steps(loading: &LoadCase, positions: usize) -> (f64, f64) {
     let cycle = loading.cycle;
     let (mut largest, mut smallest) = (f64::NEG_INFINITY, f64::INFINITY);
     let (mut sum, mut squares) = (0.0, 0.0);
@@ -96,7 +96,7 @@ fn equal_steps(loading: &Loading, positions: usize) -> (f64, f64) {
 }
 
 /// Chebyshev nodes over the flank, against the energy method itself between them.
-fn nodes(pair: &Pair) {
+fn nodes(pair: &GearPair) {
     println!(
         "\nCompliance tables: largest relative error over both flanks, and time for the pair, by Chebyshev nodes\n"
     );
@@ -136,10 +136,10 @@ fn slices(cycle: &MeshCycle, design: &Design) {
     );
     println!("{:>9} | {:>12} {:>12}", "slices", "peak-to-peak", "lean µs");
     let sampled = |slices| cycle.sampled(Settings { slices, ..cycle.settings });
-    let reference = Loading::new(&sampled(1025), design, TORQUE).peak_to_peak();
+    let reference = LoadCase::new(&sampled(1025), design, TORQUE).peak_to_peak();
     for slices in [3, 5, 9, 17, 33, 65, 129] {
         let cycle = sampled(slices);
-        let found = || Loading::new(&cycle, design, TORQUE).peak_to_peak();
+        let found = || LoadCase::new(&cycle, design, TORQUE).peak_to_peak();
         println!("{slices:>9} | {:>12.1e} {:>12.1}", relative(found(), reference), seconds(found) * 1e6);
     }
 }
@@ -153,7 +153,7 @@ fn growth(cycle: &MeshCycle, design: &Design) {
         let time = seconds(|| {
             for index in 0..torques {
                 let torque = 25.0 + 75.0 * f64::from(index) / f64::from(torques);
-                black_box(Loading::new(cycle, design, torque).curve_and_summary(wanted));
+                black_box(LoadCase::new(cycle, design, torque).curve_and_summary(wanted));
             }
         });
         println!("{torques:>9} | {:>12.3} {:>12.1}", time * 1e3, time * 1e6 / f64::from(torques));

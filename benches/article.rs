@@ -8,7 +8,7 @@ use crate::support::record;
 use declare::seed::Seed;
 use declare::work::Tally;
 use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -96,7 +96,7 @@ impl Stages {
     }
 
     /// The article's pair.
-    pub fn pair(&mut self) -> Pair {
+    pub fn pair(&mut self) -> GearPair {
         self.prepare("stiffness");
         let tables = &self.tables["pair"];
         let table = |name: &str| tables.iter().find(|table| table.name() == name).expect("the stage gives it");
@@ -122,14 +122,14 @@ pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
 }
 
 /// The energy method on a pair.
-pub fn compliance(pair: &Pair, assumptions: Assumptions) -> PairCompliance {
+pub fn compliance(pair: &GearPair, assumptions: Assumptions) -> PairCompliance {
     let method = compliance::method("energy").expect("it is registered");
     let options = record(method.member.fields, &[]);
     (method.tabulate)(&options, pair, assumptions).expect("the study runs with it").compliance
 }
 
 /// 64 positions, 33 slices.
-pub fn cycle(pair: &Pair, contact: ContactLaw, coupled: bool) -> MeshCycle {
+pub fn cycle(pair: &GearPair, contact: ContactLaw, coupled: bool) -> MeshCycle {
     let compliance = compliance(pair, assumptions(contact, coupled));
     MeshCycle::new(pair, &compliance, Settings::default()).expect("its contact ratio is 1.65")
 }

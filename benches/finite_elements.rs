@@ -12,11 +12,11 @@ use crate::support::record;
 use declare::record::Value;
 use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
 use gearmesh::gear::contact::CornerContact;
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::modification::{Design, family};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 criterion_group!(name = benches; config = brief().sample_size(10); targets = finite_elements);
 
@@ -29,17 +29,17 @@ const COUPLED: Assumptions = Assumptions {
 };
 
 /// Both gears of a pair, from so many elements across, to an accuracy if one is wanted.
-fn tabulate(pair: &Pair, across: i64, accuracy: Option<f64>) -> Tabulated {
+fn tabulate(pair: &GearPair, across: i64, accuracy: Option<f64>) -> Tabulated {
     let method = compliance::method("finite_element").expect("it is registered");
     let options = record(method.member.fields, &[("elements_across", Value::Integer(across))]);
     (method.tabulate)(&options, pair, Assumptions { accuracy, ..COUPLED }).expect("the pair can be meshed")
 }
 
 /// Two gears of 48 teeth: half of the time is one gear's.
-fn gears_of_48() -> Pair {
+fn gears_of_48() -> GearPair {
     let pair = Stages::new().pair();
     let gear = pair.gear.specification;
-    Pair::new(gear, gear, None).expect("they fit")
+    GearPair::new(gear, gear, None).expect("they fit")
 }
 
 fn finite_elements(criterion: &mut Criterion) {
@@ -132,7 +132,7 @@ fn sweeps() {
     // Designs of all kinds among the first ones, too: a deep relief takes longer than a shallow one.
     let variances = |positions: usize, designs: u32| {
         let cycle = base.sampled(Settings { positions, ..base.settings });
-        (0..designs).map(|index| Loading::new(&cycle, &design(index * 401 % 625), 420.0).variance()).sum::<f64>()
+        (0..designs).map(|index| LoadCase::new(&cycle, &design(index * 401 % 625), 420.0).variance()).sum::<f64>()
     };
     println!("\nGrowth: variance of arcs of mei2016, coupled, corner contact, one thread; 25 designs\n");
     println!("{:>9} {:>9} {:>12} {:>9}", "positions", "ms", "µs a design", "exponent");

@@ -10,7 +10,7 @@ use gearmesh::gear::geometry::outline::sample::Density;
 use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::geometry::outline::{Outline, roots};
 use gearmesh::gear::geometry::validity::{Mating, Validity};
-use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 
 criterion_group!(name = benches; config = brief(); targets = profiles);
@@ -44,7 +44,7 @@ fn sweep() -> usize {
             for round in 0..20 {
                 let of = |teeth, shift| specification(teeth, shift, 0.02 * f64::from(round));
                 let shift = 0.05 * f64::from(shift) - 0.3;
-                let Ok(pair) = Pair::new(of(teeth, shift), of(48, 0.0), None) else { continue };
+                let Ok(pair) = GearPair::new(of(teeth, shift), of(48, 0.0), None) else { continue };
                 let [Some(pinion), Some(gear)] = [&pair.pinion, &pair.gear].map(outline) else { continue };
                 let valid = [(Side::Pinion, &pinion, &gear), (Side::Gear, &gear, &pinion)].into_iter().all(
                     |(side, own, mate)| {

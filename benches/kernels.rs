@@ -8,10 +8,10 @@ use crate::article::{Stages, TORQUE, assumptions, compliance, cycle};
 use crate::brief;
 use gearmesh::gear::compliance::ContactLaw::{Linear, LoadDependent};
 use gearmesh::gear::contact::SliceCoupling;
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::curve::Wanted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 criterion_group!(name = benches; config = brief(); targets = tables, curves, slices, stages);
 
@@ -21,7 +21,7 @@ fn tables(criterion: &mut Criterion) {
     let mut group = criterion.benchmark_group("gear");
     group.bench_function("geometry", |bencher| {
         let specifications = (pair.pinion.specification, pair.gear.specification);
-        bencher.iter(|| Pair::new(black_box(specifications.0), specifications.1, None));
+        bencher.iter(|| GearPair::new(black_box(specifications.0), specifications.1, None));
     });
     for (name, coupled) in [("uncoupled", false), ("coupled", true)] {
         let assumptions = assumptions(Linear, coupled);
@@ -46,13 +46,13 @@ fn curves(criterion: &mut Criterion) {
         let cycle = cycle(&pair, contact, coupled);
         let wanted = Wanted { harmonics: 8, pressure: false };
         group.bench_function(format!("curve {name}"), |bencher| {
-            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
         });
         group.bench_function(format!("curve and summary {name}"), |bencher| {
-            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve_and_summary(wanted));
+            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve_and_summary(wanted));
         });
         group.bench_function(format!("peak-to-peak {name}"), |bencher| {
-            bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).peak_to_peak());
+            bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).peak_to_peak());
         });
     }
 }
@@ -68,7 +68,7 @@ fn slices(criterion: &mut Criterion) {
             let settings = Settings { slices, slice_coupling: SliceCoupling::Plate, ..Settings::default() };
             let cycle = MeshCycle::new(&pair, &compliance, settings).expect("the pair has teeth");
             group.bench_function(format!("curve {contact:?} {slices} coupled slices"), |bencher| {
-                bencher.iter(|| Loading::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+                bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
             });
         }
     }

@@ -117,7 +117,7 @@ fn read(document: &Document, stage: Option<&str>) -> Result<String, Refusal> {
     }
     let model = Model::new(root)?;
     let relation = model.stage(stage)?;
-    Pair::read(&model, relation)?.text(version)
+    RexsPair::read(&model, relation)?.text(version)
 }
 
 /// What relations say: their type, and the role of the component by which they are looked up.
@@ -383,7 +383,7 @@ impl Gear {
     }
 }
 
-struct Pair {
+struct RexsPair {
     stage: String,
     /// Where the relation of the stage stands.
     at: usize,
@@ -391,7 +391,7 @@ struct Pair {
     centre_distance: Option<Said>,
 }
 
-impl Pair {
+impl RexsPair {
     fn read(model: &Model, relation: Node) -> Result<Self, Refusal> {
         let gear = |role: &str| -> Result<Gear, Refusal> {
             let component = in_role(relation, role).and_then(|id| model.component(id));

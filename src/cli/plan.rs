@@ -5,7 +5,7 @@
 use serde_json::json;
 
 use super::progress::{duration, rough};
-use crate::stage::{Omission, Rows, omission};
+use crate::stage::{Omission, RowCount, omission};
 use studygraph::runner::foresee::Expected;
 use studygraph::runner::limits::{grouped, size};
 use studygraph::runner::plan::{Action, Plan};
@@ -86,8 +86,8 @@ fn matters(expected: &Expected, total: &Expected) -> bool {
 }
 
 /// Of all tables.
-fn rows(expected: &Expected) -> Rows {
-    expected.tables.iter().fold(Rows::NONE, |sum, (_, rows)| sum.and(*rows))
+fn rows(expected: &Expected) -> RowCount {
+    expected.tables.iter().fold(RowCount::NONE, |sum, (_, rows)| sum.and(*rows))
 }
 
 pub(super) fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
@@ -115,7 +115,7 @@ pub(super) fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
 }
 
 fn expected_json(expected: &Expected) -> serde_json::Value {
-    let shown = |rows: Rows| json!({ "count": rows.count, "certainty": rows.certainty.name() });
+    let shown = |rows: RowCount| json!({ "count": rows.count, "certainty": rows.certainty.name() });
     let tables: serde_json::Map<_, _> = expected
         .tables
         .iter()

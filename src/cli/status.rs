@@ -11,7 +11,7 @@ use super::progress::out;
 use super::{Ending, studies};
 use crate::program;
 use declare::error::Diagnostic;
-use studygraph::runner::standing::{StageStanding, Standing, State, standing_of};
+use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Lookup};
 use studygraph::store::results::{FileState, Folder, Known};
 use studygraph::study::{self, Study};
@@ -119,7 +119,7 @@ fn told(file: &Path, places: &Places, cache: Option<&Cache>, check: bool) -> Res
         .map_err(|error| Fault::Other(format!("{}: {}", study.path.display(), error.message)))?;
     let kept = |stage: &&StageStanding| {
         let kept = |key| cache.is_some_and(|cache| matches!(cache.look_up(key), Lookup::Found(_)));
-        stage.state != State::UpToDate || stage.keys.iter().all(|key| kept(*key))
+        stage.state != Condition::UpToDate || stage.keys.iter().all(|key| kept(*key))
     };
     let uncached = standing.stages.iter().filter(|stage| !kept(stage)).count();
     Ok(Told { study, standing, read, uncached })
@@ -145,7 +145,7 @@ fn standing_now(study: &Study, folder: &Folder, check: bool) -> Result<(Standing
 
 /// Whether something is not as a run leaves it.
 fn is_odd(standing: &Standing) -> bool {
-    let damaged = standing.stages.iter().any(|stage| matches!(stage.state, State::Damaged(_)));
+    let damaged = standing.stages.iter().any(|stage| matches!(stage.state, Condition::Damaged(_)));
     damaged || !standing.foreign.is_empty() || (!standing.report && standing.has_results)
 }
 
@@ -193,7 +193,8 @@ fn text(told: &Told) -> String {
     if !standing.has_results {
         return format!("{}: no results; {}\n", study.name, next("run"));
     }
-    let others: Vec<&StageStanding> = standing.stages.iter().filter(|stage| stage.state != State::UpToDate).collect();
+    let others: Vec<&StageStanding> =
+        standing.stages.iter().filter(|stage| stage.state != Condition::UpToDate).collect();
     let mut parts = Vec::new();
     if !others.is_empty() {
         parts.push(format!("{} of {} stages are not up to date", others.len(), standing.stages.len()));

@@ -12,7 +12,7 @@ use super::signals::stop_flag;
 use super::{Ending, pages, run};
 use crate::program::PROGRAM;
 use declare::number::with_unit;
-use studygraph::diff::model::{ColumnDiff, Extreme, State, TableDiff, Value};
+use studygraph::diff::model::{ColumnDiff, Difference, Extreme, TableDiff, Value};
 use studygraph::diff::words;
 use studygraph::runner::execute::RunError;
 use studygraph::runner::options::Options;
@@ -92,9 +92,9 @@ fn word_of(file: &VerifiedFile) -> (&'static str, &str) {
 /// One word for a table.
 fn word(diff: &TableDiff) -> &'static str {
     match diff.state {
-        State::Same => "identical",
-        State::WithinTolerance => "within tolerance",
-        State::Changed | State::Removed | State::Added => "different",
+        Difference::Same => "identical",
+        Difference::WithinTolerance => "within tolerance",
+        Difference::Changed | Difference::Removed | Difference::Added => "different",
     }
 }
 
@@ -170,7 +170,7 @@ fn as_value(file: &Path, verification: &Verification) -> Json {
         .iter()
         .map(|table| {
             let mut value = json!({ "name": table.name, "rows": table.rows, "agreement": word(&table.diff) });
-            if table.diff.state != State::Same {
+            if table.diff.state != Difference::Same {
                 value["why"] = json!(sentence(&table.diff));
             }
             if let Some((column, worst)) = worst(&table.diff) {

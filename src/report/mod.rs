@@ -92,14 +92,14 @@ pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Re
     Ok(Rendered { html, figures: figures.collect() })
 }
 
-fn part(stage: &str, tables: &dyn Fn(&str) -> Option<Table>) -> Result<page::Part, ReportError> {
+fn part(stage: &str, tables: &dyn Fn(&str) -> Option<Table>) -> Result<page::ReportPart, ReportError> {
     let table = |name: &str| {
         let name = format!("{stage}.{name}");
         tables(&name).ok_or(ReportError::Missing(name))
     };
     let figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
     let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
-    Ok(page::Part { stage: stage.to_owned(), verdicts, counts, figures })
+    Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, figures })
 }
 
 fn column<'a>(table: &'a Table, name: &str) -> Result<&'a Data, ReportError> {

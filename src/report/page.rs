@@ -18,7 +18,7 @@ use studygraph::table::data::{Data, Table};
 const SHOWN_ROWS: usize = 8;
 
 /// What one report stage contributes.
-pub struct Part {
+pub struct ReportPart {
     pub stage: String,
     pub verdicts: Table,
     pub counts: Table,
@@ -114,7 +114,7 @@ struct ColumnView<'a> {
 /// When a table is of another shape.
 pub fn html(
     manifest: &Manifest,
-    parts: &[Part],
+    parts: &[ReportPart],
     tables: &dyn Fn(&str) -> Option<Table>,
 ) -> Result<String, ReportError> {
     let failed = |error: minijinja::Error| ReportError::Page(format!("{error:#}"));
@@ -164,7 +164,7 @@ pub fn html(
     environment.get_template("page.html").and_then(|template| template.render(Serde(view))).map_err(failed)
 }
 
-fn counts(parts: &[Part]) -> Result<Vec<Count>, ReportError> {
+fn counts(parts: &[ReportPart]) -> Result<Vec<Count>, ReportError> {
     let mut counts: Vec<Count> = Vec::new();
     for part in parts {
         let (verdicts, numbers) = (texts(&part.counts, "verdict")?, integers(&part.counts, "count")?);
@@ -185,7 +185,7 @@ fn counts(parts: &[Part]) -> Result<Vec<Count>, ReportError> {
     Ok(counts)
 }
 
-fn part_view(part: &Part) -> Result<PartView, ReportError> {
+fn part_view(part: &ReportPart) -> Result<PartView, ReportError> {
     let figures = part.figures.iter().map(|figure| FigureView {
         name: figure.name.clone(),
         title: figure.plot.title.clone(),

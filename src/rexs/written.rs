@@ -6,7 +6,7 @@
 
 use std::path::Path;
 
-use super::{Pair, Refusal, Said};
+use super::{Refusal, RexsPair, Said};
 use crate::program::load_text;
 
 /// Stands where a study needs a value that the file does not give: a study with it is refused right there.
@@ -68,7 +68,7 @@ impl Written {
     }
 }
 
-impl Pair {
+impl RexsPair {
     /// The study.
     ///
     /// # Errors

@@ -8,7 +8,7 @@ use declare::parameter::{Field, Shape};
 use declare::record::Record;
 use gearmesh::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
 use gearmesh::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::{ROOT_SHAPES, RootShape};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::trace::NODES;
@@ -117,7 +117,7 @@ pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
 ///
 /// # Errors
 /// When a table is not what its schema says, or the pair cannot be loaded.
-pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(Pair, MeshCycle), Failure> {
+pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, MeshCycle), Failure> {
     let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
     let read = |table| inputs.table("stiffness", table);
     let compliance = codec::read(read("compliance")?, read("neighbours")?, read("model")?)?;

@@ -7,8 +7,8 @@ use std::collections::BTreeMap;
 
 use declare::error::{Failure, Place};
 use declare::parameter::{Field, Member, Shape};
-use declare::record::{Entry, Record, Value};
-use gearmesh::gear::geometry::Pair;
+use declare::record::{PlacedValue, Record, Value};
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::{self, Design};
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -35,7 +35,7 @@ impl NamedDesign {
     ///
     /// # Errors
     /// When a modification does not fit the pair; the message names the design.
-    pub fn built(&self, pair: &Pair) -> Result<Design, Failure> {
+    pub fn built(&self, pair: &GearPair) -> Result<Design, Failure> {
         let mut design = Design::default();
         for Element { family, record } in &self.elements {
             let known = modification::family(family)
@@ -204,7 +204,7 @@ fn rebuilt<'a>(
     let mut record = Record::default();
     for field in fields {
         if let Some(value) = rebuilt_value(&format!("{prefix}{}", field.name), &field.shape, lookup)? {
-            record.fields.push((field.name, Entry { value, place: Place::default() }));
+            record.fields.push((field.name, PlacedValue { value, place: Place::default() }));
         }
     }
     Ok(record)
@@ -229,7 +229,7 @@ fn rebuilt_value<'a>(
                 let name = format!("{name}[{place}]");
                 let value = rebuilt_value(&name, item, lookup)?;
                 let value = value.ok_or_else(|| Failure::new(format!("`{name}` has no row")))?;
-                items.push(Entry { value, place: Place::default() });
+                items.push(PlacedValue { value, place: Place::default() });
             }
             Some(Value::List(items))
         }
@@ -263,7 +263,7 @@ mod tests {
 
     #[test]
     fn designs_come_back_as_they_were_in_their_order() {
-        let entry = |value| Entry { value, place: Place::default() };
+        let entry = |value| PlacedValue { value, place: Place::default() };
         let both = ("gear", entry(Value::Choice("both")));
         let preset = Record { fields: vec![("factor", entry(Value::Number(1.25)))], place: Place::default() };
         let with_amount =
@@ -287,15 +287,15 @@ mod tests {
         Field::new("points", Shape::List(&Shape::Group(POINT)), "").optional(),
     ];
 
-    fn entry(value: Value) -> Entry {
-        Entry { value, place: Place::default() }
+    fn entry(value: Value) -> PlacedValue {
+        PlacedValue { value, place: Place::default() }
     }
 
-    fn record(fields: Vec<(&'static str, Entry)>) -> Record {
+    fn record(fields: Vec<(&'static str, PlacedValue)>) -> Record {
         Record { fields, place: Place::default() }
     }
 
-    fn design(name: &str, fields: Vec<(&'static str, Entry)>) -> NamedDesign {
+    fn design(name: &str, fields: Vec<(&'static str, PlacedValue)>) -> NamedDesign {
         NamedDesign { name: name.into(), elements: vec![Element { family: "curve", record: record(fields) }] }
     }
 

@@ -10,7 +10,7 @@ pub mod kinds;
 pub mod pair;
 
 pub use studygraph::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Rows, Saved, Stage, Want, omission,
+    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, Want, omission,
 };
 
 /// The kind called `name`.

@@ -5,7 +5,7 @@
 
 use declare::error::Failure;
 use declare::units::{in_unit, parse_unit};
-use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -55,7 +55,7 @@ const DERIVED: &[(&str, &str, &str, Getter<Gear>)] = &[
     ("tip_thickness", "mm", "Arc thickness of the tooth at the tip.", Gear::tip_thickness),
 ];
 
-const PAIR: &[(&str, &str, &str, Getter<Pair>)] = &[
+const PAIR: &[(&str, &str, &str, Getter<GearPair>)] = &[
     ("centre_distance", "mm", "Centre distance a_w.", |pair| pair.centre_distance),
     ("working_pressure_angle", "deg", "Working pressure angle α_w.", |pair| pair.working_pressure_angle),
     ("base_pitch", "mm", "Base pitch p_b.", |pair| pair.base_pitch),
@@ -83,7 +83,7 @@ pub fn write_gears(gears: &[(Side, &Gear)]) -> Result<Table, TableError> {
 ///
 /// # Errors
 /// When a value is not finite, which a valid pair excludes.
-pub fn write_pair(pair: &Pair) -> Result<Table, TableError> {
+pub fn write_pair(pair: &GearPair) -> Result<Table, TableError> {
     let values: Row = PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()).collect();
     Table::from_rows(pair_schema(), vec![values])
 }
@@ -92,7 +92,7 @@ pub fn write_pair(pair: &Pair) -> Result<Table, TableError> {
 ///
 /// # Errors
 /// When the tables are not from a valid pair.
-pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
+pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     let specification = |side: Side| -> Result<Specification, Failure> {
         let name = side.name();
         let row = gears.texts("gear").iter().position(|gear| gear == name);
@@ -117,7 +117,7 @@ pub fn read(gears: &Table, pair: &Table) -> Result<Pair, Failure> {
         })
     };
     let distance = si(pair, "centre_distance", 0);
-    Pair::new(specification(Side::Pinion)?, specification(Side::Gear)?, Some(distance))
+    GearPair::new(specification(Side::Pinion)?, specification(Side::Gear)?, Some(distance))
         .map_err(|error| Failure::new(error.to_string()))
 }
 

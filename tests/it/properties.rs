@@ -10,7 +10,7 @@ use super::support::record;
 use declare::record::Value;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, method};
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Pair, Rack, Specification};
+use gearmesh::gear::geometry::{GearPair, Rack, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::stability::{Case, Model, Point, Report, Rules, Verdict, check};
 use gearmesh::gear::transmission_error::cycle::Settings;
@@ -39,7 +39,7 @@ pub fn base() -> Point {
         bore_radius: 0.5 * 3e-3 * f64::from(teeth) / 2.0,
         material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
     };
-    Point::of(&Pair::new(gear(19, 20e-3), gear(48, 18e-3), None).unwrap())
+    Point::of(&GearPair::new(gear(19, 20e-3), gear(48, 18e-3), None).unwrap())
 }
 
 /// Gears as they are made, from watches to ships.

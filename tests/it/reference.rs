@@ -11,7 +11,7 @@ use declare::seed::Seed;
 use declare::work::Tally;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::chebyshev::Series;
 use gearstudy::stage::designs;
 use gearstudy::stage::{Context, Inputs, compliance, pair};
@@ -150,7 +150,7 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
             other => panic!("{other}"),
         };
         let built = named.iter().find(|named| named.name == design).unwrap().built(&pair).unwrap();
-        let state = Loading::new(&cycle, &built, 50.0).state(position, pairs);
+        let state = LoadCase::new(&cycle, &built, 50.0).state(position, pairs);
         close(name, state.transmission_error() * 1e6, *expected, 1e-11);
         compared += 1;
     }

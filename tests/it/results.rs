@@ -8,12 +8,12 @@ use std::sync::atomic::AtomicBool;
 
 use crate::support::with_code;
 use gearstudy::program;
-use studygraph::diff::model::State as Compared;
+use studygraph::diff::model::Difference as Compared;
 use studygraph::diff::table::compare;
 use studygraph::runner::events::Silent;
 use studygraph::runner::execute::{execute, run};
 use studygraph::runner::options::Options;
-use studygraph::runner::standing::{self, Standing, State, standing};
+use studygraph::runner::standing::{self, Condition, Standing, standing};
 use studygraph::store::cache::Cache;
 use studygraph::store::entry::StoredTable;
 use studygraph::store::manifest::{Manifest, TableRecord};
@@ -48,10 +48,10 @@ fn files_in(folder: &Path) -> Vec<PathBuf> {
 
 /// Whether all that is not as it should be is that the code has changed.
 fn only_code_changed(standing: &Standing) -> bool {
-    let by_code = |state: &State| match state {
-        State::UpToDate | State::Waits(_) => true,
-        State::Stale(why) => why == "code changed",
-        State::Missing(_) | State::Damaged(_) => false,
+    let by_code = |state: &Condition| match state {
+        Condition::UpToDate | Condition::Waits(_) => true,
+        Condition::Stale(why) => why == "code changed",
+        Condition::Missing(_) | Condition::Damaged(_) => false,
     };
     let rest =
         standing.has_results && !standing.text_changed && standing.gone.is_empty() && standing.foreign.is_empty();

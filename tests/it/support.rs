@@ -2,7 +2,7 @@
 
 use declare::error::Place;
 use declare::parameter::{Field, Presence, Shape};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use gearstudy::program::PROGRAM;
 use studygraph::program::Program;
 use studygraph::study::Study;
@@ -18,7 +18,7 @@ pub fn record(fields: &[Field], given: &[(&str, Value)]) -> Record {
             Presence::Required => panic!("`{}` must be given", field.name),
         });
         if let Some(value) = value {
-            record.fields.push((field.name, Entry { value, place: record.place }));
+            record.fields.push((field.name, PlacedValue { value, place: record.place }));
         }
     }
     for (name, _) in given {
@@ -44,7 +44,7 @@ fn read(shape: &Shape, text: &str) -> Value {
             Value::Choice(choices.iter().find(|choice| choice.name == text).expect("the default is a choice").name)
         }
         Shape::Flag => Value::Flag(text.parse().unwrap()),
-        Shape::List(item) => Value::List(vec![Entry { value: read(item, text), place: Place::default() }]),
+        Shape::List(item) => Value::List(vec![PlacedValue { value: read(item, text), place: Place::default() }]),
         _ => panic!("a default of this shape is not read here"),
     }
 }

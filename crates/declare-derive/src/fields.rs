@@ -5,27 +5,31 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 use syn::{
-    Data, DeriveInput, Error, Expr, Field, Fields, GenericArgument, Ident, LitStr, PathArguments, Type, Visibility,
+    Attribute, Data, DeriveInput, Error, Expr, Field, Fields, GenericArgument, Ident, LitStr, PathArguments, Type,
+    Visibility,
 };
 
 use crate::doc::sentence;
 
 /// What stands on a field.
 #[derive(Default)]
-struct Marks {
+pub struct Marks {
     least: Option<Expr>,
     most: Option<Expr>,
     dimension: Option<Expr>,
-    default: Option<LitStr>,
+    pub default: Option<LitStr>,
     axis: Option<Expr>,
     multiple: Option<Expr>,
     range: bool,
+    flatten: bool,
+    /// As a study writes it, where that is not the name in the code.
+    pub name: Option<LitStr>,
 }
 
 impl Marks {
-    fn of(field: &Field) -> Result<Self, Error> {
+    pub fn of(attributes: &[Attribute]) -> Result<Self, Error> {
         let mut marks = Self::default();
-        for attribute in field.attrs.iter().filter(|attribute| attribute.path().is_ident("declared")) {
+        for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("declared")) {
             attribute.parse_nested_meta(|meta| {
                 let name = meta.path.get_ident().map(Ident::to_string).unwrap_or_default();
                 match name.as_str() {
@@ -35,11 +39,14 @@ impl Marks {
                     "default" => marks.default = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
                     "multiple" => marks.multiple = Some(meta.value()?.parse()?),
+                    "name" => marks.name = Some(meta.value()?.parse()?),
                     "range" => marks.range = true,
+                    "flatten" => marks.flatten = true,
                     _ => {
-                        return Err(
-                            meta.error("it is `least`, `most`, `multiple`, `dimension`, `default`, `axis` or `range`")
-                        );
+                        return Err(meta.error(
+                            "it is `least`, `most`, `multiple`, `dimension`, `default`, `axis`, `range`, `name` or \
+                             `flatten`",
+                        ));
                     }
                 }
                 Ok(())
@@ -74,42 +81,32 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
     let names = format_ident!("{name}Names");
     let visibility = &input.vis;
     let mut all_default = true;
-    let (mut declared, mut read, mut written, mut proofs) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    // Tables of fields, one after the other: those of a struct, or those that an enum has of its own.
+    let (mut tables, mut read, mut written) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut proofs, mut checks) = (Vec::new(), Vec::new());
     let (mut idents, mut texts) = (Vec::new(), Vec::new());
     for field in &fields.named {
         let Some(ident) = &field.ident else { continue };
         if !matches!(field.vis, Visibility::Public(_)) {
             return Err(Error::new(ident.span(), "a parameter is public: it can be given without a study"));
         }
-        let (marks, text, summary) = (Marks::of(field)?, ident.to_string(), sentence(&field.attrs, ident)?);
-        let inner = argument(&field.ty, "Option");
-        let kind = kind(inner.unwrap_or(&field.ty), &marks, ident)?;
-        let Kind { shape, read: from, write, proof } = kind;
-        let mut field = quote!(::declare::parameter::Field::new(#text, #shape, #summary));
-        match (&marks.default, inner) {
-            (Some(text), None) => field = quote!(#field.default(#text)),
-            (Some(text), Some(_)) => return Err(Error::new(text.span(), "an `Option` has no default")),
-            (None, Some(_)) => field = quote!(#field.optional()),
-            (None, None) => all_default = false,
+        let marks = Marks::of(&field.attrs)?;
+        if marks.flatten {
+            let ty = &field.ty;
+            tables.push(quote!(<#ty as ::declare::declared::Joint>::FIELDS));
+            read.push(quote!(#ident: <#ty as ::declare::declared::Joint>::read(record)));
+            written.push(quote!(::declare::declared::Joint::write(&self.#ident, &mut fields);));
+            checks.push(quote!(<#ty as ::declare::declared::Joint>::consistent(record)?;));
+            all_default = false;
+            continue;
         }
-        if marks.range {
-            field = quote!(#field.range());
-        }
-        if let Some(chunk) = &marks.axis {
-            field = quote!(#field.axis(#chunk));
-        }
-        declared.push(field);
+        let Declaration { declared, read: from, write, proof, given } = declaration(field, &marks, ident)?;
+        all_default &= !given;
+        let text = marks.name.as_ref().map_or_else(|| ident.to_string(), LitStr::value);
+        tables.push(quote!(&[#declared]));
         proofs.push(proof);
-        if inner.is_some() {
-            read.push(quote!(#ident: record.entry(#text).map(|entry| { let value = &entry.value; #from })));
-            written.push(quote!(if let ::core::option::Option::Some(value) = &self.#ident {
-                fields.push((#text, ::declare::declared::entry(#write)));
-            }));
-        } else {
-            read.push(quote!(#ident: { let value = ::declare::declared::value(record, #text); #from }));
-            written
-                .push(quote!({ let value = &self.#ident; fields.push((#text, ::declare::declared::entry(#write))); }));
-        }
+        read.push(quote!(#ident: #from));
+        written.push(quote!({ let value = &self.#ident; #write }));
         idents.push(ident);
         texts.push(text);
     }
@@ -139,8 +136,20 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
         #(#proofs)*
 
         impl ::declare::declared::Declared for #name {
-            const MEMBER: ::declare::parameter::Member =
-                ::declare::parameter::Member { name: #member, summary: #summary, fields: &[#(#declared),*] };
+            const MEMBER: ::declare::parameter::Member = {
+                const TABLES: &[&[::declare::parameter::Field]] = &[#(#tables),*];
+                const FIELDS: [::declare::parameter::Field; ::declare::parameter::count(TABLES)] =
+                    ::declare::parameter::joined(TABLES);
+                ::declare::parameter::Member { name: #member, summary: #summary, fields: &FIELDS }
+            };
+
+            #[allow(unused_variables)] // where nothing depends on anything
+            fn consistent(
+                record: &::declare::record::Record,
+            ) -> ::core::result::Result<(), ::declare::error::Diagnostic> {
+                #(#checks)*
+                ::core::result::Result::Ok(())
+            }
 
             #[allow(unused_variables)] // where there are no fields
             fn read(record: &::declare::record::Record) -> Self {
@@ -170,6 +179,48 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
 
         #default
     })
+}
+
+/// How one field is declared, read from a `record`, and written from a `value: &T` to `fields`.
+pub struct Declaration {
+    pub declared: TokenStream,
+    pub read: TokenStream,
+    pub write: TokenStream,
+    /// What must hold when it is compiled.
+    pub proof: TokenStream,
+    /// Whether it must be given.
+    given: bool,
+}
+
+/// The declaration of a field called `ident`, or as its marks say.
+pub fn declaration(field: &Field, marks: &Marks, ident: &Ident) -> Result<Declaration, Error> {
+    let text = marks.name.as_ref().map_or_else(|| ident.to_string(), LitStr::value);
+    let summary = sentence(&field.attrs, ident)?;
+    let inner = argument(&field.ty, "Option");
+    let Kind { shape, read, write, proof } = kind(inner.unwrap_or(&field.ty), marks, ident)?;
+    let mut declared = quote!(::declare::parameter::Field::new(#text, #shape, #summary));
+    match (&marks.default, inner) {
+        (Some(text), None) => declared = quote!(#declared.default(#text)),
+        (Some(text), Some(_)) => return Err(Error::new(text.span(), "an `Option` has no default")),
+        (None, Some(_)) => declared = quote!(#declared.optional()),
+        (None, None) => {}
+    }
+    if marks.range {
+        declared = quote!(#declared.range());
+    }
+    if let Some(chunk) = &marks.axis {
+        declared = quote!(#declared.axis(#chunk));
+    }
+    let push = quote!(fields.push((#text, ::declare::declared::entry(#write))););
+    let (read, write) = if inner.is_some() {
+        (
+            quote!(record.entry(#text).map(|entry| { let value = &entry.value; #read })),
+            quote!(if let ::core::option::Option::Some(value) = value { #push }),
+        )
+    } else {
+        (quote!({ let value = ::declare::declared::value(record, #text); #read }), push)
+    };
+    Ok(Declaration { declared, read, write, proof, given: marks.default.is_none() && inner.is_none() })
 }
 
 /// The name of a member of a family; empty for what is none.

@@ -6,6 +6,7 @@
 
 mod doc;
 mod fields;
+mod joint;
 mod words;
 
 use proc_macro::TokenStream;
@@ -15,7 +16,7 @@ use syn::{DeriveInput, Error, parse_macro_input};
 ///
 /// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `least`, `most` (numbers, in
 /// SI), `multiple` (of integers), `dimension` (of `declare::units`, for quantities), `default` (as in a study), `range` (an
-/// optimiser may choose), `axis = N`. The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of
+/// optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (an enum that is `Joint`). The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of
 /// these, words, and structs that are declared themselves. Where every field has a default, `Default` is implemented too.
 #[proc_macro_derive(Declared, attributes(declared))]
 pub fn declared(input: TokenStream) -> TokenStream {
@@ -28,4 +29,20 @@ pub fn declared(input: TokenStream) -> TokenStream {
 pub fn words(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     words::expand(&input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+/// Implements `declare::Joint` for an enum whose variants hold one value each: each is a field, with marks as those of a
+/// struct, and exactly one of them is given.
+#[proc_macro_derive(Alternatives, attributes(declared))]
+pub fn alternatives(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    joint::alternatives(&input).unwrap_or_else(Error::into_compile_error).into()
+}
+
+/// Implements `declare::Joint` for an enum that is a word, the field that is called as the enum or as its mark `name` says,
+/// with fields that go with one of the words only.
+#[proc_macro_derive(Tagged, attributes(declared))]
+pub fn tagged(input: TokenStream) -> TokenStream {
+    let input = parse_macro_input!(input as DeriveInput);
+    joint::tagged(&input).unwrap_or_else(Error::into_compile_error).into()
 }

@@ -58,7 +58,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
 }
 
 /// `CurrentToBest` as a study writes it: `current_to_best`.
-fn snake(name: &str) -> String {
+pub fn snake(name: &str) -> String {
     let mut text = String::new();
     for (at, character) in name.char_indices() {
         if character.is_uppercase() && at > 0 {

@@ -5,7 +5,7 @@
 
 use crate::error::{Diagnostic, Place};
 use crate::parameter::{Choice, Field, Member, Presence, Shape};
-use crate::record::{Entry, Record, Value};
+use crate::record::{PlacedValue, Record, Value};
 use crate::units::parse_quantity;
 
 /// A struct whose fields are parameters.
@@ -13,7 +13,13 @@ pub trait Declared: Sized {
     /// Its name among the members of its family (empty for what is none), what it is, and its fields.
     const MEMBER: Member;
 
-    /// Itself, as a record that was decoded by [`Declared::MEMBER`] says.
+    /// Refuses fields that do not go together; values may still be ranges.
+    ///
+    /// # Errors
+    /// The first such field, with its place.
+    fn consistent(record: &Record) -> Result<(), Diagnostic>;
+
+    /// Itself, as a consistent record without ranges that was decoded by [`Declared::MEMBER`] says.
     fn read(record: &Record) -> Self;
 
     /// The record that says the same.
@@ -38,6 +44,23 @@ pub trait Words: Copy + Sized {
 
     /// As a study writes it.
     fn word(self) -> &'static str;
+}
+
+/// An enum whose variants have fields of their own, which stand beside those of the struct that has it.
+pub trait Joint: Sized {
+    const FIELDS: &'static [Field];
+
+    /// Refuses fields that do not go together; values may still be ranges.
+    ///
+    /// # Errors
+    /// The first such field, with its place.
+    fn consistent(record: &Record) -> Result<(), Diagnostic>;
+
+    /// Itself, as a consistent record says.
+    fn read(record: &Record) -> Self;
+
+    /// Adds the fields that say the same.
+    fn write(&self, fields: &mut Vec<(&'static str, PlacedValue)>);
 }
 
 /// What a field may be beside numbers, flags and texts.
@@ -124,8 +147,48 @@ fn check_value(value: &Value, shape: &Shape, name: &str) -> Result<(), Diagnosti
     }
 }
 
+/// Refuses all but exactly one of several fields.
+///
+/// # Errors
+/// When there is none, or a second one.
+pub fn exactly_one(record: &Record, names: &[&str]) -> Result<(), Diagnostic> {
+    let mut given = names.iter().filter(|name| record.entry(name).is_some());
+    let (first, second) = (given.next(), given.next());
+    let list = || names.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    match (first, second) {
+        (Some(_), None) => Ok(()),
+        (None, _) => {
+            Err(Diagnostic::new(format!("exactly one of {} is needed, and there is none", list())).at(record.place))
+        }
+        (Some(one), Some(other)) => {
+            let message = format!("exactly one of {} is needed, not both `{one}` and `{other}`", list());
+            Err(Diagnostic::new(message).at(record.place_of(other)))
+        }
+    }
+}
+
+/// Refuses a field that goes with one word of another field only, and that word without it.
+///
+/// # Errors
+/// Which of both.
+pub fn goes_with(record: &Record, field: &str, [tag, word]: [&str; 2]) -> Result<(), Diagnostic> {
+    let place = record.place_of(field);
+    match (record.choice(tag) == word, record.entry(field).is_some()) {
+        (true, false) => Err(Diagnostic::new(format!("the {tag} `{word}` needs its `{field}`")).at(place)),
+        (false, true) => Err(Diagnostic::new(format!("`{field}` goes with `{tag}: {word}` only")).at(place)),
+        _ => Ok(()),
+    }
+}
+
 // What follows is called by derived code. A record was decoded by the declaration that was derived with the code, so none
 // of the panics can be reached by a study.
+
+/// # Panics
+/// Always.
+#[cold]
+pub fn of_another_declaration() -> ! {
+    panic!("a record of another declaration")
+}
 
 fn mistyped(value: &Value) -> ! {
     panic!("a record of another declaration: {value:?}")
@@ -142,8 +205,8 @@ pub fn value<'a>(record: &'a Record, name: &str) -> &'a Value {
 
 /// A value that stands nowhere.
 #[must_use]
-pub fn entry(value: Value) -> Entry {
-    Entry { value, place: Place::default() }
+pub fn entry(value: Value) -> PlacedValue {
+    PlacedValue { value, place: Place::default() }
 }
 
 #[must_use]

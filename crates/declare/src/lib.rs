@@ -15,4 +15,4 @@ pub mod text;
 pub mod units;
 pub mod work;
 
-pub use declare_derive::{Declared, Words};
+pub use declare_derive::{Alternatives, Declared, Tagged, Words};

@@ -8,6 +8,7 @@ use std::collections::BTreeSet;
 
 use super::digest::Writer;
 use super::error::{Diagnostic, Place};
+use super::parameter::{Field, Shape};
 use super::units::Dimension;
 
 /// One value.
@@ -31,8 +32,8 @@ pub enum Value {
     Text(String),
     Choice(&'static str),
     Reference(String),
-    List(Vec<Entry>),
-    Map(Vec<(String, Entry)>),
+    List(Vec<PlacedValue>),
+    Map(Vec<(String, PlacedValue)>),
     Group(Record),
     Member(&'static str, Record),
     /// Another stage with some of its fields replaced.
@@ -52,7 +53,7 @@ pub struct Variant {
 
 /// A value and where it stands (a default stands where its parent does).
 #[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
+pub struct PlacedValue {
     pub value: Value,
     pub place: Place,
 }
@@ -60,7 +61,7 @@ pub struct Entry {
 /// The values of a table of fields, in declaration order; an optional field that is not given is absent.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Record {
-    pub fields: Vec<(&'static str, Entry)>,
+    pub fields: Vec<(&'static str, PlacedValue)>,
     /// Where the record itself stands.
     pub place: Place,
 }
@@ -89,7 +90,7 @@ macro_rules! getter {
 impl Record {
     /// The entry of a field, if it was given or has a default.
     #[must_use]
-    pub fn entry(&self, name: &str) -> Option<&Entry> {
+    pub fn entry(&self, name: &str) -> Option<&PlacedValue> {
         self.fields.iter().find(|(field, _)| *field == name).map(|(_, entry)| entry)
     }
 
@@ -115,8 +116,8 @@ impl Record {
     getter!(text, maybe_text, Value::Text(value) => value.as_str(), &str);
     getter!(choice, maybe_choice, Value::Choice(value) => *value, &'static str);
     getter!(reference, maybe_reference, Value::Reference(value) => value.as_str(), &str);
-    getter!(list, maybe_list, Value::List(value) => value.as_slice(), &[Entry]);
-    getter!(map, maybe_map, Value::Map(value) => value.as_slice(), &[(String, Entry)]);
+    getter!(list, maybe_list, Value::List(value) => value.as_slice(), &[PlacedValue]);
+    getter!(map, maybe_map, Value::Map(value) => value.as_slice(), &[(String, PlacedValue)]);
     getter!(group, maybe_group, Value::Group(value) => value, &Record);
     getter!(member, maybe_member, Value::Member(name, record) => (*name, record), (&'static str, &Record));
     getter!(variant, maybe_variant, Value::Variant(variant) => variant, &Variant);
@@ -134,6 +135,19 @@ impl Record {
             }
         }
         part
+    }
+
+    /// The same record with the least value of each range.
+    #[must_use]
+    pub fn without_ranges(&self, fields: &[Field]) -> Self {
+        let mut fixed = self.clone();
+        for (name, entry) in &mut fixed.fields {
+            let Value::Range(least, _) = entry.value else { continue };
+            let shape = fields.iter().find(|field| field.name == *name).map(|field| field.shape);
+            let plain = matches!(shape, Some(Shape::Number { .. }));
+            entry.value = if plain { Value::Number(least) } else { Value::Quantity(least) };
+        }
+        fixed
     }
 
     /// The kinds of the variants of other stages inside, by name, each once.

@@ -9,10 +9,10 @@ mod tables;
 mod trial;
 mod variant;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use declare::units::RATIO;
 use quantity::Quantity;
 use studygraph::table::data::Table;
@@ -86,7 +86,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let mut ladders = Vec::new();
     for (name, entry) in record.map("ladders") {
         let Value::List(items) = &entry.value else { continue };
-        let step = |(step, item): (usize, &Entry)| match &item.value {
+        let step = |(step, item): (usize, &PlacedValue)| match &item.value {
             Value::Variant(variant) => Some(Variant::build(format!("{name} {step}"), variant)),
             _ => None,
         };
@@ -119,7 +119,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let evaluations = record.maybe_text("evaluations").map(|text| read(text, record.place_of("evaluations")));
     let evaluations = evaluations.transpose()?;
     let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(1);
-    let number = |entry: &Entry| if let Value::Quantity(value) = entry.value { Some(value) } else { None };
+    let number = |entry: &PlacedValue| if let Value::Quantity(value) = entry.value { Some(value) } else { None };
     let mut wanted: Vec<f64> = record.list("wanted").iter().filter_map(number).collect();
     wanted.sort_by(f64::total_cmp);
     wanted.dedup();
@@ -157,7 +157,7 @@ impl Stage for Accuracy {
         let variants = self.variants();
         let (ports, demand) = (variant::ports(&variants), self.demand());
         let steps = variants.len() - 1;
-        let compared = Rows::exact(steps * self.quantities.len());
+        let compared = RowCount::exact(steps * self.quantities.len());
         let mut all = Estimate::new(true);
         let mut most = 0;
         for (index, variant) in variants.iter().enumerate() {
@@ -168,9 +168,9 @@ impl Stage for Accuracy {
         }
         for schema in tables::schemas() {
             let rows = match schema.name.as_str() {
-                "spread" if !self.uses_seed() || self.plan.seeds == 1 => Rows::NONE,
-                "choice" => Rows::exact(self.quantities.len() * self.wanted.len()),
-                "reference" => Rows::exact(1),
+                "spread" if !self.uses_seed() || self.plan.seeds == 1 => RowCount::NONE,
+                "choice" => RowCount::exact(self.quantities.len() * self.wanted.len()),
+                "reference" => RowCount::exact(1),
                 _ => compared,
             };
             all = all.rows(asked, schema, rows);

@@ -13,7 +13,7 @@ mod svg;
 #[cfg(test)]
 mod tests;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
 use contour::{Contour, contours};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
@@ -146,8 +146,8 @@ impl Stage for Export {
         let lines = points.saturating_mul(per_point).saturating_add(HEAD * self.gears.len() * self.formats.len());
         Estimate::new(false)
             .holding((points as u64).saturating_mul(CONTOUR_POINT).saturating_add(lines as u64 * LINE))
-            .rows(demand, contours_schema(), Rows::exact(self.gears.len()))
-            .rows(demand, self.files_schema(), Rows::about(lines))
+            .rows(demand, contours_schema(), RowCount::exact(self.gears.len()))
+            .rows(demand, self.files_schema(), RowCount::about(lines))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

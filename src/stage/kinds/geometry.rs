@@ -11,7 +11,7 @@ mod valid;
 
 use crate::stage::designs;
 use crate::stage::pair::{self, gears_schema, pair_schema};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Saved, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
@@ -23,7 +23,7 @@ use gearmesh::gear::geometry::outline::sample::{Density, Point};
 use gearmesh::gear::geometry::outline::tip::{self, Tip};
 use gearmesh::gear::geometry::outline::{Outline, roots};
 use gearmesh::gear::geometry::validity::Mating;
-use gearmesh::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::Template;
@@ -110,7 +110,7 @@ const GEAR: &[Field] = &[
 
 struct Geometry {
     /// None of a gear alone.
-    pair: Option<Pair>,
+    pair: Option<GearPair>,
     /// The pinion, and the gear of a pair.
     gears: Vec<Drawn>,
     density: Density,
@@ -143,7 +143,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let options = record.group("outline");
     let pinion = specification(record, record.group("pinion"));
     let (pair, design, gears) = if let Some(gear) = record.maybe_group("gear") {
-        let pair = Pair::new(pinion, specification(record, gear), record.maybe_quantity("centre_distance"))
+        let pair = GearPair::new(pinion, specification(record, gear), record.maybe_quantity("centre_distance"))
             .map_err(|error| refused(&error))?;
         let design = Template::new(options.maybe_list("flank").unwrap_or_default())?.design(&pair, &[])?;
         let gears = vec![pair.pinion.clone(), pair.gear.clone()];
@@ -252,17 +252,17 @@ impl Stage for Geometry {
             let rows = match name.as_str() {
                 "outline" => {
                     let rows = |drawn: &Drawn| drawn.outline_rows(self.density, self.teeth(drawn));
-                    Rows::exact(self.gears.iter().map(rows).sum())
+                    RowCount::exact(self.gears.iter().map(rows).sum())
                 }
-                "junctions" => Rows::exact(self.gears.iter().map(|drawn| drawn.outline.junctions().len()).sum()),
-                "mesh_drawing" => Rows::exact(match halves().collect::<Vec<_>>()[..] {
+                "junctions" => RowCount::exact(self.gears.iter().map(|drawn| drawn.outline.junctions().len()).sum()),
+                "mesh_drawing" => RowCount::exact(match halves().collect::<Vec<_>>()[..] {
                     [pinion, gear] => meshing::count([pinion, gear]),
                     _ => 0,
                 }),
-                "root_arc" => Rows::at_most(self.gears.len()),
-                "arc_drawing" => Rows::at_most(halves().map(construction::most).sum()),
-                "pair" => Rows::exact(1),
-                _ => Rows::exact(self.gears.len()),
+                "root_arc" => RowCount::at_most(self.gears.len()),
+                "arc_drawing" => RowCount::at_most(halves().map(construction::most).sum()),
+                "pair" => RowCount::exact(1),
+                _ => RowCount::exact(self.gears.len()),
             };
             estimate = if name == "outline" {
                 // The points of one tooth of one gear.
@@ -288,7 +288,7 @@ impl Stage for Geometry {
         let schemas =
             self.outputs().into_iter().filter(|schema| schema.on_demand && context.demand.table(&schema.name));
         let schemas: Vec<Schema> = schemas.collect();
-        let mated: Vec<(&Drawn, Option<(&Pair, Mating)>)> = if schemas.is_empty() {
+        let mated: Vec<(&Drawn, Option<(&GearPair, Mating)>)> = if schemas.is_empty() {
             Vec::new()
         } else {
             self.gears.iter().map(|drawn| (drawn, self.mating(drawn))).collect()
@@ -334,7 +334,7 @@ impl Geometry {
         if self.whole { drawn.outline.teeth } else { 1 }
     }
 
-    fn mating(&self, drawn: &Drawn) -> Option<(&Pair, Mating)> {
+    fn mating(&self, drawn: &Drawn) -> Option<(&GearPair, Mating)> {
         let pair = self.pair.as_ref()?;
         let mate = self.gears.iter().find(|other| other.side != drawn.side)?;
         Some((pair, Mating::new(pair, drawn.side, &drawn.outline, &mate.outline)))

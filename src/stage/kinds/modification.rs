@@ -4,10 +4,10 @@
 //! on the pair. Must not know: any single family.
 
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use declare::units::in_unit;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::modification::Design;
@@ -57,10 +57,10 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
 }
 
 /// The modifications of one design, each checked for what no declaration can express.
-fn elements(entry: &Entry) -> Result<Vec<Element>, Diagnostic> {
+fn elements(entry: &PlacedValue) -> Result<Vec<Element>, Diagnostic> {
     let Value::List(items) = &entry.value else { return Ok(Vec::new()) };
     Template::new(items)?;
-    let member = |item: &Entry| match &item.value {
+    let member = |item: &PlacedValue| match &item.value {
         Value::Member(family, record) => Some(Element { family, record: record.clone() }),
         _ => None,
     };
@@ -153,10 +153,10 @@ impl Stage for Modification {
         // A modification of both gears is one of each.
         let resolved = 2 * elements().count();
         Estimate::new(false)
-            .rows(demand, designs::designs_schema(), Rows::exact(self.designs.len()))
-            .rows(demand, designs::elements_schema(), Rows::exact(elements().map(designs::rows_of).sum()))
-            .rows(demand, resolved_schema(), Rows::at_most(resolved))
-            .rows(demand, parameters_schema(), Rows::at_most(resolved * MOST_RESOLVED))
+            .rows(demand, designs::designs_schema(), RowCount::exact(self.designs.len()))
+            .rows(demand, designs::elements_schema(), RowCount::exact(elements().map(designs::rows_of).sum()))
+            .rows(demand, resolved_schema(), RowCount::at_most(resolved))
+            .rows(demand, parameters_schema(), RowCount::at_most(resolved * MOST_RESOLVED))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

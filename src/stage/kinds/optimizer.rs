@@ -13,10 +13,10 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape, count, joined};
 use declare::record::{Record, Value};
 use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Optimizer as Search, Reason};
 use gearmesh::optimize::{self, Method};
@@ -247,17 +247,23 @@ impl Optimizer {
     }
 
     /// The objective \[m or m²\]; infinite where the design cannot be built.
-    fn value(&self, cycle: &MeshCycle, pair: &Pair, point: &[f64]) -> f64 {
+    fn value(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> f64 {
         let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
         let values = self.torques.iter().map(|torque| {
-            let loading = Loading::new(cycle, &design, *torque);
+            let loading = LoadCase::new(cycle, &design, *torque);
             if self.objective == "variance" { loading.variance() } else { loading.peak_to_peak() }
         });
         if self.worst { values.fold(0.0, f64::max) } else { values.sum::<f64>() / self.torques.len() as f64 }
     }
 
     /// The search with one sampling.
-    fn found(&self, context: &Context, base: &MeshCycle, pair: &Pair, settings: Settings) -> Result<Found, Failure> {
+    fn found(
+        &self,
+        context: &Context,
+        base: &MeshCycle,
+        pair: &GearPair,
+        settings: Settings,
+    ) -> Result<Found, Failure> {
         let cycle = base.sampled(settings);
         let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
         let budget = search.budget().max(1) as f64;
@@ -279,7 +285,7 @@ impl Optimizer {
     }
 
     /// Why a search found no design at all, by the one in the middle of the box.
-    fn nothing_built(&self, pair: &Pair) -> Failure {
+    fn nothing_built(&self, pair: &GearPair) -> Failure {
         let variables = self.template.variables();
         let middle: Vec<f64> = variables.iter().map(|variable| 0.5 * (variable.least + variable.most)).collect();
         let reason =
@@ -304,13 +310,13 @@ impl Optimizer {
         elements
     }
 
-    fn tables(&self, found: &Found, pair: &Pair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
+    fn tables(&self, found: &Found, pair: &GearPair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
         let Found { search, reason, settings, error, .. } = found;
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
         let peak_to_peak =
-            self.torques.iter().map(|torque| Loading::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
+            self.torques.iter().map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
         let unit_of_objective = self.objective_unit();
         let shown = |value: f64| if value.is_finite() { in_unit(value, unit_of_objective) } else { f64::NAN };
         let mut row: Row = vec![

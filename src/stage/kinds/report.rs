@@ -16,11 +16,11 @@ mod verdict;
 
 use std::collections::BTreeSet;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
 use declare::record::Record;
-use entry::Entry;
+use entry::ReportEntry;
 use figure::Figure;
 use studygraph::table::data::Table;
 use studygraph::table::schema::{Column, Schema};
@@ -99,7 +99,7 @@ const SECONDS_OF_DRAWN: f64 = 5e-6;
 
 /// The stage as configured.
 struct Report {
-    entries: Vec<Entry>,
+    entries: Vec<ReportEntry>,
     figures: Vec<Figure>,
 }
 
@@ -108,7 +108,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         record.maybe_list(field).unwrap_or_default().iter().filter_map(|entry| entry.value.record()).collect()
     };
     let (published, drawn) = (records("published"), records("figures"));
-    let entries = published.iter().enumerate().map(|(index, record)| Entry::read(index + 1, record));
+    let entries = published.iter().enumerate().map(|(index, record)| ReportEntry::read(index + 1, record));
     let entries = entries.collect::<Result<_, _>>()?;
     let figures = drawn.iter().enumerate().map(|(index, record)| Figure::read(index + 1, record));
     let figures: Vec<Figure> = figures.collect::<Result<_, _>>()?;
@@ -119,10 +119,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
 impl Stage for Report {
     fn inputs(&self) -> Vec<Port> {
         let mut ports: Vec<Port> = Vec::new();
-        let cells = self.entries.iter().flat_map(Entry::operands).filter_map(operand::Operand::cell).map(|cell| {
-            let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
-            (cell.stage.as_str(), cell.table.as_str(), columns.collect())
-        });
+        let cells =
+            self.entries.iter().flat_map(ReportEntry::operands).filter_map(operand::Operand::cell).map(|cell| {
+                let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
+                (cell.stage.as_str(), cell.table.as_str(), columns.collect())
+            });
         for (stage, table, columns) in cells.chain(self.figures.iter().flat_map(Figure::wants)) {
             want(&mut ports, stage, table, columns);
         }
@@ -143,10 +144,10 @@ impl Stage for Report {
             .holding(most.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
             .taking(all as f64 * SECONDS_OF_POINT + drawn as f64 * SECONDS_OF_DRAWN)
             .holding(self.entries.len() as u64 * 1000)
-            .rows(demand, verdicts(), Rows::exact(self.entries.len()))
-            .rows(demand, verdict_counts(), Rows::exact(Verdict::ALL.len()))
-            .rows(demand, figures, Rows::exact(self.figures.len()))
-            .rows(demand, published, Rows::exact(self.figures.iter().map(Figure::marks).sum()))
+            .rows(demand, verdicts(), RowCount::exact(self.entries.len()))
+            .rows(demand, verdict_counts(), RowCount::exact(Verdict::ALL.len()))
+            .rows(demand, figures, RowCount::exact(self.figures.len()))
+            .rows(demand, published, RowCount::exact(self.figures.iter().map(Figure::marks).sum()))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

@@ -5,7 +5,7 @@
 
 use rayon::prelude::*;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
@@ -219,13 +219,13 @@ impl Stage for RootOptimizer {
             return Estimate::new(true);
         };
         let kept = (foreseen.evaluations as u64).saturating_mul(120);
-        let tried = Rows::at_most(foreseen.evaluations.saturating_mul(variables));
+        let tried = RowCount::at_most(foreseen.evaluations.saturating_mul(variables));
         Estimate::new(true)
             .taking((family.seconds)(options) * foreseen.evaluations as f64)
             .holding((foreseen.memory as u64).saturating_add(kept))
-            .rows(demand, self.best_schema(), Rows::exact(1))
-            .rows(demand, variables_schema(), Rows::at_most(variables))
-            .rows(demand, constraints_schema(), Rows::at_most(constraints))
+            .rows(demand, self.best_schema(), RowCount::exact(1))
+            .rows(demand, variables_schema(), RowCount::at_most(variables))
+            .rows(demand, constraints_schema(), RowCount::at_most(constraints))
             .rows(demand, self.evaluations_schema(), tried)
     }
 

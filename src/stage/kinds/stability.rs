@@ -7,7 +7,7 @@ mod tables;
 
 use rayon::prelude::*;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, common, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, common, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape, count, joined};
 use declare::record::Record;
@@ -168,10 +168,10 @@ impl Stage for Stability {
         let mut estimate = Estimate::new(true).taking(CASE_SECONDS * cases as f64);
         for schema in tables::schemas() {
             let rows = match schema.name.as_str() {
-                "checks" => Rows::about(CHECKS * cases),
-                "digits" => Rows::at_most(QUANTITIES * cases),
-                "summary" => Rows::at_most(self.axes.len() + 2),
-                _ => Rows::at_most(QUANTITIES),
+                "checks" => RowCount::about(CHECKS * cases),
+                "digits" => RowCount::at_most(QUANTITIES * cases),
+                "summary" => RowCount::at_most(self.axes.len() + 2),
+                _ => RowCount::at_most(QUANTITIES),
             };
             estimate = estimate.rows(demand, schema, rows);
         }

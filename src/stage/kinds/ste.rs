@@ -24,7 +24,7 @@ use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
 use studygraph::stage::steps::Steps;
@@ -146,13 +146,13 @@ impl Ste {
         wanted: Wanted,
     ) -> Result<Answer, Failure> {
         let began = Instant::now();
-        let sliced = Loading::new(base, design, torque).uses_slices();
+        let sliced = LoadCase::new(base, design, torque).uses_slices();
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
-            Loading::new(&base.sampled(settings), design, torque).peak_to_peak()
+            LoadCase::new(&base.sampled(settings), design, torque).peak_to_peak()
         });
         let settings = self.accuracy.map_or(self.settings, |accuracy| sampled.coarsest(self.settings, accuracy));
         let cycle = base.sampled(settings);
-        let loading = Loading::new(&cycle, design, torque);
+        let loading = LoadCase::new(&cycle, design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
         if !loading.holds(summary.largest.value) {
             let (found, most) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
@@ -308,7 +308,7 @@ impl Stage for Ste {
             for &(design, torque) in &tasks {
                 context.check_stop()?;
                 let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
-                let loading = Loading::new(&base, &designs[design].0, torque);
+                let loading = LoadCase::new(&base, &designs[design].0, torque);
                 let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);
                 rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
                 row.push([key, summary].concat());

@@ -5,7 +5,9 @@
 use std::time::Instant;
 
 use crate::stage::compliance as codec;
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Rows, Saved, Stage, common, pair};
+use crate::stage::{
+    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, pair,
+};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
@@ -13,7 +15,7 @@ use declare::units::{RATIO, TORQUE, in_unit};
 use declare::work::Work;
 use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::stiffness::stiffness;
 use gearmesh::gear::work::{CONTACT_SOLVES, MESH_FACTORISATIONS};
@@ -168,7 +170,7 @@ fn iso_schema() -> Schema {
     .on_demand()
 }
 
-fn iso_table(pair: &Pair, options: &Record) -> Result<Table, TableError> {
+fn iso_table(pair: &GearPair, options: &Record) -> Result<Table, TableError> {
     let found = iso6336::stiffness(&iso6336::Inputs::of(pair, options));
     let row: Row = [found.theoretical, found.single, found.mesh].map(|value| in_unit(value, "N/(mm um)").into()).into();
     Table::from_rows(iso_schema(), vec![row])
@@ -276,13 +278,13 @@ impl Stage for Stiffness {
             Estimate::new(false).work(&foreseen.work, foreseen.times).work(&solves, 1.0).holding(foreseen.memory);
         for schema in self.outputs() {
             let rows = match schema.name.as_str() {
-                "compliance" => Rows::about(foreseen.nodes),
-                "neighbours" => Rows::about(foreseen.neighbours),
+                "compliance" => RowCount::about(foreseen.nodes),
+                "neighbours" => RowCount::about(foreseen.neighbours),
                 // Without reliefs there are few spans.
-                "curve" => Rows::at_most(curve),
-                "mesh" => Rows::exact(if meshed { 2 } else { 0 }),
-                "root_stress" => Rows::about(32),
-                _ => Rows::exact(1),
+                "curve" => RowCount::at_most(curve),
+                "mesh" => RowCount::exact(if meshed { 2 } else { 0 }),
+                "root_stress" => RowCount::about(32),
+                _ => RowCount::exact(1),
             };
             estimate = estimate.rows(demand, schema, rows);
         }

@@ -14,23 +14,23 @@ use gearmesh::gear::contact::flattening;
 use gearmesh::gear::finite_elements::element::{self, NODES, Plane};
 use gearmesh::gear::finite_elements::mesh::Mesh;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::{Loading, State};
+use gearmesh::gear::transmission_error::load_case::{Equilibrium, LoadCase};
 use gearmesh::numeric::chebyshev::Series;
 
 const MODULE: f64 = 3e-3;
 
-fn pair() -> Pair {
+fn pair() -> GearPair {
     let gear = |teeth, shift| specification(teeth, shift, MODULE, 206e9);
-    Pair::new(gear(12, 0.5), gear(17, 0.2), None).unwrap()
+    GearPair::new(gear(12, 0.5), gear(17, 0.2), None).unwrap()
 }
 
 /// By how much a point force approaches the tooth's centreline more than it would in a half space, E = 1: the half
 /// space's ln(t/h) is taken off the displacement at the depths h = t/10 and t/5, and what is left, which is linear, goes
 /// to the surface.
-fn beyond_half_space(pair: &Pair, side: Side, s: f64) -> f64 {
+fn beyond_half_space(pair: &GearPair, side: Side, s: f64) -> f64 {
     let (gear, roll) = (pair.side(side), pair.roll(side, s));
     let fineness = Fineness { level: 8, edge: 0.01 };
     let model = model(gear, Plane::Strain, &sizing(pair, side, s, fineness));
@@ -76,7 +76,7 @@ fn inside(mesh: &Mesh, point: [f64; 2]) -> ([usize; NODES], [f64; NODES]) {
 }
 
 /// The finite-element method's tables, coupled, with load-dependent contact.
-fn tabulated(pair: &Pair) -> PairCompliance {
+fn tabulated(pair: &GearPair) -> PairCompliance {
     let method = method("finite_element").unwrap();
     let options = record(method.member.fields, &[("elements_across", Value::Integer(12))]);
     let assumptions = Assumptions {
@@ -90,7 +90,7 @@ fn tabulated(pair: &Pair) -> PairCompliance {
 }
 
 /// The tables with what the flanks at `path` do beyond a half space; between two it changes linearly.
-fn completed(pair: &Pair, mut compliance: PairCompliance, path: &[f64]) -> PairCompliance {
+fn completed(pair: &GearPair, mut compliance: PairCompliance, path: &[f64]) -> PairCompliance {
     for (side, tooth) in [(Side::Pinion, &mut compliance.pinion), (Side::Gear, &mut compliance.gear)] {
         let gear = pair.side(side);
         let scale = 1.0 / (gear.specification.material.youngs_modulus * gear.specification.face_width);
@@ -104,16 +104,16 @@ fn completed(pair: &Pair, mut compliance: PairCompliance, path: &[f64]) -> PairC
 }
 
 /// Our equilibrium.
-fn equilibrium(pair: &Pair, compliance: &PairCompliance, torque: f64, path: &[f64]) -> State {
+fn equilibrium(pair: &GearPair, compliance: &PairCompliance, torque: f64, path: &[f64]) -> Equilibrium {
     let cycle = MeshCycle::new(pair, compliance, Settings::default()).unwrap();
-    Loading::new(&cycle, &Design::default(), torque).state(path[0] - pair.start_of_contact, path.len())
+    LoadCase::new(&cycle, &Design::default(), torque).state(path[0] - pair.start_of_contact, path.len())
 }
 
 /// What both find for one turn of the pinion.
 struct Compared {
     theirs: Pressed,
     /// By the tables as they are, and with what is beyond a half space.
-    ours: [State; 2],
+    ours: [Equilibrium; 2],
     /// The transmission errors over the approach that CalculiX was given, less the overlap it lets the flanks have.
     ratios: [f64; 2],
     /// Half widths of the contacts, in element edges.
@@ -123,7 +123,7 @@ struct Compared {
 }
 
 /// `edge`: that of the elements in contact \[modules\], on the coarsest mesh.
-fn compare(pair: &Pair, path: &[f64], approach: f64, edge: f64) -> Option<Compared> {
+fn compare(pair: &GearPair, path: &[f64], approach: f64, edge: f64) -> Option<Compared> {
     // 4 elements across take seconds; the finer meshes of docs/methods.md are asked for by name.
     let level = env::var("GEARSTUDY_CALCULIX_LEVEL").map_or(4, |level| level.parse().unwrap());
     let fineness = Fineness { level, edge: edge * 4.0 / level as f64 };

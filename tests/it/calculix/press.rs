@@ -10,7 +10,7 @@ use super::wheel::Wheel;
 use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
 use gearmesh::gear::finite_elements::outline::Outline;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::geometry::{GearPair, Side};
 
 /// Millimetres in a metre.
 const MILLI: f64 = 1e3;
@@ -60,7 +60,7 @@ pub fn across(thinnest: f64) -> Vec<f64> {
 }
 
 /// The sizes of a tooth that is fine about a roll angle.
-pub fn sizing(pair: &Pair, side: Side, s: f64, fineness: Fineness) -> Sizing {
+pub fn sizing(pair: &GearPair, side: Side, s: f64, fineness: Fineness) -> Sizing {
     let gear = pair.side(side);
     let [height, half] = {
         let section = gear.flank(pair.roll(side, s));
@@ -71,7 +71,7 @@ pub fn sizing(pair: &Pair, side: Side, s: f64, fineness: Fineness) -> Sizing {
 }
 
 /// Turns the pinion by `turn` \[rad\] with pairs in contact at the path positions `path`, a base pitch apart.
-pub fn press(pair: &Pair, path: &[f64], turn: f64, fineness: Fineness) -> Option<Pressed> {
+pub fn press(pair: &GearPair, path: &[f64], turn: f64, fineness: Fineness) -> Option<Pressed> {
     let material = pair.pinion.specification.material;
     let scale = pair.pinion.specification.module * MILLI;
     let width = pair.contact_width() * MILLI;

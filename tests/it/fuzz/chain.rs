@@ -9,12 +9,12 @@ use declare::seed::Seed;
 use gearmesh::gear::compliance::ContactLaw;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Pair, Specification};
+use gearmesh::gear::geometry::{GearPair, Specification};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::stability::{AXES, Case, Model, Rules, Verdict, check, sample};
 use gearmesh::gear::transmission_error::curve::Wanted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::stiffness::stiffness;
 
 /// What a specification must survive.
@@ -126,8 +126,8 @@ fn run(case: &Case, corner_contact: CornerContact) {
     follow(&pair, &cycle, &design, case.torque);
 }
 
-fn follow(pair: &Pair, cycle: &MeshCycle, design: &Design, torque: f64) {
-    let loading = Loading::new(cycle, design, torque);
+fn follow(pair: &GearPair, cycle: &MeshCycle, design: &Design, torque: f64) {
+    let loading = LoadCase::new(cycle, design, torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 4, pressure: true });
     assert!(
         summary.mean.is_finite() && summary.peak_to_peak.is_finite() && summary.variance.is_finite(),

@@ -9,7 +9,7 @@ use rayon::prelude::*;
 use super::{choice, integer, run, search, with};
 use crate::support::record;
 use declare::error::{Failure, Place};
-use declare::record::{Entry, Value};
+use declare::record::{PlacedValue, Value};
 use declare::seed::Seed;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Optimizer, Reason};
@@ -17,7 +17,7 @@ use gearmesh::optimize::{self, METHODS, members};
 
 /// Short runs of every method, and of the variants that take another path.
 fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
-    let levels = Value::List(vec![Entry { value: integer(3), place: Place::default() }]);
+    let levels = Value::List(vec![PlacedValue { value: integer(3), place: Place::default() }]);
     let few = || ("population", integer(9));
     vec![
         ("genetic", vec![few(), ("generations", integer(7))]),
@@ -303,7 +303,9 @@ fn impossible_set_ups_are_refused() {
         refused.err().unwrap_or_else(|| panic!("{method} was accepted")).message
     };
     let list = |levels: &[i64]| {
-        Value::List(levels.iter().map(|level| Entry { value: integer(*level), place: Place::default() }).collect())
+        Value::List(
+            levels.iter().map(|level| PlacedValue { value: integer(*level), place: Place::default() }).collect(),
+        )
     };
     assert!(refusal("genetics", &[], 1).contains("no optimisation method `genetics`"));
     assert!(refusal("genetic", &[("elite", integer(100))], 1).contains("no room for offspring"));

@@ -10,7 +10,7 @@ use declare::seed::Seed;
 use declare::work::Tally;
 use gearstudy::program;
 use gearstudy::stage::{Context, Demand, Inputs, Stage};
-use studygraph::stage::estimate::{Ahead, Certainty, Rows};
+use studygraph::stage::estimate::{Ahead, Certainty, RowCount};
 use studygraph::study::Study;
 use studygraph::table::data::Table;
 
@@ -74,7 +74,7 @@ fn foreseen(name: &str, stage: &dyn Stage, demand: &Demand, inputs: &Inputs, tab
     let mut ahead = Ahead::default();
     for (port, tables) in &inputs.ports {
         for table in tables {
-            ahead.know(port, table.name(), Rows::exact(table.rows()));
+            ahead.know(port, table.name(), RowCount::exact(table.rows()));
         }
     }
     let estimate = stage.estimate(demand, &ahead);

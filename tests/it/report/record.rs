@@ -1,10 +1,10 @@
 //! What the stage `report` is told, as a record built by hand: one entry for each verdict, one figure for each shape.
 
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
-pub fn item(value: Value) -> Entry {
-    Entry { value, place: Place { line: 40, ..Place::default() } }
+pub fn item(value: Value) -> PlacedValue {
+    PlacedValue { value, place: Place { line: 40, ..Place::default() } }
 }
 
 pub fn text(text: &str) -> Value {

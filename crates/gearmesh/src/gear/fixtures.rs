@@ -3,13 +3,13 @@
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
 use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use super::geometry::{Gear, Pair, Rack, Specification};
+use super::geometry::{Gear, GearPair, Rack, Specification};
 use super::material::Material;
 use super::modification::{Design, family};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::surface::Surface;
 use declare::error::{Diagnostic, Place};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 pub const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 pub const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
@@ -47,10 +47,10 @@ pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
 }
 
 /// 19/48, 20 and 18 mm wide.
-pub fn pair() -> Pair {
+pub fn pair() -> GearPair {
     let (start, end) = (2.009_266_843_717_533_4e-3, 16.583_582_258_918_156e-3);
     let pinion_base = 19.0 * BASE_PITCH / std::f64::consts::TAU;
-    Pair {
+    GearPair {
         pinion: gear(19, pinion_base, 20e-3),
         gear: gear(48, pinion_base * 48.0 / 19.0, 18e-3),
         centre_distance: 100.5e-3,
@@ -65,9 +65,9 @@ pub fn pair() -> Pair {
 
 /// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker, so that the angle of their
 /// tips is unchanged.
-pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
+pub fn pair_with_contact_ratio(ratio: f64) -> GearPair {
     let mut pair = pair();
-    let involute = |pair: &Pair| {
+    let involute = |pair: &GearPair| {
         let roll = pair.end_of_contact / pair.pinion.base_radius;
         roll - libm::atan(roll)
     };
@@ -80,8 +80,8 @@ pub fn pair_with_contact_ratio(ratio: f64) -> Pair {
 }
 
 /// The same pair with the gear driving: its path of contact is run through backwards.
-pub fn swapped(pair: &Pair) -> Pair {
-    Pair {
+pub fn swapped(pair: &GearPair) -> GearPair {
+    GearPair {
         pinion: pair.gear.clone(),
         gear: pair.pinion.clone(),
         start_of_contact: pair.tangent_length - pair.end_of_contact,
@@ -104,7 +104,7 @@ pub fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
 }
 
 /// Every pair has the stiffness `stiffness`, linear contact included, wherever it is.
-pub fn constant(pair: &Pair, stiffness: f64) -> PairCompliance {
+pub fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
     let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * width);
     let half = 0.5 * (1.0 / stiffness - contact);
@@ -146,7 +146,7 @@ pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
         let given = values.iter().find(|(given, _)| *given == field.name).map(|(_, value)| value.clone());
         let default = defaults.iter().find(|(default, _)| *default == field.name).map(|(_, word)| Value::Choice(word));
         if let Some(value) = given.or(default) {
-            fields.push((field.name, Entry { value, place: Place::default() }));
+            fields.push((field.name, PlacedValue { value, place: Place::default() }));
         }
     }
     let known = |name: &str| family.member.fields.iter().any(|field| field.name == name);
@@ -155,10 +155,10 @@ pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
 }
 
 /// A modification: family, gear, other values.
-pub type Part<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
+pub type NamedModification<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
 
 /// A design of several modifications.
-pub fn design(pair: &Pair, parts: &[Part]) -> Result<Design, Diagnostic> {
+pub fn design(pair: &GearPair, parts: &[NamedModification]) -> Result<Design, Diagnostic> {
     let mut design = Design::default();
     for (name, gear, values) in parts {
         let values = [&[("gear", Value::Choice(gear))], *values].concat();

@@ -5,8 +5,8 @@
 use rand_chacha::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-use super::fixtures::{Part, STEEL, design};
-use super::geometry::{Pair, Rack, Specification};
+use super::fixtures::{NamedModification, STEEL, design};
+use super::geometry::{GearPair, Rack, Specification};
 use super::modification::Design;
 use declare::record::Value::{Choice, Number, Quantity};
 
@@ -39,7 +39,7 @@ impl Random {
     }
 
     /// A possible pair: 12 to 60 teeth with up to five times as many, module 1 to 8 mm, shifted or not.
-    pub fn pair(&mut self) -> Pair {
+    pub fn pair(&mut self) -> GearPair {
         loop {
             let module = self.scaled(1e-3, 8e-3);
             let angle = self.of(&[17.5_f64, 20.0, 20.0, 22.5, 25.0]).to_radians();
@@ -62,20 +62,20 @@ impl Random {
                 bore_radius: module * (0.5 * f64::from(teeth) + profile_shift - 1.25) / bore,
                 material: STEEL,
             };
-            if let Ok(pair) = Pair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None) {
+            if let Ok(pair) = GearPair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None) {
                 return pair;
             }
         }
     }
 
     /// A torque that bends the teeth by about 1 to 30 µm \[N m\].
-    pub fn torque(&mut self, pair: &Pair) -> f64 {
+    pub fn torque(&mut self, pair: &GearPair) -> f64 {
         let width = pair.pinion.specification.face_width;
         self.scaled(2e4, 6e5) * width * pair.pinion.base_radius
     }
 
     /// Profile and lead modifications of a few micrometres; some have no closed form across the face.
-    pub fn design(&mut self, pair: &Pair) -> Design {
+    pub fn design(&mut self, pair: &GearPair) -> Design {
         loop {
             let curve = self.of(&["linear", "parabolic", "power"]);
             let tip = [
@@ -94,7 +94,7 @@ impl Random {
                 ("curve", Choice("power")),
                 ("exponent", Number(self.between(1.2, 3.5))),
             ];
-            let mut parts: Vec<Part> = Vec::new();
+            let mut parts: Vec<NamedModification> = Vec::new();
             if self.share() < 0.8 {
                 parts.push(("tip_relief", self.of(&["pinion", "gear", "both"]), tip));
             }

@@ -1,6 +1,6 @@
 //! How a total load spreads over a few springs that stand behind gaps: a monotone complementarity problem.
 //!
-//! Find the approach x and interferences w_j = x − gap_j − Σ_k c_jk load_k with load_j = response_j(w_j) ≥ 0, zero for
+//! Find the approach x and penetrations w_j = x − gap_j − Σ_k c_jk load_k with load_j = response_j(w_j) ≥ 0, zero for
 //! w_j ≤ 0, and Σ load_j = total. Responses are convex and increasing, so without coupling Newton's method started above
 //! the root falls onto it monotonically and needs no safeguard. With coupling the loads minimise a convex complementary
 //! energy; semismooth Newton finds them, and where it should cycle, relaxation inside a bracket does. Gaps are measured
@@ -9,7 +9,7 @@
 use super::crossing::crossing;
 
 /// The most springs one problem may have.
-pub const MOST: usize = 6;
+pub const MOST_SPRINGS: usize = 6;
 
 /// Share of the total below which what a Newton step leaves, being of second order, is rounding.
 const NEARLY: f64 = 1e-9;
@@ -19,14 +19,14 @@ const FALL: f64 = 1e-3;
 const ROUNDING: f64 = 1e-14;
 
 /// One number per spring.
-pub type PerSpring = [f64; MOST];
-/// Interference of one spring per load on another; symmetric, the diagonal is not read.
-pub type Coupling = [PerSpring; MOST];
+pub type PerSpring = [f64; MOST_SPRINGS];
+/// Penetration of one spring per load on another; symmetric, the diagonal is not read.
+pub type Coupling = [PerSpring; MOST_SPRINGS];
 
-/// Loads and their slopes as functions of the interference.
+/// Loads and their slopes as functions of the penetration.
 pub trait Springs {
-    /// Load and d load/d interference: zero for `interference` ≤ 0, convex and increasing above.
-    fn response(&self, spring: usize, interference: f64) -> (f64, f64);
+    /// Load and d load/d penetration: zero for `penetration` ≤ 0, convex and increasing above.
+    fn response(&self, spring: usize, penetration: f64) -> (f64, f64);
 }
 
 /// Equilibrium.
@@ -36,13 +36,14 @@ pub struct Balance {
     pub approach: f64,
     pub loads: PerSpring,
     /// w_j; where there is no load, minus the distance that is still open.
-    pub interference: PerSpring,
+    pub penetration: PerSpring,
     /// d total/d x.
     pub slope: f64,
 }
 
 impl Balance {
-    const EMPTY: Self = Self { approach: 0.0, loads: [0.0; MOST], interference: [0.0; MOST], slope: 0.0 };
+    const EMPTY: Self =
+        Self { approach: 0.0, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope: 0.0 };
 }
 
 /// The approach of linear springs without coupling: sort by gap and take prefix sums. Exact.
@@ -69,7 +70,7 @@ pub fn linear_approach(stiffness: &PerSpring, gaps: &[f64], total: f64) -> f64 {
     approach
 }
 
-/// Nothing is loaded. `interference` is then the margin by which a spring is the nearest one, so that its sign tells
+/// Nothing is loaded. `penetration` is then the margin by which a spring is the nearest one, so that its sign tells
 /// the nearest and its zero is where two springs change places.
 #[must_use]
 pub fn unloaded(gaps: &[f64]) -> Balance {
@@ -77,7 +78,7 @@ pub fn unloaded(gaps: &[f64]) -> Balance {
     for (spring, gap) in gaps.iter().enumerate() {
         let others = gaps.iter().enumerate().filter(|(other, _)| *other != spring).map(|(_, gap)| *gap);
         let margin = others.fold(f64::INFINITY, f64::min) - gap;
-        balance.interference[spring] = if margin.is_finite() { margin } else { 0.0 };
+        balance.penetration[spring] = if margin.is_finite() { margin } else { 0.0 };
     }
     balance
 }
@@ -85,14 +86,14 @@ pub fn unloaded(gaps: &[f64]) -> Balance {
 /// Equilibrium without coupling. `total` > 0, the smallest gap is 0, and at `above` the springs carry `total` or more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> Balance {
     let mut found = Balance { approach: above, ..Balance::EMPTY };
-    let mut rises = [0.0; MOST];
+    let mut rises = [0.0; MOST_SPRINGS];
     let (loads, rises) = (&mut found.loads[..gaps.len()], &mut rises[..gaps.len()]);
     let mut excess = 0.0;
     for _ in 0..200 {
         let (mut sum, mut slope) = (0.0, 0.0);
         for (spring, gap) in gaps.iter().enumerate() {
-            let interference = found.approach - gap;
-            let (load, rise) = if interference > 0.0 { springs.response(spring, interference) } else { (0.0, 0.0) };
+            let penetration = found.approach - gap;
+            let (load, rise) = if penetration > 0.0 { springs.response(spring, penetration) } else { (0.0, 0.0) };
             (loads[spring], rises[spring]) = (load, rise);
             sum += load;
             slope += rise;
@@ -113,7 +114,7 @@ pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> 
     let step = if found.slope > 0.0 { -excess / found.slope } else { 0.0 };
     found.approach += step;
     for (spring, gap) in gaps.iter().enumerate() {
-        found.interference[spring] = found.approach - gap;
+        found.penetration[spring] = found.approach - gap;
         loads[spring] = (loads[spring] + rises[spring] * step).max(0.0);
     }
     found
@@ -122,8 +123,8 @@ pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> 
 /// Equilibrium with coupling; the rest as in [`balance`].
 pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
     let mut start = Balance { approach: above, ..Balance::EMPTY };
-    for (interference, gap) in start.interference.iter_mut().zip(gaps) {
-        *interference = above - gap;
+    for (penetration, gap) in start.penetration.iter_mut().zip(gaps) {
+        *penetration = above - gap;
     }
     newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }
@@ -138,28 +139,28 @@ fn newton(
     let count = gaps.len();
     let mut before = f64::INFINITY;
     for _ in 0..60 {
-        let mut rises = [0.0; MOST];
+        let mut rises = [0.0; MOST_SPRINGS];
         for (spring, rise) in rises[..count].iter_mut().enumerate() {
-            let w = found.interference[spring];
+            let w = found.penetration[spring];
             (found.loads[spring], *rise) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
         }
-        let mut residual = [0.0; MOST];
+        let mut residual = [0.0; MOST_SPRINGS];
         // The largest residual against what it was made of.
         let mut error = 0.0_f64;
         for j in 0..count {
-            let w = found.interference[j];
+            let w = found.penetration[j];
             residual[j] = w + deflection(coupling, &found.loads, j, count) + gaps[j] - found.approach;
             error = error.max(residual[j].abs() / (found.approach.abs() + gaps[j] + w.abs()));
         }
         let excess = found.loads[..count].iter().sum::<f64>() - total;
         let solved = Bordered::solve(coupling, &rises, &residual, count)?;
         let shift = (-excess - solved.offset) / solved.slope;
-        let mut change = [0.0; MOST];
+        let mut change = [0.0; MOST_SPRINGS];
         for (j, change) in change[..count].iter_mut().enumerate() {
             *change = solved.particular[j] + solved.unit[j] * shift;
         }
         for j in 0..count {
-            found.interference[j] += if rises[j] > 0.0 {
+            found.penetration[j] += if rises[j] > 0.0 {
                 change[j] / rises[j]
             } else {
                 shift - residual[j] - deflection(coupling, &change, j, count)
@@ -201,14 +202,14 @@ impl Bordered {
     /// Cholesky's factorisation of the compliance matrix of the loaded springs; `None` when it is not positive definite
     /// or nothing is loaded.
     fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
-        let mut loaded = [0; MOST];
+        let mut loaded = [0; MOST_SPRINGS];
         let mut size = 0;
         for (spring, _) in rises[..count].iter().enumerate().filter(|(_, rise)| **rise > 0.0) {
             loaded[size] = spring;
             size += 1;
         }
-        let mut factor = [[0.0; MOST]; MOST];
-        let (mut a, mut b) = ([0.0; MOST], [0.0; MOST]);
+        let mut factor = [[0.0; MOST_SPRINGS]; MOST_SPRINGS];
+        let (mut a, mut b) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
         for i in 0..size {
             for k in 0..=i {
                 let (row, column) = (loaded[i], loaded[k]);
@@ -226,7 +227,7 @@ impl Bordered {
             let below = |y: &PerSpring| (0..i).map(|m| factor[i][m] * y[m]).sum::<f64>();
             (a[i], b[i]) = ((-residual[loaded[i]] - below(&a)) / factor[i][i], (1.0 - below(&b)) / factor[i][i]);
         }
-        let mut solved = Self { particular: [0.0; MOST], unit: [0.0; MOST], offset: 0.0, slope: 0.0 };
+        let mut solved = Self { particular: [0.0; MOST_SPRINGS], unit: [0.0; MOST_SPRINGS], offset: 0.0, slope: 0.0 };
         for i in (0..size).rev() {
             for k in i + 1..size {
                 a[i] -= factor[k][i] * a[k];
@@ -255,7 +256,7 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64
                 let w = approach - gap - deflection(coupling, &found.loads, j, count);
                 let load = if w > 0.0 { springs.response(j, w).0 } else { 0.0 };
                 change = change.max((load - found.loads[j]).abs());
-                (found.interference[j], found.loads[j]) = (w, load);
+                (found.penetration[j], found.loads[j]) = (w, load);
             }
             if change <= 1e-16 * total {
                 break;
@@ -270,11 +271,11 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64
     let root = crossing(&mut excess, (0.0, -total), upper, 0.0);
     excess(root);
     let rises: Vec<f64> = (0..count)
-        .map(|j| if found.interference[j] > 0.0 { springs.response(j, found.interference[j]).1 } else { 0.0 })
+        .map(|j| if found.penetration[j] > 0.0 { springs.response(j, found.penetration[j]).1 } else { 0.0 })
         .collect();
-    let mut padded = [0.0; MOST];
+    let mut padded = [0.0; MOST_SPRINGS];
     padded[..count].copy_from_slice(&rises);
-    found.slope = Bordered::solve(coupling, &padded, &[0.0; MOST], count).map_or(0.0, |solved| solved.slope);
+    found.slope = Bordered::solve(coupling, &padded, &[0.0; MOST_SPRINGS], count).map_or(0.0, |solved| solved.slope);
     found
 }
 
@@ -287,8 +288,8 @@ mod tests {
     struct Linear(PerSpring);
 
     impl Springs for Linear {
-        fn response(&self, spring: usize, interference: f64) -> (f64, f64) {
-            (self.0[spring] * interference, self.0[spring])
+        fn response(&self, spring: usize, penetration: f64) -> (f64, f64) {
+            (self.0[spring] * penetration, self.0[spring])
         }
     }
 
@@ -348,16 +349,16 @@ mod tests {
         #![proptest_config(ProptestConfig { cases: 400, failure_persistence: None, ..ProptestConfig::default() })]
         #[test]
         fn random_problems_agree_with_enumeration(
-            count in 1_usize..=MOST,
-            roots in prop::collection::vec(-1.0_f64..1.0, MOST * MOST),
-            own in prop::collection::vec(0.02_f64..2.0, MOST),
-            openings in prop::collection::vec(0.0_f64..3.0, MOST),
-            closed in 0_usize..MOST,
+            count in 1_usize..=MOST_SPRINGS,
+            roots in prop::collection::vec(-1.0_f64..1.0, MOST_SPRINGS * MOST_SPRINGS),
+            own in prop::collection::vec(0.02_f64..2.0, MOST_SPRINGS),
+            openings in prop::collection::vec(0.0_f64..3.0, MOST_SPRINGS),
+            closed in 0_usize..MOST_SPRINGS,
             total in 1e-3_f64..10.0,
             coupled in any::<bool>(),
         ) {
             // B Bᵀ + diagonal: positive definite, off-diagonals of either sign and often larger than is mechanical.
-            let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST + m] * roots[k * MOST + m]).sum::<f64>();
+            let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST_SPRINGS + m] * roots[k * MOST_SPRINGS + m]).sum::<f64>();
             let compliance: Vec<Vec<f64>> = (0..count)
                 .map(|i| (0..count).map(|k| match (i == k, coupled) {
                     (true, _) => entry(i, i) + own[i],
@@ -367,7 +368,7 @@ mod tests {
                 .collect();
             let mut gaps = openings[..count].to_vec();
             gaps[closed % count] = 0.0;
-            let (mut stiffness, mut coupling) = ([0.0; MOST], [[0.0; MOST]; MOST]);
+            let (mut stiffness, mut coupling) = ([0.0; MOST_SPRINGS], [[0.0; MOST_SPRINGS]; MOST_SPRINGS]);
             for i in 0..count {
                 stiffness[i] = 1.0 / compliance[i][i];
                 for k in 0..count {
@@ -395,7 +396,7 @@ mod tests {
                 (w + w * w, self.0 * (1.0 + 2.0 * w))
             }
         }
-        let (gaps, mut coupling) = ([0.0, 0.1], [[0.0; MOST]; MOST]);
+        let (gaps, mut coupling) = ([0.0, 0.1], [[0.0; MOST_SPRINGS]; MOST_SPRINGS]);
         (coupling[0][1], coupling[1][0]) = (0.1, 0.1);
         let [exact, found] = [1.0, 1.01].map(|slope| balance_coupled(&Inexact(slope), &gaps, &coupling, 2.0, 3.0));
         for load in 0..2 {
@@ -406,7 +407,7 @@ mod tests {
 
     #[test]
     fn a_vanishing_load_keeps_its_digits_beside_gaps() {
-        let stiffness = [3.0e8; MOST];
+        let stiffness = [3.0e8; MOST_SPRINGS];
         for total in [1e-300, 1e-15, 1e-3, 1e12] {
             let gaps = [0.0, 4.0e-6];
             let found = balance(&Linear(stiffness), &gaps, total, linear_approach(&stiffness, &gaps, total));
@@ -418,6 +419,6 @@ mod tests {
     #[test]
     fn without_load_the_nearest_has_the_positive_margin() {
         let found = unloaded(&[2.0, 0.0, 3.0]);
-        assert_eq!(found.interference[..3], [-2.0, 2.0, -3.0]);
+        assert_eq!(found.penetration[..3], [-2.0, 2.0, -3.0]);
     }
 }

@@ -20,7 +20,7 @@ pub struct Balance {
     pub approach: f64,
     pub loads: Vec<f64>,
     /// Where there is no load, minus the distance that is still open.
-    pub interference: Vec<f64>,
+    pub penetration: Vec<f64>,
     /// d total/d approach.
     pub slope: f64,
 }
@@ -49,20 +49,20 @@ fn deflections(coupling: &[f64], loads: &[f64], into: &mut [f64]) {
 
 fn newton(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, above: f64) -> Option<Balance> {
     let count = gaps.len();
-    let interference = gaps.iter().map(|gap| above - gap).collect();
-    let mut found = Balance { approach: above, loads: vec![0.0; count], interference, slope: 0.0 };
+    let penetration = gaps.iter().map(|gap| above - gap).collect();
+    let mut found = Balance { approach: above, loads: vec![0.0; count], penetration, slope: 0.0 };
     let [mut rises, mut residual, mut change, mut moved] = [(); 4].map(|()| vec![0.0; count]);
     let mut work = Factor::default();
     for _ in 0..60 {
         for (spring, rise) in rises.iter_mut().enumerate() {
-            let w = found.interference[spring];
+            let w = found.penetration[spring];
             (found.loads[spring], *rise) = if w > 0.0 { springs.response(spring, w) } else { (0.0, 0.0) };
         }
         deflections(coupling, &found.loads, &mut residual);
         // The largest residual against what it was made of.
         let mut error = 0.0_f64;
         for (spring, residual) in residual.iter_mut().enumerate() {
-            let w = found.interference[spring];
+            let w = found.penetration[spring];
             let size = found.approach.abs() + gaps[spring] + w.abs() + *residual;
             *residual += w + gaps[spring] - found.approach;
             error = error.max(residual.abs() / size);
@@ -76,7 +76,7 @@ fn newton(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, ab
         }
         deflections(coupling, &change, &mut moved);
         for spring in 0..count {
-            found.interference[spring] += if rises[spring] > 0.0 {
+            found.penetration[spring] += if rises[spring] > 0.0 {
                 change[spring] / rises[spring]
             } else {
                 shift - residual[spring] - moved[spring]
@@ -167,7 +167,7 @@ impl Factor {
 /// For a given approach, each load in turn against the others; the approach by bracketing. Slow and sure.
 fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, above: f64) -> Balance {
     let count = gaps.len();
-    let mut found = Balance { approach: 0.0, loads: vec![0.0; count], interference: vec![0.0; count], slope: 0.0 };
+    let mut found = Balance { approach: 0.0, loads: vec![0.0; count], penetration: vec![0.0; count], slope: 0.0 };
     let mut excess = |approach: f64| {
         found.approach = approach;
         for _ in 0..20_000 {
@@ -178,7 +178,7 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, a
                 let w = approach - gap - all;
                 let load = if w > 0.0 { springs.response(spring, w).0 } else { 0.0 };
                 change = change.max((load - found.loads[spring]).abs());
-                (found.interference[spring], found.loads[spring]) = (w, load);
+                (found.penetration[spring], found.loads[spring]) = (w, load);
             }
             if change <= 1e-15 * total {
                 break;
@@ -193,7 +193,7 @@ fn relaxed(springs: &impl Springs, gaps: &[f64], coupling: &[f64], total: f64, a
     let root = crossing(&mut excess, (0.0, -total), upper, 0.0);
     excess(root);
     let response = |(spring, w): (usize, &f64)| if *w > 0.0 { springs.response(spring, *w).1 } else { 0.0 };
-    let rises: Vec<f64> = found.interference.iter().enumerate().map(response).collect();
+    let rises: Vec<f64> = found.penetration.iter().enumerate().map(response).collect();
     let solved = Factor::default().solve(coupling, &rises, &vec![0.0; count]);
     found.slope = solved.map_or(0.0, |[_, slope]| slope);
     found
@@ -204,9 +204,9 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
-    use crate::numeric::complementarity::{self, MOST};
+    use crate::numeric::complementarity::{self, MOST_SPRINGS};
 
-    /// Stiffness, and the interference above which it doubles.
+    /// Stiffness, and the penetration above which it doubles.
     struct Bent(Vec<f64>);
 
     impl Springs for Bent {
@@ -221,19 +221,19 @@ mod tests {
         /// Tier: second method. The solver for few springs, and relaxation.
         #[test]
         fn few_springs_are_balanced_as_by_the_solver_for_few(
-            count in 1_usize..=MOST,
-            roots in prop::collection::vec(-1.0_f64..1.0, MOST * MOST),
-            own in prop::collection::vec(0.1_f64..2.0, MOST),
-            openings in prop::collection::vec(0.0_f64..2.0, MOST),
-            closed in 0_usize..MOST,
+            count in 1_usize..=MOST_SPRINGS,
+            roots in prop::collection::vec(-1.0_f64..1.0, MOST_SPRINGS * MOST_SPRINGS),
+            own in prop::collection::vec(0.1_f64..2.0, MOST_SPRINGS),
+            openings in prop::collection::vec(0.0_f64..2.0, MOST_SPRINGS),
+            closed in 0_usize..MOST_SPRINGS,
             total in 1e-3_f64..4.0,
         ) {
-            let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST + m] * roots[k * MOST + m]).sum::<f64>();
+            let entry = |i: usize, k: usize| (0..count).map(|m| roots[i * MOST_SPRINGS + m] * roots[k * MOST_SPRINGS + m]).sum::<f64>();
             let mut gaps = openings[..count].to_vec();
             gaps[closed % count] = 0.0;
             let off = |i: usize, k: usize| if i == k { 0.0 } else { entry(i, k) };
             let coupling: Vec<f64> = (0..count * count).map(|at| off(at / count, at % count)).collect();
-            let mut few = [[0.0; MOST]; MOST];
+            let mut few = [[0.0; MOST_SPRINGS]; MOST_SPRINGS];
             for at in 0..count * count {
                 few[at / count][at % count] = coupling[at];
             }
@@ -243,7 +243,7 @@ mod tests {
             let exact = complementarity::balance_coupled(&springs, &gaps, &few, total, above);
             for found in [balance(&springs, &gaps, &coupling, total, above), relaxed(&springs, &gaps, &coupling, total, above)] {
                 prop_assert!((found.approach / exact.approach - 1.0).abs() < 1e-9);
-                prop_assert!((found.slope / exact.slope - 1.0).abs() < 1e-6 || found.interference.iter().any(|w| w.abs() < 1e-6 || (w - 0.5).abs() < 1e-6));
+                prop_assert!((found.slope / exact.slope - 1.0).abs() < 1e-6 || found.penetration.iter().any(|w| w.abs() < 1e-6 || (w - 0.5).abs() < 1e-6));
                 for spring in 0..count {
                     prop_assert!((found.loads[spring] - exact.loads[spring]).abs() < 1e-9 * total);
                 }

@@ -5,7 +5,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use super::model::{Comparison, Damage, Flip, StageDiff, State, StudyDiff, TableDiff};
+use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
 use super::{table, verdict, why};
 use crate::history::side::{Got, Side};
 use crate::store::cache::Cache;
@@ -33,7 +33,7 @@ pub struct Options<'a> {
 }
 
 /// A study's name and its manifests, with the folder each lies in.
-struct Pair {
+struct ManifestPair {
     name: String,
     before: Option<(String, Manifest)>,
     after: Option<(String, Manifest)>,
@@ -47,7 +47,7 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
     let mut comparison = Comparison {
         before: before.label.clone(),
         after: after.label.clone(),
-        state: State::Same,
+        state: Difference::Same,
         damaged: Vec::new(),
         verdicts: Vec::new(),
         studies: Vec::new(),
@@ -74,16 +74,16 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
                 let stages = only.stages.iter();
                 let gone = stages.flat_map(|stage| gone(before, folder, &pair.name, stage, options));
                 comparison.verdicts.extend(gone);
-                one_sided(&pair.name, only, State::Removed)
+                one_sided(&pair.name, only, Difference::Removed)
             }
-            (None, Some((_, only))) => one_sided(&pair.name, only, State::Added),
+            (None, Some((_, only))) => one_sided(&pair.name, only, Difference::Added),
             (None, None) => continue,
         };
         comparison.studies.push(study);
     }
     verdict::sort(&mut comparison.verdicts);
-    let damaged = (!comparison.damaged.is_empty()).then_some(State::Changed);
-    comparison.state = State::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
+    let damaged = (!comparison.damaged.is_empty()).then_some(Difference::Changed);
+    comparison.state = Difference::of_parts(comparison.studies.iter().map(|study| study.state).chain(damaged));
     Ok(comparison)
 }
 
@@ -99,7 +99,7 @@ fn replace(told: &mut Vec<Damage>, found: Vec<Damage>) {
 }
 
 /// Files that are not what their manifests say, but for values of tables that will be compared.
-fn damaged(pair: &Pair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
+fn damaged(pair: &ManifestPair, before: &Side, after: &Side, options: &Options<'_>) -> Vec<Damage> {
     let tables = |side: &Option<(String, Manifest)>| -> BTreeSet<(String, String)> {
         let manifest = side.iter().flat_map(|(_, manifest)| &manifest.stages);
         manifest.flat_map(|stage| &stage.tables).map(|table| (table.name.clone(), table.content.clone())).collect()
@@ -133,7 +133,12 @@ fn damaged(pair: &Pair, before: &Side, after: &Side, options: &Options<'_>) -> V
     found
 }
 
-fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Comparison) -> Result<Vec<Pair>, String> {
+fn pairs(
+    before: &Side,
+    after: &Side,
+    options: &Options<'_>,
+    comparison: &mut Comparison,
+) -> Result<Vec<ManifestPair>, String> {
     let mut problems = Vec::new();
     let mut read = |side: &Side| -> Result<Vec<(String, String, Option<Manifest>)>, String> {
         let folders = side.studies()?;
@@ -175,7 +180,7 @@ fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Co
     };
     let mut pairs = Vec::new();
     for name in names.iter().filter(|name| options.studies.is_empty() || options.studies.contains(name)) {
-        let pair = Pair { name: (*name).clone(), before: take(&old, name), after: take(&new, name) };
+        let pair = ManifestPair { name: (*name).clone(), before: take(&old, name), after: take(&new, name) };
         let only_there = pair.before.is_none() && pair.after.is_some();
         let damaged_before = broken && before.studies()?.contains(name) && pair.before.is_none();
         let damaged_after = broken && after.studies()?.contains(name) && pair.after.is_none();
@@ -193,7 +198,7 @@ fn pairs(before: &Side, after: &Side, options: &Options<'_>, comparison: &mut Co
 
 /// Every tolerance of the command line must be meant for some column, and fit it; where a name means several, it is said
 /// which.
-fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<Vec<String>, String> {
+fn check_tolerances(pairs: &[ManifestPair], tolerances: &[Allowance]) -> Result<Vec<String>, String> {
     let mut remarks = Vec::new();
     for allowance in tolerances {
         let mut meant = BTreeSet::new();
@@ -232,18 +237,18 @@ fn check_tolerances(pairs: &[Pair], tolerances: &[Allowance]) -> Result<Vec<Stri
     Ok(remarks)
 }
 
-fn one_sided(name: &str, manifest: &Manifest, state: State) -> StudyDiff {
+fn one_sided(name: &str, manifest: &Manifest, state: Difference) -> StudyDiff {
     let stages = manifest.stages.iter().map(|stage| one_sided_stage(stage, state)).collect();
     StudyDiff { name: name.to_owned(), state, stages }
 }
 
-fn one_sided_stage(stage: &StageRecord, state: State) -> StageDiff {
+fn one_sided_stage(stage: &StageRecord, state: Difference) -> StageDiff {
     let tables = stage.tables.iter().map(|record| one_sided_table(record, state)).collect();
     StageDiff { name: stage.name.clone(), kind: stage.kind.clone(), renamed_from: None, state, why: Vec::new(), tables }
 }
 
-fn one_sided_table(record: &TableRecord, state: State) -> TableDiff {
-    let (rows_before, rows_after) = if state == State::Added { (0, record.rows) } else { (record.rows, 0) };
+fn one_sided_table(record: &TableRecord, state: Difference) -> TableDiff {
+    let (rows_before, rows_after) = if state == Difference::Added { (0, record.rows) } else { (record.rows, 0) };
     TableDiff { name: record.name.clone(), state, rows_before, rows_after, ..TableDiff::default() }
 }
 
@@ -293,15 +298,15 @@ impl Task<'_> {
             let same_name = old.stages.iter().find(|earlier| earlier.name == stage.name);
             let renamed = || Some(gone.remove(gone.iter().position(|earlier| is_renamed(earlier, stage))?));
             stages.push(match same_name.or_else(renamed) {
-                None => one_sided_stage(stage, State::Added),
+                None => one_sided_stage(stage, Difference::Added),
                 Some(earlier) => self.stage(name, earlier, stage, &mut found),
             });
         }
         for stage in &gone {
             found.flips.extend(self::gone(self.before, &self.old.0, name, stage, self.options));
         }
-        stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, State::Removed)));
-        let state = State::of_parts(stages.iter().map(|stage| stage.state));
+        stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, Difference::Removed)));
+        let state = Difference::of_parts(stages.iter().map(|stage| stage.state));
         (StudyDiff { name: name.to_owned(), state, stages }, found)
     }
 
@@ -309,17 +314,17 @@ impl Task<'_> {
         let mut tables = Vec::new();
         for record in &new.tables {
             let Some(earlier) = old.tables.iter().find(|earlier| earlier.table() == record.table()) else {
-                tables.push(one_sided_table(record, State::Added));
+                tables.push(one_sided_table(record, Difference::Added));
                 continue;
             };
             tables.push(self.table(study, (old, earlier), (new, record), found));
         }
         let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.table() == table.table()));
-        tables.extend(gone.map(|table| one_sided_table(table, State::Removed)));
+        tables.extend(gone.map(|table| one_sided_table(table, Difference::Removed)));
         let mut why = why::reasons((&self.old.1, old), (&self.new.1, new));
-        let mut state = State::of_parts(tables.iter().map(|table| table.state));
+        let mut state = Difference::of_parts(tables.iter().map(|table| table.state));
         if why::complete(old) && !why::complete(new) {
-            state = State::Changed;
+            state = Difference::Changed;
         }
         if state.differs() && why.is_empty() {
             why.push(why::unknown(&self.old.1, &self.new.1));

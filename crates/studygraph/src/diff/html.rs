@@ -7,7 +7,7 @@ use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
 use serde::Serialize;
 
-use super::model::{Comparison, Flip, StageDiff, State, StudyDiff, TableDiff};
+use super::model::{Comparison, Difference, Flip, StageDiff, StudyDiff, TableDiff};
 use super::words;
 use crate::page;
 
@@ -91,8 +91,8 @@ pub fn page(comparison: &Comparison) -> Result<String, String> {
 
 fn study(study: &StudyDiff) -> StudyView<'_> {
     let told = words::told(study);
-    let changed = told.iter().filter(|stage| stage.state <= State::Changed);
-    let tables = changed.flat_map(|stage| &stage.tables).filter(|table| table.state != State::Same);
+    let changed = told.iter().filter(|stage| stage.state <= Difference::Changed);
+    let tables = changed.flat_map(|stage| &stage.tables).filter(|table| table.state != Difference::Same);
     StudyView {
         study,
         sign: study.state.sign(),

@@ -2,7 +2,7 @@
 //!
 //! Must not know: who shows it. Every text of a study is escaped.
 
-use super::model::{Comparison, State, StudyDiff, TableDiff};
+use super::model::{Comparison, Difference, StudyDiff, TableDiff};
 use super::words;
 
 /// The whole comparison.
@@ -57,8 +57,8 @@ fn study(study: &StudyDiff) -> String {
     });
     text += "\n";
     text += &table(["Stage", "Kind", "State", "Why"], rows);
-    for stage in told.iter().filter(|stage| stage.state <= State::Changed) {
-        for table in stage.tables.iter().filter(|table| table.state != State::Same) {
+    for stage in told.iter().filter(|stage| stage.state <= Difference::Changed) {
+        for table in stage.tables.iter().filter(|table| table.state != Difference::Same) {
             text += &of_table(table);
         }
     }

@@ -9,7 +9,7 @@ use crate::table::data::Cell;
 /// How far two of a kind are apart. The order is that of weight.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum State {
+pub enum Difference {
     #[default]
     Same,
     WithinTolerance,
@@ -18,7 +18,7 @@ pub enum State {
     Added,
 }
 
-impl State {
+impl Difference {
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -61,7 +61,7 @@ pub struct Comparison {
     /// What is compared with what, in words: `HEAD (59b124e)`, `the working tree`.
     pub before: String,
     pub after: String,
-    pub state: State,
+    pub state: Difference,
     /// Files that are not what their manifest says: whatever else is said of their tables goes by the manifest.
     pub damaged: Vec<Damage>,
     /// Verdicts on published numbers that are other words now, those that need attention first.
@@ -112,7 +112,7 @@ pub struct Flip {
 #[derive(Clone, Debug, Serialize)]
 pub struct StudyDiff {
     pub name: String,
-    pub state: State,
+    pub state: Difference,
     pub stages: Vec<StageDiff>,
 }
 
@@ -122,7 +122,7 @@ pub struct StageDiff {
     pub kind: String,
     /// What the stage was called before: the same kind, the same tables.
     pub renamed_from: Option<String>,
-    pub state: State,
+    pub state: Difference,
     /// What it was computed from that differs; may say something although every value is the same.
     pub why: Vec<Reason>,
     pub tables: Vec<TableDiff>,
@@ -131,7 +131,7 @@ pub struct StageDiff {
 /// One part of what a stage is computed from.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Reason {
-    pub part: Part,
+    pub part: ChangedPart,
     /// The field, the port.
     pub what: String,
     /// Of an input: the tables of the stage behind the port that are other ones, `stage.table`; the stage alone where none
@@ -143,7 +143,7 @@ pub struct Reason {
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
-pub enum Part {
+pub enum ChangedPart {
     Kind,
     Config,
     Input,
@@ -157,7 +157,7 @@ pub enum Part {
     Unknown,
 }
 
-impl Part {
+impl ChangedPart {
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -177,7 +177,7 @@ impl Part {
 pub struct TableDiff {
     /// `stage.table`.
     pub name: String,
-    pub state: State,
+    pub state: Difference,
     /// Whether values were compared, or content hashes alone.
     pub by_values: bool,
     /// Why values were not compared, or rows not matched.

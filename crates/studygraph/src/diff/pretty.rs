@@ -4,7 +4,7 @@
 
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table as Drawn, presets};
 
-use super::model::{Comparison, StageDiff, State, TableDiff};
+use super::model::{Comparison, Difference, StageDiff, TableDiff};
 use super::words;
 
 /// Of the worst rows, so many: every table has some.
@@ -70,15 +70,15 @@ impl Page {
             self.wrap("      why: ", &reason);
         }
         // What is new or gone as a whole has been said.
-        if stage.state <= State::Changed {
-            stage.tables.iter().filter(|table| table.state != State::Same).for_each(|table| self.table(table));
+        if stage.state <= Difference::Changed {
+            stage.tables.iter().filter(|table| table.state != Difference::Same).for_each(|table| self.table(table));
         }
     }
 
     fn table(&mut self, table: &TableDiff) {
         let what = format!("{} {}: {}; {}", table.state.sign(), table.name, table.state.word(), words::rows(table));
         self.wrap("    ", &what);
-        if !table.by_values && table.state == State::Changed {
+        if !table.by_values && table.state == Difference::Changed {
             self.wrap("      ", &format!("compared by content hash alone: it {}", table.note));
         } else if !table.note.is_empty() {
             self.wrap("      ", &table.note);

@@ -15,7 +15,7 @@ const NOISE: f64 = 1e-12;
 
 /// Rows that belong together, and those that are in one table only, in the order of the tables.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Rows {
+pub struct MatchedRows {
     pub matched: Vec<(usize, usize)>,
     pub removed: Vec<usize>,
     pub added: Vec<usize>,
@@ -57,11 +57,11 @@ impl<'a> KeyColumn<'a> {
 ///
 /// # Errors
 /// A phrase, when the key does not tell the rows of one table apart.
-pub fn by_key(before: &Table, after: &Table, keys: &[KeyColumn<'_>]) -> Result<Rows, String> {
+pub fn by_key(before: &Table, after: &Table, keys: &[KeyColumn<'_>]) -> Result<MatchedRows, String> {
     let left: Vec<&Data> = keys.iter().map(|key| key.before.as_ref()).collect();
     let right: Vec<&Data> = keys.iter().map(|key| key.after).collect();
     let (left, right) = (order(before.rows(), &left)?, order(after.rows(), &right)?);
-    let mut rows = Rows { matched: Vec::with_capacity(left.len().min(right.len())), ..Rows::default() };
+    let mut rows = MatchedRows { matched: Vec::with_capacity(left.len().min(right.len())), ..MatchedRows::default() };
     let (mut a, mut b) = (0, 0);
     while a < left.len() && b < right.len() {
         let order = keys.iter().map(|key| key.across(left.at(a), right.at(b))).find(|order| order.is_ne());
@@ -87,9 +87,9 @@ pub fn by_key(before: &Table, after: &Table, keys: &[KeyColumn<'_>]) -> Result<R
 
 /// Matches the first row with the first, and so on.
 #[must_use]
-pub fn by_position(before: usize, after: usize) -> Rows {
+pub fn by_position(before: usize, after: usize) -> MatchedRows {
     let both = before.min(after);
-    Rows {
+    MatchedRows {
         matched: (0..both).map(|row| (row, row)).collect(),
         removed: (both..before).collect(),
         added: (both..after).collect(),

@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 
 use super::columns::{self, Differences, KEPT};
-use super::model::{ColumnDiff, Extreme, Key, SchemaChange, State, TableDiff, Value, Worst};
-use super::rows::{KeyColumn, Rows, by_key, by_position};
+use super::model::{ColumnDiff, Difference, Extreme, Key, SchemaChange, TableDiff, Value, Worst};
+use super::rows::{KeyColumn, MatchedRows, by_key, by_position};
 use crate::store::manifest::{ColumnRecord, TableRecord};
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Tolerance, Type};
@@ -51,7 +51,7 @@ pub fn compare(
         Ok(rows) => rows,
         Err(problem) => {
             diff.note = format!("rows cannot be matched: {problem}");
-            diff.state = State::Changed;
+            diff.state = Difference::Changed;
             return diff;
         }
     };
@@ -89,11 +89,11 @@ pub fn compare(
     diff.worst = worst(&compared.iter().map(|(shared, _, found)| (*shared, found)).collect::<Vec<_>>(), &rows, &key_at);
     let structure = diff.schema.iter().any(|change| change.differs) || diff.rows_added + diff.rows_removed > 0;
     diff.state = if structure || diff.columns.iter().any(|column| column.beyond > 0) {
-        State::Changed
+        Difference::Changed
     } else if diff.columns.is_empty() {
-        State::Same
+        Difference::Same
     } else {
-        State::WithinTolerance
+        Difference::WithinTolerance
     };
     diff
 }
@@ -104,7 +104,7 @@ pub fn by_record(before: &TableRecord, after: &TableRecord, note: String) -> Tab
     let same = before.content == after.content;
     TableDiff {
         name: after.name.clone(),
-        state: if same { State::Same } else { State::Changed },
+        state: if same { Difference::Same } else { Difference::Changed },
         by_values: false,
         note,
         rows_before: before.rows,
@@ -200,7 +200,7 @@ fn match_rows(
     after: &Table,
     shared: &[Shared<'_>],
     is_key: &dyn Fn(&Column) -> bool,
-) -> Result<Rows, String> {
+) -> Result<MatchedRows, String> {
     let keys = shared.iter().filter(|shared| is_key(shared.column));
     let keys: Vec<_> = keys.map(|shared| KeyColumn::new(Cow::Borrowed(&*shared.before), shared.after)).collect();
     if !keys.is_empty() {
@@ -229,7 +229,7 @@ fn key_of(table: &Table, row: usize, is_key: &dyn Fn(&Column) -> bool) -> Key {
     }
 }
 
-fn worst(compared: &[(&Shared<'_>, &Differences)], rows: &Rows, key_at: &dyn Fn(usize) -> Key) -> Vec<Worst> {
+fn worst(compared: &[(&Shared<'_>, &Differences)], rows: &MatchedRows, key_at: &dyn Fn(usize) -> Key) -> Vec<Worst> {
     let mut cells: Vec<(f64, usize, &Shared<'_>)> = Vec::new();
     for (shared, found) in compared {
         cells.extend(found.worst.iter().map(|&(size, place)| (size, place, *shared)));

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 
-use super::model::{State, TableDiff, Value};
+use super::model::{Difference, TableDiff, Value};
 use super::table::compare;
 use crate::table::data::{Cell, Data, Row, Table};
 use crate::table::schema::{Column, Schema, Tolerance};
@@ -69,7 +69,7 @@ proptest! {
             row[7] = Cell::Float(99.0);
         }
         let found = diff(&table(rows), &table(other));
-        prop_assert_eq!(found.state, State::Same, "{:?}", found);
+        prop_assert_eq!(found.state, Difference::Same, "{:?}", found);
         prop_assert!(found.columns.is_empty() && found.worst.is_empty() && found.schema.is_empty());
     }
 
@@ -88,7 +88,7 @@ proptest! {
         let (before, after) = (rows[row][column].clone(), other[row][column].clone());
         let key: Vec<Value> = rows[row][..3].iter().cloned().map(Value::from).collect();
         let found = diff(&table(rows), &table(other));
-        prop_assert_eq!(found.state, State::Changed);
+        prop_assert_eq!(found.state, Difference::Changed);
         prop_assert_eq!(found.columns.len(), 1);
         prop_assert_eq!((found.columns[0].changed, found.columns[0].beyond), (1, 1));
         prop_assert_eq!(&found.columns[0].name, &schema().columns[column].name);
@@ -109,8 +109,8 @@ proptest! {
         let key: Vec<Value> = gone[..3].iter().cloned().map(Value::from).collect();
         let values = |key: &[(String, Value)]| key.iter().map(|(_, value)| value.clone()).collect::<Vec<_>>();
         let (removed, added) = (diff(&whole, &part), diff(&part, &whole));
-        prop_assert_eq!((removed.rows_removed, removed.rows_added, removed.state), (1, 0, State::Changed));
-        prop_assert_eq!((added.rows_removed, added.rows_added, added.state), (0, 1, State::Changed));
+        prop_assert_eq!((removed.rows_removed, removed.rows_added, removed.state), (1, 0, Difference::Changed));
+        prop_assert_eq!((added.rows_removed, added.rows_added, added.state), (0, 1, Difference::Changed));
         prop_assert_eq!(values(&removed.removed[0]), key.clone());
         prop_assert_eq!(values(&added.added[0]), key);
         prop_assert!(removed.columns.is_empty() && added.columns.is_empty());
@@ -127,21 +127,21 @@ fn numbers(unit: &str, values: &[f64]) -> Table {
 #[test]
 fn a_difference_of_the_tolerance_is_within_and_the_next_number_beyond() {
     let at = |after: f64| diff(&numbers("um", &[2.0]), &numbers("um", &[after])).state;
-    assert_eq!(at(2.5), State::WithinTolerance);
-    assert_eq!(at(2.5_f64.next_up()), State::Changed);
-    assert_eq!(at(1.5), State::WithinTolerance);
-    assert_eq!(at(1.5_f64.next_down()), State::Changed);
-    assert_eq!(at(f64::NAN), State::Changed);
+    assert_eq!(at(2.5), Difference::WithinTolerance);
+    assert_eq!(at(2.5_f64.next_up()), Difference::Changed);
+    assert_eq!(at(1.5), Difference::WithinTolerance);
+    assert_eq!(at(1.5_f64.next_down()), Difference::Changed);
+    assert_eq!(at(f64::NAN), Difference::Changed);
     // Relative to the larger of the two, whichever that is; 0.25 of 4 is 1.
     let quarter = |_: &Column| Some(Tolerance { absolute: 0.0, relative: 0.25 });
     let relative = |a: f64, b: f64| compare("", &numbers("um", &[a]), &numbers("um", &[b]), None, &quarter).state;
-    assert_eq!((relative(3.0, 4.0), relative(4.0, 3.0)), (State::WithinTolerance, State::WithinTolerance));
-    assert_eq!(relative(3.0_f64.next_down(), 4.0), State::Changed);
-    assert_eq!(relative(0.0, 1e-300), State::Changed);
+    assert_eq!((relative(3.0, 4.0), relative(4.0, 3.0)), (Difference::WithinTolerance, Difference::WithinTolerance));
+    assert_eq!(relative(3.0_f64.next_down(), 4.0), Difference::Changed);
+    assert_eq!(relative(0.0, 1e-300), Difference::Changed);
     // An exact column: the last bit counts.
     let exact = |_: &Column| Some(Tolerance::default());
     let last = compare("", &numbers("um", &[1.0]), &numbers("um", &[1.0_f64.next_up()]), None, &exact);
-    assert_eq!((last.state, last.columns[0].beyond), (State::Changed, 1));
+    assert_eq!((last.state, last.columns[0].beyond), (Difference::Changed, 1));
 }
 
 #[test]
@@ -163,7 +163,7 @@ fn the_largest_differences_are_told_with_their_rows() {
 fn the_value_that_is_over_its_tolerance_by_most_is_told() {
     let near = diff(&numbers("um", &[1.0, 2.0, 3.0]), &numbers("um", &[1.125, 2.25, 3.0]));
     let over = near.columns[0].largest_over.as_ref().unwrap();
-    assert_eq!((over.difference, &over.key[0].1, near.state), (0.5, &Value::Integer(1), State::WithinTolerance));
+    assert_eq!((over.difference, &over.key[0].1, near.state), (0.5, &Value::Integer(1), Difference::WithinTolerance));
     // Relative to what is allowed there, not to the largest difference.
     let relative = |_: &Column| Some(Tolerance { absolute: 0.0, relative: 0.5 });
     let found = compare("", &numbers("um", &[1.0, 100.0]), &numbers("um", &[4.0, 110.0]), None, &relative);
@@ -190,14 +190,14 @@ fn units_that_convert_are_compared_in_the_later_one() {
     {
         let found = compare("", &before, &after, None, &|_| Some(Tolerance::default()));
         assert!(found.columns.is_empty(), "{:?}", found.columns);
-        assert_eq!((found.schema[0].what, found.schema[0].differs, found.state), ("unit", true, State::Changed));
+        assert_eq!((found.schema[0].what, found.schema[0].differs, found.state), ("unit", true, Difference::Changed));
     }
     let longer = diff(&numbers("mm", &[0.001]), &numbers("um", &[2.0]));
     let largest = longer.columns[0].largest_absolute.as_ref().unwrap();
     assert_eq!((largest.before.clone(), largest.difference), (Value::Float(1.0), 1.0));
     // A force for a length: nothing to compare. Two spellings of one unit: no difference.
     assert!(diff(&numbers("um", &[1.0]), &numbers("N", &[2.0])).columns.is_empty());
-    assert_eq!(diff(&numbers("N m", &[1.0]), &numbers("Nm", &[1.0])).state, State::Same);
+    assert_eq!(diff(&numbers("N m", &[1.0]), &numbers("Nm", &[1.0])).state, Difference::Same);
 }
 
 #[test]
@@ -214,7 +214,7 @@ fn columns_that_came_went_or_changed_are_told() {
     let found = diff(&before, &after);
     let told: Vec<_> = found.schema.iter().map(|change| (change.column.as_str(), change.what)).collect();
     assert_eq!(told, [("b", "type"), ("c", "removed"), ("d", "added")]);
-    assert_eq!((found.state, found.columns.len()), (State::Changed, 0));
+    assert_eq!((found.state, found.columns.len()), (Difference::Changed, 0));
     // A tolerance that was changed is told, but is no difference; a volatile column is not told at all.
     let loose = one(
         vec![
@@ -226,7 +226,7 @@ fn columns_that_came_went_or_changed_are_told() {
         vec!["k".into(), 1_i64.into(), 2.0.into(), 3.0.into()],
     );
     let found = diff(&before, &loose);
-    assert_eq!((found.state, found.schema.len(), found.schema[0].what), (State::Same, 1, "tolerance"));
+    assert_eq!((found.state, found.schema.len(), found.schema[0].what), (Difference::Same, 1, "tolerance"));
 }
 
 #[test]
@@ -242,7 +242,7 @@ fn keys_that_changed_match_by_what_is_left_where_that_is_enough() {
     let found = diff(&make(false, rows(["a", "b"], 1.0)), &make(true, rows(["a", "b"], 2.0)));
     assert_eq!((found.columns.len(), found.columns[0].changed, found.schema[0].what), (1, 2, "key"));
     let found = diff(&make(false, rows(["a", "b"], 1.0)), &make(true, rows(["a", "a"], 2.0)));
-    assert!(found.note.contains("do not tell its rows apart") && found.state == State::Changed, "{found:?}");
+    assert!(found.note.contains("do not tell its rows apart") && found.state == Difference::Changed, "{found:?}");
     // Without any key rows are counted.
     let plain = |values: Vec<f64>| {
         Table::from_columns(Schema::new("t", "", vec![Column::float("x", "", "")]), vec![Data::Float(values)]).unwrap()
@@ -260,7 +260,7 @@ fn keys_that_are_numbers_match_across_the_last_bits() {
         Table::from_rows(Schema::new("t", "", columns), rows).unwrap()
     };
     let found = diff(&at(&[-1e-17, 0.1, 0.2, 0.3]), &at(&[0.0, 0.1_f64.next_up(), 0.2, 0.1 + 0.2]));
-    assert_eq!((found.rows_added, found.rows_removed, found.state), (0, 0, State::Same));
+    assert_eq!((found.rows_added, found.rows_removed, found.state), (0, 0, Difference::Same));
     let found = diff(&at(&[0.1]), &at(&[0.100_001]));
     assert_eq!((found.rows_added, found.rows_removed), (1, 1));
 }
@@ -271,6 +271,6 @@ fn whole_numbers_are_exact_however_large() {
         let schema = Schema::new("t", "", vec![Column::integer("x", "")]);
         Table::from_columns(schema, vec![Data::Integer(vec![value])]).unwrap()
     };
-    assert_eq!(diff(&of(i64::MAX), &of(i64::MAX - 1)).state, State::Changed);
-    assert_eq!(diff(&of(i64::MIN), &of(i64::MIN)).state, State::Same);
+    assert_eq!(diff(&of(i64::MAX), &of(i64::MAX - 1)).state, Difference::Changed);
+    assert_eq!(diff(&of(i64::MIN), &of(i64::MIN)).state, Difference::Same);
 }

@@ -15,7 +15,7 @@ pub const KEYS: [&[&str]; 2] = [&["label", "where"], &IDENTITY];
 /// The table of verdicts of a stage of kind `report`.
 pub const TABLE: &str = "verdicts";
 
-struct Entry<'a> {
+struct VerdictRow<'a> {
     identity: [&'a str; 3],
     verdict: &'a str,
     published: &'a str,
@@ -25,7 +25,7 @@ struct Entry<'a> {
     found: &'a str,
 }
 
-impl Entry<'_> {
+impl VerdictRow<'_> {
     fn is(&self, other: &Self) -> bool {
         self.identity == other.identity
     }
@@ -39,7 +39,7 @@ impl Entry<'_> {
 #[must_use]
 pub fn flips(study: &str, stage: &str, before: &Table, after: &Table) -> Vec<Flip> {
     let (old, new) = (entries(before), entries(after));
-    let flip = |old: Option<&Entry<'_>>, new: Option<&Entry<'_>>| {
+    let flip = |old: Option<&VerdictRow<'_>>, new: Option<&VerdictRow<'_>>| {
         let shown = new.or(old)?;
         let [label, location, cell] = shown.identity.map(str::to_owned);
         Some(Flip {
@@ -59,11 +59,11 @@ pub fn flips(study: &str, stage: &str, before: &Table, after: &Table) -> Vec<Fli
             needs_attention: new.is_some_and(|entry| needs_attention(entry.verdict)),
         })
     };
-    let mut left: Vec<&Entry<'_>> = old.iter().collect();
+    let mut left: Vec<&VerdictRow<'_>> = old.iter().collect();
     // Of entries that say the same, the first belongs to the first. A formula may have been corrected since: what is
     // left is matched by its words alone.
-    let mut matched: Vec<Option<&Entry<'_>>> = vec![None; new.len()];
-    for same in [Entry::is, Entry::is_called] {
+    let mut matched: Vec<Option<&VerdictRow<'_>>> = vec![None; new.len()];
+    for same in [VerdictRow::is, VerdictRow::is_called] {
         for (entry, matched) in new.iter().zip(&mut matched).filter(|(_, matched)| matched.is_none()) {
             *matched = left.iter().position(|other| same(other, entry)).map(|at| left.remove(at));
         }
@@ -90,7 +90,7 @@ pub fn sort(flips: &mut [Flip]) {
     flips.sort_by_key(|flip| (!flip.needs_attention, flip.after.is_none(), flip.before.is_none()));
 }
 
-fn entries(table: &Table) -> Vec<Entry<'_>> {
+fn entries(table: &Table) -> Vec<VerdictRow<'_>> {
     let text = |name: &str, row: usize| match table.column(name) {
         Some(Data::Text(values)) => values[row].as_str(),
         _ => "",
@@ -99,7 +99,7 @@ fn entries(table: &Table) -> Vec<Entry<'_>> {
         Some(Data::Float(values)) => Some(values[row]),
         _ => None,
     };
-    let one = |row: usize| Entry {
+    let one = |row: usize| VerdictRow {
         identity: IDENTITY.map(|name| text(name, row)),
         verdict: text("verdict", row),
         published: text("published_text", row),

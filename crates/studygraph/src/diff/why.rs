@@ -4,7 +4,7 @@
 
 use serde_json::Value as Json;
 
-use super::model::{Part, Reason};
+use super::model::{ChangedPart, Reason};
 use super::source;
 use crate::store::manifest::{KeyRecord, Manifest, Program, StageRecord};
 
@@ -20,13 +20,13 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
         if !complete(stage) && (is_new || complete(new)) {
             let text = Some(format!("{}: {}", stage.status, stage.why));
             let (before, after) = if is_new { (None, text) } else { (text, None) };
-            why.push(Reason { part: Part::Status, what: String::new(), from: Vec::new(), before, after });
+            why.push(Reason { part: ChangedPart::Status, what: String::new(), from: Vec::new(), before, after });
         }
     }
     if (&old.kind, old.version) != (&new.kind, new.version) {
         let named = |stage: &StageRecord| Some(format!("{} {}", stage.kind, stage.version));
         why.push(Reason {
-            part: Part::Kind,
+            part: ChangedPart::Kind,
             what: String::new(),
             from: Vec::new(),
             before: named(old),
@@ -45,7 +45,13 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
             why.extend(config(axis.as_deref().unwrap_or("axis"), value(old).as_ref(), value(new).as_ref()));
         }
         if first.config != second.config && why.is_empty() {
-            why.push(Reason { part: Part::Config, what: String::new(), from: Vec::new(), before: None, after: None });
+            why.push(Reason {
+                part: ChangedPart::Config,
+                what: String::new(),
+                from: Vec::new(),
+                before: None,
+                after: None,
+            });
         }
     }
     for port in differing(&first.inputs, &second.inputs) {
@@ -53,12 +59,12 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
         let only = |one, other| (there(one) && !there(other)).then(|| "read".to_owned());
         let from = source::tables((old_run, old), (new_run, new), &port);
         let (before, after) = (only(first, second), only(second, first));
-        why.push(Reason { part: Part::Input, from, before, after, what: port });
+        why.push(Reason { part: ChangedPart::Input, from, before, after, what: port });
     }
     if first.seed != second.seed {
         let seed = |key: &KeyRecord, run: &Manifest| (!key.seed.is_empty()).then(|| run.seed.to_string());
         why.push(Reason {
-            part: Part::Seed,
+            part: ChangedPart::Seed,
             what: String::new(),
             from: Vec::new(),
             before: seed(first, old_run),
@@ -75,10 +81,16 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
             (Some(program(old)), Some(program(new)))
         };
         let (before, after) = if before == after { (None, None) } else { (before, after) };
-        why.push(Reason { part: Part::Code, what: String::new(), from: Vec::new(), before, after });
+        why.push(Reason { part: ChangedPart::Code, what: String::new(), from: Vec::new(), before, after });
     }
     if first.demand != second.demand {
-        why.push(Reason { part: Part::Demand, what: String::new(), from: Vec::new(), before: None, after: None });
+        why.push(Reason {
+            part: ChangedPart::Demand,
+            what: String::new(),
+            from: Vec::new(),
+            before: None,
+            after: None,
+        });
     }
     why
 }
@@ -95,7 +107,7 @@ pub fn unknown(before: &Manifest, after: &Manifest) -> Reason {
     let what = "the same key gave other values".to_owned();
     let (before, after) = (facts(before), facts(after));
     let (before, after) = if before == after { (None, None) } else { (Some(before), Some(after)) };
-    Reason { part: Part::Unknown, what, from: Vec::new(), before, after }
+    Reason { part: ChangedPart::Unknown, what, from: Vec::new(), before, after }
 }
 
 #[must_use]
@@ -136,7 +148,7 @@ fn config(name: &str, before: Option<&Json>, after: Option<&Json>) -> Vec<Reason
         let more = places.len() - MOST_PLACES;
         places.truncate(MOST_PLACES);
         places.push(Reason {
-            part: Part::Config,
+            part: ChangedPart::Config,
             what: format!("{name}: {more} more places"),
             from: Vec::new(),
             before: None,
@@ -145,7 +157,13 @@ fn config(name: &str, before: Option<&Json>, after: Option<&Json>) -> Vec<Reason
     }
     if places.is_empty() {
         // The manifest of an earlier version, or a difference beyond the digits that are shown.
-        places.push(Reason { part: Part::Config, what: name.to_owned(), from: Vec::new(), before: None, after: None });
+        places.push(Reason {
+            part: ChangedPart::Config,
+            what: name.to_owned(),
+            from: Vec::new(),
+            before: None,
+            after: None,
+        });
     }
     places
 }
@@ -165,7 +183,7 @@ fn walk(path: String, before: Option<&Json>, after: Option<&Json>, places: &mut 
         (before, after) => {
             let text = |value: Option<&Json>| value.map(words);
             places.push(Reason {
-                part: Part::Config,
+                part: ChangedPart::Config,
                 what: path,
                 from: Vec::new(),
                 before: text(before),
@@ -187,7 +205,7 @@ fn lists(path: &str, old: &[Json], new: &[Json], places: &mut Vec<Reason>) {
             (None, None) => (Some(words(&Json::Array(old.to_vec()))), Some(words(&Json::Array(new.to_vec())))),
             other => other,
         };
-        places.push(Reason { part: Part::Config, what: path.to_owned(), from: Vec::new(), before, after });
+        places.push(Reason { part: ChangedPart::Config, what: path.to_owned(), from: Vec::new(), before, after });
         return;
     }
     // Items that have a name or a label are found by it, others by their place.

@@ -3,7 +3,8 @@
 //! Must not know: terminals, HTML, Markdown.
 
 use super::model::{
-    ColumnDiff, Comparison, Damage, Extreme, Flip, Key, Part, Reason, StageDiff, State, StudyDiff, TableDiff, Value,
+    ChangedPart, ColumnDiff, Comparison, Damage, Difference, Extreme, Flip, Key, Reason, StageDiff, StudyDiff,
+    TableDiff, Value,
 };
 use declare::number::{significant, unit_symbol, with_unit};
 
@@ -91,11 +92,11 @@ fn reason(reason: &Reason) -> String {
     let what = if reason.from.is_empty() { reason.what.clone() } else { input(&reason.from) };
     let mut text = match reason.part {
         // A sentence of its own.
-        Part::Unknown => what,
+        ChangedPart::Unknown => what,
         part if what.is_empty() => part.word().to_owned(),
         part => format!("{} {what}", part.word()),
     };
-    if reason.part == Part::Code {
+    if reason.part == ChangedPart::Code {
         return text;
     }
     match (&reason.before, &reason.after) {
@@ -116,7 +117,7 @@ fn input(from: &[String]) -> String {
 
 /// All reasons of a stage: those without values in one phrase.
 pub fn reasons(why: &[Reason]) -> Vec<String> {
-    let tells = |why: &&Reason| why.part != Part::Code && (why.before.is_some() || why.after.is_some());
+    let tells = |why: &&Reason| why.part != ChangedPart::Code && (why.before.is_some() || why.after.is_some());
     let (told, bare): (Vec<&Reason>, Vec<&Reason>) = why.iter().partition(tells);
     let bare: Vec<String> = bare.into_iter().map(reason).collect();
     let bare = (!bare.is_empty()).then(|| bare.join(", "));
@@ -126,18 +127,19 @@ pub fn reasons(why: &[Reason]) -> Vec<String> {
 /// `program: gearstudy 0.1.0 at 59b124e → gearstudy 0.1.0 at 0ccb5e2`, where the code of any stage changed with it.
 pub fn program(study: &StudyDiff) -> Option<String> {
     let mut reasons = study.stages.iter().flat_map(|stage| &stage.why);
-    let (before, after) = reasons
-        .find_map(|why| (why.part == Part::Code).then_some(Some((why.before.as_ref()?, why.after.as_ref()?)))?)?;
+    let (before, after) = reasons.find_map(|why| {
+        (why.part == ChangedPart::Code).then_some(Some((why.before.as_ref()?, why.after.as_ref()?)))?
+    })?;
     Some(format!("program: {before} → {after}"))
 }
 
 /// Stages that are told one by one.
 pub fn told(study: &StudyDiff) -> Vec<&StageDiff> {
-    if matches!(study.state, State::Added | State::Removed) {
+    if matches!(study.state, Difference::Added | Difference::Removed) {
         return Vec::new();
     }
     let told = |stage: &&StageDiff| {
-        stage.state != State::Same || stage.renamed_from.is_some() || (!stage.why.is_empty() && !is_brief(stage))
+        stage.state != Difference::Same || stage.renamed_from.is_some() || (!stage.why.is_empty() && !is_brief(stage))
     };
     study.stages.iter().filter(told).collect()
 }
@@ -164,8 +166,13 @@ pub fn brief(study: &StudyDiff) -> Vec<String> {
 
 /// A field that changed and did nothing is worth its own line; what came from outside the stage is not.
 fn is_brief(stage: &StageDiff) -> bool {
-    let outside = |why: &Reason| matches!(why.part, Part::Code | Part::Input | Part::Seed | Part::Demand);
-    stage.state == State::Same && stage.renamed_from.is_none() && !stage.why.is_empty() && stage.why.iter().all(outside)
+    let outside = |why: &Reason| {
+        matches!(why.part, ChangedPart::Code | ChangedPart::Input | ChangedPart::Seed | ChangedPart::Demand)
+    };
+    stage.state == Difference::Same
+        && stage.renamed_from.is_none()
+        && !stage.why.is_empty()
+        && stage.why.iter().all(outside)
 }
 
 /// `changed`, `same, renamed from stiffness`.
@@ -240,8 +247,8 @@ pub fn damages(comparison: &Comparison) -> String {
 pub fn rows(table: &TableDiff) -> String {
     let TableDiff { rows_before, rows_after, rows_added, rows_removed, .. } = table;
     match table.state {
-        State::Added => return count(*rows_after, "row"),
-        State::Removed => return count(*rows_before, "row"),
+        Difference::Added => return count(*rows_after, "row"),
+        Difference::Removed => return count(*rows_before, "row"),
         _ => {}
     }
     let mut text = if rows_before == rows_after {
@@ -269,15 +276,16 @@ pub fn keys(keys: &[Key], all: usize) -> String {
 
 /// `3 stages changed, 1 within tolerance, 8 the same`.
 pub fn sum(study: &StudyDiff) -> String {
-    let number = |state: State| study.stages.iter().filter(|stage| stage.state == state).count();
-    let states = [State::Changed, State::Added, State::Removed, State::WithinTolerance, State::Same];
+    let number = |state: Difference| study.stages.iter().filter(|stage| stage.state == state).count();
+    let states =
+        [Difference::Changed, Difference::Added, Difference::Removed, Difference::WithinTolerance, Difference::Same];
     let parts: Vec<String> = states
         .iter()
         .filter(|state| number(**state) > 0)
         .enumerate()
         .map(|(index, state)| {
             let many = if index == 0 { count(number(*state), "stage") } else { number(*state).to_string() };
-            format!("{many} {}", if *state == State::Same { "the same" } else { state.word() })
+            format!("{many} {}", if *state == Difference::Same { "the same" } else { state.word() })
         })
         .collect();
     parts.join(", ")
@@ -285,7 +293,7 @@ pub fn sum(study: &StudyDiff) -> String {
 
 /// One sentence about everything.
 pub fn verdict(comparison: &Comparison) -> String {
-    let number = |state: State| comparison.studies.iter().filter(|study| study.state == state).count();
+    let number = |state: Difference| comparison.studies.iter().filter(|study| study.state == state).count();
     let differing: usize = comparison.studies.iter().filter(|study| study.state.differs()).count();
     let flips = match comparison.verdicts.len() {
         0 => String::new(),
@@ -301,7 +309,7 @@ pub fn verdict(comparison: &Comparison) -> String {
         let of = if comparison.studies.len() == 1 { String::new() } else { format!("{differing} of ") };
         return format!("{of}{studies} {verb} beyond tolerance{flips}");
     }
-    match number(State::WithinTolerance) {
+    match number(Difference::WithinTolerance) {
         0 => format!("{studies}, no difference{flips}"),
         _ => format!("{studies}, every difference within tolerance{flips}"),
     }

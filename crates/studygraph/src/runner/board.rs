@@ -14,10 +14,10 @@ use std::sync::Arc;
 use super::events::{Event, Observer};
 use super::fault::Fault;
 use super::graph::Graph;
-use super::key::{self, Part, Why, explain, phrase};
+use super::key::{self, KeyedChunk, Why, explain, phrase};
 use super::options::Options;
 use crate::store::cache::{Cache, Lookup};
-use crate::store::entry::{Entry, OfRun, StoredTable};
+use crate::store::entry::{CacheEntry, OfRun, StoredTable};
 use crate::store::journal::{Journal, JournalStage};
 use crate::study::Study;
 use crate::table::data::Table;
@@ -27,7 +27,7 @@ use declare::work::{Counter, Work};
 
 /// Where a stage stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum StageState {
     /// Not all its inputs are known.
     Want,
     /// They are, so its keys are.
@@ -42,7 +42,7 @@ pub enum State {
     Skipped,
 }
 
-impl State {
+impl StageState {
     #[must_use]
     pub const fn is_final(self) -> bool {
         matches!(self, Self::Hit | Self::Done | Self::Failed | Self::Skipped)
@@ -67,7 +67,7 @@ impl State {
 
 /// A change of state, with what comes with it.
 pub enum Step {
-    Ready(Arc<Vec<Part>>),
+    Ready(Arc<Vec<KeyedChunk>>),
     Hit(Vec<StoredTable>),
     Queue(Vec<Why>),
     Start,
@@ -77,15 +77,15 @@ pub enum Step {
 }
 
 impl Step {
-    const fn state(&self) -> State {
+    const fn state(&self) -> StageState {
         match self {
-            Self::Ready(_) => State::Ready,
-            Self::Hit(_) => State::Hit,
-            Self::Queue(_) => State::Queued,
-            Self::Start => State::Running,
-            Self::Finish(_) => State::Done,
-            Self::Fail(_) => State::Failed,
-            Self::Skip(_) => State::Skipped,
+            Self::Ready(_) => StageState::Ready,
+            Self::Hit(_) => StageState::Hit,
+            Self::Queue(_) => StageState::Queued,
+            Self::Start => StageState::Running,
+            Self::Finish(_) => StageState::Done,
+            Self::Fail(_) => StageState::Failed,
+            Self::Skip(_) => StageState::Skipped,
         }
     }
 }
@@ -93,16 +93,16 @@ impl Step {
 /// What is known about a part that was looked up or computed.
 #[derive(Default)]
 pub struct Known {
-    pub entry: Option<Entry>,
+    pub entry: Option<CacheEntry>,
     /// Just computed and still in memory.
     pub tables: Vec<Arc<Table>>,
 }
 
 /// What is known about a stage.
 pub struct Progress {
-    pub state: State,
+    pub state: StageState,
     /// From Ready on.
-    pub parts: Arc<Vec<Part>>,
+    pub parts: Arc<Vec<KeyedChunk>>,
     pub known: Vec<Known>,
     /// The parts to compute.
     pub missing: Vec<usize>,
@@ -150,7 +150,7 @@ impl<'a> Board<'a> {
         }
         let needed = graph.needed(study, &options.only)?;
         let progress = || Progress {
-            state: State::Want,
+            state: StageState::Want,
             parts: Arc::new(Vec::new()),
             known: Vec::new(),
             missing: Vec::new(),
@@ -222,13 +222,13 @@ impl<'a> Board<'a> {
     pub fn settle(&mut self) -> Vec<usize> {
         let mut queued = Vec::new();
         for node in self.graph.order.clone() {
-            if self.nodes[node].state != State::Want {
+            if self.nodes[node].state != StageState::Want {
                 continue;
             }
             let inputs = self.graph.inputs[node].iter().map(|input| input.node);
-            let lost = |&input: &usize| matches!(self.nodes[input].state, State::Failed | State::Skipped);
+            let lost = |&input: &usize| matches!(self.nodes[input].state, StageState::Failed | StageState::Skipped);
             if let Some(lost) = inputs.clone().find(lost) {
-                let verb = if self.nodes[lost].state == State::Failed { "failed" } else { "was not run" };
+                let verb = if self.nodes[lost].state == StageState::Failed { "failed" } else { "was not run" };
                 self.step(node, Step::Skip(format!("`{}` {verb}", self.study.nodes[lost].name)));
             } else if inputs.clone().all(|input| self.nodes[input].state.has_tables()) {
                 let tables = |input: usize| self.nodes[input].tables.as_slice();
@@ -291,7 +291,7 @@ impl<'a> Board<'a> {
     /// What a stage's tables are, when all its parts are known, and, where there are several, what they are together.
     pub fn known_tables(&mut self, node: usize) -> Option<Vec<StoredTable>> {
         let progress = &mut self.nodes[node];
-        let entries: Vec<&Entry> = progress.known.iter().filter_map(|known| known.entry.as_ref()).collect();
+        let entries: Vec<&CacheEntry> = progress.known.iter().filter_map(|known| known.entry.as_ref()).collect();
         if entries.len() != progress.parts.len() {
             return None;
         }
@@ -329,13 +329,13 @@ impl<'a> Board<'a> {
             let last = self.journal.stage(&node.name).cloned();
             let keys = || progress.parts.iter().map(|part| part.record.clone());
             match progress.state {
-                State::Hit | State::Done => Some(JournalStage {
+                StageState::Hit | StageState::Done => Some(JournalStage {
                     name: node.name.clone(),
                     keys: keys().collect(),
                     whole: progress.whole.map(|key| key.to_string()),
                     failed: Vec::new(),
                 }),
-                State::Failed => Some(JournalStage {
+                StageState::Failed => Some(JournalStage {
                     name: node.name.clone(),
                     failed: keys().map(|record| record.key).collect(),
                     ..last.unwrap_or_default()

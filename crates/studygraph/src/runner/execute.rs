@@ -12,7 +12,7 @@ use std::time::Instant;
 
 use rayon::{ScopeFifo, ThreadPoolBuilder};
 
-use super::board::{Board, State, Step};
+use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
 use super::fault::Fault;
 use super::options::Options;
@@ -67,7 +67,7 @@ pub fn run(
         };
         let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
         folder.publish(
-            outcome.manifest(study),
+            &outcome.manifest(study),
             facts,
             Source { bytes: &bytes, draw, next: &next, code: study.program.about.code },
         )
@@ -118,11 +118,10 @@ pub fn execute(
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
     board.observer = observer;
-    let plan = plan::of(&board, options);
-    if let Some(refused) = plan.refused {
-        return Err(RunError::Beyond(Box::new(refused)));
-    }
     if !queued.is_empty() {
+        if let Some(refused) = plan::of(&board, options).refused {
+            return Err(RunError::Beyond(Box::new(refused)));
+        }
         let threads = options.threads();
         let pool = ThreadPoolBuilder::new().num_threads(threads).thread_name(|index| format!("stage {index}")).build();
         let pool = pool.map_err(|error| RunError::Threads { threads, problem: error.to_string() })?;
@@ -218,7 +217,7 @@ impl Run<'_> {
         if board.halted.is_some() {
             return false;
         }
-        if board.nodes[node].state == State::Queued {
+        if board.nodes[node].state == StageState::Queued {
             board.step(node, Step::Start);
         }
         true

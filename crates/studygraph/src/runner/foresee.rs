@@ -7,14 +7,14 @@ use std::collections::BTreeMap;
 
 use super::board::Board;
 use super::chunk::chunks;
-use crate::stage::{Ahead, Estimate, Rows, Stage};
+use crate::stage::{Ahead, Estimate, RowCount, Stage};
 use declare::record::Record;
 
 /// What a stage, or a whole run, will take.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Expected {
     /// By table, what is to be computed; of a run one line, without a name.
-    pub tables: Vec<(String, Rows)>,
+    pub tables: Vec<(String, RowCount)>,
     /// Bytes on disk, in the cache and in the results, at most.
     pub bytes: u64,
     /// The most bytes in memory.
@@ -57,7 +57,7 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
             let rows: BTreeMap<&str, usize> = progress.tables.iter().map(|table| (&*table.name, table.rows)).collect();
             wholes[node] = board.graph.outputs[node].iter().fold(Estimate::new(false), |all, schema| {
                 let found = rows.get(&*schema.name).copied().unwrap_or(0);
-                all.columns(demand, schema.clone(), Rows::exact(found))
+                all.columns(demand, schema.clone(), RowCount::exact(found))
             });
             continue;
         }
@@ -66,7 +66,7 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
         for input in &board.graph.inputs[node] {
             read += wholes[input.node].held;
             for want in &input.wants {
-                let rows = wholes[input.node].of_table(&want.table).unwrap_or(Rows::NONE);
+                let rows = wholes[input.node].of_table(&want.table).unwrap_or(RowCount::NONE);
                 ahead.know(&input.port, &want.table, rows);
             }
         }
@@ -97,7 +97,7 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
 
 /// A stage from the parts that are to be computed, and its seconds on one thread.
 fn together(whole: &Estimate, parts: &[Estimate], read: u64, threads: usize) -> (Expected, f64) {
-    let mut tables: Vec<(String, Rows)> = Vec::new();
+    let mut tables: Vec<(String, RowCount)> = Vec::new();
     for (name, rows) in parts.iter().flat_map(|part| &part.tables) {
         match tables.iter_mut().find(|(known, _)| known == name) {
             Some((_, known)) => *known = known.and(*rows),
@@ -125,7 +125,7 @@ fn together(whole: &Estimate, parts: &[Estimate], read: u64, threads: usize) -> 
 
 fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], processor: f64, threads: usize) -> Expected {
     let running = || stages.iter().flatten();
-    let rows = running().flat_map(|stage| &stage.tables).fold(Rows::NONE, |total, (_, rows)| total.and(*rows));
+    let rows = running().flat_map(|stage| &stage.tables).fold(RowCount::NONE, |total, (_, rows)| total.and(*rows));
     let held = wholes.iter().fold(0_u64, |sum, whole| sum.saturating_add(whole.bytes));
     // The results are put together last: HDF5 as one file in memory, and one table.
     let publishing = held.saturating_add(wholes.iter().map(|whole| whole.held).max().unwrap_or(0));

@@ -17,7 +17,7 @@ use declare::record::Record;
 use declare::seed::Seed;
 
 /// A chunk of a stage, or all of it.
-pub struct Part {
+pub struct KeyedChunk {
     pub key: Digest,
     pub record: KeyRecord,
     /// The axis that is cut and the values of this chunk.
@@ -26,7 +26,12 @@ pub struct Part {
 
 /// The keys of a stage whose inputs are known; `tables` gives what a node came out as.
 #[must_use]
-pub fn parts<'t>(study: &Study, graph: &Graph, node: usize, tables: impl Fn(usize) -> &'t [StoredTable]) -> Vec<Part> {
+pub fn parts<'t>(
+    study: &Study,
+    graph: &Graph,
+    node: usize,
+    tables: impl Fn(usize) -> &'t [StoredTable],
+) -> Vec<KeyedChunk> {
     let of_study = &study.nodes[node];
     let chunks = chunks(of_study.kind, &of_study.record);
     let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
@@ -47,7 +52,7 @@ pub fn parts<'t>(study: &Study, graph: &Graph, node: usize, tables: impl Fn(usiz
     };
     let part = |axis: Option<(&'static str, Vec<f64>)>| {
         let record = common.record(axis.as_ref().map_or(&[], |(_, values)| values));
-        Part { key: key(&record), record, axis }
+        KeyedChunk { key: key(&record), record, axis }
     };
     match chunks {
         None => vec![part(None)],

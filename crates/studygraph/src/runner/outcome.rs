@@ -2,7 +2,7 @@
 //!
 //! Must not know: how it is shown; threads.
 
-use super::board::{Board, State};
+use super::board::{Board, StageState};
 use super::fault::Fault;
 use super::key::phrase;
 use super::plan::left_out;
@@ -34,7 +34,7 @@ pub struct StageOutcome {
     pub kind: &'static str,
     pub version: u32,
     /// Hit, Done, Failed or Skipped.
-    pub state: State,
+    pub state: StageState,
     /// Why it ran, failed or was skipped; `unchanged` when it did not have to run.
     pub why: String,
     pub fault: Option<Fault>,
@@ -76,8 +76,8 @@ impl Outcome {
                 version: of_study.kind.version,
                 state: progress.state,
                 why: match progress.state {
-                    State::Skipped => progress.skipped.clone(),
-                    State::Failed => fault.as_ref().map_or_else(String::new, Fault::to_string),
+                    StageState::Skipped => progress.skipped.clone(),
+                    StageState::Failed => fault.as_ref().map_or_else(String::new, Fault::to_string),
                     _ if progress.why.is_empty() => "unchanged".to_owned(),
                     _ => phrase(&progress.why),
                 },
@@ -172,9 +172,9 @@ impl Outcome {
 impl StageOutcome {
     fn record(&self) -> StageRecord {
         let status = match self.state {
-            State::Hit if self.ran == 0 => "hit",
-            State::Hit | State::Done => "ran",
-            State::Failed => "failed",
+            StageState::Hit if self.ran == 0 => "hit",
+            StageState::Hit | StageState::Done => "ran",
+            StageState::Failed => "failed",
             _ => "skipped",
         };
         let omission = |omission: &Omission| OmissionRecord {

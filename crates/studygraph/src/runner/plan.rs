@@ -3,7 +3,7 @@
 //! Inputs enter keys by content, so below a stage that must run nothing is certain: it may come out as before. Must
 //! not know: how a plan is shown.
 
-use super::board::{Board, State};
+use super::board::{Board, StageState};
 use super::events::Silent;
 use super::foresee::{Expected, foresee};
 use super::key::{Why, phrase};
@@ -93,7 +93,7 @@ pub fn of(board: &Board, options: &Options) -> Plan {
     let stages = board.graph.order.iter().map(|&node| {
         let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
         let action = match progress.state {
-            State::Want | State::Ready => {
+            StageState::Want | StageState::Ready => {
                 let waits = |&input: &usize| !board.nodes[input].state.has_tables();
                 let mut inputs: Vec<usize> = board.graph.inputs[node].iter().map(|input| input.node).collect();
                 inputs.sort_unstable();
@@ -101,9 +101,9 @@ pub fn of(board: &Board, options: &Options) -> Plan {
                 inputs.retain(waits);
                 Action::Wait(inputs.into_iter().map(|input| board.study.nodes[input].name.clone()).collect())
             }
-            State::Hit | State::Done => Action::Hit,
-            State::Queued | State::Running => Action::Run(progress.why.clone()),
-            State::Failed | State::Skipped => Action::Skip(progress.skipped.clone()),
+            StageState::Hit | StageState::Done => Action::Hit,
+            StageState::Queued | StageState::Running => Action::Run(progress.why.clone()),
+            StageState::Failed | StageState::Skipped => Action::Skip(progress.skipped.clone()),
         };
         Planned {
             name: of_study.name.clone(),

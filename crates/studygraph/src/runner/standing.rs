@@ -34,7 +34,7 @@ pub struct Standing {
 #[derive(Clone, Debug, PartialEq)]
 pub struct StageStanding {
     pub name: String,
-    pub state: State,
+    pub state: Condition,
     /// Of a stage that is up to date: files that the manifest lists and that are not here. A clone has only what git
     /// keeps; a run brings them back.
     pub absent: Vec<String>,
@@ -44,7 +44,7 @@ pub struct StageStanding {
 
 /// Where one stage stands.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub enum State {
+pub enum Condition {
     UpToDate,
     /// With the reason.
     Stale(String),
@@ -56,7 +56,7 @@ pub enum State {
     Waits(Vec<String>),
 }
 
-impl State {
+impl Condition {
     #[must_use]
     pub const fn word(&self) -> &'static str {
         match self {
@@ -86,7 +86,7 @@ impl Standing {
             && !self.text_changed
             && self.gone.is_empty()
             && self.foreign.is_empty()
-            && self.stages.iter().all(|stage| stage.state == State::UpToDate)
+            && self.stages.iter().all(|stage| stage.state == Condition::UpToDate)
     }
 
     /// All files that the manifest lists and that are not here.
@@ -101,7 +101,7 @@ impl Standing {
         if !self.has_results {
             return Some("there are no results".to_owned());
         }
-        let of_stage = self.stages.iter().find(|stage| stage.state != State::UpToDate).map(|stage| {
+        let of_stage = self.stages.iter().find(|stage| stage.state != Condition::UpToDate).map(|stage| {
             let (name, word, why) = (&stage.name, stage.state.word(), stage.state.why());
             format!("stage `{name}` is not up to date: {word}: {why}")
         });
@@ -140,13 +140,13 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         let record = manifest.and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
         let (mut absent, mut keys) = (Vec::new(), Vec::new());
         let state = match (known, record) {
-            (None, _) => State::Missing("there are no results".to_owned()),
-            (Some(_), None) => State::Missing("never ran".to_owned()),
+            (None, _) => Condition::Missing("there are no results".to_owned()),
+            (Some(_), None) => Condition::Missing("never ran".to_owned()),
             (Some(_), Some(record)) if record.keys.is_empty() || record.tables.is_empty() => {
-                State::Missing(format!("{}: {}", record.status, record.why))
+                Condition::Missing(format!("{}: {}", record.status, record.why))
             }
             _ if !unknown.is_empty() => {
-                State::Waits(unknown.iter().map(|&input| study.nodes[input].name.clone()).collect())
+                Condition::Waits(unknown.iter().map(|&input| study.nodes[input].name.clone()).collect())
             }
             (Some(known), Some(record)) => {
                 let seen = |input: usize| tables[input].as_deref().unwrap_or_default();
@@ -154,13 +154,13 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
                 let axis = parts.first().and_then(|part| part.axis.as_ref()).map(|(field, _)| *field);
                 let now: Vec<&KeyRecord> = parts.iter().map(|part| &part.record).collect();
                 match stale(record, study.nodes[node].kind.name, &now, axis) {
-                    Some(why) => State::Stale(why),
+                    Some(why) => Condition::Stale(why),
                     None => {
                         tables[node] = record.tables.iter().map(TableRecord::stored).collect();
                         keys = parts.iter().map(|part| part.key).collect();
                         let damaged;
                         (absent, damaged) = files(known, record);
-                        damaged.map_or(State::UpToDate, State::Damaged)
+                        damaged.map_or(Condition::UpToDate, Condition::Damaged)
                     }
                 }
             }

@@ -21,14 +21,14 @@ use super::outcome::Outcome;
 use super::plan::{Plan, plan};
 use crate::about::ABOUT;
 use crate::program::Program;
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Rows, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
 use crate::store::cache::Cache;
 use crate::study::{Node, Study};
 use crate::table::data::{Row, Table};
 use crate::table::schema::{Column, Schema};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::{Field, Presence, Shape, Span};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 /// How often each counter was run.
 static COUNTS: Mutex<BTreeMap<String, usize>> = Mutex::new(BTreeMap::new());
@@ -122,7 +122,7 @@ impl Stage for Probe {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let rows = Rows::exact(self.record.maybe_axis("torque").map_or(1, <[f64]>::len));
+        let rows = RowCount::exact(self.record.maybe_axis("torque").map_or(1, <[f64]>::len));
         self.outputs().into_iter().fold(Estimate::new(false), |all, schema| all.rows(demand, schema, rows))
     }
 
@@ -219,7 +219,7 @@ impl Spec {
     }
 
     fn of(self, stages: &[&str]) -> Self {
-        let entry = |name: &&str| Entry { value: Value::Reference((*name).to_owned()), place: Place::default() };
+        let entry = |name: &&str| PlacedValue { value: Value::Reference((*name).to_owned()), place: Place::default() };
         self.with("of", Value::List(stages.iter().map(entry).collect()))
     }
 
@@ -268,7 +268,7 @@ impl Bench {
     fn study(&self, specs: &[Spec]) -> Study {
         let node = |spec: &Spec| {
             let spec = spec.clone().text("counter", &self.counter(spec.name));
-            let entry = |value| Entry { value, place: Place::default() };
+            let entry = |value| PlacedValue { value, place: Place::default() };
             let fields = spec.fields.into_iter().map(|(name, value)| (name, entry(value))).collect();
             let record = Record { fields, place: Place::default() };
             let stage = (spec.kind.build)(&record).unwrap();

@@ -16,7 +16,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::standing;
 use crate::about::About;
-use crate::diff::model::{State, TableDiff};
+use crate::diff::model::{Difference, TableDiff};
 use crate::diff::table;
 use crate::program::Program;
 use crate::store::archive::open::Archive;
@@ -81,7 +81,7 @@ pub struct Verified {
     /// `stage.table`.
     pub name: String,
     pub rows: usize,
-    /// What was archived against what was computed; [`State::Removed`] for a table that this program does not give.
+    /// What was archived against what was computed; [`Difference::Removed`] for a table that this program does not give.
     pub diff: TableDiff,
 }
 
@@ -92,9 +92,9 @@ impl Verification {
         let mut counts = [0; 3];
         for table in &self.tables {
             counts[match table.diff.state {
-                State::Same => 0,
-                State::WithinTolerance => 1,
-                State::Changed | State::Removed | State::Added => 2,
+                Difference::Same => 0,
+                Difference::WithinTolerance => 1,
+                Difference::Changed | Difference::Removed | Difference::Added => 2,
             }] += 1;
         }
         counts
@@ -188,7 +188,7 @@ pub fn verify<R: Read + Seek>(
             Some((_, computed)) if computed == bytes => TableDiff { by_values: true, ..TableDiff::default() },
             Some((table, _)) => compared(&archived(archive, &entry, record, bytes)?, &table),
             None => TableDiff {
-                state: State::Removed,
+                state: Difference::Removed,
                 note: "this program gives no such table".to_owned(),
                 ..TableDiff::default()
             },
@@ -210,16 +210,16 @@ pub fn verify<R: Read + Seek>(
 /// Compares by the tolerances of the computed table.
 fn compared(archived: &Table, computed: &Table) -> TableDiff {
     let diff = table::compare("", archived, computed, None, &|_| None);
-    if diff.state != State::Same || archived.content_hash() == computed.content_hash() {
+    if diff.state != Difference::Same || archived.content_hash() == computed.content_hash() {
         return diff;
     }
     // Another hash, and no value is another one.
     if archived.schema() == computed.schema() {
         let note = "numbers of the key differ in their last digits".to_owned();
-        return TableDiff { state: State::WithinTolerance, note, ..diff };
+        return TableDiff { state: Difference::WithinTolerance, note, ..diff };
     }
     let note = "the values are equal, but not what the columns are".to_owned();
-    TableDiff { state: State::Changed, note, ..diff }
+    TableDiff { state: Difference::Changed, note, ..diff }
 }
 
 /// A table as this program computes it, and its Parquet file.
@@ -280,12 +280,12 @@ mod tests {
     fn another_hash_of_the_same_values_is_told_for_what_it_is() {
         let archived = table(0.1, 0.0, "um", "");
         let against = |computed: Table| (compared(&archived, &computed).state, compared(&archived, &computed).note);
-        assert_eq!(against(table(0.1, 0.0, "um", "")), (State::Same, String::new()));
-        assert_eq!(against(table(0.1, -0.0, "um", "")).0, State::Same, "a sign of zero is no content");
-        assert_eq!(against(table(0.1_f64.next_up(), 0.0, "um", "")).0, State::WithinTolerance);
-        assert_eq!(against(table(0.1, 1.0, "um", "")).0, State::Changed);
-        assert_eq!(against(table(0.1, 0.0, "mm", "")).0, State::Changed);
+        assert_eq!(against(table(0.1, 0.0, "um", "")), (Difference::Same, String::new()));
+        assert_eq!(against(table(0.1, -0.0, "um", "")).0, Difference::Same, "a sign of zero is no content");
+        assert_eq!(against(table(0.1_f64.next_up(), 0.0, "um", "")).0, Difference::WithinTolerance);
+        assert_eq!(against(table(0.1, 1.0, "um", "")).0, Difference::Changed);
+        assert_eq!(against(table(0.1, 0.0, "mm", "")).0, Difference::Changed);
         let (state, note) = against(table(0.1, 0.0, "um", "other words"));
-        assert!(state == State::Same || note.contains("what the columns are"), "{note}");
+        assert!(state == Difference::Same || note.contains("what the columns are"), "{note}");
     }
 }

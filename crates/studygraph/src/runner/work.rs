@@ -13,7 +13,7 @@ use std::time::Instant;
 use super::board::{Board, Known};
 use super::events::{Event, Observer};
 use super::fault::Fault;
-use super::key::{Part, Why};
+use super::key::{KeyedChunk, Why};
 use super::options::Options;
 use super::outcome::together;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
@@ -80,7 +80,7 @@ impl Run<'_> {
     }
 
     /// A table of a stage, all chunks together.
-    pub(super) fn whole(&self, node: usize, parts: &[Part], name: &str) -> Result<Arc<Table>, Ended> {
+    pub(super) fn whole(&self, node: usize, parts: &[KeyedChunk], name: &str) -> Result<Arc<Table>, Ended> {
         let mut tables = Vec::new();
         for (index, part) in parts.iter().enumerate() {
             tables.push(match self.fresh(node, index, name) {

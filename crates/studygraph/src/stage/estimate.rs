@@ -12,7 +12,7 @@ use declare::work::Work;
 
 /// How many rows a table will have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Rows {
+pub struct RowCount {
     pub count: u64,
     pub certainty: Certainty,
 }
@@ -47,7 +47,7 @@ impl Certainty {
     }
 }
 
-impl Rows {
+impl RowCount {
     pub const NONE: Self = Self::exact(0);
 
     #[must_use]
@@ -88,18 +88,18 @@ impl Rows {
 /// What is known of what comes in through the ports of a stage: the rows of its tables.
 #[derive(Clone, Debug, Default)]
 pub struct Ahead {
-    rows: BTreeMap<(String, String), Rows>,
+    rows: BTreeMap<(String, String), RowCount>,
 }
 
 impl Ahead {
-    pub fn know(&mut self, port: &str, table: &str, rows: Rows) {
+    pub fn know(&mut self, port: &str, table: &str, rows: RowCount) {
         self.rows.insert((port.to_owned(), table.to_owned()), rows);
     }
 
     /// None, where nothing is known of it.
     #[must_use]
-    pub fn rows(&self, port: &str, table: &str) -> Rows {
-        self.rows.get(&(port.to_owned(), table.to_owned())).copied().unwrap_or(Rows::about(0))
+    pub fn rows(&self, port: &str, table: &str) -> RowCount {
+        self.rows.get(&(port.to_owned(), table.to_owned())).copied().unwrap_or(RowCount::about(0))
     }
 
     /// The same under the names that a port has for somebody else.
@@ -114,7 +114,7 @@ impl Ahead {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Estimate {
     /// The demanded tables.
-    pub tables: Vec<(String, Rows)>,
+    pub tables: Vec<(String, RowCount)>,
     /// Bytes that its tables hold in memory.
     pub held: u64,
     /// The most bytes that it holds at once, tables included, until they are stored.
@@ -151,7 +151,7 @@ impl Estimate {
 
     /// A table that is made by columns; nothing where nobody asks for it.
     #[must_use]
-    pub fn columns(mut self, demand: &Demand, schema: Schema, rows: Rows) -> Self {
+    pub fn columns(mut self, demand: &Demand, schema: Schema, rows: RowCount) -> Self {
         if !demand.table(&schema.name) {
             return self;
         }
@@ -175,7 +175,7 @@ impl Estimate {
 
     /// A table that is made of rows, which are all there before it is.
     #[must_use]
-    pub fn rows(mut self, demand: &Demand, schema: Schema, rows: Rows) -> Self {
+    pub fn rows(mut self, demand: &Demand, schema: Schema, rows: RowCount) -> Self {
         if demand.table(&schema.name) {
             let row = 24 * (schema.columns.len() as u64 + 1);
             self.memory = self.memory.saturating_add(rows.count.saturating_mul(row));
@@ -207,13 +207,13 @@ impl Estimate {
 
     /// Rows of all its tables.
     #[must_use]
-    pub fn total(&self) -> Rows {
-        self.tables.iter().fold(Rows::NONE, |total, (_, rows)| total.and(*rows))
+    pub fn total(&self) -> RowCount {
+        self.tables.iter().fold(RowCount::NONE, |total, (_, rows)| total.and(*rows))
     }
 
     /// The rows of one table.
     #[must_use]
-    pub fn of_table(&self, name: &str) -> Option<Rows> {
+    pub fn of_table(&self, name: &str) -> Option<RowCount> {
         self.tables.iter().find(|(table, _)| table == name).map(|(_, rows)| *rows)
     }
 }

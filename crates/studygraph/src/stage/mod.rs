@@ -19,7 +19,7 @@ use declare::record::Record;
 use declare::seed::Seed;
 use declare::work::Tally;
 
-pub use self::estimate::{Ahead, Estimate, Rows};
+pub use self::estimate::{Ahead, Estimate, RowCount};
 pub use self::omission::{Omission, Saved};
 
 /// A kind of stage as registered.

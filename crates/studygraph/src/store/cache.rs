@@ -26,7 +26,7 @@ use std::time::Duration;
 
 pub use cleaning::{Remove, Removed};
 
-use super::entry::{self, Entry, OfRun, StoredTable};
+use super::entry::{self, CacheEntry, OfRun, StoredTable};
 use super::error::StoreError;
 use super::file::{self, Durability};
 use super::journal::Journal;
@@ -62,7 +62,7 @@ struct Unkept {
 /// What is known about a key.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Lookup {
-    Found(Entry),
+    Found(CacheEntry),
     Missing,
     /// There is a file, but it cannot be trusted: a sentence says why.
     Damaged(String),
@@ -146,7 +146,7 @@ impl Cache {
     #[must_use]
     pub fn look_up(&self, key: Digest) -> Lookup {
         let found = match self.in_memory(key) {
-            Some(bytes) => Entry::read(&mut Cursor::new(&*bytes), bytes.len() as u64, key).map(Some),
+            Some(bytes) => CacheEntry::read(&mut Cursor::new(&*bytes), bytes.len() as u64, key).map(Some),
             None if self.lock.is_none() => Ok(None),
             None => entry::open(&self.path(key), key).map(|found| found.map(|(entry, _)| entry)),
         };
@@ -162,8 +162,8 @@ impl Cache {
     /// # Errors
     /// [`StoreError::NotDeterministic`] when there are other tables under this key already; when a table cannot be written
     /// as Parquet.
-    pub fn put(&self, key: Digest, tables: &[&Table], of_run: OfRun) -> Result<Entry, StoreError> {
-        let (entry, bytes) = Entry::encode(key, tables, of_run)?;
+    pub fn put(&self, key: Digest, tables: &[&Table], of_run: OfRun) -> Result<CacheEntry, StoreError> {
+        let (entry, bytes) = CacheEntry::encode(key, tables, of_run)?;
         self.keep(&entry, bytes)?;
         Ok(entry)
     }
@@ -172,13 +172,13 @@ impl Cache {
     ///
     /// # Errors
     /// As [`Cache::put`].
-    pub fn put_whole(&self, key: Digest, tables: Vec<StoredTable>) -> Result<Entry, StoreError> {
-        let entry = Entry { key, tables, of_run: OfRun::default() };
+    pub fn put_whole(&self, key: Digest, tables: Vec<StoredTable>) -> Result<CacheEntry, StoreError> {
+        let entry = CacheEntry { key, tables, of_run: OfRun::default() };
         self.keep(&entry, entry.file(&[])?)?;
         Ok(entry)
     }
 
-    fn keep(&self, entry: &Entry, bytes: Vec<u8>) -> Result<(), StoreError> {
+    fn keep(&self, entry: &CacheEntry, bytes: Vec<u8>) -> Result<(), StoreError> {
         if let Lookup::Found(earlier) = self.look_up(entry.key) {
             earlier.agree(entry)?;
         }
@@ -209,7 +209,7 @@ impl Cache {
         let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
         let bytes = if let Some(bytes) = self.in_memory(key) {
             let mut file = Cursor::new(&*bytes);
-            let entry = Entry::read(&mut file, bytes.len() as u64, key).map_err(damaged)?;
+            let entry = CacheEntry::read(&mut file, bytes.len() as u64, key).map_err(damaged)?;
             entry.body(&mut file, table).map_err(damaged)?
         } else {
             let found = if self.lock.is_some() { entry::open(&path, key).map_err(damaged)? } else { None };

@@ -31,7 +31,7 @@ const LONGEST_HEADER: u64 = 1 << 28;
 
 /// What is known about a key without reading tables.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct CacheEntry {
     /// The key again, so that a file under a wrong name is found out.
     #[serde(with = "hexadecimal")]
     pub key: Digest,
@@ -122,7 +122,7 @@ pub fn part(table: &Table, keep: impl Fn(&Column) -> bool) -> Result<Table, Stor
         .map_err(|error| StoreError::Format { table: table.name().to_owned(), problem: error.to_string() })
 }
 
-impl Entry {
+impl CacheEntry {
     /// The file of an entry whose tables are `tables`, and the entry.
     ///
     /// # Errors
@@ -192,7 +192,7 @@ impl Entry {
         Ok(entry)
     }
 
-    /// The Parquet bytes of one table, checked; `file` as [`Entry::read`] left it. `None`: not stored here.
+    /// The Parquet bytes of one table, checked; `file` as [`CacheEntry::read`] left it. `None`: not stored here.
     ///
     /// # Errors
     /// A sentence that says what is damaged.
@@ -231,7 +231,7 @@ impl Entry {
 ///
 /// # Errors
 /// A sentence that says what is damaged.
-pub fn open(path: &Path, key: Digest) -> Result<Option<(Entry, File)>, String> {
+pub fn open(path: &Path, key: Digest) -> Result<Option<(CacheEntry, File)>, String> {
     match fs::metadata(path) {
         Ok(metadata) if metadata.is_file() => {}
         Ok(_) => return Err("it is no regular file".to_owned()),
@@ -246,7 +246,7 @@ pub fn open(path: &Path, key: Digest) -> Result<Option<(Entry, File)>, String> {
     };
     // Another run may have replaced it since.
     let size = file.metadata().map_err(|error| error.to_string())?.len();
-    let entry = Entry::read(&mut file, size, key)?;
+    let entry = CacheEntry::read(&mut file, size, key)?;
     Ok(Some((entry, file)))
 }
 

@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::decode::Decoder;
-use super::document::{Content, Node as Tree, Pair, parse};
+use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
 use super::words::{alternatives, quote};
@@ -15,7 +15,7 @@ use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Shape};
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use declare::text;
 
 /// Characters of a name.
@@ -99,14 +99,14 @@ fn source(record: &Record) -> Source {
 }
 
 fn tolerances(keys: &Record) -> Result<Vec<(Allowance, Place)>, Diagnostic> {
-    let read = |(name, entry): &(String, Entry)| {
+    let read = |(name, entry): &(String, PlacedValue)| {
         let allowance = Allowance::new(name, &settings::any_quantity(&entry.value));
         Ok((allowance.map_err(|problem| Diagnostic::new(problem).at(entry.place))?, entry.place))
     };
     keys.maybe_map("tolerances").unwrap_or_default().iter().map(read).collect()
 }
 
-fn drafts(stages: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Draft>, Diagnostic> {
+fn drafts(stages: &KeyValue, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Draft>, Diagnostic> {
     let written = "stages are written `NAME: { kind: KIND, … }`";
     let pairs = match &stages.node.content {
         Content::Mapping(pairs) if !pairs.is_empty() => pairs,
@@ -122,7 +122,7 @@ fn drafts(stages: &Pair, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Dr
     pairs.iter().map(|pair| draft(pair, stages, belong)).collect()
 }
 
-fn draft(pair: &Pair, stages: Stages, belong: &str) -> Result<Draft, Diagnostic> {
+fn draft(pair: &KeyValue, stages: Stages, belong: &str) -> Result<Draft, Diagnostic> {
     let kinds = stages.kinds;
     let (name, place) = (&pair.key, pair.place);
     check_name("stage", name, place)?;
@@ -132,7 +132,7 @@ fn draft(pair: &Pair, stages: Stages, belong: &str) -> Result<Draft, Diagnostic>
             format!("stage {} is {}; a mapping with its `kind` is expected", quote(name), pair.node.describe());
         return Err(Diagnostic::new(message).at(pair.node.place).help(format!("kinds are {}", alternatives(known()))));
     };
-    let Some(Pair { node: wanted, .. }) = fields.iter().find(|field| field.key == "kind" && !field.node.is_null())
+    let Some(KeyValue { node: wanted, .. }) = fields.iter().find(|field| field.key == "kind" && !field.node.is_null())
     else {
         let message = format!("stage {} has no `kind`", quote(name));
         return Err(Diagnostic::new(message).at(place).help(format!("kinds are {}", alternatives(known()))));

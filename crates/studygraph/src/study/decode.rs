@@ -3,14 +3,14 @@
 //! Every wrong input ends in one diagnostic: where, what was found, what was expected, and the nearest known name.
 //! Names of stages are gathered and checked later, when all stages are known. Must not know: what any field means.
 
-use super::document::{Content, Node, Pair, nothing, parse};
+use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::Measure;
 use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape};
-use declare::record::{Entry, Record, Value, Variant};
+use declare::record::{PlacedValue, Record, Value, Variant};
 use declare::units::{UnitError, parse_quantity, parse_unit, split_quantity};
 
 /// The name of a stage that a field refers to.
@@ -78,7 +78,12 @@ impl<'a> Decoder<'a> {
         Ok(record)
     }
 
-    fn field(&mut self, field: &'static Field, pairs: &[Pair], owner: &Owner) -> Result<Option<Entry>, Diagnostic> {
+    fn field(
+        &mut self,
+        field: &'static Field,
+        pairs: &[KeyValue],
+        owner: &Owner,
+    ) -> Result<Option<PlacedValue>, Diagnostic> {
         let around = self.chooses;
         self.chooses |= field.chooses;
         let entry = match (pairs.iter().find(|pair| pair.key == field.name), field.presence) {
@@ -106,7 +111,7 @@ impl<'a> Decoder<'a> {
         field: &'static Field,
         name: &str,
         key: Place,
-    ) -> Result<Entry, Diagnostic> {
+    ) -> Result<PlacedValue, Diagnostic> {
         if node.is_null() {
             let help = if matches!(shape, Shape::List(_)) { "write `[]` for an empty list" } else { field.summary };
             let message = format!("{} has no value; {} is expected", quote(name), words::expected(shape));
@@ -173,7 +178,7 @@ impl<'a> Decoder<'a> {
                 Value::Variant(self.variant(of, node, pairs)?)
             }
         };
-        Ok(Entry { value, place: node.place })
+        Ok(PlacedValue { value, place: node.place })
     }
 
     /// `name`, or `name: { fields }`.
@@ -214,7 +219,7 @@ impl<'a> Decoder<'a> {
     }
 
     /// The fields of the stage that the field `of` names, with those in `pairs` in the place of its own.
-    fn variant(&mut self, of: &str, node: &Node, pairs: &[Pair]) -> Result<Variant, Diagnostic> {
+    fn variant(&mut self, of: &str, node: &Node, pairs: &[KeyValue]) -> Result<Variant, Diagnostic> {
         let named = self.references.iter().find(|reference| reference.field == of).cloned();
         let Some(Reference { stage, place, .. }) = named else {
             let message = format!("{} is not known, so nothing of it can be replaced", quote(of));
@@ -233,7 +238,7 @@ impl<'a> Decoder<'a> {
 }
 
 /// More than one member where one is expected; often its fields are only not indented far enough.
-fn side_by_side(field: &str, first: &Pair, second: &Pair, members: &[Member]) -> Diagnostic {
+fn side_by_side(field: &str, first: &KeyValue, second: &KeyValue, members: &[Member]) -> Diagnostic {
     let message =
         format!("{} and {} stand side by side; {} takes one", quote(&first.key), quote(&second.key), quote(field));
     let slipped = members.iter().any(|member| {
@@ -248,7 +253,7 @@ fn side_by_side(field: &str, first: &Pair, second: &Pair, members: &[Member]) ->
 }
 
 /// Names that a user gives end up in tables, in conditions and in file names.
-fn check_label(field: &str, pair: &Pair) -> Result<(), Diagnostic> {
+fn check_label(field: &str, pair: &KeyValue) -> Result<(), Diagnostic> {
     let fits = pair.key.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) && pair.key.chars().count() <= 64;
     if fits {
         return Ok(());

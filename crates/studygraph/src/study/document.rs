@@ -35,12 +35,12 @@ pub enum Content {
         quoted: bool,
     },
     Sequence(Vec<Node>),
-    Mapping(Vec<Pair>),
+    Mapping(Vec<KeyValue>),
 }
 
 /// A key and its value.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct KeyValue {
     pub key: String,
     /// Where the key stands.
     pub place: Place,
@@ -129,7 +129,12 @@ struct Open {
 
 enum Inside {
     Sequence(Vec<Node>),
-    Mapping { pairs: Vec<Pair>, lines: BTreeMap<String, usize>, key: Option<(String, Place, bool)>, merged: Vec<Pair> },
+    Mapping {
+        pairs: Vec<KeyValue>,
+        lines: BTreeMap<String, usize>,
+        key: Option<(String, Place, bool)>,
+        merged: Vec<KeyValue>,
+    },
 }
 
 struct Tree<'a> {
@@ -247,7 +252,7 @@ impl<'a> Tree<'a> {
                     if matches!(&grown.node.content, Content::Scalar { text, quoted: false } if text.is_empty()) {
                         grown.node.place = place;
                     }
-                    pairs.push(Pair { key: name, place, node: grown.node });
+                    pairs.push(KeyValue { key: name, place, node: grown.node });
                 }
             },
         }
@@ -357,7 +362,7 @@ fn new_key(node: Node, lines: &mut BTreeMap<String, usize>) -> Result<(String, P
     Ok((text, node.place, merges))
 }
 
-fn merge(node: Node, place: Place, into: &mut Vec<Pair>) -> Result<(), Diagnostic> {
+fn merge(node: Node, place: Place, into: &mut Vec<KeyValue>) -> Result<(), Diagnostic> {
     let wrong = || Diagnostic::new("`<<` merges a mapping, or a list of mappings").at(place);
     match node.content {
         Content::Mapping(pairs) => into.extend(pairs),

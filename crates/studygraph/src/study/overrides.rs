@@ -3,7 +3,7 @@
 //! A replaced field is replaced as a whole: `method: { grid: { levels: 5 } }` says nothing of what the method was. Must
 //! not know: what any field means.
 
-use super::document::{Content, Node, Pair};
+use super::document::{Content, KeyValue, Node};
 use super::words::quote;
 use crate::stage::Kind;
 use declare::error::{Diagnostic, Place, suggest};
@@ -12,7 +12,7 @@ use declare::parameter::{Field, Shape};
 /// The stages of a study as written, and the kinds there are.
 #[derive(Clone, Copy, Default)]
 pub struct Stages<'a> {
-    pub pairs: &'a [Pair],
+    pub pairs: &'a [KeyValue],
     pub kinds: &'a [&'static Kind],
 }
 
@@ -21,7 +21,7 @@ impl Stages<'_> {
     ///
     /// # Errors
     /// When there is no such stage, it has no kind, or it replaces fields of another stage itself.
-    pub fn merged(&self, name: &str, place: Place, replaced: &[Pair]) -> Result<(&'static Kind, Node), Diagnostic> {
+    pub fn merged(&self, name: &str, place: Place, replaced: &[KeyValue]) -> Result<(&'static Kind, Node), Diagnostic> {
         let stage = self.pairs.iter().find(|pair| pair.key == name).ok_or_else(|| {
             let names = self.pairs.iter().map(|pair| pair.key.as_str());
             Diagnostic::new(format!("there is no stage {}", quote(name))).at(place).help(suggest(name, names))
@@ -42,7 +42,7 @@ impl Stages<'_> {
         if let Some(pair) = replaced.iter().find(|pair| pair.key == "kind") {
             return Err(Diagnostic::new("the kind of a stage cannot be replaced").at(pair.place));
         }
-        let is_replaced = |pair: &&Pair| replaced.iter().any(|other| other.key == pair.key);
+        let is_replaced = |pair: &&KeyValue| replaced.iter().any(|other| other.key == pair.key);
         let kept = own.iter().filter(|pair| !is_replaced(pair)).chain(replaced).cloned();
         Ok((kind, Node { content: Content::Mapping(kept.collect()), place: stage.node.place }))
     }
@@ -61,11 +61,11 @@ fn replaces(field: &Field) -> bool {
 }
 
 /// The replaced fields on one line, as a study would have them; of none, `as it is`.
-pub fn written(pairs: &[Pair]) -> String {
+pub fn written(pairs: &[KeyValue]) -> String {
     if pairs.is_empty() { "as it is".to_owned() } else { fields(pairs) }
 }
 
-fn fields(pairs: &[Pair]) -> String {
+fn fields(pairs: &[KeyValue]) -> String {
     pairs.iter().map(|pair| format!("{}: {}", pair.key, inline(&pair.node))).collect::<Vec<_>>().join(", ")
 }
 

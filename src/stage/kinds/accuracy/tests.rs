@@ -7,7 +7,7 @@ use super::trial::quantile;
 use super::variant::{Variant, inputs, ports};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Port, Stage};
 use declare::error::{Failure, Place};
-use declare::record::{self, Entry, Record};
+use declare::record::{self, PlacedValue, Record};
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
 
@@ -62,7 +62,8 @@ impl Stage for Reader {
 
 fn variant(label: &str, reads: &[(&str, &str)], fields: Vec<(&'static str, record::Value)>) -> Variant {
     let ports = reads.iter().map(|(port, stage)| Port::tables(*port, *stage, &["t"])).collect();
-    let fields = fields.into_iter().map(|(name, value)| (name, Entry { value, place: Place::default() })).collect();
+    let fields =
+        fields.into_iter().map(|(name, value)| (name, PlacedValue { value, place: Place::default() })).collect();
     Variant {
         label: label.to_owned(),
         written: String::new(),
@@ -100,7 +101,8 @@ fn an_order_is_observed_only_where_one_number_was_changed() {
     use record::Value::{Choice, Flag, Integer, Member, Quantity};
     let of = |fields| variant("", &[], fields);
     let member = |name, value| {
-        let fields = vec![("points", Entry { value: Integer(value), place: Place { line: 3, ..Place::default() } })];
+        let fields =
+            vec![("points", PlacedValue { value: Integer(value), place: Place { line: 3, ..Place::default() } })];
         ("method", Member(name, Record { fields, place: Place { line: 7, ..Place::default() } }))
     };
     let coarse = of(vec![member("a", 8), ("word", Choice("x")), ("length", Quantity(2e-3))]);

@@ -76,7 +76,7 @@ fn differing(one: &Value, two: &Value, found: &mut Vec<Option<(f64, f64)>>) {
 /// Whether two values are alike, wherever they stand.
 fn same(one: &Value, two: &Value) -> bool {
     let digest = |value: &Value| {
-        let entry = record::Entry { value: value.clone(), place: declare::error::Place::default() };
+        let entry = record::PlacedValue { value: value.clone(), place: declare::error::Place::default() };
         let record = Record { fields: vec![("value", entry)], place: declare::error::Place::default() };
         let mut writer = declare::digest::Writer::new("gearstudy 1 variant");
         record.write(&mut writer);

@@ -7,7 +7,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::drawn::{Drawn, gear_column};
 use declare::units::in_unit;
-use gearmesh::gear::geometry::outline::curve::Part;
+use gearmesh::gear::geometry::outline::curve::OutlinePart;
 use gearmesh::gear::geometry::outline::sample::Density;
 use gearmesh::gear::problem::root_arc::RootArc;
 use studygraph::table::data::Row;
@@ -68,7 +68,7 @@ pub fn rows(drawn: &Drawn, density: Density) -> Vec<Row> {
         vec![[from * sine, from * cosine], [to * sine, to * cosine]]
     };
     let flank = drawn.outline.half(density).into_iter();
-    let flank = flank.filter(|point| drawn.outline.segments[point.segment].part == Part::Flank);
+    let flank = flank.filter(|point| drawn.outline.segments[point.segment].part == OutlinePart::Flank);
     // As far above the base circle as the root circle is below it.
     let high = 2.0 * base.base_radius - base.root_radius;
     let flank = flank.map(|point| point.local.position).filter(|[x, y]| libm::hypot(*x, *y) <= high);

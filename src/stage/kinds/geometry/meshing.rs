@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 use super::drawn::Drawn;
 use declare::units::in_unit;
 use gearmesh::gear::geometry::outline::sample::Density;
-use gearmesh::gear::geometry::{Pair, Side};
+use gearmesh::gear::geometry::{GearPair, Side};
 use studygraph::table::data::Row;
 use studygraph::table::schema::{Column, Schema};
 
@@ -35,7 +35,7 @@ pub fn schema() -> Schema {
 
 /// The rows of a pair with its two profiles, the pinion's and the gear's.
 #[must_use]
-pub fn rows(pair: &Pair, gears: &[Drawn], density: Density) -> Vec<Row> {
+pub fn rows(pair: &GearPair, gears: &[Drawn], density: Density) -> Vec<Row> {
     let [pinion, gear] = gears else { return Vec::new() };
     let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
     let half_gear_pitch = PI / f64::from(pair.gear.specification.teeth);
@@ -84,7 +84,7 @@ pub fn count(halves: [usize; 2]) -> usize {
 }
 
 /// From the gear's own frame, y towards the pinion, to the pair's.
-fn opposite(pair: &Pair, [x, y]: [f64; 2]) -> [f64; 2] {
+fn opposite(pair: &GearPair, [x, y]: [f64; 2]) -> [f64; 2] {
     [-x, pair.centre_distance - y]
 }
 

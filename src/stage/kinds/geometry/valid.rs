@@ -4,7 +4,7 @@
 
 use super::drawn::{Drawn, gear_column};
 use declare::units::in_unit;
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::validity::{Mating, Validity};
 use studygraph::table::data::Row;
 use studygraph::table::schema::{Column, Schema};
@@ -60,7 +60,7 @@ pub fn schema(paired: bool) -> Schema {
 
 /// The row of a gear, with its mate if it has one.
 #[must_use]
-pub fn row(drawn: &Drawn, mate: Option<(&Pair, Mating)>) -> Row {
+pub fn row(drawn: &Drawn, mate: Option<(&GearPair, Mating)>) -> Row {
     let gear = &drawn.gear;
     let module = gear.specification.module;
     let alone = Validity::new(gear, &drawn.outline);

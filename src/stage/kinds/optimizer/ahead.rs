@@ -4,7 +4,7 @@
 
 use super::Optimizer;
 use crate::stage::designs::{designs_schema, elements_schema, rows_of};
-use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
 use gearmesh::gear::work::CONTACT_SOLVES;
 
@@ -21,7 +21,7 @@ impl Optimizer {
         let Ok(foreseen) = self.method.foresee(dimension) else {
             return Estimate::new(true);
         };
-        let as_many = |count| if foreseen.exact { Rows::exact(count) } else { Rows::at_most(count) };
+        let as_many = |count| if foreseen.exact { RowCount::exact(count) } else { RowCount::at_most(count) };
         let each = SOLVES + SOLVES_PER_POSITION * self.settings.positions as f64;
         // Far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -30,10 +30,10 @@ impl Optimizer {
         Estimate::new(true)
             .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))
             .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
-            .rows(demand, self.best_schema(), Rows::exact(1))
+            .rows(demand, self.best_schema(), RowCount::exact(1))
             .rows(demand, self.history_schema(), as_many(foreseen.batches))
-            .rows(demand, designs_schema(), Rows::exact(1))
-            .rows(demand, elements_schema(), Rows::exact(self.elements.iter().map(rows_of).sum()))
+            .rows(demand, designs_schema(), RowCount::exact(1))
+            .rows(demand, elements_schema(), RowCount::exact(self.elements.iter().map(rows_of).sum()))
             .columns(demand, self.evaluations_schema(), as_many(foreseen.evaluations))
     }
 }

@@ -4,9 +4,9 @@
 //! know: how the search goes on.
 
 use super::Optimizer;
-use gearmesh::gear::geometry::Pair;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Places on the diagonal of the box that stand for all of it.
@@ -14,7 +14,7 @@ const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
 impl Optimizer {
     /// The settings to begin with.
-    pub fn first_settings(&self, base: &MeshCycle, pair: &Pair) -> Settings {
+    pub fn first_settings(&self, base: &MeshCycle, pair: &GearPair) -> Settings {
         let Some(accuracy) = self.accuracy else { return self.settings };
         let variables = self.template.variables();
         let at = |share: &f64| -> Vec<f64> {
@@ -25,12 +25,12 @@ impl Optimizer {
     }
 
     /// The coarsest settings that meet an accuracy at one design.
-    pub fn settings_for(&self, base: &MeshCycle, pair: &Pair, point: &[f64], accuracy: f64) -> Settings {
+    pub fn settings_for(&self, base: &MeshCycle, pair: &GearPair, point: &[f64], accuracy: f64) -> Settings {
         self.at(base, pair, point, |mut sampled| sampled.coarsest(self.settings, accuracy)).unwrap_or(self.settings)
     }
 
     /// Estimated relative error of the objective at one design.
-    pub fn error(&self, base: &MeshCycle, pair: &Pair, point: &[f64], settings: Settings) -> f64 {
+    pub fn error(&self, base: &MeshCycle, pair: &GearPair, point: &[f64], settings: Settings) -> f64 {
         self.at(base, pair, point, |mut sampled| sampled.error(settings)).unwrap_or(1.0)
     }
 
@@ -38,12 +38,12 @@ impl Optimizer {
     fn at<T>(
         &self,
         base: &MeshCycle,
-        pair: &Pair,
+        pair: &GearPair,
         point: &[f64],
         look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,
     ) -> Option<T> {
         let design = self.template.design(pair, point).ok()?;
-        let sliced = self.torques.iter().any(|torque| Loading::new(base, &design, *torque).uses_slices());
+        let sliced = self.torques.iter().any(|torque| LoadCase::new(base, &design, *torque).uses_slices());
         let mut value = |settings| self.value(&base.sampled(settings), pair, point);
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }

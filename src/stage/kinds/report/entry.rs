@@ -5,7 +5,7 @@
 use super::formula::{Formula, Outcome};
 use super::operand::{Operand, in_si};
 use super::quantity::Number;
-use super::rows::Rows;
+use super::rows::OperandRows;
 use super::stated::{Target, convert, read_target};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
@@ -32,7 +32,7 @@ struct Proof {
     with: Operands,
 }
 
-pub struct Entry {
+pub struct ReportEntry {
     /// From 1, in the order of the study.
     pub number: usize,
     place: Place,
@@ -54,7 +54,7 @@ pub struct Finding {
     pub row: Row,
 }
 
-impl Entry {
+impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
     pub fn read(number: usize, record: &Record) -> Result<Self, Diagnostic> {
@@ -104,7 +104,7 @@ impl Entry {
         {
             let field = if formula.is_claim() { "claim" } else { "formula" };
             let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
-            let outcome = Rows::of(&Inputs::default(), with)
+            let outcome = OperandRows::of(&Inputs::default(), with)
                 .and_then(|rows| formula.evaluate(rows.names(0, &rows.lookup(None))))
                 .map_err(wrong)?;
             if let (Outcome::Number(number), Some(target)) = (outcome, &self.published) {
@@ -155,7 +155,7 @@ impl Entry {
                 (self.in_published_unit(values.single(&operand.text)?)?, 0.0, String::new(), String::new())
             }
             Subject::Formula(formula, with) => {
-                let rows = Rows::of(inputs, with)?;
+                let rows = OperandRows::of(inputs, with)?;
                 rows.single(formula)?;
                 match formula.evaluate(rows.names(0, &rows.lookup(None)))? {
                     Outcome::Number(number) => (self.in_published_unit(number)?, 0.0, rows.written(0), String::new()),
@@ -163,7 +163,7 @@ impl Entry {
                 }
             }
             Subject::Claim(formula, with) => {
-                let rows = Rows::of(inputs, with)?;
+                let rows = OperandRows::of(inputs, with)?;
                 let (value, count) = (rows.lookup(None), rows.judged(formula));
                 let mut failing = Vec::new();
                 for row in 0..count {
@@ -234,7 +234,7 @@ impl Entry {
     /// Whether the proof holds, and its text with the numbers put in.
     fn prove(&self, inputs: &Inputs, published: f64, computed: f64) -> Result<Option<(bool, String)>, String> {
         let Some(Proof { claim, with }) = &self.proof else { return Ok(None) };
-        let rows = Rows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
+        let rows = OperandRows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
         rows.single(claim).map_err(|problem| format!("proof: {problem}"))?;
         let unit = self.published.as_ref().map_or("", |target| target.stated.unit.as_str());
         // A value that is not known yet is NaN, which no formula lets pass.

@@ -8,7 +8,7 @@ use super::quantity::{Number, shown};
 use crate::stage::Inputs;
 
 /// The values of every name, in rows that line up.
-pub struct Rows<'a> {
+pub struct OperandRows<'a> {
     with: &'a [(String, Operand)],
     values: Vec<Values>,
     /// The operand whose rows are counted, if any has several.
@@ -16,7 +16,7 @@ pub struct Rows<'a> {
     pub count: usize,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> OperandRows<'a> {
     /// # Errors
     /// When an operand cannot be looked up, or the rows of two do not line up.
     pub fn of(inputs: &Inputs, with: &'a [(String, Operand)]) -> Result<Self, String> {

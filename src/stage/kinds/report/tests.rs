@@ -5,7 +5,7 @@ use std::sync::atomic::AtomicBool;
 use super::*;
 use crate::stage::Demand;
 use declare::error::Place;
-use declare::record::{Entry as Item, Value};
+use declare::record::{PlacedValue as Item, Value};
 use declare::seed::Seed;
 use declare::work::Tally;
 use studygraph::table::data::Cell;

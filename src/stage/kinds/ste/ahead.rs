@@ -4,7 +4,7 @@
 
 use super::tables::{cost_schema, curve_schema, harmonics_schema, summary_schema};
 use super::{OF_CURVES, Ste, samples};
-use crate::stage::{Ahead, Demand, Estimate, Rows, common};
+use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
@@ -17,14 +17,14 @@ const CYCLE: u64 = 1 << 20;
 impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let ports = (1..=self.designs.len()).map(|index| format!("designs_{index}"));
-        let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(Rows::NONE, Rows::and);
-        let curves = designs.times(Rows::exact(self.torques.len()));
+        let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(RowCount::NONE, RowCount::and);
+        let curves = designs.times(RowCount::exact(self.torques.len()));
         let of_each = common::curve_rows(self.settings, self.harmonics);
         let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
-        let rows = curves.times(Rows::about(if of_curves { of_each } else { 0 }));
+        let rows = curves.times(RowCount::about(if of_curves { of_each } else { 0 }));
         let pressures = demand.column("summary", "largest_pressure") || demand.column("curve", "pressure");
         let samples = if demand.table("samples") || demand.table("sample_summary") { self.samples } else { 0 };
-        let sampled = curves.times(Rows::exact(samples)).index();
+        let sampled = curves.times(RowCount::exact(samples)).index();
         // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
@@ -37,9 +37,9 @@ impl Ste {
             .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
             .rows(demand, summary_schema(), curves)
             .columns(demand, curve_schema(), rows)
-            .rows(demand, harmonics_schema(), curves.times(Rows::exact(self.harmonics)))
+            .rows(demand, harmonics_schema(), curves.times(RowCount::exact(self.harmonics)))
             .rows(demand, cost_schema(), curves)
-            .rows(demand, sample_rows, curves.times(Rows::exact(self.samples)))
+            .rows(demand, sample_rows, curves.times(RowCount::exact(self.samples)))
             .rows(demand, sample_summary, curves)
     }
 }

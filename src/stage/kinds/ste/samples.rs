@@ -5,7 +5,7 @@
 
 use super::tables::keys;
 use declare::units::in_unit;
-use gearmesh::gear::transmission_error::loading::Loading;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::table::data::Row;
 use studygraph::table::schema::{Column, Schema};
 
@@ -40,7 +40,7 @@ pub fn schemas() -> [Schema; 2] {
 
 /// The rows of `samples` and the row of `sample_summary`, without their keys; `first` is the pinion's rotation from where
 /// a pair starts contact \[rad\].
-pub fn rows(loading: &Loading, first: f64, count: usize) -> (Vec<Row>, Row) {
+pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Row) {
     let cycle = loading.cycle;
     let teeth = f64::from(cycle.pair.pinion.specification.teeth);
     let sample = |index: usize| {

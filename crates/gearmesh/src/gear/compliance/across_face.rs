@@ -47,7 +47,7 @@ impl Layers {
     /// `face_width` is that of the contact \[m\], over which compliances are counted.
     #[must_use]
     pub fn new(gear: &Gear, tooth: &ToothCompliance, face_width: f64) -> Self {
-        let shape = Shape::new(gear, face_width);
+        let shape = SectionedTooth::new(gear, face_width);
         let (lower, upper) = (tooth.body.lower(), gear.tip_roll());
         let nodes = (0..=2 * ROLLS).map(|node| lower + (upper - lower) * node as f64 / (2 * ROLLS) as f64);
         let body = nodes.map(|roll| tooth.body.value(roll)).fold(f64::INFINITY, f64::min).max(0.0);
@@ -86,7 +86,7 @@ fn ring(gear: &Gear) -> (f64, f64) {
 }
 
 /// A tooth as a row of sections.
-struct Shape<'a> {
+struct SectionedTooth<'a> {
     gear: &'a Gear,
     /// Height, extent along the height, thickness.
     sections: Vec<[f64; 3]>,
@@ -95,7 +95,7 @@ struct Shape<'a> {
     moved: f64,
 }
 
-impl<'a> Shape<'a> {
+impl<'a> SectionedTooth<'a> {
     fn new(gear: &'a Gear, face_width: f64) -> Self {
         let mut sections = Vec::new();
         let mut add = |range: (f64, f64), section: &dyn Fn(f64) -> Section| {

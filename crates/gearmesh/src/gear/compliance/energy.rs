@@ -11,7 +11,7 @@ use super::sainsot::Body;
 use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, of_both};
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::quadrature::GaussLegendre;
@@ -64,7 +64,7 @@ pub const METHOD: Method = Method {
     foresee: super::integrated,
 };
 
-fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let mut warnings = Vec::new();
     let uses_ring = assumptions.coupled || options.choice("body") == "ring";
     let [least, most] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
@@ -198,7 +198,7 @@ enum Foundation {
 /// One gear's tables, and a warning.
 fn tabulate_side(
     options: &Record,
-    pair: &Pair,
+    pair: &GearPair,
     side: Side,
     assumptions: Assumptions,
     harmonics: f64,

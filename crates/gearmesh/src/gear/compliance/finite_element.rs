@@ -17,7 +17,7 @@ use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
 use crate::gear::geometry::root::Root;
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::surface::Surface;
@@ -29,7 +29,7 @@ use declare::work::Work;
 const ROLLS: usize = 16;
 /// The fewest elements across that still make a mesh.
 const LEAST: usize = 4;
-const MOST: usize = 64;
+const MOST_ELEMENTS: usize = 64;
 /// ν up to which plane strain does not lock.
 const MOST_POISSON: f64 = 0.49;
 /// The order that the error estimate counts on; 2 to 4 are observed.
@@ -67,9 +67,9 @@ const USUAL: f64 = 8.0;
 const MESH_BYTES: usize = 100_000;
 
 fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
-    let told = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
+    let told = usize::try_from(options.integer("elements_across")).unwrap_or(MOST_ELEMENTS);
     // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones may follow.
-    let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST, 2) } else { (even(told), 1) };
+    let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST_ELEMENTS, 2) } else { (even(told), 1) };
     let meshes = 4 * rounds;
     let neighbours = if assumptions.coupled { 6 * ROLLS * ROLLS } else { 0 };
     Foreseen {
@@ -81,7 +81,7 @@ fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
     }
 }
 
-fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let mut work = Work::NONE;
     let side = |side| {
         let task = Task::new(options, pair, side, assumptions)?;
@@ -98,7 +98,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
 
 fn root_stress(
     options: &Record,
-    pair: &Pair,
+    pair: &GearPair,
     assumptions: Assumptions,
 ) -> Result<(Vec<RootStress>, Work), ComplianceError> {
     let mut work = Work::NONE;
@@ -132,7 +132,12 @@ struct Task<'a> {
 }
 
 impl<'a> Task<'a> {
-    fn new(options: &Record, pair: &'a Pair, side: Side, assumptions: Assumptions) -> Result<Self, ComplianceError> {
+    fn new(
+        options: &Record,
+        pair: &'a GearPair,
+        side: Side,
+        assumptions: Assumptions,
+    ) -> Result<Self, ComplianceError> {
         let gear = pair.side(side);
         let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
         let plane = if options.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain };
@@ -140,7 +145,7 @@ impl<'a> Task<'a> {
         if plane == Plane::Strain && poisson_ratio > MOST_POISSON {
             return Err(ComplianceError::Incompressible { side, poisson_ratio, most: MOST_POISSON });
         }
-        let across = usize::try_from(options.integer("elements_across")).unwrap_or(MOST);
+        let across = usize::try_from(options.integer("elements_across")).unwrap_or(MOST_ELEMENTS);
         let rolls = nodes(root.form_roll, gear.tip_roll(), ROLLS);
         Ok(Self {
             side,
@@ -187,13 +192,13 @@ impl<'a> Task<'a> {
             let change = difference(&found, &self.at(coarse, work)?.0);
             facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
             let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
-            if facts.error_estimate <= accuracy || across >= MOST {
+            if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
                 return Ok((found, facts));
             }
             let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST
             let next = libm::ceil(across as f64 * factor) as usize;
-            across = even(next.max(across + 2)).min(MOST);
+            across = even(next.max(across + 2)).min(MOST_ELEMENTS);
         }
     }
 

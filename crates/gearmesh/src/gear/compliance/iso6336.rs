@@ -9,7 +9,7 @@
 //! Must not know: the tooth's shape beyond teeth numbers and shifts. Results in SI, N/(m·m) = Pa: 1 N/(mm µm) = 1e9 Pa.
 
 use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
-use crate::gear::geometry::{Pair, Side, Specification};
+use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use declare::parameter::{Field, Member};
@@ -73,7 +73,7 @@ impl Inputs {
     /// The facts of a spur pair, with the factors of the method's `options`; a record of another method does not have them,
     /// and the standard's own take their place.
     #[must_use]
-    pub fn of(pair: &Pair, options: &Record) -> Self {
+    pub fn of(pair: &GearPair, options: &Record) -> Self {
         let mut both = [&pair.pinion.specification, &pair.gear.specification];
         // The standard's first gear is the smaller one, whichever drives.
         let later = |gear: &Specification| (gear.teeth, -gear.profile_shift);
@@ -128,7 +128,7 @@ pub fn stiffness(inputs: &Inputs) -> Stiffness {
     Stiffness { theoretical, single, mesh: single * (0.75 * inputs.contact_ratio + 0.25) }
 }
 
-fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let inputs = Inputs::of(pair, options);
     let Stiffness { single, mesh, .. } = stiffness(&inputs);
     if !(single > 0.0 && single.is_finite()) {
@@ -170,7 +170,7 @@ fn tabulate(options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<T
 }
 
 /// A sentence for each range of the standard that the pair is outside of.
-fn warnings(inputs: &Inputs, pair: &Pair, torque: Option<f64>) -> Vec<String> {
+fn warnings(inputs: &Inputs, pair: &GearPair, torque: Option<f64>) -> Vec<String> {
     let mut warnings = Vec::new();
     let [x1, x2] = inputs.profile_shift;
     if x1 < x2 {
@@ -231,7 +231,7 @@ mod tests {
         }
     }
 
-    fn pair(teeth: [u32; 2], shift: [f64; 2], addendum: f64) -> Pair {
+    fn pair(teeth: [u32; 2], shift: [f64; 2], addendum: f64) -> GearPair {
         let rack = Rack { addendum, dedendum: addendum + 0.25, tip_radius: 0.2 };
         let gear = |index: usize| Specification {
             teeth: teeth[index],
@@ -244,10 +244,10 @@ mod tests {
             bore_radius: 5e-3,
             material: STEEL,
         };
-        Pair::new(gear(0), gear(1), None).unwrap()
+        GearPair::new(gear(0), gear(1), None).unwrap()
     }
 
-    fn tables(pair: &Pair, torque: Option<f64>) -> Tabulated {
+    fn tables(pair: &GearPair, torque: Option<f64>) -> Tabulated {
         let assumptions = Assumptions {
             root: RootShape::BaseCircle,
             contact: ContactLaw::Linear,

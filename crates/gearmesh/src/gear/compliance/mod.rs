@@ -16,10 +16,10 @@ pub mod weber_banaschek;
 use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
-use super::geometry::{Pair, Side};
+use super::geometry::{GearPair, Side};
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
-use crate::numeric::complementarity::MOST;
+use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::surface::Surface;
 use declare::parameter::{Choice, Member};
 use declare::record::Record;
@@ -38,7 +38,7 @@ pub struct Method {
     pub needs_fillet: bool,
     /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
     /// method does not hold for this pair. The record holds the options of this method alone.
-    pub tabulate: fn(&Record, &Pair, Assumptions) -> Result<Tabulated, ComplianceError>,
+    pub tabulate: fn(&Record, &GearPair, Assumptions) -> Result<Tabulated, ComplianceError>,
     /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
     pub root_stress: Option<RootStresses>,
     /// What it takes to tabulate a pair.
@@ -72,7 +72,7 @@ pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
 }
 
 /// The largest stress at the root of both gears' teeth, for loads along the flank, and what it took.
-pub type RootStresses = fn(&Record, &Pair, Assumptions) -> Result<(Vec<RootStress>, Work), ComplianceError>;
+pub type RootStresses = fn(&Record, &GearPair, Assumptions) -> Result<(Vec<RootStress>, Work), ComplianceError>;
 
 /// What every method is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,7 +142,7 @@ pub fn method(name: &str) -> Option<&'static Method> {
 ///
 /// # Errors
 /// Those of `tooth`.
-pub fn of_both<T: Clone, E>(pair: &Pair, mut tooth: impl FnMut(Side) -> Result<T, E>) -> Result<[T; 2], E> {
+pub fn of_both<T: Clone, E>(pair: &GearPair, mut tooth: impl FnMut(Side) -> Result<T, E>) -> Result<[T; 2], E> {
     let pinion = tooth(Side::Pinion)?;
     let gear = if pair.pinion == pair.gear { pinion.clone() } else { tooth(Side::Gear)? };
     Ok([pinion, gear])
@@ -240,11 +240,11 @@ impl ToothCompliance {
 /// How many teeth to one side of a loaded one can be loaded with it: as many pairs as share the contact, and in corner
 /// contact one more at each end.
 #[must_use]
-pub fn neighbours(pair: &Pair, side: Side) -> u32 {
+pub fn neighbours(pair: &GearPair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
     // The contact ratio of what can be built is far below 2^32.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST as u32 - 1];
+    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST_SPRINGS as u32 - 1];
     pairs.min(most).min(teeth - 1)
 }
 

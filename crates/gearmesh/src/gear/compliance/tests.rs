@@ -10,12 +10,12 @@ use super::{Assumptions, ComplianceError, ContactLaw, Tabulated, ToothCompliance
 use crate::gear::contact::flattening;
 use crate::gear::fixtures::STEEL;
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification};
+use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::crossing::bracketed;
 use crate::numeric::quadrature::GaussLegendre;
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 /// 19/48, m 3 mm, widths 20/18 mm; the rack's tip round is c m/(1 − sin α), its bores r_f/`bore_ratio`.
 fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
@@ -33,13 +33,13 @@ fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
     })
 }
 
-fn pair(bore_ratio: f64) -> Pair {
+fn pair(bore_ratio: f64) -> GearPair {
     let [pinion, gear] = specifications(3e-3, bore_ratio);
-    Pair::new(pinion, gear, None).unwrap()
+    GearPair::new(pinion, gear, None).unwrap()
 }
 
 fn options(body: &'static str) -> Record {
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     Record {
         fields: vec![
             ("shear_factor", entry(Value::Number(1.2))),
@@ -58,13 +58,13 @@ const SUMMED: Assumptions = Assumptions {
     accuracy: None,
 };
 
-fn energy(pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn energy(pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     (method("energy").unwrap().tabulate)(&options("sainsot"), pair, assumptions)
 }
 
 /// Stiffness of the mesh \[N/m\] at a path position: all pairs in contact pressed by one common approach, with the
 /// influence of teeth on each other where the tables have it.
-fn mesh_stiffness(pair: &Pair, tabulated: &Tabulated, s: f64) -> f64 {
+fn mesh_stiffness(pair: &GearPair, tabulated: &Tabulated, s: f64) -> f64 {
     let contact = flattening::linear([&STEEL; 2]) / pair.contact_width();
     let positions: Vec<f64> =
         (0..9).map(|k| s + f64::from(k) * pair.base_pitch).take_while(|s| *s <= pair.end_of_contact).collect();
@@ -91,7 +91,7 @@ fn mesh_stiffness(pair: &Pair, tabulated: &Tabulated, s: f64) -> f64 {
 }
 
 /// [least in single, largest in single, largest in double contact] \[N/m\].
-fn extremes(pair: &Pair, tabulated: &Tabulated) -> [f64; 3] {
+fn extremes(pair: &GearPair, tabulated: &Tabulated) -> [f64; 3] {
     let zone = pair.zone_points();
     let largest = |lower: f64, upper: f64| {
         let stiffness = |s: f64| mesh_stiffness(pair, tabulated, s);
@@ -189,7 +189,7 @@ fn stiffness_scales_with_the_module() {
     let base = extremes(&small, &energy(&small, coupled).unwrap());
     for factor in [1e-3, 0.1, 7.0, 1000.0] {
         let [pinion, gear] = specifications(3e-3 * factor, 1.75);
-        let large = Pair::new(pinion, gear, None).unwrap();
+        let large = GearPair::new(pinion, gear, None).unwrap();
         let scaled = extremes(&large, &energy(&large, coupled).unwrap());
         for (one, many) in base.into_iter().zip(scaled) {
             assert!((many / (factor * one) - 1.0).abs() < 1e-11, "{many} for {factor} times {one}");
@@ -269,7 +269,7 @@ fn three_coupled_teeth_give_a_positive_definite_matrix() {
         bore_radius: 3e-3 * 0.5 * f64::from(teeth) / 5.0,
         ..specifications(3e-3, 1.75)[0]
     };
-    let pair = Pair::new(high(50), high(60), None).unwrap();
+    let pair = GearPair::new(high(50), high(60), None).unwrap();
     assert!(pair.contact_ratio > 2.0);
     for body in ["sainsot", "ring"] {
         let coupled = Assumptions { coupled: true, ..SUMMED };
@@ -309,7 +309,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
     let large = |teeth: u32, ratio: f64| {
         let [pinion, gear] = specifications(3e-3, 1.75);
         let bore_radius = 3e-3 * (0.5 * f64::from(teeth) - 1.25) / ratio;
-        Pair::new(pinion, Specification { teeth, bore_radius, ..gear }, None).unwrap()
+        GearPair::new(pinion, Specification { teeth, bore_radius, ..gear }, None).unwrap()
     };
     for teeth in [500, 1000, 3000, 10_000] {
         let error = energy(&large(teeth, 1.75), SUMMED).unwrap_err();
@@ -374,7 +374,7 @@ fn a_tip_that_is_all_but_pointed() {
     let apex = Gear::new(&pinion).map(|gear| gear.radius_at(gear.apex_roll())).unwrap();
     let with_tip = |missing: f64| {
         let sharp = Specification { tip_radius: Some(apex * (1.0 - missing)), ..pinion };
-        Pair::new(sharp, Specification { rack, bore_radius: 0.03, ..gear }, None).unwrap()
+        GearPair::new(sharp, Specification { rack, bore_radius: 0.03, ..gear }, None).unwrap()
     };
     let pair = with_tip(1e-3);
     let table = energy(&pair, SUMMED).unwrap().compliance.pinion;
@@ -425,10 +425,10 @@ fn gears_that_are_alike_take_half_of_the_evaluations() {
     let alike = |teeth: [u32; 2]| {
         let [pinion, _] = specifications(3e-3, 3.0);
         let [pinion, gear] = teeth.map(|teeth| Specification { teeth, ..pinion });
-        Pair::new(pinion, gear, None).unwrap()
+        GearPair::new(pinion, gear, None).unwrap()
     };
     for name in ["energy", "weber_banaschek"] {
-        let found = |pair: &Pair| (method(name).unwrap().tabulate)(&options("sainsot"), pair, SUMMED).unwrap();
+        let found = |pair: &GearPair| (method(name).unwrap().tabulate)(&options("sainsot"), pair, SUMMED).unwrap();
         let evaluations = |tabulated: &Tabulated| tabulated.work.count(&COMPLIANCE_EVALUATIONS);
         let (one, two) = (found(&alike([25, 25])), found(&alike([24, 25])));
         // 24 teeth take as many nodes as 25, and as many again.

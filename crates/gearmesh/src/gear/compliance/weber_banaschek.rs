@@ -25,7 +25,7 @@ use super::energy::Beam;
 use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, of_both};
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::crossing::bracketed;
@@ -51,7 +51,7 @@ pub const METHOD: Method = Method {
     foresee: |options, assumptions| super::Foreseen { neighbours: 12, ..super::integrated(options, assumptions) },
 };
 
-fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn tabulate(_options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     let mut warnings = Vec::new();
     let mut evaluations = 0;
     let [pinion, gear] = of_both(pair, |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations))?;
@@ -62,7 +62,7 @@ fn tabulate(_options: &Record, pair: &Pair, assumptions: Assumptions) -> Result<
 }
 
 fn tabulate_side(
-    pair: &Pair,
+    pair: &GearPair,
     side: Side,
     assumptions: Assumptions,
     warnings: &mut Vec<String>,

@@ -1,6 +1,6 @@
-//! The deviation across the face and how much of an interference it lets through.
+//! The deviation across the face and how much of an penetration it lets through.
 //!
-//! A tooth pair is a row of independent slices: under the interference w its load is its stiffness times
+//! A tooth pair is a row of independent slices: under the penetration w its load is its stiffness times
 //! Φ(w) = 1/b ∫ max(0, w − h(z)) dz, where h is the deviation of both flanks above its smallest value. Where h is
 //! piecewise quadratic Φ has a closed form (for crowning alone w t − C_β t³/3 with t = min(1, √(w/C_β))); other shapes
 //! are cut into slices. Where h(−z) = h(z), only half of the face is used. Lengths in m. Must not know: stiffness, profile.
@@ -15,13 +15,13 @@ pub struct Face<'a> {
     pub offset: f64,
     /// The mean deviation above the smallest.
     pub mean: f64,
-    shape: Shape,
+    shape: DeviationForm,
     /// Where slices lie on a smooth stretch.
     rule: &'a Rule,
 }
 
 #[derive(Clone, Debug, PartialEq)]
-enum Shape {
+enum DeviationForm {
     Flat,
     Quadratic(Vec<Piece>),
     /// Share of the width and deviation of each slice.
@@ -55,7 +55,7 @@ impl<'a> Face<'a> {
         let width = to - from;
         let parts = || design.pinion.iter().chain(&design.gear).map(|part| &part.modification);
         if !parts().any(|part| part.varies_along_face()) {
-            return Self { offset: 0.0, mean: 0.0, shape: Shape::Flat, rule };
+            return Self { offset: 0.0, mean: 0.0, shape: DeviationForm::Flat, rule };
         }
         let mut cuts = vec![from, to];
         #[allow(clippy::float_cmp)] // the middle of the face is 0 only where it was put there
@@ -104,7 +104,7 @@ impl<'a> Face<'a> {
             piece.base -= offset;
         }
         let mean = pieces.iter().map(Piece::mean).sum();
-        Self { offset, mean, shape: Shape::Quadratic(pieces), rule }
+        Self { offset, mean, shape: DeviationForm::Quadratic(pieces), rule }
     }
 
     fn sliced(
@@ -131,28 +131,28 @@ impl<'a> Face<'a> {
             slice.1 -= offset;
         }
         let mean = found.iter().map(|slice| slice.0 * slice.1).sum();
-        Self { offset, mean, shape: Shape::Sliced(found), rule }
+        Self { offset, mean, shape: DeviationForm::Sliced(found), rule }
     }
 
     /// Whether both flanks run parallel across the face.
     #[must_use]
     pub fn is_flat(&self) -> bool {
-        self.shape == Shape::Flat
+        self.shape == DeviationForm::Flat
     }
 
     /// Whether its shape itself is cut into slices.
     #[must_use]
     pub fn is_sliced(&self) -> bool {
-        matches!(self.shape, Shape::Sliced(_))
+        matches!(self.shape, DeviationForm::Sliced(_))
     }
 
     /// How many slices a width mean is summed over.
     #[must_use]
     pub fn slices(&self) -> usize {
         match &self.shape {
-            Shape::Flat => 1,
-            Shape::Quadratic(pieces) => pieces.len() * self.rule.nodes.len(),
-            Shape::Sliced(slices) => slices.len(),
+            DeviationForm::Flat => 1,
+            DeviationForm::Quadratic(pieces) => pieces.len() * self.rule.nodes.len(),
+            DeviationForm::Sliced(slices) => slices.len(),
         }
     }
 
@@ -162,10 +162,10 @@ impl<'a> Face<'a> {
         if self.is_sliced() { self.slices() } else { 1 }
     }
 
-    /// Interferences > 0 at which a stretch begins to touch or has come into contact all along: Φ is not smooth there.
+    /// Penetrations > 0 at which a stretch begins to touch or has come into contact all along: Φ is not smooth there.
     #[must_use]
     pub fn levels(&self) -> Vec<f64> {
-        let Shape::Quadratic(pieces) = &self.shape else { return Vec::new() };
+        let DeviationForm::Quadratic(pieces) = &self.shape else { return Vec::new() };
         let mut levels: Vec<f64> = pieces.iter().flat_map(|piece| [piece.base, piece.base + piece.rise]).collect();
         levels.retain(|level| *level > 0.0);
         levels.sort_by(f64::total_cmp);
@@ -176,27 +176,27 @@ impl<'a> Face<'a> {
     /// Φ(w) and dΦ/dw, the share of the face in contact, for w > 0.
     #[must_use]
     #[inline]
-    pub fn passed(&self, interference: f64) -> (f64, f64) {
+    pub fn passed(&self, penetration: f64) -> (f64, f64) {
         match &self.shape {
-            Shape::Flat => (interference, 1.0),
-            Shape::Quadratic(pieces) => {
+            DeviationForm::Flat => (penetration, 1.0),
+            DeviationForm::Quadratic(pieces) => {
                 let (mut sum, mut share) = (0.0, 0.0);
                 for piece in pieces {
-                    let (part, width) = piece.passed(interference);
+                    let (part, width) = piece.passed(penetration);
                     sum += part;
                     share += width;
                 }
                 (sum, share)
             }
-            Shape::Sliced(_) => self.summed(interference, |depth| (depth, 1.0)),
+            DeviationForm::Sliced(_) => self.summed(penetration, |depth| (depth, 1.0)),
         }
     }
 
-    /// Width means of `response` (value and slope at a local interference > 0), by slices. The slope is that of the sum
+    /// Width means of `response` (value and slope at a local penetration > 0), by slices. The slope is that of the sum
     /// itself, whose slices move as the contact widens: Newton's method for pairs that nearly share their deflection
     /// takes more of its digits than slices give the integral of slopes.
     #[must_use]
-    pub fn summed(&self, interference: f64, response: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
+    pub fn summed(&self, penetration: f64, response: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
         let (mut sum, mut slope) = (0.0, 0.0);
         let mut add = |share: f64, depth: f64, [widening, sinking]: [f64; 2]| {
             if depth > 0.0 {
@@ -206,10 +206,10 @@ impl<'a> Face<'a> {
             }
         };
         match &self.shape {
-            Shape::Flat => add(1.0, interference, [0.0, 1.0]),
-            Shape::Quadratic(pieces) => {
+            DeviationForm::Flat => add(1.0, penetration, [0.0, 1.0]),
+            DeviationForm::Quadratic(pieces) => {
                 for piece in pieces {
-                    let depth = interference - piece.base;
+                    let depth = penetration - piece.base;
                     if depth <= 0.0 {
                         continue;
                     }
@@ -223,9 +223,9 @@ impl<'a> Face<'a> {
                     }
                 }
             }
-            Shape::Sliced(slices) => {
+            DeviationForm::Sliced(slices) => {
                 for (share, deviation) in slices {
-                    add(*share, interference - deviation, [0.0, 1.0]);
+                    add(*share, penetration - deviation, [0.0, 1.0]);
                 }
             }
         }
@@ -269,8 +269,8 @@ impl Piece {
     }
 
     #[inline]
-    fn passed(&self, interference: f64) -> (f64, f64) {
-        let depth = interference - self.base;
+    fn passed(&self, penetration: f64) -> (f64, f64) {
+        let depth = penetration - self.base;
         if depth <= 0.0 {
             return (0.0, 0.0);
         }
@@ -283,7 +283,7 @@ impl Piece {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::fixtures::{Part, design, pair};
+    use crate::gear::fixtures::{NamedModification, design, pair};
     use declare::record::Value::{Choice, Number, Quantity};
 
     const WIDTH: f64 = 18e-3;
@@ -293,7 +293,7 @@ mod tests {
         let end = |curve| [amount(9e-6), ("length", Quantity(5e-3)), ("curve", Choice(curve))];
         let one_end = [amount(4e-6), ("length", Quantity(12e-3)), ("curve", Choice("parabolic")), ("end", Choice("I"))];
         let pair = pair();
-        let of = |parts: &[Part]| design(&pair, parts).unwrap();
+        let of = |parts: &[NamedModification]| design(&pair, parts).unwrap();
         vec![
             of(&[("lead_crowning", "pinion", &[amount(8e-6)])]),
             of(&[("helix_slope", "gear", &[amount(-6e-6)])]),
@@ -316,15 +316,15 @@ mod tests {
             assert!((face.offset - lowest).abs() < 1e-9, "{index}");
             let mean = heights.iter().map(|h| h - face.offset).sum::<f64>() / f64::from(count);
             assert!((face.mean / mean - 1.0).abs() < 1e-7, "{index}");
-            for interference in [1e-8, 3e-7, 2e-6, 5e-6, 9e-6, 30e-6, 1e-3] {
-                let depths = heights.iter().map(|h| (interference + face.offset - h).max(0.0));
+            for penetration in [1e-8, 3e-7, 2e-6, 5e-6, 9e-6, 30e-6, 1e-3] {
+                let depths = heights.iter().map(|h| (penetration + face.offset - h).max(0.0));
                 let exact = depths.clone().sum::<f64>() / f64::from(count);
                 let share = depths.filter(|depth| *depth > 0.0).count() as f64 / f64::from(count);
-                let (passed, width) = face.passed(interference);
+                let (passed, width) = face.passed(penetration);
                 let grid = 1e-7 + 1.0 / (share * f64::from(count)) / (share * f64::from(count));
-                assert!((passed / exact - 1.0).abs() < grid, "{index} {interference}: {passed:e} {exact:e}");
-                assert!((width - share).abs() < 2e-5, "{index} {interference}: {width} {share}");
-                let (summed, _) = face.summed(interference, |depth| (depth, 1.0));
+                assert!((passed / exact - 1.0).abs() < grid, "{index} {penetration}: {passed:e} {exact:e}");
+                assert!((width - share).abs() < 2e-5, "{index} {penetration}: {width} {share}");
+                let (summed, _) = face.summed(penetration, |depth| (depth, 1.0));
                 assert!((summed / passed - 1.0).abs() < 1e-12, "slices are exact for what is quadratic");
             }
         }
@@ -341,12 +341,12 @@ mod tests {
         let rule = Rule::new(9);
         for (index, design) in designs().iter().enumerate() {
             let face = Face::new(design, WIDTH, &rule);
-            for interference in [1e-8, 3e-7, 2.5e-6, 7e-6, 60e-6] {
-                let step = 1e-5 * interference;
-                let [below, above] = [-step, step].map(|step| face.summed(interference + step, law).0);
-                let (_, slope) = face.summed(interference, law);
+            for penetration in [1e-8, 3e-7, 2.5e-6, 7e-6, 60e-6] {
+                let step = 1e-5 * penetration;
+                let [below, above] = [-step, step].map(|step| face.summed(penetration + step, law).0);
+                let (_, slope) = face.summed(penetration, law);
                 let ratio = slope * 2.0 * step / (above - below);
-                assert!((ratio - 1.0).abs() < 1e-8, "{index} {interference}: {ratio}");
+                assert!((ratio - 1.0).abs() < 1e-8, "{index} {penetration}: {ratio}");
             }
         }
     }
@@ -361,10 +361,10 @@ mod tests {
                 WIDTH,
                 &rule,
             );
-            for interference in [1e-25, 1e-12, 3e-6, 7.999e-6, 8e-6, 1e-3] {
-                let t = f64::min(1.0, f64::sqrt(interference / crown));
-                let exact = interference * t - crown * t * t * t / 3.0;
-                assert!((face.passed(interference).0 / exact - 1.0).abs() < 1e-13, "{crown} {interference}");
+            for penetration in [1e-25, 1e-12, 3e-6, 7.999e-6, 8e-6, 1e-3] {
+                let t = f64::min(1.0, f64::sqrt(penetration / crown));
+                let exact = penetration * t - crown * t * t * t / 3.0;
+                assert!((face.passed(penetration).0 / exact - 1.0).abs() < 1e-13, "{crown} {penetration}");
             }
         }
     }
@@ -383,9 +383,9 @@ mod tests {
         };
         let rule = Rule::new(400);
         let (quadratic, near) = (Face::new(&relief(2.0), WIDTH, &rule), Face::new(&relief(2.0 + 1e-9), WIDTH, &rule));
-        assert!(matches!((&quadratic.shape, &near.shape), (Shape::Quadratic(_), Shape::Sliced(_))));
-        for interference in [1e-6, 4e-6, 30e-6] {
-            let ratio = quadratic.passed(interference).0 / near.passed(interference).0;
+        assert!(matches!((&quadratic.shape, &near.shape), (DeviationForm::Quadratic(_), DeviationForm::Sliced(_))));
+        for penetration in [1e-6, 4e-6, 30e-6] {
+            let ratio = quadratic.passed(penetration).0 / near.passed(penetration).0;
             assert!((ratio - 1.0).abs() < 5e-6, "{ratio}");
         }
     }

@@ -14,7 +14,7 @@ pub fn plane_compliance(material: &Material) -> f64 {
     (1.0 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus
 }
 
-/// The linear law: 2/π Σ(1 − ν²)/E, interference per load per width \[1/Pa\]; for equal materials 4(1 − ν²)/(πE).
+/// The linear law: 2/π Σ(1 − ν²)/E, penetration per load per width \[1/Pa\]; for equal materials 4(1 − ν²)/(πE).
 #[must_use]
 pub fn linear(materials: [&Material; 2]) -> f64 {
     2.0 / PI * (plane_compliance(materials[0]) + plane_compliance(materials[1]))
@@ -67,7 +67,7 @@ impl Logarithmic {
         law
     }
 
-    /// The law with `compliance` (interference per load per width, > 0) in series.
+    /// The law with `compliance` (penetration per load per width, > 0) in series.
     #[must_use]
     pub fn in_series(self, compliance: f64) -> InSeries {
         let last = libm::exp(self.constant / self.rate - 1.0);
@@ -98,21 +98,21 @@ impl InSeries {
     pub const NONE: Self =
         Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0 };
 
-    /// The interference at a load per width.
+    /// The penetration at a load per width.
     #[must_use]
-    pub fn interference(&self, load: f64) -> f64 {
+    pub fn penetration(&self, load: f64) -> f64 {
         self.compliance * load + self.law.approach(load)
     }
 
-    /// Load per width p and dp/dw at the interference w > 0.
+    /// Load per width p and dp/dw at the penetration w > 0.
     #[must_use]
-    pub fn load(&self, interference: f64) -> (f64, f64) {
+    pub fn load(&self, penetration: f64) -> (f64, f64) {
         let Self { law: Logarithmic { constant, rate }, compliance, last, start } = *self;
-        if interference >= (compliance + rate) * last {
-            return ((interference - rate * last) / compliance, 1.0 / compliance);
+        if penetration >= (compliance + rate) * last {
+            return ((penetration - rate * last) / compliance, 1.0 / compliance);
         }
         // Newton on ln p: ln p + ln(c + α − β ln p) = ln w is almost straight, with a slope between 0 and 1.
-        let target = libm::log(interference);
+        let target = libm::log(penetration);
         let mut logarithm = target - start;
         for _ in 0..50 {
             let total = compliance + constant - rate * logarithm;
@@ -124,7 +124,7 @@ impl InSeries {
             }
         }
         let total = compliance + constant - rate * logarithm;
-        (interference / total, 1.0 / (total - rate))
+        (penetration / total, 1.0 / (total - rate))
     }
 }
 
@@ -167,13 +167,13 @@ mod tests {
         let mut before = 0.0;
         for exponent in -300..=40 {
             let load = libm::pow(10.0, f64::from(exponent) * 0.5);
-            let interference = series.interference(load);
-            assert!(interference > before, "monotonic at {load}");
-            before = interference;
-            let (found, slope) = series.load(interference);
+            let penetration = series.penetration(load);
+            assert!(penetration > before, "monotonic at {load}");
+            before = penetration;
+            let (found, slope) = series.load(penetration);
             assert!((found / load - 1.0).abs() < 1e-12, "{load} {found}");
-            let step = 1e-5 * interference;
-            let difference = series.load(interference + step).0 - series.load(interference - step).0;
+            let step = 1e-5 * penetration;
+            let difference = series.load(penetration + step).0 - series.load(penetration - step).0;
             assert!((difference / (2.0 * step) / slope - 1.0).abs() < 1e-5, "slope at {load}");
         }
     }

@@ -6,7 +6,7 @@
 //! away from its deepest end. First order in the depths. Must not know: load, compliance.
 
 use super::separation::{Facing, Touch};
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::Modification;
 use crate::numeric::extremum::maximum;
 
@@ -24,13 +24,30 @@ const PROBES: [f64; 11] = {
 };
 
 /// Where on the flanks a pair touches: the same value all over a stretch on which the gap is smooth.
-type Spot = u32;
-/// On the line of action.
-const NOMINAL: Spot = 0;
-/// At a tip corner; beside it the piece of the flank that it meets.
-const CORNER: Spot = 1;
-/// A flank that has ended.
-const NOWHERE: Spot = u32::MAX;
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Spot {
+    OnLineOfAction,
+    /// A tip corner, on this piece of the other flank.
+    Corner {
+        flank: usize,
+    },
+    /// Off the line of action, towards a side, on these pieces of the point's profile and of the flank's.
+    Beside {
+        side: Side,
+        pieces: [usize; 2],
+        place: PieceLocation,
+    },
+    /// A flank that has ended.
+    Nowhere,
+}
+
+/// Where on a smooth piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum PieceLocation {
+    Inside,
+    EndOfPoint,
+    EndOfFlank,
+}
 
 /// Both ways in which flanks touch off the line of action under one design.
 #[derive(Clone, Debug)]
@@ -57,13 +74,13 @@ struct Outline<'a> {
     /// Where it is not smooth, with both ends, ascending.
     cuts: Vec<f64>,
     /// By piece.
-    shapes: Vec<Shape>,
+    shapes: Vec<Convexity>,
     /// Positions, ascending, and the least depth that was sampled from there on.
     least: Vec<(f64, f64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Shape {
+enum Convexity {
     Zero,
     Convex,
     Other,
@@ -80,7 +97,7 @@ struct Search<'a, 'b> {
 impl<'a> Gaps<'a> {
     /// `profiles` of pinion and gear, as far as they vary along the profile.
     #[must_use]
-    pub fn new(pair: &Pair, profiles: &[Vec<&'a dyn Modification>; 2]) -> Self {
+    pub fn new(pair: &GearPair, profiles: &[Vec<&'a dyn Modification>; 2]) -> Self {
         let [pinion, gear] = profiles;
         let way = |side: Side, point: &[&'a dyn Modification], flank: &[&'a dyn Modification]| {
             let facing = Facing::new(pair, side);
@@ -94,7 +111,7 @@ impl<'a> Gaps<'a> {
     #[must_use]
     pub fn at(&self, s: f64) -> Option<f64> {
         let (gap, spot) = self.touching(s);
-        (spot != NOWHERE).then_some(gap)
+        (spot != Spot::Nowhere).then_some(gap)
     }
 
     fn touching(&self, s: f64) -> (f64, Spot) {
@@ -104,20 +121,20 @@ impl<'a> Gaps<'a> {
             if before > 0.0 {
                 let touch = way.facing.corner(before);
                 if touch.curvature > way.facing.end {
-                    return (f64::INFINITY, NOWHERE);
+                    return (f64::INFINITY, Spot::Nowhere);
                 }
                 let gap = touch.separation + way.depth(way.facing.start, touch.curvature);
+                let spot = Spot::Corner { flank: way.flank.piece(touch.curvature) };
                 if !self.modified {
-                    return (gap, CORNER);
+                    return (gap, spot);
                 }
-                let spot = CORNER | (index(way.flank.piece(touch.curvature)) << 4);
                 return way.search(nominal, before, touch, (gap, spot));
             }
         }
         if !self.modified {
-            return (0.0, NOMINAL);
+            return (0.0, Spot::OnLineOfAction);
         }
-        let mut least = (self.ways[0].depth(s, s), NOMINAL);
+        let mut least = (self.ways[0].depth(s, s), Spot::OnLineOfAction);
         for (way, nominal) in self.ways.iter().zip(positions) {
             // The first check of the search, before anything is computed.
             if way.least_from(nominal, nominal) < least.0 {
@@ -174,11 +191,6 @@ impl<'a> Gaps<'a> {
     }
 }
 
-/// Pieces are few, so a number always fits.
-fn index(piece: usize) -> Spot {
-    u32::try_from(piece).unwrap_or(0)
-}
-
 impl Way<'_> {
     fn depth(&self, point: f64, flank: f64) -> f64 {
         self.point.depth(point) + self.flank.depth(flank)
@@ -203,12 +215,12 @@ impl Search<'_, '_> {
             let [point, flank] = self.pieces;
             let (next, at_next, ended) = self.piece_end(before, &touch);
             let shapes = [way.point.shapes[point], way.flank.shapes[flank]];
-            if shapes != [Shape::Zero; 2] {
-                let parts = if shapes.contains(&Shape::Other) { 4 } else { 1 };
+            if shapes != [Convexity::Zero; 2] {
+                let parts = if shapes.contains(&Convexity::Other) { 4 } else { 1 };
                 self.descend((before, touch), (next, at_next), parts);
             }
             (before, touch) = (next, at_next);
-            self.offer(before, &touch, 2 + u32::from(ended[1]));
+            self.offer(before, &touch, if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint });
             self.pieces = [point + usize::from(ended[0]), flank + usize::from(ended[1])];
             if self.pieces[0] >= way.point.shapes.len() || self.pieces[1] >= way.flank.shapes.len() {
                 break;
@@ -221,12 +233,10 @@ impl Search<'_, '_> {
         self.way.facing.touch(self.nominal + before, before)
     }
 
-    fn offer(&mut self, before: f64, touch: &Touch, kind: Spot) {
+    fn offer(&mut self, before: f64, touch: &Touch, place: PieceLocation) {
         let gap = touch.separation + self.way.depth(self.nominal + before, touch.curvature);
         if gap < self.least.0 {
-            let [point, flank] = self.pieces.map(index);
-            let way = u32::from(self.way.side == Side::Pinion);
-            self.least = (gap, 8 + ((way << 24) | (point << 14) | (flank << 4) | kind));
+            self.least = (gap, Spot::Beside { side: self.way.side, pieces: self.pieces, place });
         }
     }
 
@@ -298,7 +308,7 @@ impl Search<'_, '_> {
             if (next - at).abs() <= PLACE * (end - start) || upper - lower <= PLACE * (end - start) {
                 let at = next.clamp(lower, upper);
                 let touch = self.touch(at);
-                self.offer(at, &touch, 1);
+                self.offer(at, &touch, PieceLocation::Inside);
                 return;
             }
             at = next;
@@ -343,9 +353,9 @@ impl<'a> Outline<'a> {
             let largest = depths.iter().fold(0.0_f64, |most, depth| most.max(depth.abs()));
             let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -1e-12 * largest);
             outline.shapes.push(match (largest > 0.0, bends_back) {
-                (false, _) => Shape::Zero,
-                (true, false) => Shape::Convex,
-                (true, true) => Shape::Other,
+                (false, _) => Convexity::Zero,
+                (true, false) => Convexity::Convex,
+                (true, true) => Convexity::Other,
             });
             samples.extend((0..=SAMPLES).map(place).zip(depths.iter().copied()));
             // A valley between samples, without which a search towards it would end before it began.
@@ -387,7 +397,7 @@ impl<'a> Outline<'a> {
 
     /// First and second derivative of the depth, of the parabola through three points of the piece.
     fn rates(&self, position: f64, piece: usize) -> (f64, f64) {
-        if self.shapes[piece] == Shape::Zero {
+        if self.shapes[piece] == Convexity::Zero {
             return (0.0, 0.0);
         }
         let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);

@@ -11,7 +11,7 @@
 //! First order: forces act along the line of action with the base radii as arms wherever the flanks touch. At a corner the
 //! true arm of the point's gear is r_b(1 − dS/de), with e the distance before A or after E.
 
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::geometry::{GearPair, Side};
 
 /// One gear's flank points before the other gear's flank. Positions count from the flank's own tangent point, so that
 /// they are its radii of curvature on the line of action; for points of the gear they are path positions s.
@@ -46,7 +46,7 @@ pub struct Touch {
 impl Facing {
     /// Points of `side` before the flank of the other gear.
     #[must_use]
-    pub fn new(pair: &Pair, side: Side) -> Self {
+    pub fn new(pair: &GearPair, side: Side) -> Self {
         let (pinion, gear) = (pair.pinion.base_radius, pair.gear.base_radius);
         let tangent_length = pair.tangent_length;
         let (start, end) = (pair.start_of_contact, pair.end_of_contact);

@@ -7,7 +7,7 @@ use super::face::Face;
 use super::flattening::InSeries;
 use crate::numeric::complementarity::Springs;
 
-/// A slice under the interference of its highest place.
+/// A slice under the penetration of its highest place.
 #[derive(Clone, Copy, Debug)]
 pub enum Slice {
     /// Stiffness \[N/m\].
@@ -26,16 +26,16 @@ pub struct Slices<'a> {
 }
 
 impl Springs for Slices<'_> {
-    fn response(&self, spring: usize, interference: f64) -> (f64, f64) {
+    fn response(&self, spring: usize, penetration: f64) -> (f64, f64) {
         let slice = spring % self.faces.len();
         let (face, width) = (&self.faces[slice], self.widths[slice]);
         match &self.slices[spring] {
             Slice::Linear(stiffness) => {
-                let (passed, share) = face.passed(interference);
+                let (passed, share) = face.passed(penetration);
                 (stiffness * passed, stiffness * share)
             }
             Slice::Logarithmic(law) => {
-                let (load, slope) = face.summed(interference, |depth| law.load(depth));
+                let (load, slope) = face.summed(penetration, |depth| law.load(depth));
                 (width * load, width * slope)
             }
         }

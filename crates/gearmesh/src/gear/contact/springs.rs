@@ -4,7 +4,7 @@
 
 use super::face::Face;
 use super::flattening::InSeries;
-use crate::numeric::complementarity::{MOST, PerSpring, Springs};
+use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 
 /// Pairs with the linear contact law.
 pub struct LinearPairs<'a> {
@@ -14,32 +14,32 @@ pub struct LinearPairs<'a> {
 
 impl Springs for LinearPairs<'_> {
     #[inline]
-    fn response(&self, pair: usize, interference: f64) -> (f64, f64) {
-        let (passed, share) = self.face.passed(interference);
+    fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
+        let (passed, share) = self.face.passed(penetration);
         (self.stiffness[pair] * passed, self.stiffness[pair] * share)
     }
 }
 
-/// Pairs with the load-dependent contact law. A slice that carries p has the interference b·c·p + p(α − β ln p), c the
+/// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
 pub struct LogarithmicPairs<'a> {
-    pub slices: [InSeries; MOST],
+    pub slices: [InSeries; MOST_SPRINGS],
     pub width: f64,
     pub face: &'a Face<'a>,
 }
 
 impl LogarithmicPairs<'_> {
-    /// The interference at which a pair alone carries `total` or more, whatever the shape of the face: by the convexity
+    /// The penetration at which a pair alone carries `total` or more, whatever the shape of the face: by the convexity
     /// of the response, that of a flat face plus the mean deviation.
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
-        self.slices[pair].interference(total / self.width) + self.face.mean
+        self.slices[pair].penetration(total / self.width) + self.face.mean
     }
 }
 
 impl Springs for LogarithmicPairs<'_> {
-    fn response(&self, pair: usize, interference: f64) -> (f64, f64) {
-        let (load, slope) = self.face.summed(interference, |depth| self.slices[pair].load(depth));
+    fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
+        let (load, slope) = self.face.summed(penetration, |depth| self.slices[pair].load(depth));
         (self.width * load, self.width * slope)
     }
 }

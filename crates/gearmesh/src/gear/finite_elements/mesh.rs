@@ -115,7 +115,7 @@ impl Mesh {
             })
         });
 
-        let rows = Rows::new(outline, &flank_points);
+        let rows = ToothRows::new(outline, &flank_points);
         let top: Vec<[f64; 2]> = sizing.across.iter().map(|&part| rows.point(0, part)).collect();
         // From the left sector edge to the right one.
         let half = root_points.len() - 1;
@@ -248,12 +248,12 @@ fn chain(
 }
 
 /// The rows of the tooth: arcs through both flanks, whose slope at the right end goes over from the cut to the tip.
-struct Rows<'a> {
+struct ToothRows<'a> {
     points: &'a [[f64; 2]],
     slopes: Vec<f64>,
 }
 
-impl<'a> Rows<'a> {
+impl<'a> ToothRows<'a> {
     fn new(outline: &Outline, points: &'a [[f64; 2]]) -> Self {
         let [x, y] = points[0];
         let radius = libm::hypot(x, y);

@@ -8,7 +8,7 @@ use std::f64::consts::{FRAC_PI_4, PI};
 use super::MeshError;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::outline::Outline as Profile;
-use crate::gear::geometry::outline::curve::{Curve, Part, Segment};
+use crate::gear::geometry::outline::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::{Piece, Root};
@@ -23,7 +23,7 @@ const CUT_INCLINATION: f64 = FRAC_PI_4;
 /// A stretch of a curve, between two of its parameters; its points are in modules.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    part: Part,
+    part: OutlinePart,
     curve: Curve,
     module: f64,
     pub lower: f64,
@@ -100,9 +100,10 @@ impl Outline {
         let profile = Profile::new(gear, Toe::of(root), Tip::Land, None)?;
         let half_pitch = profile.half_pitch();
         let is_none = |segment: &Segment| {
-            segment.part == Part::RootLand && gear.root_radius * (segment.to - segment.from) <= NO_LAND * module
+            segment.part == OutlinePart::RootLand && gear.root_radius * (segment.to - segment.from) <= NO_LAND * module
         };
-        let wanted = profile.segments.into_iter().filter(|segment| segment.part != Part::TipLand && !is_none(segment));
+        let wanted =
+            profile.segments.into_iter().filter(|segment| segment.part != OutlinePart::TipLand && !is_none(segment));
         let stretches: Vec<Stretch> = wanted
             .map(|Segment { part, curve, from, to }| Stretch { part, curve, module, lower: from, upper: to })
             .collect();
@@ -120,7 +121,7 @@ impl Outline {
 
 /// Where the tooth is cut off: at the inclination of 45°, or half of what the first curve reaches, if that is less.
 fn cut(stretches: &[Stretch]) -> (usize, f64) {
-    let place = usize::from(stretches[0].part == Part::RootLand);
+    let place = usize::from(stretches[0].part == OutlinePart::RootLand);
     let samples = Samples::new(&stretches[place]);
     let steepest = (0..SAMPLES).map(|k| samples.inclination(k)).fold(0.0, f64::max);
     let wanted = CUT_INCLINATION.min(0.5 * steepest);

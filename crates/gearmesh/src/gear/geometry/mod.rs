@@ -98,7 +98,7 @@ pub struct Gear {
 
 /// Two gears on their centre distance. Path positions `s` \[m\] count from the pinion's tangent point T1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Pair {
+pub struct GearPair {
     pub pinion: Gear,
     pub gear: Gear,
     /// a_w \[m\].
@@ -117,7 +117,7 @@ pub struct Pair {
     pub contact_ratio: f64,
 }
 
-impl Pair {
+impl GearPair {
     #[must_use]
     pub fn side(&self, side: Side) -> &Gear {
         match side {

@@ -6,7 +6,7 @@
 
 use super::error::{GeometryError, Millimetres, Parameter, Plain, Problem, Reached};
 use super::involute::{inverse_involute, involute};
-use super::{Gear, Pair, Side, Specification};
+use super::{Gear, GearPair, Side, Specification};
 
 /// The named points of the path of contact, as path positions s \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,7 +26,7 @@ pub struct ZonePoints {
 /// How much nearer the gears may be than without backlash \[modules\]: room for a rounded centre distance.
 const OVERLAP: f64 = 1e-3;
 
-impl Pair {
+impl GearPair {
     /// # Errors
     /// When a gear is impossible, the gears do not belong together, the teeth do not fit into each other, contact would
     /// lie below a form radius, or the contact ratio is not above 1.
@@ -116,7 +116,7 @@ impl Pair {
         }
     }
 
-    /// The path position of a gear's flank point, from its roll angle: the inverse of [`Pair::roll`].
+    /// The path position of a gear's flank point, from its roll angle: the inverse of [`GearPair::roll`].
     #[must_use]
     pub fn path_position(&self, side: Side, roll: f64) -> f64 {
         match side {

@@ -11,7 +11,7 @@ use proptest::prelude::*;
 
 use super::error::{GeometryError, Problem};
 use super::root::RootShape;
-use super::{Gear, Pair, Rack, Side, Specification};
+use super::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
 use crate::numeric::crossing::bracketed;
 
@@ -39,8 +39,8 @@ fn refused(specification: &Specification) -> GeometryError {
     Gear::new(specification).unwrap_err()
 }
 
-fn pair(pinion: u32, gear: u32) -> Result<Pair, GeometryError> {
-    Pair::new(specification(pinion, 3.0, 0.0), specification(gear, 3.0, 0.0), None)
+fn pair(pinion: u32, gear: u32) -> Result<GearPair, GeometryError> {
+    GearPair::new(specification(pinion, 3.0, 0.0), specification(gear, 3.0, 0.0), None)
 }
 
 fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
@@ -179,8 +179,8 @@ fn pairs_that_cannot_run_are_refused() {
         // The mate's tip radius that the message names runs.
         let Problem::Interference { largest, .. } = error.problem else { unreachable!() };
         let mate = |tip| Specification { tip_radius: Some(tip), ..specification(gear, 3.0, 0.0) };
-        assert!(Pair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 - 1e-9)), None).is_ok());
-        assert!(Pair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 + 1e-9)), None).is_err());
+        assert!(GearPair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 - 1e-9)), None).is_ok());
+        assert!(GearPair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 + 1e-9)), None).is_err());
     }
     // The same the other way round is the gear's trouble.
     assert_eq!(pair(48, 12).unwrap_err().field(), "gear.teeth");
@@ -189,23 +189,23 @@ fn pairs_that_cannot_run_are_refused() {
         rack: Rack { addendum: 0.5, dedendum: 1.25, tip_radius: 0.38 },
         ..specification(teeth, 3.0, 0.0)
     };
-    let error = Pair::new(short(19), short(48), None).unwrap_err();
+    let error = GearPair::new(short(19), short(48), None).unwrap_err();
     assert!(matches!(error.problem, Problem::ContactRatio { .. }), "{error}");
     assert!(error.to_string().starts_with("the contact ratio is 0.8"), "{error}");
 
-    let far = |distance| Pair::new(specification(19, 3.0, 0.0), specification(48, 3.0, 0.0), Some(distance));
+    let far = |distance| GearPair::new(specification(19, 3.0, 0.0), specification(48, 3.0, 0.0), Some(distance));
     assert_eq!(far(0.1).unwrap_err().field(), "centre_distance");
     assert_eq!(far(0.05).unwrap_err().field(), "centre_distance");
     assert_eq!(far(f64::NAN).unwrap_err().field(), "centre_distance");
     assert!(matches!(far(0.2).unwrap_err().problem, Problem::ContactRatio { .. }));
     assert!(far(0.1005).is_ok() && far(0.1008).is_ok());
 
-    let error = Pair::new(specification(19, 3.0, 0.0), specification(48, 3.5, 0.0), None).unwrap_err();
+    let error = GearPair::new(specification(19, 3.0, 0.0), specification(48, 3.5, 0.0), None).unwrap_err();
     assert_eq!(error.to_string(), "the module differs: 3 mm on the pinion, 3.5 mm on the gear");
     let long = Specification { tip_radius: Some(0.0325), ..specification(19, 3.0, 0.0) };
-    assert_eq!(Pair::new(long, specification(48, 3.0, 0.0), None).unwrap_err().field(), "pinion.tip_radius");
+    assert_eq!(GearPair::new(long, specification(48, 3.0, 0.0), None).unwrap_err().field(), "pinion.tip_radius");
     let deep = |teeth| specification(teeth, 3.0, -1.5);
-    assert_eq!(Pair::new(deep(40), deep(48), None).unwrap_err().field(), "pinion.profile_shift");
+    assert_eq!(GearPair::new(deep(40), deep(48), None).unwrap_err().field(), "pinion.profile_shift");
 }
 
 /// A tooth as deep as the space that is cut for it leaves a clearance of 0, whatever rounding makes of it.
@@ -220,8 +220,8 @@ fn a_clearance_of_exactly_nothing_is_kept() {
                     tip_radius: Some(module * 1e-3 * (0.5 * f64::from(teeth) + depth + shift) + longer),
                     ..specification(teeth, module, shift)
                 };
-                let with = |longer| Pair::new(cut(pinion, shift, longer), cut(gear, -shift, 0.0), None);
-                let refused = |pair: &Result<Pair, GeometryError>| {
+                let with = |longer| GearPair::new(cut(pinion, shift, longer), cut(gear, -shift, 0.0), None);
+                let refused = |pair: &Result<GearPair, GeometryError>| {
                     pair.as_ref().is_err_and(|error| matches!(error.problem, Problem::NoClearance { .. }))
                 };
                 let exact = with(0.0);
@@ -258,7 +258,7 @@ fn the_path_of_contact() {
         rack: Rack { addendum: 1.4, dedendum: 1.6, tip_radius: 0.2 },
         ..specification(teeth, 3.0, 0.0)
     };
-    let pair = Pair::new(high(50), high(60), None).unwrap();
+    let pair = GearPair::new(high(50), high(60), None).unwrap();
     assert!(pair.contact_ratio > 2.0 && pair.contact_ratio < 3.0, "{}", pair.contact_ratio);
 }
 
@@ -266,7 +266,7 @@ fn the_path_of_contact() {
 #[test]
 fn shifted_gears_have_no_backlash() {
     for (x1, x2) in [(0.3, 0.2), (0.5, -0.5), (-0.1, -0.15), (0.6, 0.6)] {
-        let pair = Pair::new(specification(25, 2.0, x1), specification(40, 2.0, x2), None).unwrap();
+        let pair = GearPair::new(specification(25, 2.0, x1), specification(40, 2.0, x2), None).unwrap();
         let share = pair.centre_distance / f64::from(25 + 40);
         let thickness = |gear: &Gear| {
             let radius = share * f64::from(gear.specification.teeth);

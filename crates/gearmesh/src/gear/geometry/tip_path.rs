@@ -12,8 +12,8 @@
 use std::f64::consts::PI;
 
 use super::outline::Outline;
-use super::outline::curve::{Curve, Part, Segment};
-use super::{Gear, Pair, Side};
+use super::outline::curve::{Curve, OutlinePart, Segment};
+use super::{Gear, GearPair, Side};
 use crate::numeric::crossing;
 
 /// Intervals of each curve in which the distance is sampled; the one with the least is refined.
@@ -52,10 +52,10 @@ impl Corner {
         let mut corners = Vec::new();
         for segment in &outline.segments {
             match (segment.part, &segment.curve) {
-                (Part::TipBreak, Curve::Arc { centre, radius }) => corners.push(Self::at(*centre, *radius)),
+                (OutlinePart::TipBreak, Curve::Arc { centre, radius }) => corners.push(Self::at(*centre, *radius)),
                 // The land begins on the rounding.
-                (Part::TipLand, _) if corners.iter().any(|corner| corner.round > 0.0) => {}
-                (Part::TipBreak | Part::TipLand, _) => corners.push(Self::at(segment.start(), 0.0)),
+                (OutlinePart::TipLand, _) if corners.iter().any(|corner| corner.round > 0.0) => {}
+                (OutlinePart::TipBreak | OutlinePart::TipLand, _) => corners.push(Self::at(segment.start(), 0.0)),
                 _ => {}
             }
         }
@@ -84,7 +84,7 @@ pub struct TipPath {
 impl TipPath {
     /// The tip of a gear's mate, with the corners of that tip.
     #[must_use]
-    pub fn new(pair: &Pair, side: Side, corners: Vec<Corner>) -> Self {
+    pub fn new(pair: &GearPair, side: Side, corners: Vec<Corner>) -> Self {
         let (own, mate) = (pair.side(side), pair.side(side.other()));
         let half_pitch = PI / f64::from(own.specification.teeth);
         let turn = f64::from(mate.specification.teeth) / f64::from(own.specification.teeth);
@@ -108,8 +108,8 @@ impl TipPath {
         let Some([x, y]) = segments.first().map(Segment::start) else { return f64::INFINITY };
         let below = self.centre_distance - self.tip_radius - libm::hypot(x, y);
         // On the land of the root circle nothing is nearer than `below`.
-        let curves = segments.iter().take_while(|segment| segment.part != Part::Flank);
-        let curves = curves.filter(|segment| segment.part != Part::RootLand);
+        let curves = segments.iter().take_while(|segment| segment.part != OutlinePart::Flank);
+        let curves = curves.filter(|segment| segment.part != OutlinePart::RootLand);
         let of_curve = |segment| self.corners.iter().map(move |corner| self.distance_to(corner, segment));
         curves.flat_map(of_curve).fold(below, f64::min)
     }

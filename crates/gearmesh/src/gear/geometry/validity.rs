@@ -5,7 +5,7 @@
 
 use super::outline::Outline;
 use super::tip_path::{Corner, TipPath};
-use super::{Gear, Pair, Side};
+use super::{Gear, GearPair, Side};
 
 /// Anything below this is rounding: roll angles \[rad\], and lengths in modules.
 const ROUNDING: f64 = 1e-12;
@@ -61,7 +61,7 @@ impl Validity {
 impl Mating {
     /// The validity of the gear on a side of a pair, with its own outline and its mate's.
     #[must_use]
-    pub fn new(pair: &Pair, side: Side, outline: &Outline, mate: &Outline) -> Self {
+    pub fn new(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> Self {
         let (gear, other) = (pair.side(side), pair.side(side.other()));
         let specification = &gear.specification;
         let lowest = pair.lowest_roll(side);

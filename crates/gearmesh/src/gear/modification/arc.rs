@@ -5,7 +5,7 @@
 use std::sync::Arc;
 
 use super::Family;
-use super::tip_curve::{self, Conic, Ends, Shape, TipCurve};
+use super::tip_curve::{self, Conic, CurveThrough, Ends, TipCurve};
 use declare::parameter::Member;
 
 pub const FAMILY: Family = Family {
@@ -15,7 +15,7 @@ pub const FAMILY: Family = Family {
         fields: &tip_curve::FIELDS,
     },
     check: tip_curve::check,
-    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &Shape { derived, printed })?)),
+    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &CurveThrough { derived, printed })?)),
 };
 
 /// κ(X² + Y²) + 2Y = 0: the centre lies on the normal of B, on the bisector of AB.

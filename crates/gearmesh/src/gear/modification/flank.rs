@@ -3,7 +3,7 @@
 //! Roll lengths r_b·u \[m\] equal distances along the line of action, so zones of contact and reliefs have one measure.
 //! Must not know: modifications.
 
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::geometry::{GearPair, Side};
 
 /// Where a gear's flank works.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,7 +25,7 @@ pub struct Flank {
 
 impl Flank {
     #[must_use]
-    pub fn new(pair: &Pair, side: Side) -> Self {
+    pub fn new(pair: &GearPair, side: Side) -> Self {
         let gear = pair.side(side);
         let (root, tip) = match side {
             Side::Pinion => (pair.start_of_contact, pair.end_of_contact),

@@ -26,7 +26,7 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 use self::flank::Flank;
-use super::geometry::{Pair, Side};
+use super::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
 use declare::parameter::{Choice, Field, Member};
 use declare::record::Record;
@@ -45,7 +45,7 @@ pub const FAMILIES: &[Family] = &[
 ];
 
 /// Builds the modification of one gear.
-pub type Build = fn(&Record, &Pair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
+pub type Build = fn(&Record, &GearPair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
 
 /// A family as registered.
 #[derive(Clone, Copy)]
@@ -107,20 +107,20 @@ pub trait Modification: Debug + Send + Sync {
 /// What both gears of a pair are given.
 #[derive(Clone, Debug, Default)]
 pub struct Design {
-    pub pinion: Vec<Part>,
-    pub gear: Vec<Part>,
+    pub pinion: Vec<NamedModification>,
+    pub gear: Vec<NamedModification>,
 }
 
 /// One modification and the name of its family.
 #[derive(Clone, Debug)]
-pub struct Part {
+pub struct NamedModification {
     pub family: &'static str,
     pub modification: Arc<dyn Modification>,
 }
 
 impl Design {
     #[must_use]
-    pub fn side(&self, side: Side) -> &[Part] {
+    pub fn side(&self, side: Side) -> &[NamedModification] {
         match side {
             Side::Pinion => &self.pinion,
             Side::Gear => &self.gear,
@@ -138,17 +138,17 @@ impl Design {
     /// # Errors
     /// When the fields contradict each other or do not fit the pair, or when all modifications of a gear together take
     /// off more than half of its tooth.
-    pub fn add(&mut self, family: &'static Family, record: &Record, pair: &Pair) -> Result<(), Diagnostic> {
+    pub fn add(&mut self, family: &'static Family, record: &Record, pair: &GearPair) -> Result<(), Diagnostic> {
         (family.check)(record)?;
         let gear = record.choice(GEAR.name);
         if gear != "gear" {
             let modification = (family.build)(record, pair, Side::Pinion)?;
-            self.pinion.push(Part { family: family.member.name, modification });
+            self.pinion.push(NamedModification { family: family.member.name, modification });
             self.check_room(Side::Pinion, pair).map_err(|error| error.or_at(record.place))?;
         }
         if gear != "pinion" {
             let modification = (family.build)(record, pair, Side::Gear)?;
-            self.gear.push(Part { family: family.member.name, modification });
+            self.gear.push(NamedModification { family: family.member.name, modification });
             self.check_room(Side::Gear, pair).map_err(|error| error.or_at(record.place))?;
         }
         Ok(())
@@ -157,7 +157,7 @@ impl Design {
     /// Half of the tooth must be left, since the other flank may be modified the same way: no point of the flank may pass
     /// the tooth's centreline, up to the normal through the middle of the tip land, u_a + ψ_a, where r_b ψ_a is left to take.
     /// Depths nowhere add material to the active flank, so a part that is refused cannot be saved by one that follows.
-    fn check_room(&self, side: Side, pair: &Pair) -> Result<(), Diagnostic> {
+    fn check_room(&self, side: Side, pair: &GearPair) -> Result<(), Diagnostic> {
         let (gear, flank, parts) = (pair.side(side), Flank::new(pair, side), self.side(side));
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);

@@ -6,7 +6,7 @@
 use std::sync::Arc;
 
 use super::Family;
-use super::tip_curve::{self, Conic, Ends, Shape, TipCurve};
+use super::tip_curve::{self, Conic, CurveThrough, Ends, TipCurve};
 use declare::parameter::Member;
 
 pub const FAMILY: Family = Family {
@@ -16,7 +16,7 @@ pub const FAMILY: Family = Family {
         fields: &tip_curve::FIELDS,
     },
     check: tip_curve::check,
-    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &Shape { derived, printed })?)),
+    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &CurveThrough { derived, printed })?)),
 };
 
 /// With q = X cos t + Y sin t, the distance from B along the article's x axis: y − y_B − q tan t = −Y/cos t = a q².

@@ -4,13 +4,13 @@
 
 use std::sync::Arc;
 
-use super::{Design, Part};
+use super::{Design, NamedModification};
 use crate::gear::geometry::Side;
 use crate::gear::geometry::outline::curve::Relief;
 
 /// The modifications of one gear that vary along its profile.
 #[derive(Debug)]
-struct Profile(Vec<Part>);
+struct Profile(Vec<NamedModification>);
 
 impl Relief for Profile {
     fn depth(&self, roll: f64) -> f64 {
@@ -30,7 +30,7 @@ impl Design {
     /// The sum of what is taken off a gear's flanks, if anything is.
     #[must_use]
     pub fn relief(&self, side: Side) -> Option<Arc<dyn Relief>> {
-        let parts: Vec<Part> =
+        let parts: Vec<NamedModification> =
             self.side(side).iter().filter(|part| part.modification.varies_along_profile()).cloned().collect();
         (!parts.is_empty()).then(|| -> Arc<dyn Relief> { Arc::new(Profile(parts)) })
     }

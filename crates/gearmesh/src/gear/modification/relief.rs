@@ -6,7 +6,7 @@
 use super::curve::Curve;
 use super::flank::Flank;
 use super::{MOST_AMOUNT, Modification};
-use crate::gear::geometry::Pair;
+use crate::gear::geometry::GearPair;
 use declare::error::Diagnostic;
 use declare::parameter::{Choice, Field};
 use declare::record::Record;
@@ -153,7 +153,7 @@ pub(super) fn exactly_one<'a>(record: &Record, names: &[&'a str]) -> Result<&'a 
     }
 }
 
-fn amount(record: &Record, pair: &Pair) -> f64 {
+fn amount(record: &Record, pair: &GearPair) -> f64 {
     if let Some(amount) = record.maybe_quantity(AMOUNT.name) {
         return amount;
     }
@@ -166,7 +166,7 @@ fn amount(record: &Record, pair: &Pair) -> f64 {
 }
 
 impl Ramp {
-    pub(super) fn build(record: &Record, pair: &Pair, flank: &Flank, end: End) -> Result<Self, Diagnostic> {
+    pub(super) fn build(record: &Record, pair: &GearPair, flank: &Flank, end: End) -> Result<Self, Diagnostic> {
         let (last, first, outward) = match end {
             End::Tip => (flank.tip_roll, flank.root_roll, 1.0),
             End::Root => (flank.root_roll, flank.tip_roll, -1.0),

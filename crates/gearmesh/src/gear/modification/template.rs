@@ -3,10 +3,10 @@
 //! Must not know: optimisers, compliance, load.
 
 use super::{Design, Family, family};
-use crate::gear::geometry::Pair;
+use crate::gear::geometry::GearPair;
 use declare::error::Diagnostic;
 use declare::parameter::Shape;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use declare::units::{Dimension, RATIO};
 
 /// One open value.
@@ -34,7 +34,7 @@ impl Template {
     ///
     /// # Errors
     /// When the fields of a member contradict each other.
-    pub fn new(members: &[Entry]) -> Result<Self, Diagnostic> {
+    pub fn new(members: &[PlacedValue]) -> Result<Self, Diagnostic> {
         let mut template = Self { parts: Vec::new(), variables: Vec::new(), slots: Vec::new() };
         for entry in members {
             let Value::Member(name, record) = &entry.value else {
@@ -79,7 +79,7 @@ impl Template {
     ///
     /// # Panics
     /// When there are fewer values than variables.
-    pub fn design(&self, pair: &Pair, values: &[f64]) -> Result<Design, Diagnostic> {
+    pub fn design(&self, pair: &GearPair, values: &[f64]) -> Result<Design, Diagnostic> {
         let mut design = Design::default();
         let mut next = 0;
         for (index, (family, record)) in self.parts.iter().enumerate() {

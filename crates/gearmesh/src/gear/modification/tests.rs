@@ -5,10 +5,10 @@ mod tip_curve;
 use super::flank::Flank;
 use super::template::Template;
 use super::{Design, FAMILIES, members};
-use crate::gear::fixtures::{BASE_PITCH, Part, design, pair, record};
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::fixtures::{BASE_PITCH, NamedModification, design, pair, record};
+use crate::gear::geometry::{GearPair, Side};
 use declare::error::Place;
-use declare::record::Entry;
+use declare::record::PlacedValue;
 use declare::record::Value::{self, Choice, Group, Member, Number, Quantity, Range};
 
 const AMOUNT: f64 = 7.81e-6;
@@ -111,7 +111,8 @@ fn the_iso_amount_is_the_printed_formula() {
             fields.push((name, if *name == "contact_ratio" { Number(*value) } else { Quantity(*value) }));
         }
         fields.push(("mesh_stiffness", Quantity(19.05e9)));
-        let fields = fields.into_iter().map(|(name, value)| (name, Entry { value, place: Place::default() })).collect();
+        let fields =
+            fields.into_iter().map(|(name, value)| (name, PlacedValue { value, place: Place::default() })).collect();
         let group = declare::record::Record { fields, place: Place::default() };
         let values = [("iso_amount", Group(group)), ("fraction", Number(1.0))];
         pinion_depth("tip_relief", &values, pair.end_of_contact)
@@ -208,7 +209,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
 
 /// Half of the tooth, with its end found independently: the flank's normal is followed point by point until the
 /// point's polar angle passes the centreline.
-fn room_by_bisection(pair: &Pair, side: Side, roll: f64) -> f64 {
+fn room_by_bisection(pair: &GearPair, side: Side, roll: f64) -> f64 {
     let gear = pair.side(side);
     let (sine, cosine) = roll.sin_cos();
     let beyond = |depth: f64| {
@@ -282,7 +283,7 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
     // 10 · 1 GN on 0.1 mm of width, over 1e6 N/m²: 1e8 m of relief.
     let fields = [("application_factor", Number(10.0)), ("tangential_load", Quantity(1e9))];
     let group = fields.into_iter().chain([("face_width", Quantity(1e-4)), ("mesh_stiffness", Quantity(1e6))]);
-    let fields = group.map(|(name, value)| (name, Entry { value, place: Place::default() })).collect();
+    let fields = group.map(|(name, value)| (name, PlacedValue { value, place: Place::default() })).collect();
     let iso = Group(declare::record::Record { fields, place: Place::default() });
     assert!(refused("tip_relief", &[("iso_amount", iso), ("fraction", Number(1.0))]).contains("half of the tooth"));
 }
@@ -299,7 +300,7 @@ fn what_reliefs_take_between_their_ends_counts() {
             ("curve", Choice("power")),
             ("exponent", Number(0.5)),
         ];
-        let root: Part = ("root_relief", "gear", &bulge);
+        let root: NamedModification = ("root_relief", "gear", &bulge);
         design(&pair, &[("tip_relief", "gear", &bulge), root, root])
     };
     let land = 0.5 * pair.gear.tip_thickness() * pair.gear.base_radius / pair.gear.tip_radius;
@@ -320,8 +321,8 @@ fn every_family_is_listed_once_with_its_gear() {
     }
 }
 
-fn members_of(parts: &[(&'static str, &[(&'static str, Value)])]) -> Vec<Entry> {
-    let member = |(name, values): &(&'static str, &[(&'static str, Value)])| Entry {
+fn members_of(parts: &[(&'static str, &[(&'static str, Value)])]) -> Vec<PlacedValue> {
+    let member = |(name, values): &(&'static str, &[(&'static str, Value)])| PlacedValue {
         value: Member(name, record(name, values)),
         place: Place::default(),
     };

@@ -8,7 +8,7 @@
 //! beyond the roll angle u_a of the nominal corner, where the depth is less. Must not know: compliance, load.
 
 use super::{MOST_AMOUNT, Modification};
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use declare::error::Diagnostic;
 use declare::parameter::{Choice, Field};
 use declare::record::Record;
@@ -182,7 +182,7 @@ fn lag(v: f64) -> f64 {
 }
 
 /// What one of the two families adds: its curve by each set of formulas.
-pub(super) struct Shape {
+pub(super) struct CurveThrough {
     /// Seen from B.
     pub derived: fn(&Ends) -> Conic,
     /// In the frame of the article, in mm, for its A and B and its α.
@@ -209,7 +209,12 @@ pub(super) fn check(record: &Record) -> Result<(), Diagnostic> {
 }
 
 impl TipCurve {
-    pub(super) fn build(record: &Record, pair: &Pair, side: Side, shape: &Shape) -> Result<Self, Diagnostic> {
+    pub(super) fn build(
+        record: &Record,
+        pair: &GearPair,
+        side: Side,
+        shape: &CurveThrough,
+    ) -> Result<Self, Diagnostic> {
         let gear = pair.side(side);
         let (share, tip_name) = tip_share(record, gear)?;
         let (start, start_name) = start(record, gear)?;

@@ -17,7 +17,7 @@ use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
-use crate::gear::geometry::{Gear, Pair, Rack, Side, Specification, trochoid};
+use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification, trochoid};
 use declare::parameter::{Choice, Field, Member};
 use declare::units::RATIO;
 
@@ -76,7 +76,7 @@ const LOADS: &[Choice] = &[
 const LEAST_SHARE: f64 = 0.1;
 
 /// The gear's roll angle at the end of single contact that is nearer to its tip; the tip where contact is never single.
-fn single_contact(pair: &Pair, side: Side) -> f64 {
+fn single_contact(pair: &GearPair, side: Side) -> f64 {
     let s = match side {
         Side::Pinion => (pair.start_of_contact + pair.base_pitch).min(pair.end_of_contact),
         Side::Gear => (pair.end_of_contact - pair.base_pitch).max(pair.start_of_contact),
@@ -151,9 +151,9 @@ mod tests {
     use super::*;
     use crate::gear::material::Material;
     use declare::error::Place;
-    use declare::record::{Entry, Record, Value};
+    use declare::record::{PlacedValue, Record, Value};
 
-    fn pair(shift: f64) -> Pair {
+    fn pair(shift: f64) -> GearPair {
         let gear = |teeth, profile_shift| Specification {
             teeth,
             module: 3e-3,
@@ -165,12 +165,12 @@ mod tests {
             bore_radius: 0.012,
             material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
         };
-        Pair::new(gear(25, shift), gear(40, 0.1), None).unwrap()
+        GearPair::new(gear(25, shift), gear(40, 0.1), None).unwrap()
     }
 
-    fn problem(pair: &Pair, side: Side, given: &[(&'static str, &'static str)]) -> Box<dyn Problem> {
+    fn problem(pair: &GearPair, side: Side, given: &[(&'static str, &'static str)]) -> Box<dyn Problem> {
         let place = Place::default();
-        let entry = |value| Entry { value, place };
+        let entry = |value| PlacedValue { value, place };
         let chosen =
             |name: &str, usual| given.iter().find(|(field, _)| *field == name).map_or(usual, |(_, word)| *word);
         let words = [("root", "rack"), ("minimize", "stress"), ("load", "tip"), ("plane", "strain")];

@@ -6,7 +6,7 @@ pub mod fillet;
 pub mod root_arc;
 
 use super::geometry::error::GeometryError;
-use super::geometry::{Pair, Side};
+use super::geometry::{GearPair, Side};
 use declare::parameter::Member;
 use declare::record::Record;
 use declare::registry;
@@ -41,7 +41,7 @@ pub trait Problem: Send + Sync {
 }
 
 /// Sets a problem up for a gear of a pair, or says why there is none.
-pub type Build = fn(&Record, &Pair, Side) -> Result<Box<dyn Problem>, GeometryError>;
+pub type Build = fn(&Record, &GearPair, Side) -> Result<Box<dyn Problem>, GeometryError>;
 
 /// A problem as registered.
 pub struct Family {

@@ -161,10 +161,10 @@ impl Problem for Corrected {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::geometry::{Pair, Rack, Side, Specification};
+    use crate::gear::geometry::{GearPair, Rack, Side, Specification};
     use crate::gear::material::Material;
     use declare::error::Place;
-    use declare::record::{Entry, Record, Value};
+    use declare::record::{PlacedValue, Record, Value};
 
     fn specification(teeth: u32) -> Specification {
         Specification {
@@ -191,8 +191,8 @@ mod tests {
 
     fn problem(teeth: u32, formulas: &'static str) -> Box<dyn Problem> {
         let place = Place::default();
-        let fields = vec![("formulas", Entry { value: Value::Choice(formulas), place })];
-        let pair = Pair::new(specification(teeth), specification(teeth), None).unwrap();
+        let fields = vec![("formulas", PlacedValue { value: Value::Choice(formulas), place })];
+        let pair = GearPair::new(specification(teeth), specification(teeth), None).unwrap();
         (FAMILY.build)(&Record { fields, place }, &pair, Side::Pinion).unwrap()
     }
 

@@ -8,7 +8,7 @@ use std::f64::consts::PI;
 
 use super::{Case, Model};
 use crate::gear::geometry::involute::{inverse_involute, involute};
-use crate::gear::geometry::{Pair, Rack, Side, Specification};
+use crate::gear::geometry::{GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
 
 /// A pair under a load. SI; arrays hold pinion and gear.
@@ -118,7 +118,7 @@ pub fn sample(base: &Point, coordinates: &[f64]) -> Point {
 impl Point {
     /// The point a pair stands for, unmodified and under no torque.
     #[must_use]
-    pub fn of(pair: &Pair) -> Self {
+    pub fn of(pair: &GearPair) -> Self {
         let both = |value: fn(&crate::gear::geometry::Gear) -> f64| {
             [Side::Pinion, Side::Gear].map(|side| value(pair.side(side)))
         };

@@ -10,8 +10,8 @@ use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::contact::gap::Gaps;
 use crate::gear::geometry::Side;
 use crate::gear::transmission_error::curve::Wanted;
-use crate::gear::transmission_error::loading::{Loading, State};
-use crate::numeric::complementarity::MOST;
+use crate::gear::transmission_error::load_case::{Equilibrium, LoadCase};
+use crate::numeric::complementarity::MOST_SPRINGS;
 
 /// The places in a zone that are checked.
 const SHARES: [f64; 9] = [0.0, 1e-9, 0.1, 0.25, 0.5, 0.75, 0.9, 1.0 - 1e-9, 1.0];
@@ -27,17 +27,17 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The invariant whose value is the condition number of the compliance matrix.
 const CONDITION: &str = "condition of the compliance matrix";
 
-type Matrix = [[f64; MOST]; MOST];
+type Matrix = [[f64; MOST_SPRINGS]; MOST_SPRINGS];
 
 /// The pairs at one position, from the tables.
 struct Pairs {
     count: usize,
     /// From the smallest one up.
-    gaps: [f64; MOST],
+    gaps: [f64; MOST_SPRINGS],
     largest_gap: f64,
     /// Own compliances without a load-dependent part on the diagonal.
     compliance: Matrix,
-    laws: [Option<Logarithmic>; MOST],
+    laws: [Option<Logarithmic>; MOST_SPRINGS],
 }
 
 fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
@@ -50,8 +50,13 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
     let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
     let s = |index: usize| cycle.path_position(position, index);
     let rolls = |index: usize| cycle.rolls(s(index));
-    let mut found =
-        Pairs { count, gaps: [0.0; MOST], largest_gap: 0.0, compliance: [[0.0; MOST]; MOST], laws: [None; MOST] };
+    let mut found = Pairs {
+        count,
+        gaps: [0.0; MOST_SPRINGS],
+        largest_gap: 0.0,
+        compliance: [[0.0; MOST_SPRINGS]; MOST_SPRINGS],
+        laws: [None; MOST_SPRINGS],
+    };
     for j in 0..count {
         let [pinion, gear] = rolls(j);
         let depth = || design.depth(Side::Pinion, pinion) + design.depth(Side::Gear, gear);
@@ -89,7 +94,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
 /// Mean and peak-to-peak transmission error, and a finding for each invariant; or, where flanks approach by more than
 /// what is modelled, why there is none.
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
-    let loading = Loading::new(&built.cycle, &built.design, case.torque);
+    let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true });
     let most = loading.largest_approach();
     if !loading.holds(summary.largest.value) {
@@ -118,7 +123,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
     let (mut growth, mut softening) = (0.0_f64, 0.0_f64);
     let mut jump = (0.0_f64, 1.0_f64);
     let mut residual = Some((0.0_f64, ROUNDING));
-    let ladder = [1.0, 2.0].map(|factor| Loading::new(&built.cycle, &built.design, case.torque * factor));
+    let ladder = [1.0, 2.0].map(|factor| LoadCase::new(&built.cycle, &built.design, case.torque * factor));
     for zone in &built.cycle.zones {
         for share in SHARES {
             let position = zone.start + share * (zone.end - zone.start);
@@ -175,7 +180,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
 
 /// With corner contact pairs come and go off the line of action: nothing jumps where a zone ends and the next begins,
 /// including the first after the last. What remains are quick copies, and reliefs over the rounding of a path position.
-fn across_zones(case: &Case, built: &Built, loading: &Loading) -> Finding {
+fn across_zones(case: &Case, built: &Built, loading: &LoadCase) -> Finding {
     let zones = &built.cycle.zones;
     let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
     let rounding = ROUNDINGS * f64::EPSILON * built.pair.tangent_length;
@@ -199,9 +204,9 @@ pub(super) fn condition_found(findings: &[Finding]) -> f64 {
 }
 
 impl Pairs {
-    /// The largest load that the interferences do not explain, over the force, and what rounding may leave; the
-    /// interference is the difference of approach and gap, so a pair's own limit grows with what is subtracted.
-    fn residual(&self, case: &Case, built: &Built, state: &State, force: f64) -> Option<(f64, f64)> {
+    /// The largest load that the penetrations do not explain, over the force, and what rounding may leave; the
+    /// penetration is the difference of approach and gap, so a pair's own limit grows with what is subtracted.
+    fn residual(&self, case: &Case, built: &Built, state: &Equilibrium, force: f64) -> Option<(f64, f64)> {
         let crown = case.crown();
         let width = built.cycle.face_width;
         let balance = &state.balance;
@@ -213,7 +218,7 @@ impl Pairs {
             }
             let others: f64 =
                 (0..self.count).filter(|k| *k != j).map(|k| self.compliance[j][k] * balance.loads[k]).sum();
-            let interference = balance.approach - self.gaps[j] - others;
+            let penetration = balance.approach - self.gaps[j] - others;
             let own = self.compliance[j][j];
             let (value, stiffness) = if let Some(law) = &self.laws[j] {
                 if crown != 0.0 {
@@ -221,9 +226,9 @@ impl Pairs {
                 }
                 let load = balance.loads[j] / width;
                 let needed = balance.loads[j] * own + law.approach(load);
-                (((interference.max(0.0) - needed) / own).abs(), 1.0 / own)
+                (((penetration.max(0.0) - needed) / own).abs(), 1.0 / own)
             } else {
-                let w = interference.max(0.0);
+                let w = penetration.max(0.0);
                 let share = if w >= crown { 1.0 } else { (w / crown).sqrt() };
                 ((share * (w - crown * share * share / 3.0) / own - balance.loads[j]).abs(), share / own)
             };

@@ -19,12 +19,12 @@ pub use trap::{Continuity, continuity, traps};
 
 use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use super::contact::{CornerContact, SliceCoupling};
-use super::geometry::{Pair, Specification};
+use super::geometry::{GearPair, Specification};
 use super::modification::{Design, family};
 use super::transmission_error::cycle::{MeshCycle, Settings};
 use crate::numeric::double_double::Double;
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 use precise::Rule;
 
 /// How the case is computed.
@@ -129,7 +129,7 @@ const TABLE: f64 = 1e-13;
 
 /// Pair, design and compliance of a case.
 pub(crate) struct Built {
-    pub pair: Pair,
+    pub pair: GearPair,
     pub design: Design,
     pub compliance: PairCompliance,
     pub cycle: MeshCycle,
@@ -143,15 +143,15 @@ impl Case {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn pair(&self) -> Result<Pair, String> {
-        Pair::new(self.gears[0], self.gears[1], None).map_err(|error| error.to_string())
+    pub fn pair(&self) -> Result<GearPair, String> {
+        GearPair::new(self.gears[0], self.gears[1], None).map_err(|error| error.to_string())
     }
 
     /// The same modifications on both gears.
     ///
     /// # Errors
     /// When one does not fit the pair.
-    pub fn design(&self, pair: &Pair) -> Result<Design, String> {
+    pub fn design(&self, pair: &GearPair) -> Result<Design, String> {
         let mut design = Design::default();
         let parts: [(&str, &[(&'static str, Value)]); 2] = [
             (
@@ -168,7 +168,7 @@ impl Case {
         ];
         for (part, (name, fields)) in parts.into_iter().enumerate() {
             let amount = [self.relief, self.crowning][part];
-            let entry = |value: &Value| Entry { value: value.clone(), place: Place::default() };
+            let entry = |value: &Value| PlacedValue { value: value.clone(), place: Place::default() };
             let fields = fields.iter().map(|(name, value)| (*name, entry(value))).collect();
             let record = Record { fields, place: Place::default() };
             if let Some(family) = family(name).filter(|_| amount != 0.0) {

@@ -5,7 +5,7 @@
 
 use super::{Case, Finding, MOST_LOST};
 use crate::gear::transmission_error::curve::Wanted;
-use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::load_case::LoadCase;
 
 /// 2¹⁰ and 2⁵ either way: the first that leaves every length in its range.
 const SCALES: [f64; 4] = [1.0 / 1024.0, 1024.0, 0.03125, 32.0];
@@ -13,7 +13,7 @@ const SCALES: [f64; 4] = [1.0 / 1024.0, 1024.0, 0.03125, 32.0];
 /// Mean and peak-to-peak.
 pub(super) fn values(case: &Case) -> Result<[f64; 2], String> {
     let built = case.build().map_err(|(_, reason)| reason)?;
-    let summary = Loading::new(&built.cycle, &built.design, case.torque).summary(Wanted::default());
+    let summary = LoadCase::new(&built.cycle, &built.design, case.torque).summary(Wanted::default());
     Ok([summary.mean, summary.peak_to_peak])
 }
 

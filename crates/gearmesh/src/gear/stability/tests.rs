@@ -13,7 +13,7 @@ use declare::record::Value;
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 
 pub fn model() -> Model {
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     Model {
         method: super::super::compliance::method("energy").unwrap(),
         options: Record {

@@ -1,4 +1,4 @@
-//! Named cases that naive programs get wrong: undercut, interference, pointed tips, vanishing loads and modifications,
+//! Named cases that naive programs get wrong: undercut, penetration, pointed tips, vanishing loads and modifications,
 //! contact ratios at whole numbers.
 //!
 //! Must not know: what is checked, except for the continuity in the contact ratio, which takes two cases.
@@ -8,7 +8,7 @@ use super::symmetry::values;
 use super::{Case, Finding, Model, TABLE};
 use crate::gear::compliance::ContactLaw;
 use crate::gear::geometry::root::RootShape;
-use declare::record::{Entry, Value};
+use declare::record::{PlacedValue, Value};
 
 /// Distance of the contact ratio from a whole number.
 const NEAR: f64 = 1e-6;
@@ -118,7 +118,7 @@ fn ends(model: &Model, add: &mut impl FnMut(&str, &Model, &dyn Fn(&mut Point))) 
 fn with_ring(model: &Model) -> Option<Model> {
     let mut ring = model.clone();
     let slot = ring.options.fields.iter_mut().find(|(name, _)| *name == "body")?;
-    slot.1 = Entry { value: Value::Choice("ring"), place: slot.1.place };
+    slot.1 = PlacedValue { value: Value::Choice("ring"), place: slot.1.place };
     Some(ring)
 }
 

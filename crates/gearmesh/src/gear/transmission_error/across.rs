@@ -9,7 +9,7 @@ use super::path::Path;
 use crate::gear::compliance::across_face::Layers;
 use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::contact::flattening;
-use crate::gear::geometry::Pair;
+use crate::gear::geometry::GearPair;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
 use declare::error::Failure;
@@ -30,7 +30,7 @@ pub(super) struct Across {
     pub(super) wind_up: f64,
     /// Its length over the face width.
     pub(super) reach: f64,
-    /// Interference per load per width \[1/Pa\] of the linear contact law.
+    /// Penetration per load per width \[1/Pa\] of the linear contact law.
     pub(super) contact: f64,
     pub(super) rule: Rule,
 }
@@ -38,7 +38,12 @@ pub(super) struct Across {
 impl Across {
     /// # Errors
     /// When the compliances know the pair only as a whole.
-    pub(super) fn new(pair: &Pair, compliance: &PairCompliance, path: &Path, face_width: f64) -> Result<Self, Failure> {
+    pub(super) fn new(
+        pair: &GearPair,
+        compliance: &PairCompliance,
+        path: &Path,
+        face_width: f64,
+    ) -> Result<Self, Failure> {
         if compliance.contact == ContactLaw::Included {
             return Err(Failure::new(
                 "`slice_coupling: plate` needs compliances of single teeth; this stiffness is that of pairs as a whole",

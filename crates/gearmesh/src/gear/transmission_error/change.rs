@@ -2,7 +2,7 @@
 //!
 //! Must not know: what is done with the values.
 
-use super::loading::{Loading, State};
+use super::load_case::{Equilibrium, LoadCase};
 use super::trace::{NODES, Span};
 use crate::numeric::crossing::crossing;
 
@@ -12,7 +12,7 @@ const CLOSEST: f64 = 1e-14;
 /// Roundings in a path position.
 const ROUNDINGS: f64 = 4.0;
 
-impl Loading<'_> {
+impl LoadCase<'_> {
     /// How near to the end of a span a change counts as being at that end: path positions are not known any better.
     fn closest(&self) -> f64 {
         let pair = &self.cycle.pair;
@@ -20,19 +20,19 @@ impl Loading<'_> {
     }
 
     /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
-    /// interference passes: where, and for a first or last touch of which pair.
-    pub(super) fn change(&self, span: &Span, states: &[State; NODES]) -> Option<(f64, Option<usize>)> {
+    /// penetration passes: where, and for a first or last touch of which pair.
+    pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES]) -> Option<(f64, Option<usize>)> {
         let closest = self.closest();
         for node in 0..NODES - 1 {
             for pair in 0..self.cycle.springs(span.pairs) {
                 let touch = if known(span, node, pair) { None } else { Some((0.0, Some(pair))) };
                 for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                    let [before, after] = [node, node + 1].map(|node| states[node].balance.interference[pair] - level);
+                    let [before, after] = [node, node + 1].map(|node| states[node].balance.penetration[pair] - level);
                     if (before > 0.0) == (after > 0.0) {
                         continue;
                     }
                     let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
-                    let above = |position: f64| self.state(position, span.pairs).balance.interference[pair] - level;
+                    let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
                     let at = crossing(above, (from, before), (to, after), 0.1 * closest);
                     if at - span.start > closest && span.end - at > closest {
                         return Some((at, touch));
@@ -45,7 +45,7 @@ impl Loading<'_> {
 
     /// Gives a node at an end of a span the limit from inside where a pair changes sides right there: rounding decides
     /// on which side of the change the end itself lies, and its weight in a mean is that of a node.
-    pub(super) fn settle(&self, span: &Span, states: &mut [State; NODES]) {
+    pub(super) fn settle(&self, span: &Span, states: &mut [Equilibrium; NODES]) {
         let step = 2.0 * self.closest();
         if self.force <= 0.0 || span.end - span.start <= 2.0 * step {
             return;
@@ -54,7 +54,7 @@ impl Loading<'_> {
             [(0, 0, 1, span.start + step), (NODES - 2, NODES - 1, NODES - 2, span.end - step)]
         {
             let differs = (0..self.cycle.springs(span.pairs)).any(|pair| {
-                let loaded = |at: usize| states[at].balance.interference[pair] > 0.0;
+                let loaded = |at: usize| states[at].balance.penetration[pair] > 0.0;
                 loaded(end) != loaded(next) && !known(span, node, pair)
             });
             if differs {

@@ -1,4 +1,4 @@
-//! What one loading computes, counted by itself and added to the cycle's total when it is dropped.
+//! What one load case computes, counted by itself and added to the cycle's total when it is dropped.
 //!
 //! A counter that threads share would cost as much as what it counts. Must not know: what is computed.
 
@@ -31,7 +31,7 @@ impl<'a> Count<'a> {
 }
 
 impl Clone for Count<'_> {
-    /// What was counted stays with the loading that counted it.
+    /// What was counted stays with the load case that counted it.
     fn clone(&self) -> Self {
         Self::new(self.total, self.slices)
     }

@@ -2,7 +2,7 @@
 //!
 //! Must not know: tables, units other than SI.
 
-use super::loading::{Loading, State};
+use super::load_case::{Equilibrium, LoadCase};
 use super::trace::{Extremum, NODES, Span, Trace};
 use crate::gear::contact::flattening;
 use crate::gear::geometry::Side;
@@ -91,7 +91,7 @@ impl Point {
     }
 }
 
-impl Loading<'_> {
+impl LoadCase<'_> {
     /// The curve at the positions of the spans only.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
@@ -207,13 +207,13 @@ impl Loading<'_> {
         Vec::with_capacity(spans as usize * NODES)
     }
 
-    fn points(&self, span: &Span, states: &[State; NODES], pressure: bool) -> [Point; NODES] {
+    fn points(&self, span: &Span, states: &[Equilibrium; NODES], pressure: bool) -> [Point; NODES] {
         std::array::from_fn(|node| {
             self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], pressure)
         })
     }
 
-    fn point(&self, position: f64, pairs: usize, state: &State, pressure: bool) -> Point {
+    fn point(&self, position: f64, pairs: usize, state: &Equilibrium, pressure: bool) -> Point {
         let cycle = self.cycle;
         let path_position = cycle.path_position(position, cycle.newest());
         let loads = state.balance.loads;
@@ -236,7 +236,7 @@ impl Loading<'_> {
 
     /// The largest Hertzian pressure of any pair, with the flanks' curvature where it touches: ρ1 = s, ρ2 = L − s on the
     /// line of action. At a tip corner it is that of the flank there: the corner's own radius is not known.
-    fn pressure(&self, position: f64, pairs: usize, state: &State) -> f64 {
+    fn pressure(&self, position: f64, pairs: usize, state: &Equilibrium) -> f64 {
         self.count.pressure();
         let cycle = self.cycle;
         (0..cycle.springs(pairs))

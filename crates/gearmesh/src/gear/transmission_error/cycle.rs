@@ -10,14 +10,14 @@ use std::sync::Arc;
 
 use super::across::Across;
 use super::path::Path;
-use super::trace::Rows;
+use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{self, Logarithmic};
 use crate::gear::contact::{CornerContact, SliceCoupling};
-use crate::gear::geometry::Pair;
+use crate::gear::geometry::GearPair;
 use crate::gear::material::Material;
 use crate::numeric::chebyshev::Series;
-use crate::numeric::complementarity::MOST;
+use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
 use declare::error::Failure;
@@ -58,7 +58,7 @@ pub struct Zone {
 /// A pair's mesh cycle.
 #[derive(Clone, Debug)]
 pub struct MeshCycle {
-    pub pair: Pair,
+    pub pair: GearPair,
     pub settings: Settings,
     /// How many pairs are considered in every position, where that is not the number in the zone.
     springs: Option<usize>,
@@ -71,9 +71,9 @@ pub struct MeshCycle {
     pub(super) across: Option<Across>,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
     coupling: Vec<Graded>,
-    pub(super) rows: Rows,
+    pub(super) rows: SpanRule,
     pub(super) slices: Rule,
-    /// Counted by every loading of this cycle and of those sampled otherwise.
+    /// Counted by every load case of this cycle and of those sampled otherwise.
     pub(super) work: Arc<Tally>,
 }
 
@@ -89,15 +89,17 @@ pub(super) enum Elasticity {
 impl MeshCycle {
     /// # Errors
     /// When the contact ratio is below 1 (contact is lost) or above what the solver holds.
-    pub fn new(pair: &Pair, compliance: &PairCompliance, settings: Settings) -> Result<Self, Failure> {
+    pub fn new(pair: &GearPair, compliance: &PairCompliance, settings: Settings) -> Result<Self, Failure> {
         let ratio = (pair.end_of_contact - pair.start_of_contact) / pair.base_pitch;
-        if !(ratio >= 1.0 - SHORTEST_ZONE && ratio <= MOST as f64) {
-            return Err(Failure::new(format!("the transverse contact ratio is {ratio:.6}; it must be 1 to {MOST}")));
+        if !(ratio >= 1.0 - SHORTEST_ZONE && ratio <= MOST_SPRINGS as f64) {
+            return Err(Failure::new(format!(
+                "the transverse contact ratio is {ratio:.6}; it must be 1 to {MOST_SPRINGS}"
+            )));
         }
         let exact = settings.corner_contact == CornerContact::Exact;
         let springs = most_pairs(ratio) + if exact { CORNERS } else { 0 };
-        if springs > MOST {
-            let largest = MOST - CORNERS;
+        if springs > MOST_SPRINGS {
+            let largest = MOST_SPRINGS - CORNERS;
             return Err(Failure::new(format!(
                 "the transverse contact ratio is {ratio:.6}; with corner contact it must be 1 to {largest}"
             )));
@@ -156,7 +158,7 @@ impl MeshCycle {
             })
             .collect();
         let zones = zones(ratio, pair.base_pitch);
-        let (rows, slices) = (Rows::new(), Rule::new(settings.slices));
+        let (rows, slices) = (SpanRule::new(), Rule::new(settings.slices));
         let springs = exact.then_some(springs);
         let pair = pair.clone();
         let work = Arc::default();
@@ -226,7 +228,7 @@ impl MeshCycle {
         !self.coupling.is_empty()
     }
 
-    /// Interference at the pair at `behind` per load on the one that is `pitches` ≥ 1 ahead of it, and the reverse.
+    /// Penetration at the pair at `behind` per load on the one that is `pitches` ≥ 1 ahead of it, and the reverse.
     pub(super) fn coupling(&self, behind: f64, pitches: usize) -> f64 {
         self.coupling.get(pitches - 1).map_or(0.0, |graded| graded.value(behind))
     }

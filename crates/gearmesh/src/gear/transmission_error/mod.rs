@@ -1,7 +1,7 @@
 //! Transmission error and mesh stiffness over one base pitch of mesh.
 //!
 //! The transmission error is the approach δ of the gears along the line of action \[m\], positive where the driven gear
-//! lags. [`cycle::MeshCycle`] holds what no modification changes, [`loading::Loading`] one design under one torque;
+//! lags. [`cycle::MeshCycle`] holds what no modification changes, [`load_case::LoadCase`] one design under one torque;
 //! curves, summaries and objectives come from it. Must not know: where compliances or modifications come from.
 
 mod across;
@@ -9,7 +9,7 @@ mod change;
 mod count;
 pub mod curve;
 pub mod cycle;
-pub mod loading;
+pub mod load_case;
 mod path;
 pub mod sampling;
 mod sliced;
@@ -18,3 +18,4 @@ pub mod stiffness;
 mod tests;
 pub mod trace;
 mod walk;
+mod within_reach;

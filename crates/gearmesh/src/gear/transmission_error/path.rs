@@ -7,7 +7,7 @@
 
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::separation::Facing;
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::graded::Graded;
 
 /// Relative accuracy of the quick copies.
@@ -27,7 +27,7 @@ pub(super) struct Path {
 }
 
 impl Path {
-    pub(super) fn new(pair: &Pair, corner_contact: CornerContact) -> Self {
+    pub(super) fn new(pair: &GearPair, corner_contact: CornerContact) -> Self {
         let corner = |side: Side| {
             let facing = Facing::new(pair, side);
             (facing, facing.reach(pair.base_pitch))

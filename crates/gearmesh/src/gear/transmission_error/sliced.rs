@@ -5,11 +5,12 @@
 
 use super::across::Across;
 use super::cycle::{Elasticity, MeshCycle};
+use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::Logarithmic;
 use crate::gear::contact::slices::{Slice, Slices};
 use crate::gear::modification::Design;
-use crate::numeric::complementarity::{Balance, MOST, PerSpring, Springs};
+use crate::numeric::complementarity::{Balance, MOST_SPRINGS, PerSpring, Springs};
 use crate::numeric::layer::add_influences;
 use crate::numeric::many_springs;
 
@@ -53,26 +54,24 @@ impl<'a> Sliced<'a> {
         self.faces.len()
     }
 
-    /// Equilibrium of the pairs `springs` at `positions` behind `gaps`, and the largest load per width of each, as a mean
+    /// Equilibrium of the pairs within reach and the largest load per width of each, as a mean
     /// over a slice. `above`: an approach that is large enough.
     pub(super) fn balance(
         &self,
         cycle: &MeshCycle,
-        springs: &[usize],
-        positions: &[f64],
-        gaps: &[f64],
+        reach: &WithinReach,
         [force, above]: [f64; 2],
     ) -> (Balance, PerSpring) {
         let count = self.faces.len();
-        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
+        let (found, smallest) = self.slices(cycle, reach, [force, above]);
         let (approach, slope) = (found.approach + smallest, found.slope);
-        let mut balance = Balance { approach, loads: [0.0; MOST], interference: [0.0; MOST], slope };
-        let mut peaks = [0.0; MOST];
-        let pairs = found.loads.chunks(count).zip(found.interference.chunks(count));
-        for (pair, (loads, interference)) in pairs.enumerate() {
+        let mut balance = Balance { approach, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope };
+        let mut peaks = [0.0; MOST_SPRINGS];
+        let pairs = found.loads.chunks(count).zip(found.penetration.chunks(count));
+        for (pair, (loads, penetration)) in pairs.enumerate() {
             let largest = |values: &[f64]| values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
             balance.loads[pair] = loads.iter().sum();
-            balance.interference[pair] = largest(interference);
+            balance.penetration[pair] = largest(penetration);
             let per_width = loads.iter().zip(&self.widths).map(|(load, width)| load / width);
             peaks[pair] = per_width.fold(f64::NEG_INFINITY, f64::max);
         }
@@ -80,45 +79,31 @@ impl<'a> Sliced<'a> {
     }
 
     /// Equilibrium of all slices, pair by pair, its approach counted from the smallest gap of a slice, and that gap.
-    fn slices(
-        &self,
-        cycle: &MeshCycle,
-        springs: &[usize],
-        positions: &[f64],
-        gaps: &[f64],
-        [force, above]: [f64; 2],
-    ) -> (many_springs::Balance, f64) {
-        let (matrix, own) = self.matrix(cycle, springs, positions);
+    fn slices(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> (many_springs::Balance, f64) {
+        let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
         // The lowest place of the face is one of a slice but for rounding.
-        let behind = || gaps.iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
+        let behind = || reach.gaps().iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
         let smallest = behind().fold(f64::INFINITY, f64::min);
         let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
-        let slices = self.springs(cycle, positions, &own);
+        let slices = self.springs(cycle, reach.positions(), &own);
         (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
     }
 
-    /// The load over the force that a slice carries and its interference, recomputed from loads, gaps and influences, does
+    /// The load over the force that a slice carries and its penetration, recomputed from loads, gaps and influences, does
     /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
-    pub(super) fn unexplained(
-        &self,
-        cycle: &MeshCycle,
-        springs: &[usize],
-        positions: &[f64],
-        gaps: &[f64],
-        [force, above]: [f64; 2],
-    ) -> [f64; 2] {
-        let (count, size) = (self.faces.len(), gaps.len() * self.faces.len());
-        let (found, smallest) = self.slices(cycle, springs, positions, gaps, [force, above]);
-        let (matrix, own) = self.matrix(cycle, springs, positions);
-        let slices = self.springs(cycle, positions, &own);
+    pub(super) fn unexplained(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> [f64; 2] {
+        let (count, size) = (self.faces.len(), reach.gaps().len() * self.faces.len());
+        let (found, smallest) = self.slices(cycle, reach, [force, above]);
+        let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
+        let slices = self.springs(cycle, reach.positions(), &own);
         let mut worst = [0.0, 1.0];
         for (slice, &load) in found.loads.iter().enumerate() {
             let row = &matrix[slice * size..][..size];
             let others: f64 = row.iter().zip(&found.loads).map(|(influence, load)| influence * load).sum();
-            let gap = gaps[slice / count] + self.lows[slice % count] - smallest;
-            let interference = found.approach - gap - others;
+            let gap = reach.gaps()[slice / count] + self.lows[slice % count] - smallest;
+            let penetration = found.approach - gap - others;
             let (carried, rise) =
-                if interference > 0.0 { slices.response(slice, interference) } else { (0.0, 1.0 / own[slice]) };
+                if penetration > 0.0 { slices.response(slice, penetration) } else { (0.0, 1.0 / own[slice]) };
             let value = (carried - load).abs() / force;
             let scale = 1.0 + rise * (found.approach + gap + others.abs()) / force;
             if value * worst[1] >= worst[0] * scale {
@@ -146,7 +131,7 @@ impl<'a> Sliced<'a> {
         Slices { slices, faces: &self.faces, widths: &self.widths }
     }
 
-    /// Interference of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
+    /// Penetration of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
     /// slice by its own load, which is not in it.
     fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let (across, count) = (self.across, self.faces.len());

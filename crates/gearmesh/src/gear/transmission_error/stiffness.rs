@@ -5,7 +5,7 @@
 
 use super::curve::{Point, Wanted};
 use super::cycle::MeshCycle;
-use super::loading::Loading;
+use super::load_case::LoadCase;
 use super::trace::{NODES, Trace};
 use crate::gear::modification::Design;
 
@@ -32,7 +32,7 @@ pub struct StiffnessSummary {
 #[must_use]
 pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummary) {
     let design = Design::default();
-    let loading = Loading::new(cycle, &design, torque);
+    let loading = LoadCase::new(cycle, &design, torque);
     let secant = |position: f64, pairs: usize| loading.force / loading.state(position, pairs).balance.approach;
     let mut trace = Trace::default();
     loading.walk(loading.span_length(0), |span, states| {

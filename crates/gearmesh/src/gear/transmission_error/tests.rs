@@ -9,18 +9,18 @@ mod work;
 
 use super::curve::Wanted;
 use super::cycle::{MeshCycle, Settings};
-use super::loading::Loading;
+use super::load_case::LoadCase;
 use super::stiffness::stiffness;
 use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::fixtures::{BASE_PITCH, constant, coupled, design, pair, pair_with_contact_ratio, swapped, varying};
-use crate::gear::geometry::Pair;
+use crate::gear::geometry::GearPair;
 use crate::gear::geometry::Side::{Gear, Pinion};
 use crate::gear::modification::Design;
 use declare::record::Value::{Choice, Number, Quantity};
 
 const STIFFNESS: f64 = 2.8e8;
 
-fn cycle(pair: &Pair, compliance: &PairCompliance) -> MeshCycle {
+fn cycle(pair: &GearPair, compliance: &PairCompliance) -> MeshCycle {
     MeshCycle::new(pair, compliance, Settings::default()).unwrap()
 }
 
@@ -28,15 +28,15 @@ fn torque(force: f64) -> f64 {
     force * pair().pinion.base_radius
 }
 
-fn relief(pair: &Pair, amount: f64, fraction: f64) -> Design {
+fn relief(pair: &GearPair, amount: f64, fraction: f64) -> Design {
     design(pair, &[("tip_relief", "both", &[("amount", Quantity(amount)), ("fraction", Number(fraction))])]).unwrap()
 }
 
-fn crowned(pair: &Pair, amount: f64) -> Design {
+fn crowned(pair: &GearPair, amount: f64) -> Design {
     design(pair, &[("lead_crowning", "pinion", &[("amount", Quantity(amount))])]).unwrap()
 }
 
-fn ga_design(pair: &Pair, amount: f64, length: f64, crown: f64) -> Design {
+fn ga_design(pair: &GearPair, amount: f64, length: f64, crown: f64) -> Design {
     let tip = [("amount", Quantity(amount)), ("length", Quantity(length)), ("curve", Choice("parabolic"))];
     design(pair, &[("tip_relief", "both", &tip), ("lead_crowning", "pinion", &[("amount", Quantity(crown))])]).unwrap()
 }
@@ -53,7 +53,7 @@ fn harris_relations_hold() {
         let pair = pair_with_contact_ratio(ratio);
         let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
         for force in [1e-6, 10.0, 700.0, 1867.0, 2800.0, 40_000.0] {
-            let run = |design: &Design| Loading::new(&cycle, design, torque(force)).summary(Wanted::default());
+            let run = |design: &Design| LoadCase::new(&cycle, design, torque(force)).summary(Wanted::default());
             close(run(&Design::default()).peak_to_peak, 0.5 * force / STIFFNESS, 1e-11);
             let amount = 7e-6;
             let long = run(&relief(&pair, amount, 1.0));
@@ -82,7 +82,7 @@ fn moments_and_harmonics_of_unmodified_gears_are_those_of_a_rectangular_wave() {
     let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
     let (force, share) = (1867.0, pair.contact_ratio - 1.0);
     let design = Design::default();
-    let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted { harmonics: 8, pressure: false });
+    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted { harmonics: 8, pressure: false });
     let (low, high) = (0.5 * force / STIFFNESS, force / STIFFNESS);
     close(summary.mean, low * share + high * (1.0 - share), 1e-13);
     close(summary.variance, (high - low) * (high - low) * share * (1.0 - share), 1e-12);
@@ -105,7 +105,7 @@ fn every_contact_ratio_gives_its_levels() {
         let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
         let force = 1000.0;
         let design = Design::default();
-        let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted::default());
+        let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted::default());
         let exact = force / STIFFNESS * (1.0 / fewest - 1.0 / most);
         assert!((summary.peak_to_peak - exact).abs() < 1e-12 * force / STIFFNESS, "{ratio}");
         let (_, stiffness) = stiffness(&cycle, 10.0);
@@ -182,7 +182,7 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
         let run = |positions: usize, design: &Design, torque: f64| {
             let cycle =
                 MeshCycle::new(&pair, compliance, Settings { positions, slices: 9, ..Settings::default() }).unwrap();
-            Loading::new(&cycle, design, torque).peak_to_peak()
+            LoadCase::new(&cycle, design, torque).peak_to_peak()
         };
         for (index, design) in designs.iter().enumerate() {
             for torque in [1.0, 10.0, 25.0, 50.0, 100.0, 700.0] {
@@ -235,7 +235,7 @@ fn peak_to_peak_agrees_with_a_brute_grid() {
             }
             (low, high, sum) = (low.min(b), high.max(b), sum + b);
         }
-        let summary = Loading::new(&cycle, &design, 50.0).summary(Wanted::default());
+        let summary = LoadCase::new(&cycle, &design, 50.0).summary(Wanted::default());
         close(summary.peak_to_peak, high - low, 3e-4);
         assert!(summary.peak_to_peak >= (high - low) * (1.0 - 1e-9), "a grid cannot see more than everything");
         close(summary.mean, sum / f64::from(count), 1e-9);
@@ -250,7 +250,7 @@ fn swapping_the_gears_changes_nothing() {
     let tip = [("amount", Quantity(8e-6)), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
     let face = [("amount", Quantity(6e-6)), ("length", Quantity(4e-3))];
-    let of = |pair: &Pair, one: &'static str, two: &'static str| {
+    let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root), ("end_relief", one, &face)]).unwrap()
     };
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
@@ -263,9 +263,9 @@ fn swapping_the_gears_changes_nothing() {
             };
             let (one, two) = (of(&pair, "pinion", "gear"), of(&swapped, "gear", "pinion"));
             let wanted = Wanted { harmonics: 3, pressure: true };
-            let here = Loading::new(&cycle(&pair, &compliance), &one, 50.0).summary(wanted);
+            let here = LoadCase::new(&cycle(&pair, &compliance), &one, 50.0).summary(wanted);
             let there = cycle(&swapped, &mirrored);
-            let there = Loading::new(&there, &two, 50.0 * 48.0 / 19.0).summary(wanted);
+            let there = LoadCase::new(&there, &two, 50.0 * 48.0 / 19.0).summary(wanted);
             close(here.peak_to_peak, there.peak_to_peak, 1e-9);
             close(here.mean, there.mean, 1e-10);
             close(here.variance, there.variance, 1e-7);

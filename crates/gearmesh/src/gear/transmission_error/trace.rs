@@ -1,7 +1,7 @@
 //! A function over the mesh cycle as values on smooth spans, and what follows: extrema, quadrature nodes.
 //!
 //! Every span has its values at eight Gauss–Lobatto nodes, both ends included. A pair with a crowned face takes up load
-//! as the 3/2 power of its interference, so where a span starts or ends with a first or last touch its nodes are graded
+//! as the 3/2 power of its penetration, so where a span starts or ends with a first or last touch its nodes are graded
 //! quadratically and the function is smooth in the graded variable. Extrema are bracketed by nodes and refined on the
 //! function itself, so their values do not depend on where the nodes happen to lie. Must not know: what the function is.
 
@@ -21,14 +21,14 @@ const PLACE: f64 = 1e-5;
 
 /// Nodes and weights on the unit interval.
 #[derive(Clone, Debug)]
-pub struct Rows {
+pub struct SpanRule {
     pub nodes: [f64; NODES],
     pub weights: [f64; NODES],
     /// What turns values into the coefficients of the last two Legendre polynomials that the nodes hold.
     last: [[f64; NODES]; 2],
 }
 
-impl Rows {
+impl SpanRule {
     #[must_use]
     pub fn new() -> Self {
         let rule = Rule::new(NODES);
@@ -52,7 +52,7 @@ impl Rows {
     }
 }
 
-impl Default for Rows {
+impl Default for SpanRule {
     fn default() -> Self {
         Self::new()
     }
@@ -71,7 +71,7 @@ pub struct Span {
 
 impl Span {
     #[must_use]
-    pub fn position(&self, rows: &Rows, node: usize) -> f64 {
+    pub fn position(&self, rows: &SpanRule, node: usize) -> f64 {
         let u = rows.nodes[node];
         if node + 1 == NODES {
             return self.end;
@@ -87,7 +87,7 @@ impl Span {
 
     /// Quadrature weight of a node \[length\].
     #[must_use]
-    pub fn weight(&self, rows: &Rows, node: usize) -> f64 {
+    pub fn weight(&self, rows: &SpanRule, node: usize) -> f64 {
         let u = rows.nodes[node];
         let grading = match self.touches {
             [None, None] => 1.0,
@@ -124,16 +124,16 @@ struct Neighbourhood {
 
 impl Trace {
     /// The largest value; `function` gives the value at any position with a number of pairs.
-    pub fn largest(&self, rows: &Rows, function: impl Fn(f64, usize) -> f64) -> Extremum {
+    pub fn largest(&self, rows: &SpanRule, function: impl Fn(f64, usize) -> f64) -> Extremum {
         self.extreme(rows, 1.0, function)
     }
 
     /// The smallest value.
-    pub fn smallest(&self, rows: &Rows, function: impl Fn(f64, usize) -> f64) -> Extremum {
+    pub fn smallest(&self, rows: &SpanRule, function: impl Fn(f64, usize) -> f64) -> Extremum {
         self.extreme(rows, -1.0, function)
     }
 
-    fn extreme(&self, rows: &Rows, sign: f64, function: impl Fn(f64, usize) -> f64) -> Extremum {
+    fn extreme(&self, rows: &SpanRule, sign: f64, function: impl Fn(f64, usize) -> f64) -> Extremum {
         let mut best = Extremum { position: 0.0, pairs: 0, value: f64::NEG_INFINITY };
         let mut lowest = f64::INFINITY;
         for (span, values) in &self.spans {
@@ -178,7 +178,7 @@ impl Trace {
         Extremum { value: sign * best.value, ..best }
     }
 
-    fn neighbourhood(&self, rows: &Rows, index: usize, node: usize, sign: f64) -> Neighbourhood {
+    fn neighbourhood(&self, rows: &SpanRule, index: usize, node: usize, sign: f64) -> Neighbourhood {
         let point = |index: usize, node: usize| {
             let (span, values) = &self.spans[index];
             (span.position(rows, node), sign * values[node])
@@ -201,7 +201,7 @@ impl Trace {
 
     /// The nodes of the quadrature over the cycle.
     #[must_use]
-    pub fn nodes(&self, rows: &Rows) -> Vec<Node> {
+    pub fn nodes(&self, rows: &SpanRule) -> Vec<Node> {
         let mut nodes = Vec::with_capacity(self.spans.len() * NODES);
         for (span, values) in &self.spans {
             for (node, &value) in values.iter().enumerate() {
@@ -252,14 +252,14 @@ mod tests {
     }
 
     fn trace(spans: &[Span], function: impl Fn(f64) -> f64) -> Trace {
-        let rows = Rows::new();
+        let rows = SpanRule::new();
         let values = |span: &Span| std::array::from_fn(|node| function(span.position(&rows, node)));
         Trace { spans: spans.iter().map(|span| (*span, values(span))).collect() }
     }
 
     #[test]
     fn graded_nodes_integrate_the_3_2_power_of_a_first_touch() {
-        let rows = Rows::new();
+        let rows = SpanRule::new();
         let total = |touches, function: &dyn Fn(f64) -> f64| -> f64 {
             trace(&[span(0.0, 2.0, touches)], function).nodes(&rows).iter().map(|node| node.weight * node.value).sum()
         };
@@ -275,7 +275,7 @@ mod tests {
 
     #[test]
     fn the_tail_tells_what_the_nodes_follow() {
-        let rows = Rows::new();
+        let rows = SpanRule::new();
         let tail = |function: &dyn Fn(f64) -> f64| rows.tail(&rows.nodes.map(function));
         assert!(tail(&|x| 3.0 + x.powi(5)) < 1e-14);
         // Legendre's own P_6 and P_7 on 0..=1, whose largest value at the nodes is 1.
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn extrema_inside_spans_at_kinks_and_next_to_them_are_found() {
-        let rows = Rows::new();
+        let rows = SpanRule::new();
         let spans = [span(0.0, 1.0, [false, true]), span(1.0, 2.5, [true, false])];
         let check = |function: &dyn Fn(f64) -> f64, at: f64| {
             let found = trace(&spans, function).largest(&rows, |x, _| function(x));

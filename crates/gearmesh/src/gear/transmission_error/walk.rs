@@ -4,7 +4,7 @@
 //! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding. In between
 //! everything is smooth. Must not know: how equilibrium is found, what is done with the values.
 
-use super::loading::{CLOSEST, Loading, State};
+use super::load_case::{CLOSEST, Equilibrium, LoadCase};
 use super::trace::{NODES, Span, Trace};
 
 /// Cuts that one span may be given for pairs that take up or lose load.
@@ -15,9 +15,9 @@ const ROUNDINGS: f64 = 4.0;
 /// of it, next to a change of a logarithmic law to 1e-12.
 const TAIL: f64 = 1e-8;
 
-impl Loading<'_> {
+impl LoadCase<'_> {
     /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
-    pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[State; NODES])) {
+    pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[Equilibrium; NODES])) {
         let closest = CLOSEST * self.cycle.period();
         let rounding = ROUNDINGS * f64::EPSILON * self.cycle.pair.tangent_length;
         for zone in &self.cycle.zones {
@@ -54,7 +54,13 @@ impl Loading<'_> {
     /// more than its nodes can follow: the next change may be near, though beyond the end.
     ///
     /// All parts share `cuts`: where gaps are equal but for rounding, the changes that rounding makes have no end.
-    fn smooth(&self, span: &Span, ends: &[State; 2], cuts: &mut usize, visit: &mut impl FnMut(&Span, &[State; NODES])) {
+    fn smooth(
+        &self,
+        span: &Span,
+        ends: &[Equilibrium; 2],
+        cuts: &mut usize,
+        visit: &mut impl FnMut(&Span, &[Equilibrium; NODES]),
+    ) {
         let rows = &self.cycle.rows;
         let mut states = [ends[0]; NODES];
         states[NODES - 1] = ends[1];

@@ -4,7 +4,7 @@ use std::fs;
 use std::path::Path;
 
 use super::*;
-use crate::runner::board::State;
+use crate::runner::board::StageState;
 use crate::runner::fault::Fault;
 use crate::runner::options::Force;
 use crate::store::results::Folder;
@@ -19,7 +19,7 @@ fn with_fault(mode: &str) -> Vec<Spec> {
     ]
 }
 
-fn states(outcome: &Outcome) -> Vec<State> {
+fn states(outcome: &Outcome) -> Vec<StageState> {
     outcome.stages.iter().map(|stage| stage.state).collect()
 }
 
@@ -29,7 +29,7 @@ fn a_failure_is_not_kept() {
     bench.options.jobs = 1;
     let outcome = bench.run(&with_fault("fail"));
     assert_eq!(outcome.faults().collect::<Vec<_>>(), [("a", &Fault::Failed("3 teeth are too few".to_owned()))]);
-    assert_eq!(states(&outcome)[..3], [State::Failed, State::Skipped, State::Skipped]);
+    assert_eq!(states(&outcome)[..3], [StageState::Failed, StageState::Skipped, StageState::Skipped]);
     assert_eq!(outcome.stage("y").unwrap().why, "`a` failed");
     assert_eq!(bench.computed(), ["a"]);
     assert_eq!(bench.planned(&with_fault("fail"))[0], "a: run: failed the last time");
@@ -47,7 +47,10 @@ fn keep_going_runs_what_does_not_depend_on_it() {
     bench.options.keep_going = true;
     let outcome = bench.run(&with_fault("fail"));
     assert_eq!(bench.computed(), ["a", "x", "y"]);
-    assert_eq!(states(&outcome), [State::Failed, State::Skipped, State::Skipped, State::Done, State::Done]);
+    assert_eq!(
+        states(&outcome),
+        [StageState::Failed, StageState::Skipped, StageState::Skipped, StageState::Done, StageState::Done]
+    );
     assert_eq!(outcome.stage("b").unwrap().why, "`a` failed");
     assert_eq!(outcome.stage("c").unwrap().why, "`b` was not run");
 }
@@ -58,7 +61,7 @@ fn a_panic_is_a_bug_of_one_stage() {
     bench.options.keep_going = true;
     let outcome = bench.run(&with_fault("panic"));
     assert_eq!(outcome.stage("a").unwrap().fault, Some(Fault::Bug("index out of range".to_owned())));
-    assert_eq!(states(&outcome)[3..], [State::Done, State::Done]);
+    assert_eq!(states(&outcome)[3..], [StageState::Done, StageState::Done]);
 }
 
 #[test]
@@ -67,7 +70,7 @@ fn a_failed_chunk_fails_its_stage_and_the_others_are_kept() {
     bench.options.keep_going = true;
     let torques = [1.0, 2.0, 3.0];
     let failing = vec![stage("a", 1.0).cut(&CUT, &torques).mode("fail")];
-    assert_eq!(states(&bench.run(&failing)), [State::Failed]);
+    assert_eq!(states(&bench.run(&failing)), [StageState::Failed]);
     assert_eq!(bench.computed(), ["a×3"]);
     // One bad input among chunks: without keep-going the rest is not begun.
     bench.options.keep_going = false;

@@ -4,7 +4,7 @@ use std::process::{Command, Stdio};
 use std::time::Instant;
 
 use super::*;
-use crate::runner::board::State;
+use crate::runner::board::StageState;
 use crate::runner::events::{Event, Observer};
 use crate::runner::execute::{RunError, run};
 use crate::store::error::StoreError;
@@ -35,7 +35,7 @@ fn a_stopped_run_goes_on_where_it_was() {
     let outcome = execute(&study, &bench.cache(), &bench.options, &Stopper(&stop), &stop).unwrap();
     assert!(outcome.stopped);
     let states: Vec<_> = outcome.stages.iter().map(|stage| (stage.state, stage.why.as_str())).collect();
-    assert_eq!(states, [(State::Skipped, "stopped"), (State::Skipped, "stopped")]);
+    assert_eq!(states, [(StageState::Skipped, "stopped"), (StageState::Skipped, "stopped")]);
     assert_eq!(count(&bench.counter("a")), 3);
     let outcome = bench.run(&specs);
     assert!(!outcome.stopped);
@@ -60,9 +60,9 @@ fn a_running_stage_hears_that_it_should_stop() {
     let study = bench.study(&[stage("a", 1.0).mode("until_stopped"), stage("b", 1.0)]);
     let outcome = execute(&study, &bench.cache(), &bench.options, &StopAfterB(&stop), &stop).unwrap();
     assert!(outcome.stopped);
-    assert_eq!(outcome.stage("a").unwrap().state, State::Skipped);
-    assert_eq!(outcome.stage("b").unwrap().state, State::Done);
-    assert_eq!(bench.run(&[stage("b", 1.0)]).stage("b").unwrap().state, State::Hit);
+    assert_eq!(outcome.stage("a").unwrap().state, StageState::Skipped);
+    assert_eq!(outcome.stage("b").unwrap().state, StageState::Done);
+    assert_eq!(bench.run(&[stage("b", 1.0)]).stage("b").unwrap().state, StageState::Hit);
 }
 
 /// Stops the run when a file of the results is next.
@@ -146,7 +146,7 @@ fn a_killed_process_loses_only_what_it_was_at() {
     assert!((4..20).contains(&kept), "{kept}");
     let study = slow(&bench, folder);
     let outcome = execute(&study, &bench.cache(), &bench.options, &Silent, &AtomicBool::new(false)).unwrap();
-    assert_eq!(outcome.stage("b").unwrap().state, State::Done);
+    assert_eq!(outcome.stage("b").unwrap().state, StageState::Done);
     assert_eq!(count(&format!("{}/a", folder.display())), 20 - kept);
 }
 

@@ -19,7 +19,7 @@ fn parts<'a>(record: &'a Record, demand: &'a Demand) -> Parts<'a> {
 }
 
 fn record() -> Record {
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     let fields = vec![
         ("value", entry(Value::Quantity(0.25))),
         ("torque", entry(Value::Axis(vec![25.0, 50.0]))),

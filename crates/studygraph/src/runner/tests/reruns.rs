@@ -1,7 +1,7 @@
 //! What is computed again, what is not, and the reason that is given.
 
 use super::*;
-use crate::runner::board::State;
+use crate::runner::board::StageState;
 use crate::runner::options::{Force, Wanted};
 use crate::store::cache::Remove;
 use crate::store::results::{Changes, Folder};
@@ -16,7 +16,7 @@ fn nothing_runs_the_second_time() {
     assert!(bench.plan(&diamond()).is_up_to_date());
     let second = bench.run(&diamond());
     assert!(bench.computed().is_empty());
-    assert!(second.stages.iter().all(|stage| stage.state == State::Hit && stage.why == "unchanged"));
+    assert!(second.stages.iter().all(|stage| stage.state == StageState::Hit && stage.why == "unchanged"));
     let contents = |outcome: &Outcome| outcome.stages.iter().map(|s| s.tables[0].1.content).collect::<Vec<_>>();
     assert_eq!(contents(&first), contents(&second));
 }
@@ -43,7 +43,7 @@ fn a_stage_that_comes_out_as_before_stops_the_wave() {
     bench.run(&specs(5.1));
     let outcome = bench.run(&specs(5.9));
     assert_eq!(bench.computed(), ["a"]);
-    assert_eq!(outcome.stage("b").unwrap().state, State::Hit);
+    assert_eq!(outcome.stage("b").unwrap().state, StageState::Hit);
     bench.run(&specs(6.1));
     assert_eq!(bench.computed(), ["a", "b", "c"]);
 }
@@ -66,7 +66,7 @@ fn a_new_seed_concerns_only_stages_that_draw() {
     assert_ne!(values(&bench, &first, "b"), values(&bench, &second, "b"));
     // What draws without saying so is given the same numbers under every seed: its tables fit its key.
     bench.options.force = Force::Stages(["a".to_owned()].into());
-    assert_eq!(bench.run(&specs("b")).stage("a").unwrap().state, State::Done);
+    assert_eq!(bench.run(&specs("b")).stage("a").unwrap().state, StageState::Done);
     bench.options.force = Force::Nothing;
     // The seed comes from the name, so a new name draws anew; a study without random numbers would not notice.
     bench.run(&specs("renamed_b"));

@@ -2,8 +2,10 @@
 //!
 //! Must not know: how anything is written.
 
+use std::borrow::Cow;
+
 use super::{FileState, Folder, Known, PAGE, complete, here, is_drawn};
-use crate::store::manifest::{Machine, Manifest, Program, StageRecord, StudyFolder, TableRecord};
+use crate::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
 
 /// What publishing would write and remove.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -28,20 +30,21 @@ impl Folder {
     #[must_use]
     pub fn changes(&self, manifest: &Manifest, draws: bool) -> Changes {
         let old = self.known().ok().flatten();
-        compare(old.as_ref(), &with_earlier_tables(old.as_ref(), manifest.clone()), draws, self)
+        compare(old.as_ref(), &with_earlier_tables(old.as_ref(), manifest), draws, self)
     }
 }
 
 /// Stages without tables of their own take those of the earlier manifest that are still there.
-pub(super) fn with_earlier_tables(old: Option<&Known>, mut new: Manifest) -> Manifest {
+pub(super) fn with_earlier_tables<'m>(old: Option<&Known>, manifest: &'m Manifest) -> Cow<'m, Manifest> {
+    let mut new = Cow::Borrowed(manifest);
     let Some(old) = old else { return new };
-    for stage in new.stages.iter_mut().filter(|stage| !complete(stage)) {
+    for (index, stage) in manifest.stages.iter().enumerate().filter(|(_, stage)| !complete(stage)) {
         let mut stages = old.manifest.stages.iter();
         let earlier = stages.find(|earlier| earlier.name == stage.name && earlier.kind == stage.kind);
         let intact = |table: &TableRecord| old.table_state(table) == FileState::Intact;
         if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(intact)) {
-            let StageRecord { status, why, .. } = std::mem::replace(stage, earlier.clone());
-            *stage = StageRecord { status, why, ..stage.clone() };
+            let (status, why) = (stage.status.clone(), stage.why.clone());
+            new.to_mut().stages[index] = StageRecord { status, why, ..earlier.clone() };
         }
     }
     new
@@ -71,7 +74,7 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
         new_tables.iter().any(of_table) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file)
     };
     let remove: Vec<String> = old_files().filter(|file| !listed(file) && here(file)).collect();
-    let says_something_new = old.is_none_or(|old| essence(&old.manifest) != essence(new));
+    let says_something_new = old.is_none_or(|old| !say_the_same(&old.manifest, new));
     let any = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();
     let pictures: Vec<String> = old_files().filter(|file| is_drawn(file)).collect();
     let drawn =
@@ -81,20 +84,38 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
     Changes { manifest: any || drawn, tables, files, hdf5, drawn, remove, foreign }
 }
 
-/// A manifest without what may differ although the results are the same.
-pub(super) fn essence(manifest: &Manifest) -> Manifest {
-    let mut essence = manifest.clone();
-    (essence.program, essence.machine) = (Program::default(), Machine::default());
-    essence.study_folder = StudyFolder::default();
-    (essence.written, essence.seconds) = (String::new(), 0.0);
-    essence.files.clear();
-    for stage in &mut essence.stages {
-        stage.seconds = 0.0;
-        stage.left_out.iter_mut().for_each(|left_out| left_out.saved_seconds = None);
-        if complete(stage) {
-            stage.status.clear();
-            stage.why.clear();
-        }
-    }
-    essence
+/// Whether two manifests say the same of the results, whoever computed them, when and where.
+pub(super) fn say_the_same(one: &Manifest, other: &Manifest) -> bool {
+    essence(one) == essence(other)
+}
+
+// Every field is named, so that a new one has to be thought of; nothing is copied, since a run with nothing to do comes by.
+fn essence(manifest: &Manifest) -> impl PartialEq {
+    let Manifest {
+        format,
+        study,
+        title,
+        seed,
+        source,
+        study_digest,
+        program: _,
+        study_folder: _,
+        machine: _,
+        written: _,
+        seconds: _,
+        stages,
+        tolerances,
+        files: _,
+    } = manifest;
+    let stages: Vec<_> = stages.iter().map(essence_of_stage).collect();
+    (format, study, title, seed, source, study_digest, stages, tolerances)
+}
+
+fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
+    let StageRecord { name, kind, version, keys, config, status, why, seconds: _, work, warnings, left_out, tables } =
+        stage;
+    // What a finished stage did this time is no part of what it gave.
+    let ended = (!complete(stage)).then_some((status, why));
+    let left_out: Vec<_> = left_out.iter().map(|OmissionRecord { what, why, saved_seconds: _ }| (what, why)).collect();
+    (name, kind, version, keys, config, ended, work, warnings, left_out, tables)
 }

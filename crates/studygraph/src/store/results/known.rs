@@ -37,6 +37,8 @@ pub struct Known {
     belongs: bool,
     /// Stamps tell something of files that were not touched since this moment; none when they tell nothing.
     moment: Option<i64>,
+    /// What was asked: every file belongs to several questions.
+    states: Mutex<BTreeMap<String, FileState>>,
     /// What had to be read.
     looked: Mutex<BTreeMap<String, Option<Seen>>>,
     /// Tables without a digest whose values were read: whether they are those of the manifest.
@@ -49,13 +51,14 @@ impl Known {
         let digest = index::digest(bytes);
         let belongs = index.manifest == digest;
         let moment = index.is_of_this_boot().then_some(moment);
-        Self { manifest, folder, digest, index, belongs, moment, looked: Mutex::default(), values: Mutex::default() }
+        let (states, looked, values) = (Mutex::default(), Mutex::default(), Mutex::default());
+        Self { manifest, folder, digest, index, belongs, moment, states, looked, values }
     }
 
     /// The same, but every file is going to be read.
     #[must_use]
     pub fn without_stamps(self) -> Self {
-        Self { moment: None, ..self }
+        Self { moment: None, states: Mutex::default(), ..self }
     }
 
     /// What the index says; empty where there is none.
@@ -88,6 +91,15 @@ impl Known {
 
     #[must_use]
     pub fn state(&self, file: &str) -> FileState {
+        if let Some(state) = held(&self.states).get(file) {
+            return *state;
+        }
+        let state = self.look(file);
+        held(&self.states).insert(file.to_owned(), state);
+        state
+    }
+
+    fn look(&self, file: &str) -> FileState {
         let path = self.folder.path().join(file);
         let Ok(metadata) = fs::metadata(&path) else {
             // A link that leads nowhere is something, but not what was written.

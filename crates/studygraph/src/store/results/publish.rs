@@ -11,7 +11,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
-use super::changes::{compare, essence, with_earlier_tables};
+use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, held_text, here, is_drawn, split};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
@@ -85,14 +85,14 @@ impl Folder {
     /// When a table cannot be had or a file not be written, or when the source says so; what was there before stays valid.
     pub fn publish(
         &self,
-        manifest: Manifest,
+        manifest: &Manifest,
         facts: impl FnOnce() -> Facts,
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
         let draws = source.draw.is_some();
         let nothing = |old: Known| Published { manifest: old.manifest, changes: Changes::default(), undrawn: None };
         if let Some(old) = self.known().ok().flatten() {
-            let new = with_earlier_tables(Some(&old), manifest.clone());
+            let new = with_earlier_tables(Some(&old), manifest);
             if compare(Some(&old), &new, draws, self) == Changes::default() {
                 if old.is_outdated() {
                     self.refresh(&old);
@@ -114,7 +114,7 @@ impl Folder {
         let changes = compare(old.as_ref(), &new, draws, self);
         match old {
             Some(old) if changes == Changes::default() => Ok(nothing(old)),
-            old => self.write(old.as_ref(), new, changes, Some(facts), source),
+            old => self.write(old.as_ref(), new.into_owned(), changes, Some(facts), source),
         }
     }
 
@@ -182,7 +182,7 @@ impl Folder {
         new.files.clear();
         new = match (old, facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
-            (Some(old), _) if essence(&old.manifest) == essence(&new) => {
+            (Some(old), _) if say_the_same(&old.manifest, &new) => {
                 Manifest { files: Vec::new(), ..old.manifest.clone() }
             }
             (_, Some(facts)) => {

@@ -44,7 +44,7 @@ fn manifest(tables: &[(&str, Table)]) -> Manifest {
     Manifest { format: FORMAT, study: "s".to_owned(), stages: vec![stage("pair"), stage("ste")], ..Manifest::default() }
 }
 
-fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: Manifest) -> (Published, usize) {
+fn publish(folder: &Folder, tables: &[(&str, Table)], manifest: &Manifest) -> (Published, usize) {
     let asked = Cell::new(0);
     let bytes = |stage: &str, name: &str| {
         asked.set(asked.get() + 1);
@@ -66,7 +66,7 @@ fn everything_is_written_once_and_reads_back() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let tables = tables();
-    let (first, _) = publish(&folder, &tables, manifest(&tables));
+    let (first, _) = publish(&folder, &tables, &manifest(&tables));
     assert_eq!(first.changes.tables.len(), 3);
     for record in first.manifest.stages.iter().flat_map(|stage| &stage.tables) {
         let (_, table) = tables.iter().find(|(stage, t)| format!("{stage}.{}", t.name()) == record.name).unwrap();
@@ -83,7 +83,7 @@ fn everything_is_written_once_and_reads_back() {
     let stamps: Vec<_> = kept().map(|name| stamp(&name)).collect();
     let again = Manifest { seconds: 9.0, ..manifest(&tables) };
     let panics = || panic!("nothing is written, so nobody asks for facts");
-    let second = folder.publish(again, panics, Source::of(&|_, _| panic!("nothing is read"))).unwrap();
+    let second = folder.publish(&again, panics, Source::of(&|_, _| panic!("nothing is read"))).unwrap();
     assert_eq!(second.changes, Changes::default());
     assert_eq!(stamps, kept().map(|name| stamp(&name)).collect::<Vec<_>>());
 }
@@ -93,18 +93,18 @@ fn only_what_changed_is_asked_for() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let mut tables = tables();
-    publish(&folder, &tables, manifest(&tables));
+    publish(&folder, &tables, &manifest(&tables));
     fs::write(folder.path().join("notes.txt"), "mine").unwrap();
     tables[1].1 = Table::from_rows(tables[1].1.schema().clone(), vec![]).unwrap();
-    let (published, asked) = publish(&folder, &tables, manifest(&tables));
+    let (published, asked) = publish(&folder, &tables, &manifest(&tables));
     assert_eq!((published.changes.tables, asked), (vec!["ste.summary.parquet".to_owned()], 1));
     // A file that was lost or cut comes back.
     fs::write(folder.path().join("ste.curve.parquet"), "x").unwrap();
     assert_eq!(folder.changes(&manifest(&tables), false).tables, ["ste.curve.parquet"]);
-    assert_eq!(publish(&folder, &tables, manifest(&tables)).1, 1);
+    assert_eq!(publish(&folder, &tables, &manifest(&tables)).1, 1);
     // A table that is no more takes its file along; what was never listed stays.
     tables.remove(0);
-    let (published, asked) = publish(&folder, &tables, manifest(&tables));
+    let (published, asked) = publish(&folder, &tables, &manifest(&tables));
     assert_eq!((published.changes.remove, asked), (vec!["ste.curve.parquet".to_owned()], 0));
     assert!(!files(&folder).contains(&"ste.curve.parquet".to_owned()));
     assert!(files(&folder).contains(&"notes.txt".to_owned()));
@@ -115,16 +115,16 @@ fn a_stage_that_failed_keeps_its_last_tables() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let tables = tables();
-    let (first, _) = publish(&folder, &tables, manifest(&tables));
+    let (first, _) = publish(&folder, &tables, &manifest(&tables));
     let mut failed = manifest(&tables);
     let stage = &mut failed.stages[1];
     (stage.status, stage.why) = ("failed".to_owned(), "no".to_owned());
     stage.tables.clear();
-    let (second, asked) = publish(&folder, &tables, failed);
+    let (second, asked) = publish(&folder, &tables, &failed);
     assert_eq!(asked, 0);
     assert_eq!(second.manifest.stages[1].status, "failed");
     assert_eq!(second.manifest.stages[1].tables, first.manifest.stages[1].tables);
-    assert!(publish(&folder, &tables, manifest(&tables)).0.changes.manifest);
+    assert!(publish(&folder, &tables, &manifest(&tables)).0.changes.manifest);
     assert_eq!(folder.manifest().unwrap().stages[1].status, "ran");
 }
 
@@ -134,7 +134,7 @@ fn missing_files_come_back_without_a_new_manifest() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let tables = tables();
-    publish(&folder, &tables, manifest(&tables));
+    publish(&folder, &tables, &manifest(&tables));
     let before = fs::read(folder.path().join(MANIFEST)).unwrap();
     fs::remove_file(folder.path().join("ste.curve.parquet")).unwrap();
     fs::remove_file(folder.path().join(folder.hdf5_file())).unwrap();
@@ -143,7 +143,7 @@ fn missing_files_come_back_without_a_new_manifest() {
         let (_, table) = tables.iter().find(|(_, table)| table.name() == name).unwrap();
         parquet::write(table)
     };
-    let again = folder.publish(manifest(&tables), panics, Source::of(&bytes)).unwrap();
+    let again = folder.publish(&manifest(&tables), panics, Source::of(&bytes)).unwrap();
     assert_eq!(again.changes.tables, ["ste.curve.parquet"]);
     assert_eq!(before, fs::read(folder.path().join(MANIFEST)).unwrap());
     assert_eq!(folder.changes(&manifest(&tables), false), Changes::default());
@@ -154,7 +154,7 @@ fn after_a_kill_no_new_file_passes_for_the_old_one() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let old = tables();
-    publish(&folder, &old, manifest(&old));
+    publish(&folder, &old, &manifest(&old));
     let mut new = tables();
     for (_, table) in &mut new[..2] {
         *table = Table::from_rows(table.schema().clone(), vec![]).unwrap();
@@ -165,9 +165,9 @@ fn after_a_kill_no_new_file_passes_for_the_old_one() {
         "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
         _ => Err(StoreError::InUse { path: "killed".to_owned(), who: String::new() }),
     };
-    assert!(folder.publish(manifest(&new), || unreachable!(), Source::of(&bytes)).is_err());
+    assert!(folder.publish(&manifest(&new), || unreachable!(), Source::of(&bytes)).is_err());
     assert_eq!(folder.changes(&manifest(&old), false).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
-    publish(&folder, &old, manifest(&old));
+    publish(&folder, &old, &manifest(&old));
     for record in &folder.manifest().unwrap().stages[1].tables {
         folder.table(record).unwrap();
     }
@@ -178,13 +178,13 @@ fn a_manifest_from_elsewhere_removes_nothing_outside() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let tables = tables();
-    publish(&folder, &tables, manifest(&tables));
+    publish(&folder, &tables, &manifest(&tables));
     fs::write(root.path().join("precious"), "").unwrap();
     let mut wicked = folder.manifest().unwrap();
     let (bytes, digest) = (Some(0), Some(crate::store::index::digest(b"")));
     wicked.files.push(FileRecord { file: "../precious".into(), bytes, digest, varies: false });
     fs::write(folder.path().join(MANIFEST), serde_json::to_vec(&wicked).unwrap()).unwrap();
-    publish(&folder, &tables, Manifest { title: "new".into(), ..manifest(&tables) });
+    publish(&folder, &tables, &Manifest { title: "new".into(), ..manifest(&tables) });
     assert!(root.path().join("precious").exists());
 }
 
@@ -202,7 +202,7 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     let folder = Folder::new(root.path(), "s");
     let with = |texts: &[&str]| vec![("ste", drawing(texts)), ("pair", everything(1))];
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
-    let (first, _) = publish(&folder, &with(&["0", "EOF"]), manifest(&with(&["0", "EOF"])));
+    let (first, _) = publish(&folder, &with(&["0", "EOF"]), &manifest(&with(&["0", "EOF"])));
     assert_eq!(first.changes.files, ["ste.a.csv", "ste.b.dxf"]);
     assert_eq!((read("ste.a.csv").as_str(), read("ste.b.dxf").as_str()), ("x,y\n", "0\nEOF\n"));
     #[cfg(feature = "hdf5")]
@@ -218,18 +218,18 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"])), false), Changes::default());
     let facts = Facts::default;
     assert_eq!(
-        folder.publish(manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap().changes,
+        folder.publish(&manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap().changes,
         Changes::default()
     );
 
     // A file that was cut short comes back from its table.
     fs::write(folder.path().join("ste.b.dxf"), "0").unwrap();
-    let again = folder.publish(manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap();
+    let again = folder.publish(&manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap();
     assert_eq!((again.changes.files.len(), read("ste.b.dxf").as_str()), (1, "0\nEOF\n"));
 
-    let (second, _) = publish(&folder, &with(&["0", "EOF", "9"]), manifest(&with(&["0", "EOF", "9"])));
+    let (second, _) = publish(&folder, &with(&["0", "EOF", "9"]), &manifest(&with(&["0", "EOF", "9"])));
     assert_eq!((second.changes.tables.len(), listed(&second, "ste.b.dxf")), (1, Some(8)));
-    let (last, _) = publish(&folder, &[("pair", everything(1))], manifest(&[("pair", everything(1))]));
+    let (last, _) = publish(&folder, &[("pair", everything(1))], &manifest(&[("pair", everything(1))]));
     assert_eq!(last.changes.remove, ["ste.files.parquet", "ste.a.csv", "ste.b.dxf"]);
     assert!(!files(&folder).iter().any(|name| name.starts_with("ste.")), "{:?}", files(&folder));
 }
@@ -246,7 +246,7 @@ fn publish_drawn(folder: &Folder, tables: &[(&str, Table)]) -> Published {
     let bytes = |stage: &str, name: &str| {
         parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
     };
-    folder.publish(manifest(tables), Facts::default, Source { draw: Some(&draw), ..Source::of(&bytes) }).unwrap()
+    folder.publish(&manifest(tables), Facts::default, Source { draw: Some(&draw), ..Source::of(&bytes) }).unwrap()
 }
 
 /// All files of a folder but the manifest and the index.
@@ -360,7 +360,7 @@ fn a_page_that_cannot_be_drawn_keeps_no_table_back() {
     let bytes = |_: &str, name: &str| parquet::write(&tables.iter().find(|(_, table)| table.name() == name).unwrap().1);
     let fails: Draw<'_> = &|_, _| Err("no ink".to_owned());
     let published =
-        folder.publish(manifest(&tables), Facts::default, Source { draw: Some(fails), ..Source::of(&bytes) }).unwrap();
+        folder.publish(&manifest(&tables), Facts::default, Source { draw: Some(fails), ..Source::of(&bytes) }).unwrap();
     assert_eq!(published.undrawn.as_deref(), Some("no ink"));
     assert!(listed(&folder).contains(&"ste.curve.parquet".to_owned()) && !listed(&folder).contains(&PAGE.to_owned()));
     fs::create_dir_all(folder.path().join(FIGURES)).unwrap();
@@ -386,7 +386,7 @@ fn publishing_stops_before_any_file_and_the_next_run_ends_it() {
             if asked.get() > stop_before { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
         };
         let source = Source { draw: Some(&draw), next: &next, ..Source::of(&bytes) };
-        let Err(fault) = folder.publish(manifest(&tables), Facts::default, source) else {
+        let Err(fault) = folder.publish(&manifest(&tables), Facts::default, source) else {
             // Three tables, HDF5 where there is any, and the page before and after it is drawn.
             assert_eq!(stop_before, if cfg!(feature = "hdf5") { 6 } else { 5 });
             return;

@@ -33,7 +33,7 @@ fn lengths_are_near_those_of_waves_along_the_face() {
         (48, 4.0, [[0.10, 8.4494, 1.87], [0.50, 10.7074, 1.77], [0.90, 14.3983, 1.57]]),
     ] {
         let gear = gear(teeth, 1.0, ratio);
-        let shape = Shape::new(&gear, 8.0);
+        let shape = SectionedTooth::new(&gear, 8.0);
         let (wind_up, _) = ring(&gear);
         for [height, compliance, waves] in values {
             let reach = shape.reach(gear.roll_at(0.5 * f64::from(teeth) + height));
@@ -72,7 +72,7 @@ fn the_wind_up_is_that_of_the_plane_and_reaches_as_a_held_shaft() {
 fn lengths_scale_with_the_module() {
     let (small, large) = (gear(30, 1.0, 2.0), gear(30, 5.0, 2.0));
     for roll in [0.2, 0.35, 0.5] {
-        let ratio = Shape::new(&large, 40.0).reach(roll) / Shape::new(&small, 8.0).reach(roll);
+        let ratio = SectionedTooth::new(&large, 40.0).reach(roll) / SectionedTooth::new(&small, 8.0).reach(roll);
         assert!((ratio / 25.0 - 1.0).abs() < 1e-12);
     }
     assert!((ring(&large).1 / ring(&small).1 / 5.0 - 1.0).abs() < 1e-12);
@@ -82,7 +82,7 @@ fn lengths_scale_with_the_module() {
 #[test]
 fn sections_suffice() {
     let gear = gear(19, 1.0, 1.75);
-    let shape = Shape::new(&gear, 8.0);
+    let shape = SectionedTooth::new(&gear, 8.0);
     let halved =
         |[height, extent, _]: [f64; 3]| [height - 0.25 * extent, height + 0.25 * extent].map(|y| [y, 0.5 * extent]);
     // Thickness is piecewise linear to second order, so halved sections interpolate it.
@@ -93,7 +93,7 @@ fn sections_suffice() {
         s + (t - s) * (y - a) / (b - a)
     };
     let sections = rows.iter().flat_map(|&row| halved(row)).map(|[y, extent]| [y, extent, thickness(y)]).collect();
-    let fine = Shape { gear: &gear, sections, clamped: shape.clamped, moved: shape.moved };
+    let fine = SectionedTooth { gear: &gear, sections, clamped: shape.clamped, moved: shape.moved };
     for roll in [0.1, 0.3, 0.5] {
         assert!((fine.reach(roll) / shape.reach(roll) - 1.0).abs() < 2e-3, "{}", fine.reach(roll) / shape.reach(roll));
     }

@@ -4,27 +4,27 @@ use super::super::{Assumptions, ComplianceError, ContactLaw, Tabulated, method};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Pair, Side, Specification};
+use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::material::Material;
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 const COUPLED: Assumptions =
     Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None, accuracy: None };
 
-fn pair(teeth: [u32; 2], bore_ratio: f64) -> Pair {
+fn pair(teeth: [u32; 2], bore_ratio: f64) -> GearPair {
     let [pinion, gear] = teeth.map(|teeth| standard(teeth, 3e-3, bore_ratio));
-    Pair::new(pinion, gear, None).unwrap()
+    GearPair::new(pinion, gear, None).unwrap()
 }
 
 fn options(plane: &'static str, across: i64) -> Record {
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     let fields = vec![("plane", entry(Value::Choice(plane))), ("elements_across", entry(Value::Integer(across)))];
     Record { fields, place: Place::default() }
 }
 
-fn finite_element(pair: &Pair, across: i64, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+fn finite_element(pair: &GearPair, across: i64, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
     super::tabulate(&options("strain", across), pair, assumptions)
 }
 
@@ -100,7 +100,7 @@ fn interpolation_between_nodes_is_exact_enough() {
 #[test]
 fn the_energy_method_is_near() {
     let pair = pair([26, 48], 2.0);
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     let ring = Record {
         fields: vec![
             ("shear_factor", entry(Value::Number(1.2))),
@@ -136,7 +136,7 @@ fn stiffness_scales_with_the_modulus() {
             material: Material { youngs_modulus, ..STEEL },
             ..standard(teeth, 3e-3, 1.4)
         });
-        finite_element(&Pair::new(pinion, gear, None).unwrap(), 6, COUPLED).unwrap().compliance.gear.total(0.3)
+        finite_element(&GearPair::new(pinion, gear, None).unwrap(), 6, COUPLED).unwrap().compliance.gear.total(0.3)
             * youngs_modulus
     };
     for modulus in [1.0, 1e15] {
@@ -149,7 +149,7 @@ fn what_cannot_be_solved_is_refused() {
     let with = |poisson_ratio: f64| {
         let [pinion, gear] = [17, 30]
             .map(|teeth| Specification { material: Material { poisson_ratio, ..STEEL }, ..standard(teeth, 3e-3, 1.4) });
-        Pair::new(pinion, gear, None).unwrap()
+        GearPair::new(pinion, gear, None).unwrap()
     };
     let error = finite_element(&with(0.5), 8, COUPLED).unwrap_err();
     assert_eq!(error.field(), "material.poisson_ratio");
@@ -196,7 +196,7 @@ fn root_stress_is_where_and_as_large_as_it_should_be() {
 /// Gears that are alike are meshed once, and the tables of either are those of its own.
 #[test]
 fn gears_that_are_alike_are_meshed_once() {
-    let counts = |pair: &Pair| {
+    let counts = |pair: &GearPair| {
         let found = finite_element(pair, 6, Assumptions { coupled: false, ..COUPLED }).unwrap();
         let counters = [&MESH_FACTORISATIONS, &COMPLIANCE_EVALUATIONS];
         (counters.map(|counter| found.work.count(counter)), found)

@@ -4,17 +4,17 @@ use rayon::prelude::*;
 
 use crate::gear::compliance::{Assumptions, ContactLaw, ROUNDING, Tabulated, ToothCompliance, method};
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{Pair, Side};
+use crate::gear::geometry::{GearPair, Side};
 use crate::gear::random::Random;
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 fn record(fields: Vec<(&'static str, Value)>) -> Record {
-    let entry = |value| Entry { value, place: Place::default() };
+    let entry = |value| PlacedValue { value, place: Place::default() };
     Record { fields: fields.into_iter().map(|(name, value)| (name, entry(value))).collect(), place: Place::default() }
 }
 
-fn energy(pair: &Pair, body: &'static str, harmonics: i64, assumptions: Assumptions) -> Option<Tabulated> {
+fn energy(pair: &GearPair, body: &'static str, harmonics: i64, assumptions: Assumptions) -> Option<Tabulated> {
     let fields = vec![
         ("shear_factor", Value::Number(1.2)),
         ("body", Value::Choice(body)),
@@ -111,12 +111,12 @@ fn the_estimate_of_the_mesh_holds() {
         torque: None,
         accuracy: None,
     };
-    let solve = |pair: &Pair, across: i64| {
+    let solve = |pair: &GearPair, across: i64| {
         let fields = vec![("plane", Value::Choice("strain")), ("elements_across", Value::Integer(across))];
         (method("finite_element").unwrap().tabulate)(&record(fields), pair, assumptions).unwrap()
     };
-    let pairs: Vec<Pair> = (0..100).map(|_| random.pair()).collect();
-    let of_pair = |pair: &Pair| {
+    let pairs: Vec<GearPair> = (0..100).map(|_| random.pair()).collect();
+    let of_pair = |pair: &GearPair| {
         let (truth, found) = (solve(pair, 12), solve(pair, 6));
         found.meshes.clone().into_iter().map(move |mesh| {
             let [one, two] = [&found, &truth].map(|tabulated| match mesh.side {

@@ -78,7 +78,7 @@ fn every_value_of_the_reference() {
 }
 
 /// Approach \[m\] of two crowned gears with parabolic relief of both tips, uncoupled, the crown integrated exactly.
-fn approach(pair: &Pair, tabulated: &Tabulated, force: f64, design: &str, place: &str) -> f64 {
+fn approach(pair: &GearPair, tabulated: &Tabulated, force: f64, design: &str, place: &str) -> f64 {
     let (amount, length, crown) = match design {
         "iso" => (7.81e-6, 5.05e-3, 6.34e-6),
         "ga" => (6.93e-6, 3.41e-3, 5.67e-6),

@@ -13,15 +13,15 @@ fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
     Specification { face_width: 1.0, ..standard(teeth, module, bore_ratio) }
 }
 
-fn tabulated(pair: &Pair, root: RootShape, coupled: bool) -> Tabulated {
+fn tabulated(pair: &GearPair, root: RootShape, coupled: bool) -> Tabulated {
     let method = METHODS.iter().find(|method| method.member.name == "weber_banaschek").unwrap();
     let assumptions = Assumptions { root, contact: ContactLaw::LoadDependent, coupled, torque: None, accuracy: None };
     (method.tabulate)(&Record::default(), pair, assumptions).unwrap()
 }
 
-fn pair(teeth: [u32; 2], module: f64, bore_ratio: f64) -> Pair {
+fn pair(teeth: [u32; 2], module: f64, bore_ratio: f64) -> GearPair {
     let [pinion, gear] = teeth.map(|teeth| specification(teeth, module, bore_ratio));
-    Pair::new(pinion, gear, None).unwrap()
+    GearPair::new(pinion, gear, None).unwrap()
 }
 
 /// Tier: second method; the formulas as printed in the head of the file, over plain heights by Simpson's rule, with the

@@ -3,7 +3,7 @@
 mod outlines;
 
 use super::*;
-use crate::gear::fixtures::{Part, design, pair, swapped};
+use crate::gear::fixtures::{NamedModification, design, pair, swapped};
 use crate::gear::modification::Design;
 use declare::record::Value::{Choice, Number, Quantity};
 
@@ -17,8 +17,8 @@ fn power(amount: f64, length: f64, exponent: f64) -> [(&'static str, declare::re
 }
 
 /// Gentle and steep, overlapping and not, bent both ways, and material added.
-fn designs(pair: &Pair) -> Vec<Design> {
-    let of = |parts: &[Part]| design(pair, parts).unwrap();
+fn designs(pair: &GearPair) -> Vec<Design> {
+    let of = |parts: &[NamedModification]| design(pair, parts).unwrap();
     let crown = [("amount", Quantity(30e-6))];
     let slope = [("amount", Quantity(-12e-6))];
     vec![
@@ -44,14 +44,14 @@ fn profiles(design: &Design) -> [Vec<&dyn Modification>; 2] {
     })
 }
 
-fn positions(pair: &Pair, count: u32) -> impl Iterator<Item = f64> {
+fn positions(pair: &GearPair, count: u32) -> impl Iterator<Item = f64> {
     let (from, to) = (pair.start_of_contact - 4e-3, pair.end_of_contact + 4e-3);
     (0..=count).map(move |index| from + (to - from) * (f64::from(index) + 0.313) / f64::from(count + 1))
 }
 
 /// Every point of both flanks in small steps, first the gear's before the pinion's flank, then the reverse; the
 /// separation by polar coordinates, depths added as the model says or moved along the normal as they are.
-fn brute(pair: &Pair, design: &Design, s: f64, true_points: bool) -> f64 {
+fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
     let length = pair.tangent_length;
     let mut least = f64::INFINITY;
     for (point, flank) in [(Side::Gear, Side::Pinion), (Side::Pinion, Side::Gear)] {

@@ -149,7 +149,7 @@ impl Curve {
 /// A stretch of a curve, from one parameter to the other.
 #[derive(Clone, Debug)]
 pub struct Segment {
-    pub part: Part,
+    pub part: OutlinePart,
     pub curve: Curve,
     pub from: f64,
     pub to: f64,
@@ -157,7 +157,7 @@ pub struct Segment {
 
 /// Which part of the tooth a segment is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Part {
+pub enum OutlinePart {
     RootLand,
     Root,
     /// Radial, or normal to the flank, where two curves do not meet.
@@ -167,7 +167,7 @@ pub enum Part {
     TipLand,
 }
 
-impl Part {
+impl OutlinePart {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -219,14 +219,14 @@ impl Segment {
 
     /// A straight segment between two points.
     #[must_use]
-    pub fn straight(part: Part, start: [f64; 2], end: [f64; 2]) -> Self {
+    pub fn straight(part: OutlinePart, start: [f64; 2], end: [f64; 2]) -> Self {
         let (curve, length) = Curve::line(start, end);
         Self { part, curve, from: 0.0, to: length }
     }
 
     /// A part of a circle about the gear's centre, between two angles from the tooth's centreline, clockwise positive.
     #[must_use]
-    pub fn about_centre(part: Part, radius: f64, from: f64, to: f64) -> Self {
+    pub fn about_centre(part: OutlinePart, radius: f64, from: f64, to: f64) -> Self {
         Self { part, curve: Curve::Arc { centre: [0.0; 2], radius }, from: FRAC_PI_2 - from, to: FRAC_PI_2 - to }
     }
 }

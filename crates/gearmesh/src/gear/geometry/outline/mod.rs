@@ -16,7 +16,7 @@ use std::sync::Arc as Shared;
 use super::Gear;
 use super::error::{GeometryError, Millimetres, Problem};
 use super::root::{Piece, Root};
-use curve::{Curve, Part, Relief, Segment};
+use curve::{Curve, OutlinePart, Relief, Segment};
 use roots::Toe;
 use tip::Tip;
 
@@ -64,12 +64,12 @@ impl Outline {
         if let Some(last) = segments.last().map(Segment::end)
             && libm::hypot(begin[0] - last[0], begin[1] - last[1]) > NO_STEP.max(1e-12 * base_radius)
         {
-            segments.push(Segment::straight(Part::Step, last, begin));
+            segments.push(Segment::straight(OutlinePart::Step, last, begin));
         }
         let inner = breaks.into_iter().filter(|place| *place > form_roll && *place < end_roll);
         let places: Vec<f64> = std::iter::once(form_roll).chain(inner).chain([end_roll]).collect();
         segments.extend(places.windows(2).map(|ends| Segment {
-            part: Part::Flank,
+            part: OutlinePart::Flank,
             curve: flank.between(ends[0], ends[1]),
             from: ends[0],
             to: ends[1],
@@ -92,7 +92,7 @@ fn land(root: &[Segment], half_pitch: f64) -> Vec<Segment> {
     if half_pitch - angle <= NO_LAND {
         return Vec::new();
     }
-    vec![Segment::about_centre(Part::RootLand, libm::hypot(x, y), half_pitch, angle)]
+    vec![Segment::about_centre(OutlinePart::RootLand, libm::hypot(x, y), half_pitch, angle)]
 }
 
 impl Toe {
@@ -102,18 +102,18 @@ impl Toe {
         let segment = |piece: &Piece| {
             let (from, to) = piece.range();
             match *piece {
-                Piece::Trochoid(curve) => Segment { part: Part::Root, curve: Curve::Trochoid(curve), from, to },
+                Piece::Trochoid(curve) => Segment { part: OutlinePart::Root, curve: Curve::Trochoid(curve), from, to },
                 Piece::Arc { centre_radius, centre_angle, radius, extent } => {
                     let (sine, cosine) = libm::sincos(centre_angle);
                     let curve = Curve::Arc { centre: [centre_radius * sine, centre_radius * cosine], radius };
                     // From its lowest point, which is towards the gear's centre, clockwise.
                     let from = 1.5 * PI - centre_angle;
-                    Segment { part: Part::Root, curve, from, to: from - extent }
+                    Segment { part: OutlinePart::Root, curve, from, to: from - extent }
                 }
                 Piece::Radial { angle, lower, upper } => {
                     let (sine, cosine) = libm::sincos(angle);
                     let curve = Curve::Line { start: [0.0; 2], direction: [sine, cosine] };
-                    Segment { part: Part::Root, curve, from: lower, to: upper }
+                    Segment { part: OutlinePart::Root, curve, from: lower, to: upper }
                 }
             }
         };

@@ -3,7 +3,7 @@
 //! A chamfer begins on the flank its size below the tip circle and ends on the tip circle its size from the corner. A
 //! rounding is an arc tangent to the flank and, from inside, to the tip circle. Must not know: the root.
 
-use super::curve::{Curve, Part, Segment};
+use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
 use crate::numeric::crossing;
@@ -116,7 +116,7 @@ impl Top<'_> {
 
     /// The arc of the tip circle from an angle to the centreline.
     fn on_tip(&self, angle: f64) -> Segment {
-        Segment::about_centre(Part::TipLand, self.gear.tip_radius, angle, 0.0)
+        Segment::about_centre(OutlinePart::TipLand, self.gear.tip_radius, angle, 0.0)
     }
 
     fn corner(&self) -> Option<(f64, f64)> {
@@ -142,7 +142,7 @@ impl Top<'_> {
             return None;
         }
         let land = self.on_tip(angle);
-        Some((end, vec![Segment::straight(Part::TipBreak, self.flank.point(end), land.start()), land]))
+        Some((end, vec![Segment::straight(OutlinePart::TipBreak, self.flank.point(end), land.start()), land]))
     }
 
     fn rounding(&self, round: f64) -> Option<(f64, Vec<Segment>)> {
@@ -162,7 +162,8 @@ impl Top<'_> {
         let [from_x, from_y] = self.flank.point(end);
         let from = libm::atan2(from_y - y, from_x - x);
         let to = libm::atan2(y, x);
-        let arc = Segment { part: Part::TipBreak, curve: Curve::Arc { centre: [x, y], radius: round }, from, to };
+        let arc =
+            Segment { part: OutlinePart::TipBreak, curve: Curve::Arc { centre: [x, y], radius: round }, from, to };
         Some((end, vec![arc, self.on_tip(half_angle([x, y]))]))
     }
 }

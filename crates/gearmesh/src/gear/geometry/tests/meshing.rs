@@ -42,7 +42,7 @@ impl Silhouette {
 
 /// Depth and place of the pinion's point that lies deepest in the gear, the gears turned by `turn` out of the middle
 /// position, in which a tooth of the pinion points at a space of the gear, and `centre_distance` apart.
-fn deepest(pair: &Pair, points: &[Point], gear: &Silhouette, turn: f64, centre_distance: f64) -> (f64, [f64; 2]) {
+fn deepest(pair: &GearPair, points: &[Point], gear: &Silhouette, turn: f64, centre_distance: f64) -> (f64, [f64; 2]) {
     let [z1, z2] = [&pair.pinion, &pair.gear].map(|gear| f64::from(gear.specification.teeth));
     let gear_turn = -turn * z1 / z2;
     let mut deepest = (f64::NEG_INFINITY, [0.0; 2]);
@@ -75,7 +75,7 @@ fn pairs_touch_on_the_path_of_contact_and_nowhere_overlap() {
             rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.3 },
             ..specification(teeth, 3.0, shift)
         };
-        let pair = Pair::new(of(z1, x1), of(z2, x2), None).unwrap();
+        let pair = GearPair::new(of(z1, x1), of(z2, x2), None).unwrap();
         let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, "trochoid").unwrap());
         let (points, gear) = (pinion.tooth(Density { points: 4000, chord_error: None }), Silhouette::new(&gear));
         let (a, alpha) = (pair.centre_distance, pair.working_pressure_angle);
@@ -108,7 +108,7 @@ fn polygons_overlap_where_the_mate_s_tip_cuts_into_the_root() {
         (30, 38, "optimised_arc", false),
         (23, 24, "trochoid", false),
     ] {
-        let pair = Pair::new(specification(z1, 1.0, 0.0), specification(z2, 1.0, 0.0), None).unwrap();
+        let pair = GearPair::new(specification(z1, 1.0, 0.0), specification(z2, 1.0, 0.0), None).unwrap();
         let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, family).unwrap());
         let points = pinion.tooth(Density { points: 4000, chord_error: None });
         let silhouette = Silhouette::new(&gear);

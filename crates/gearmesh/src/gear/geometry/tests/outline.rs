@@ -4,20 +4,20 @@ use std::sync::Arc as Shared;
 
 use super::cutter::distance_to_swept_rack;
 use super::*;
-use crate::gear::geometry::outline::curve::{Curve, Part, Relief, Segment};
+use crate::gear::geometry::outline::curve::{Curve, OutlinePart, Relief, Segment};
 use crate::gear::geometry::outline::junction::Place as Where;
 use crate::gear::geometry::outline::roots::base_arc::Base;
 use crate::gear::geometry::outline::sample::{Density, Point};
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::outline::{Outline, roots};
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 const MICROMETRE: f64 = 1e-6;
 
 pub fn options(values: &[(&'static str, Value)]) -> Record {
     let place = Place::default();
-    let fields = values.iter().map(|(name, value)| (*name, Entry { value: value.clone(), place }));
+    let fields = values.iter().map(|(name, value)| (*name, PlacedValue { value: value.clone(), place }));
     Record { fields: fields.collect(), place }
 }
 
@@ -89,7 +89,7 @@ proptest! {
                 distance_to_swept_rack(&gear, cosine * x - sine * y, sine * x + cosine * y) * 1e3
             });
             let part = outline.segments[point.segment].part;
-            if part == Part::TipLand {
+            if part == OutlinePart::TipLand {
                 prop_assert!(distance > -1e-9, "{part:?}: {distance} mm");
                 continue;
             }
@@ -100,7 +100,7 @@ proptest! {
             let root = 1e-3 * specification.rack.tip_radius + depth * depth / (gear.reference_radius + depth);
             // The corner that undercut leaves: there the oracle finds one of two curves, and sees the other's direction.
             let corner = gear.undercut && (x.hypot(y) - gear.form_radius).abs() < 1e-9;
-            if corner || root < 1e-9 && part != Part::RootLand {
+            if corner || root < 1e-9 && part != OutlinePart::RootLand {
                 continue;
             }
             let share = depth_in_a_corner(&outline.segments[point.segment], point.parameter, &specification);
@@ -228,7 +228,8 @@ fn junctions_are_smooth_where_they_must_be() {
         let gear = gear(teeth, 3.0, shift);
         let outline = shaped(&gear, family).unwrap();
         for junction in outline.junctions() {
-            let corner = matches!(junction.place, Where::Behind(at) if outline.segments[at + 1].part == Part::TipLand);
+            let corner =
+                matches!(junction.place, Where::Behind(at) if outline.segments[at + 1].part == OutlinePart::TipLand);
             assert!(junction.position_jump() < 1e-16, "{family} {teeth} {junction:?}");
             assert_eq!(
                 junction.is_smooth(1e-16, 3e-8),
@@ -246,7 +247,7 @@ fn junctions_are_smooth_where_they_must_be() {
     }
     // Tier: closed form; the trochoid's radius of curvature on the root circle is ρ + e²/(r + e).
     let outline = rack_cut(&gear(30, 3.0, 0.0)).unwrap();
-    let root = outline.segments.iter().find(|segment| segment.part == Part::Root).unwrap();
+    let root = outline.segments.iter().find(|segment| segment.part == OutlinePart::Root).unwrap();
     let (round, depth, reference) = (0.38 * 3e-3, 0.87 * 3e-3, 45e-3);
     assert_near(-1.0 / root.local(root.from).curvature, round + depth * depth / (reference + depth), 1e-17, "radius");
     // Undercut is a corner that sticks out: the profile turns left when one goes up.
@@ -286,7 +287,7 @@ fn the_article_s_arc_is_the_one_it_prints() {
     deep.rack = Rack { addendum: 1.0, dedendum: 1.5, tip_radius: 0.3 };
     let outline = shaped(&Gear::new(&deep).unwrap(), "arc").unwrap();
     let parts: Vec<_> = outline.segments.iter().map(|segment| segment.part).collect();
-    assert_eq!(parts[parts.len() - 3..], [Part::Root, Part::Flank, Part::TipLand], "{parts:?}");
+    assert_eq!(parts[parts.len() - 3..], [OutlinePart::Root, OutlinePart::Flank, OutlinePart::TipLand], "{parts:?}");
 }
 
 /// Tier: closed form; r_c = (r_b² − r_f²)/(2 r_f) touches the root circle, and constructions that do not exist say so.
@@ -295,7 +296,7 @@ fn arcs_that_do_not_exist_are_refused_with_numbers() {
     let touching = shaped(&gear(28, 3.0, 0.0), "tangent_arc").unwrap();
     let base = Base::new(&gear(28, 3.0, 0.0), "an arc").unwrap();
     assert!(base.gap(base.tangent_circle(base.touching_radius())).abs() < 1e-17);
-    let root = touching.segments.iter().find(|segment| segment.part == Part::Root).unwrap();
+    let root = touching.segments.iter().find(|segment| segment.part == OutlinePart::Root).unwrap();
     assert_near(1.0 / root.local(root.from).curvature, -base.touching_radius(), 1e-17, "radius");
 
     for family in ["arc", "tangent_arc", "optimised_arc"] {
@@ -308,7 +309,7 @@ fn arcs_that_do_not_exist_are_refused_with_numbers() {
     assert!(message.contains("would overlap by 0.41") && message.contains("at most 0.91"), "{message}");
     let largest = outlined(&gear(17, 1.5, 0.0), "tangent_arc", ("size", "largest")).unwrap();
     assert!(largest.junctions()[0].is_smooth(1e-15, 1e-7), "{:?}", largest.junctions()[0]);
-    assert_eq!(largest.segments[0].part, Part::Root);
+    assert_eq!(largest.segments[0].part, OutlinePart::Root);
 }
 
 /// The tip's break is as large as asked for, and is refused with the largest where it does not fit.

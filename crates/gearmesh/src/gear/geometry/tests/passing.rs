@@ -3,7 +3,7 @@
 
 use super::outline::{options, shaped};
 use super::*;
-use crate::gear::geometry::outline::curve::{Curve, Part};
+use crate::gear::geometry::outline::curve::{Curve, OutlinePart};
 use crate::gear::geometry::outline::sample::Density;
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::outline::{Outline, roots};
@@ -14,7 +14,7 @@ const SIDES: [Side; 2] = [Side::Pinion, Side::Gear];
 
 /// Where a point of the mate's tooth is in the frame of the gear's tooth, by turning both gears: the mate by `angle`, with
 /// the flanks of the gear's right side touching.
-fn seen(pair: &Pair, side: Side, [x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+fn seen(pair: &GearPair, side: Side, [x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     let (own, mate) = (pair.side(side), pair.side(side.other()));
     let [z, z_mate] = [own, mate].map(|gear| f64::from(gear.specification.teeth));
     // Backlash: half of it lies on either side of the mate's tooth when both are in the middle.
@@ -31,18 +31,18 @@ fn seen(pair: &Pair, side: Side, [x, y]: [f64; 2], angle: f64) -> [f64; 2] {
 }
 
 /// The least distance of the root's points from the polylines that the tip's points draw, by brute force.
-fn brute(pair: &Pair, side: Side, outline: &Outline, mate: &Outline) -> f64 {
+fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 {
     let fine = Density { points: 600, chord_error: None };
     // With the first point of the flank, where the root ends.
     let points = outline.half(fine);
-    let end = points.iter().position(|point| outline.segments[point.segment].part == Part::Flank).unwrap();
+    let end = points.iter().position(|point| outline.segments[point.segment].part == OutlinePart::Flank).unwrap();
     let root = &points[..=end];
-    let on_tip = |part| matches!(part, Part::TipBreak | Part::TipLand);
+    let on_tip = |part| matches!(part, OutlinePart::TipBreak | OutlinePart::TipLand);
     let tip = mate.half(Density { points: 60, chord_error: None });
     let tip = tip.into_iter().filter(|point| on_tip(mate.segments[point.segment].part));
     let mut tip: Vec<[f64; 2]> = tip.map(|point| point.local.position).collect();
     for segment in &mate.segments {
-        if let (Part::TipBreak, Curve::Arc { centre, radius }) = (segment.part, &segment.curve) {
+        if let (OutlinePart::TipBreak, Curve::Arc { centre, radius }) = (segment.part, &segment.curve) {
             // All of the circle: the flank beside a rounding is farther out.
             tip.extend((0..720).map(|step| {
                 let (sine, cosine) = (f64::from(step) * PI / 360.0).sin_cos();
@@ -94,8 +94,8 @@ fn the_distance_is_that_of_the_path_s_polyline() {
         (20, 26, 1.0, "trochoid", Tip::Land, 0.0),
     ] {
         let [pinion, gear] = [z1, z2].map(|teeth| specification(teeth, module, 0.0));
-        let nearest = Pair::new(pinion, gear, None).unwrap().centre_distance;
-        let pair = Pair::new(pinion, gear, Some(nearest + apart)).unwrap();
+        let nearest = GearPair::new(pinion, gear, None).unwrap().centre_distance;
+        let pair = GearPair::new(pinion, gear, Some(nearest + apart)).unwrap();
         let outlines = SIDES.map(|side| with_tip(pair.side(side), family, tip));
         for (side, [own, mate]) in SIDES.into_iter().zip([[0, 1], [1, 0]].map(|order| order.map(|at| &outlines[at]))) {
             let found = TipPath::new(&pair, side, Corner::all(mate)).distance(&own.segments);
@@ -110,14 +110,14 @@ fn the_distance_is_that_of_the_path_s_polyline() {
 #[test]
 fn the_corner_is_on_the_flank_where_contact_begins() {
     for shift in [0.0, 0.35] {
-        let pair = Pair::new(specification(25, 3.0, shift), specification(40, 3.0, 0.1), None).unwrap();
+        let pair = GearPair::new(specification(25, 3.0, shift), specification(40, 3.0, 0.1), None).unwrap();
         for side in SIDES {
             let path = TipPath::new(&pair, side, vec![Corner::of(pair.side(side.other()))]);
             let outline = shaped(pair.side(side), "trochoid").unwrap();
-            let flank = outline.segments.iter().position(|segment| segment.part == Part::Flank).unwrap();
+            let flank = outline.segments.iter().position(|segment| segment.part == OutlinePart::Flank).unwrap();
             let up_to = |roll: f64| {
                 let mut segments = outline.segments[..=flank].to_vec();
-                (segments[flank].part, segments[flank].to) = (Part::Root, roll);
+                (segments[flank].part, segments[flank].to) = (OutlinePart::Root, roll);
                 path.distance(&segments)
             };
             let lowest = pair.lowest_roll(side);
@@ -146,7 +146,7 @@ proptest! {
             given
         };
         let distance = 0.5e-3 * (f64::from(z1 + z2) + apart) + 1e-3 * (x1 + x2);
-        let Ok(pair) = Pair::new(of(z1, x1), of(z2, x2), Some(distance)) else { return Err(TestCaseError::reject("no such pair")) };
+        let Ok(pair) = GearPair::new(of(z1, x1), of(z2, x2), Some(distance)) else { return Err(TestCaseError::reject("no such pair")) };
         for side in SIDES {
             let outlines = SIDES.map(|side| shaped(pair.side(side), "trochoid").unwrap());
             let [own, mate] = if side == Side::Pinion { [&outlines[0], &outlines[1]] } else { [&outlines[1], &outlines[0]] };

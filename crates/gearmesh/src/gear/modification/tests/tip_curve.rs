@@ -1,14 +1,14 @@
 //! `arc` and `parabola` against their definition: the curves of `mei2016` in the article's own frame, met by bisection.
 
 use crate::gear::fixtures::{design, standard};
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::modification::Modification;
 use crate::gear::modification::template::Template;
 use declare::record::Value::{self, Choice, Number, Quantity, Range};
 
 /// The article's pair: 30/40, module 3 mm.
-fn pair() -> Pair {
-    Pair::new(standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0), None).unwrap()
+fn pair() -> GearPair {
+    GearPair::new(standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0), None).unwrap()
 }
 
 const FAMILIES: [&str; 2] = ["arc", "parabola"];

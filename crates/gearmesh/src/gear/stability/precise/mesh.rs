@@ -36,7 +36,7 @@ fn flattening(gears: &[GearInputs; 2]) -> Double {
     (of(&gears[0]) + of(&gears[1])).times_power_of_two(2.0) / Double::PI
 }
 
-/// How a pair of teeth answers an interference.
+/// How a pair of teeth answers an penetration.
 enum Spring {
     Linear {
         stiffness: Double,
@@ -51,17 +51,17 @@ enum Spring {
 }
 
 impl Spring {
-    /// Load and rate of a pair without crowning at an interference > 0.
-    fn flat(&self, interference: Double) -> (Double, Double) {
+    /// Load and rate of a pair without crowning at an penetration > 0.
+    fn flat(&self, penetration: Double) -> (Double, Double) {
         match self {
-            Self::Linear { stiffness } => (*stiffness * interference, *stiffness),
+            Self::Linear { stiffness } => (*stiffness * penetration, *stiffness),
             Self::Logarithmic { constant, rate, compliance, width } => {
                 let last = (*constant / *rate - 1.0).exponential();
-                if interference >= (*compliance + *rate) * last {
-                    return ((interference - *rate * last) / *compliance * *width, Double::from(*width) / *compliance);
+                if penetration >= (*compliance + *rate) * last {
+                    return ((penetration - *rate * last) / *compliance * *width, Double::from(*width) / *compliance);
                 }
                 // p(c + α − β ln p) = w, Newton's method on ln p.
-                let target = interference.logarithm();
+                let target = penetration.logarithm();
                 let mut logarithm = target - (*compliance + *rate).logarithm();
                 let mut total = *compliance + *constant - *rate * logarithm;
                 for _ in 0..60 {
@@ -72,23 +72,23 @@ impl Spring {
                         break;
                     }
                 }
-                (interference / total * *width, Double::from(*width) / (total - *rate))
+                (penetration / total * *width, Double::from(*width) / (total - *rate))
             }
         }
     }
 
     /// The same on a face with a parabola of the height `crown` at its ends.
-    fn response(&self, interference: Double, crown: Double) -> (Double, Double) {
+    fn response(&self, penetration: Double, crown: Double) -> (Double, Double) {
         if crown.high == 0.0 {
-            return self.flat(interference);
+            return self.flat(penetration);
         }
-        let (_, stiffness) = self.flat(interference);
-        let share = if interference >= crown { Double::ONE } else { (interference / crown).sqrt() };
-        let passed = share * (interference - crown * share.square() / 3.0);
+        let (_, stiffness) = self.flat(penetration);
+        let share = if penetration >= crown { Double::ONE } else { (penetration / crown).sqrt() };
+        let passed = share * (penetration - crown * share.square() / 3.0);
         (stiffness * passed, stiffness * share)
     }
 
-    /// An interference at which the pair carries `load` or more.
+    /// An penetration at which the pair carries `load` or more.
     fn above(&self, load: Double, crown: Double) -> Double {
         let flat = match self {
             Self::Linear { stiffness } => load / *stiffness,
@@ -103,10 +103,10 @@ impl Spring {
 }
 
 /// A position with everything that is needed there.
-struct State {
+struct SolvedPosition {
     error: Double,
-    /// Interference of each pair: below zero by what is still open.
-    interference: Vec<Double>,
+    /// Penetration of each pair: below zero by what is still open.
+    penetration: Vec<Double>,
 }
 
 impl<'a> Mesh<'a> {
@@ -188,7 +188,7 @@ impl<'a> Mesh<'a> {
         ramp(&self.inputs.gears[0], self.end - s) + ramp(&self.inputs.gears[1], s - self.start)
     }
 
-    fn state(&self, teeth: &[Tooth; 2], position: Double, pairs: usize) -> State {
+    fn state(&self, teeth: &[Tooth; 2], position: Double, pairs: usize) -> SolvedPosition {
         let places: Vec<Double> =
             (0..pairs).map(|index| self.start + position + self.base_pitch * index as f64).collect();
         let springs: Vec<Spring> = places.iter().map(|s| self.spring(teeth, *s)).collect();
@@ -199,9 +199,9 @@ impl<'a> Mesh<'a> {
         for _ in 0..300 {
             let (mut load, mut slope) = (Double::ZERO, Double::ZERO);
             for (spring, gap) in springs.iter().zip(&open) {
-                let interference = approach - *gap;
-                if interference > Double::ZERO {
-                    let (part, rise) = spring.response(interference, self.crown);
+                let penetration = approach - *gap;
+                if penetration > Double::ZERO {
+                    let (part, rise) = spring.response(penetration, self.crown);
                     load += part;
                     slope += rise;
                 }
@@ -212,7 +212,10 @@ impl<'a> Mesh<'a> {
                 break;
             }
         }
-        State { error: gaps[nearest] + approach, interference: open.iter().map(|gap| approach - *gap).collect() }
+        SolvedPosition {
+            error: gaps[nearest] + approach,
+            penetration: open.iter().map(|gap| approach - *gap).collect(),
+        }
     }
 
     /// F/δ without modifications, in the middle of the zones with the fewest and with the most pairs.
@@ -294,11 +297,11 @@ impl<'a> Mesh<'a> {
             return Vec::new();
         }
         let place = |index: usize| from + (to - from) * (index as f64) / STEPS as f64;
-        let states: Vec<State> = (0..=STEPS).map(|index| self.state(teeth, place(index), pairs)).collect();
+        let states: Vec<SolvedPosition> = (0..=STEPS).map(|index| self.state(teeth, place(index), pairs)).collect();
         let mut touches = Vec::new();
         for index in 0..STEPS {
             for (pair, level) in (0..pairs).flat_map(|pair| [(pair, Double::ZERO), (pair, self.crown)]) {
-                let carries = |state: &State| state.interference[pair] > level;
+                let carries = |state: &SolvedPosition| state.penetration[pair] > level;
                 if carries(&states[index]) != carries(&states[index + 1]) {
                     let (mut low, mut high) = (place(index), place(index + 1));
                     for _ in 0..70 {

@@ -5,11 +5,11 @@
 use super::*;
 use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::contact::{CornerContact, SliceCoupling};
-use crate::gear::fixtures::{Part, constant, coupled, design, pair, pair_with_contact_ratio, varying};
-use crate::gear::geometry::Pair;
+use crate::gear::fixtures::{NamedModification, constant, coupled, design, pair, pair_with_contact_ratio, varying};
+use crate::gear::geometry::GearPair;
 use crate::gear::transmission_error::curve::{Summary, Wanted};
 use crate::gear::transmission_error::cycle::Settings;
-use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::load_case::LoadCase;
 use declare::record::Value::{Choice, Quantity};
 
 const TORQUE: f64 = 50.0;
@@ -18,11 +18,11 @@ fn settings(slices: usize) -> Settings {
     Settings { slices, slice_coupling: SliceCoupling::Plate, ..Settings::default() }
 }
 
-fn cycle(pair: &Pair, compliance: &PairCompliance, slices: usize) -> MeshCycle {
+fn cycle(pair: &GearPair, compliance: &PairCompliance, slices: usize) -> MeshCycle {
     MeshCycle::new(pair, compliance, settings(slices)).unwrap()
 }
 
-fn independent(pair: &Pair, compliance: &PairCompliance) -> MeshCycle {
+fn independent(pair: &GearPair, compliance: &PairCompliance) -> MeshCycle {
     MeshCycle::new(pair, compliance, Settings::default()).unwrap()
 }
 
@@ -39,9 +39,9 @@ fn amount(value: f64) -> (&'static str, declare::record::Value) {
     ("amount", Quantity(value))
 }
 
-fn crowned(pair: &Pair, crown: f64, slope: f64) -> Design {
+fn crowned(pair: &GearPair, crown: f64, slope: f64) -> Design {
     let tip = [amount(8e-6), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
-    let mut parts: Vec<Part> = vec![("tip_relief", "both", &tip)];
+    let mut parts: Vec<NamedModification> = vec![("tip_relief", "both", &tip)];
     let (crown, slope) = ([amount(crown)], [amount(slope)]);
     parts.push(("lead_crowning", "pinion", &crown));
     parts.push(("helix_slope", "gear", &slope));
@@ -50,7 +50,7 @@ fn crowned(pair: &Pair, crown: f64, slope: f64) -> Design {
 
 /// Without cuts where the face begins to touch: coupled slices have none, and both are to be sampled alike.
 fn summary(cycle: &MeshCycle, design: &Design, torque: f64) -> Summary {
-    Loading::new(cycle, design, torque).for_extrema().summary(Wanted { harmonics: 3, pressure: true })
+    LoadCase::new(cycle, design, torque).for_extrema().summary(Wanted { harmonics: 3, pressure: true })
 }
 
 #[track_caller]
@@ -65,7 +65,7 @@ fn a_flat_face_is_one_slice() {
     for compliance in models() {
         let design = design(&pair, &[("tip_relief", "both", &[amount(6e-6), ("length", Quantity(4e-3))])]).unwrap();
         let (plate, none) = (cycle(&pair, &compliance, 17), independent(&pair, &compliance));
-        assert!(Loading::new(&plate, &design, TORQUE).slices.is_none());
+        assert!(LoadCase::new(&plate, &design, TORQUE).slices().is_none());
         assert_eq!(summary(&plate, &design, TORQUE), summary(&none, &design, TORQUE));
     }
 }
@@ -79,7 +79,7 @@ fn an_even_load_is_that_of_independent_slices() {
             let design = crowned(&pair, 1e-300, 0.0);
             for torque in torques {
                 let (plate, none) = (cycle(&pair, &compliance, 13), independent(&pair, &compliance));
-                assert!(Loading::new(&plate, &design, torque).slices.is_some());
+                assert!(LoadCase::new(&plate, &design, torque).slices().is_some());
                 let (plate, none) = (summary(&plate, &design, torque), summary(&none, &design, torque));
                 close(plate.peak_to_peak, none.peak_to_peak, 1e-9);
                 close(plate.mean, none.mean, 1e-12);
@@ -123,9 +123,9 @@ fn the_matrix_is_symmetric_and_positive_definite() {
     for factor in [0.0, 0.2, 1.0, 30.0] {
         let mut cycle = cycle(&pair, &compliance, 9);
         cycle.across = cycle.across.map(|across| across.scaled(factor));
-        let loading = Loading::new(&cycle, &design, TORQUE);
+        let loading = LoadCase::new(&cycle, &design, TORQUE);
         let positions: Vec<f64> = (0..3).map(|pair| cycle.path_position(0.5e-3, pair)).collect();
-        let (mut matrix, own) = loading.slices.unwrap().matrix(&cycle, &[0, 1, 2], &positions);
+        let (mut matrix, own) = loading.slices().unwrap().matrix(&cycle, &[0, 1, 2], &positions);
         let size = 27;
         for (slice, own) in own.into_iter().enumerate() {
             matrix[slice * (size + 1)] += own;
@@ -171,16 +171,17 @@ fn loads_balance_and_slices_fulfil_complementarity() {
             let design = crowned(&pair, crown, slope);
             let cycle = cycle(&pair, &compliance, 11);
             for torque in [1e-12, 1e-3, 50.0, 3000.0, 1e9] {
-                let loading = Loading::new(&cycle, &design, torque);
+                let loading = LoadCase::new(&cycle, &design, torque);
                 for point in loading.curve(Wanted::default()) {
                     assert!(point.loads.iter().all(|load| *load >= 0.0));
                     close(point.loads.iter().sum(), loading.force, 1e-12);
                 }
-                let sliced = loading.slices.as_ref().unwrap();
+                let sliced = loading.slices().unwrap();
                 let (springs, gaps) = ([0, 1, 2], [0.0, 2e-6, 1e-6]);
                 let positions = springs.map(|spring| cycle.path_position(1e-3, spring));
+                let reach = WithinReach::of((0..3).map(|pair| (springs[pair], positions[pair], gaps[pair])));
                 let given = [loading.force, 10.0 * torque / TORQUE * 1e-5 + 1e-5];
-                let (found, smallest) = sliced.slices(&cycle, &springs, &positions, &gaps, given);
+                let (found, smallest) = sliced.slices(&cycle, &reach, given);
                 let (matrix, _) = sliced.matrix(&cycle, &springs, &positions);
                 let (count, size) = (sliced.count(), 3 * sliced.count());
                 assert_eq!(count, if slope == 0.0 { 6 } else { 11 }, "mirror images are one");
@@ -191,10 +192,10 @@ fn loads_balance_and_slices_fulfil_complementarity() {
                         .map(|(influence, load)| influence * load)
                         .sum();
                     let gap = gaps[slice / count] + sliced.lows[slice % count] - smallest;
-                    let interference = found.approach - gap - deflection;
+                    let penetration = found.approach - gap - deflection;
                     let size = found.approach + gap + deflection;
-                    assert!((interference - found.interference[slice]).abs() < 1e-12 * size);
-                    assert!(load >= 0.0 && (load > 0.0) == (interference > 1e-13 * size), "{load:e} {interference:e}");
+                    assert!((penetration - found.penetration[slice]).abs() < 1e-12 * size);
+                    assert!(load >= 0.0 && (load > 0.0) == (penetration > 1e-13 * size), "{load:e} {penetration:e}");
                 }
             }
         }
@@ -215,7 +216,7 @@ fn crowned_pair(crown: f64, accuracy: [f64; 2]) {
     let slices = 60;
     let cycle = cycle(&pair, &compliance, slices);
     let design = design(&pair, &[("lead_crowning", "pinion", &[amount(crown)])]).unwrap();
-    let loading = Loading::new(&cycle, &design, TORQUE);
+    let loading = LoadCase::new(&cycle, &design, TORQUE);
     let found = loading.state(0.4 * cycle.period(), 1);
     let across = cycle.across.as_ref().unwrap();
     let s = cycle.path_position(0.4 * cycle.period(), 0);
@@ -273,7 +274,7 @@ fn coupling_makes_a_crowned_face_stiffer() {
         for (crown, slope) in [(15e-6, 0.0), (0.0, 30e-6)] {
             let design = crowned(&pair, crown, slope);
             let stiffness = |cycle: &MeshCycle| {
-                let points = Loading::new(cycle, &design, TORQUE).curve(Wanted::default());
+                let points = LoadCase::new(cycle, &design, TORQUE).curve(Wanted::default());
                 points.iter().map(|point| point.tangent_stiffness).collect::<Vec<_>>()
             };
             let mean = |values: Vec<f64>| values.iter().sum::<f64>() / values.len() as f64;
@@ -301,7 +302,7 @@ fn results_converge_with_the_slices() {
             let design = crowned(&pair, crown, slope);
             let mean = |slices: usize| {
                 let cycle = cycle(&pair, &compliance, slices);
-                Loading::new(&cycle, &design, TORQUE).summary(Wanted::default()).mean
+                LoadCase::new(&cycle, &design, TORQUE).summary(Wanted::default()).mean
             };
             let counts = [6, 12, 24, 48];
             let fine = mean(96);
@@ -321,11 +322,12 @@ fn a_mirrored_lead_gives_the_mirrored_loads() {
     for compliance in models() {
         let cycle = cycle(&pair, &compliance, 15);
         let designs = [9e-6, -9e-6].map(|slope| crowned(&pair, 7e-6, slope));
-        let loadings = designs.each_ref().map(|design| Loading::new(&cycle, design, TORQUE));
+        let loadings = designs.each_ref().map(|design| LoadCase::new(&cycle, design, TORQUE));
         let [one, other] = loadings.each_ref().map(|loading| {
-            let sliced = loading.slices.as_ref().unwrap();
-            let positions = [0, 1].map(|spring| cycle.path_position(1e-3, spring));
-            sliced.slices(&cycle, &[0, 1], &positions, &[0.0, 1e-6], [loading.force, 4e-5]).0
+            let sliced = loading.slices().unwrap();
+            let pair = |spring: usize| (spring, cycle.path_position(1e-3, spring), 1e-6 * spring as f64);
+            let reach = WithinReach::of((0..2).map(pair));
+            sliced.slices(&cycle, &reach, [loading.force, 4e-5]).0
         });
         for pair in 0..2 {
             for slice in 0..15 {
@@ -344,14 +346,14 @@ fn a_mirrored_lead_gives_the_mirrored_loads() {
 #[test]
 fn swapping_the_gears_changes_nothing() {
     let pair = pair();
-    let swapped = Pair {
+    let swapped = GearPair {
         pinion: pair.gear.clone(),
         gear: pair.pinion.clone(),
         start_of_contact: pair.tangent_length - pair.end_of_contact,
         end_of_contact: pair.tangent_length - pair.start_of_contact,
         ..pair.clone()
     };
-    let of = |pair: &Pair, one: &'static str, two: &'static str| {
+    let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         let tip = [amount(8e-6), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
         design(pair, &[("tip_relief", one, &tip), ("lead_crowning", two, &[amount(9e-6)])]).unwrap()
     };
@@ -376,7 +378,7 @@ fn peak_to_peak_hardly_depends_on_the_number_of_positions() {
             let run = |positions: usize| {
                 let settings = Settings { positions, ..settings(11) };
                 let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
-                Loading::new(&cycle, &design, TORQUE).peak_to_peak()
+                LoadCase::new(&cycle, &design, TORQUE).peak_to_peak()
             };
             let (coarse, fine) = (run(64), run(400));
             println!("{:e}", (coarse / fine - 1.0).abs());
@@ -398,7 +400,7 @@ fn corner_contact_and_coupled_slices_go_together() {
         let design = crowned(&pair, 1e-300, 0.0);
         close(summary(&plate, &design, TORQUE).mean, summary(&none, &design, TORQUE).mean, 1e-11);
         let design = crowned(&pair, 9e-6, 0.0);
-        let loading = Loading::new(&plate, &design, 400.0);
+        let loading = LoadCase::new(&plate, &design, 400.0);
         for point in loading.curve(Wanted { harmonics: 0, pressure: true }) {
             close(point.loads.iter().sum(), loading.force, 1e-12);
             assert!(point.pressure.unwrap() > 0.0);

@@ -8,10 +8,10 @@ use crate::gear::modification::Design;
 use crate::gear::random::Random;
 use crate::gear::transmission_error::curve::{Point, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-use crate::gear::transmission_error::loading::Loading;
+use crate::gear::transmission_error::load_case::LoadCase;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
 use declare::error::Place;
-use declare::record::{Entry, Record, Value};
+use declare::record::{PlacedValue, Record, Value};
 
 /// Below this an error is not that of sampling: the floor of the estimates.
 const FLOOR: f64 = 1e-10;
@@ -32,7 +32,7 @@ impl Case {
 
     fn random_with(random: &mut Random, settings: Settings) -> Self {
         let pair = random.pair();
-        let entry = |value| Entry { value, place: Place::default() };
+        let entry = |value| PlacedValue { value, place: Place::default() };
         let fields = vec![
             ("shear_factor", entry(Value::Number(1.2))),
             ("body", entry(Value::Choice("sainsot"))),
@@ -51,15 +51,15 @@ impl Case {
     }
 
     fn is_sliced(&self) -> bool {
-        Loading::new(&self.base, &self.design, self.torque).uses_slices()
+        LoadCase::new(&self.base, &self.design, self.torque).uses_slices()
     }
 
     fn peak_to_peak(&self, settings: Settings) -> f64 {
-        Loading::new(&self.base.sampled(settings), &self.design, self.torque).peak_to_peak()
+        LoadCase::new(&self.base.sampled(settings), &self.design, self.torque).peak_to_peak()
     }
 
     fn variance(&self, settings: Settings) -> f64 {
-        Loading::new(&self.base.sampled(settings), &self.design, self.torque).variance()
+        LoadCase::new(&self.base.sampled(settings), &self.design, self.torque).variance()
     }
 }
 
@@ -154,7 +154,7 @@ fn a_curve_spans_its_summary_s_peak_to_peak() {
         let corner_contact = random.of(&[CornerContact::None, CornerContact::Exact]);
         let settings = Settings { positions: random.of(&[8, 16, 24]), slices: 5, corner_contact, ..TRUTH };
         let case = (case, Case::random_with(&mut random, settings));
-        let loading = Loading::new(&case.1.base, &case.1.design, case.1.torque);
+        let loading = LoadCase::new(&case.1.base, &case.1.design, case.1.torque);
         let (points, summary) = loading.curve_and_summary(Wanted::default());
         let spanned = |value: &dyn Fn(&Point) -> f64| {
             let values = || points.iter().map(value);

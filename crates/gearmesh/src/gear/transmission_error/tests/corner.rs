@@ -6,18 +6,18 @@ use crate::gear::contact::separation::Facing;
 use crate::gear::fixtures;
 use crate::gear::geometry::Side;
 
-fn exact(pair: &Pair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
+fn exact(pair: &GearPair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
     let settings = Settings { positions, slices: 9, corner_contact: CornerContact::Exact, ..Settings::default() };
     MeshCycle::new(pair, compliance, settings).unwrap()
 }
 
 /// Gentle, long and steep: the last are like those of mei2016, 44 to 220 µm over 5 to 25 % of the flank.
-fn designs(pair: &Pair) -> Vec<Design> {
+fn designs(pair: &GearPair) -> Vec<Design> {
     let tip = |gear: &'static str, amount: f64, length: f64, curve: &'static str| {
         (gear, [("amount", Quantity(amount)), ("length", Quantity(length)), ("curve", Choice(curve))])
     };
     let of = |reliefs: &[(&'static str, [(&'static str, declare::record::Value); 3])]| {
-        let parts: Vec<fixtures::Part> =
+        let parts: Vec<fixtures::NamedModification> =
             reliefs.iter().map(|(gear, values)| ("tip_relief", *gear, &values[..])).collect();
         design(pair, &parts).unwrap()
     };
@@ -44,7 +44,7 @@ fn the_curve_is_continuous() {
             let cycle = exact(&pair, &compliance, 24);
             for design in designs(&pair) {
                 for torque in [1e-9, 50.0, 2500.0] {
-                    let loading = Loading::new(&cycle, &design, torque);
+                    let loading = LoadCase::new(&cycle, &design, torque);
                     let points = loading.curve(Wanted::default());
                     let value = |point: &super::super::curve::Point| point.transmission_error;
                     let (first, last) = (points[0], points[points.len() - 1]);
@@ -75,7 +75,7 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
         for (index, design) in designs(&pair).iter().enumerate() {
             for torque in [1.0, 50.0, 300.0, 2500.0] {
                 let [coarse, middle, fine] =
-                    [0, 1, 2].map(|cycle: usize| Loading::new(&cycles[cycle], design, torque).peak_to_peak());
+                    [0, 1, 2].map(|cycle: usize| LoadCase::new(&cycles[cycle], design, torque).peak_to_peak());
                 for found in [coarse, middle] {
                     assert!((found / fine - 1.0).abs() < 1e-9, "{which} {index} {torque}: {found:e} {fine:e}");
                 }
@@ -85,7 +85,7 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
 }
 
 /// Separation and rolls by polar coordinates, as in no line of the program.
-fn by_hand(pair: &Pair, s: f64) -> (f64, f64, f64) {
+fn by_hand(pair: &GearPair, s: f64) -> (f64, f64, f64) {
     let (one, two, length) = (pair.pinion.base_radius, pair.gear.base_radius, pair.tangent_length);
     let corner = |own: f64, other: f64, position: f64, nominal: f64| {
         let (roll, angle) = ((length - position) / own, (nominal - position) / own);
@@ -134,7 +134,7 @@ fn unmodified_gears_agree_with_a_brute_grid() {
             }
             (low, high, sum) = (low.min(b), high.max(b), sum + b);
         }
-        let summary = Loading::new(&cycle, &Design::default(), torque).summary(Wanted::default());
+        let summary = LoadCase::new(&cycle, &Design::default(), torque).summary(Wanted::default());
         close(summary.peak_to_peak, high - low, 3e-4);
         assert!(summary.peak_to_peak >= (high - low) * (1.0 - 1e-9), "a grid cannot see more than everything");
         close(summary.mean, sum / f64::from(count), 1e-6);
@@ -156,7 +156,7 @@ fn loads_balance_and_fulfil_complementarity() {
         let profiles = [Pinion, Gear]
             .map(|side| design.side(side).iter().map(|part| part.modification.as_ref()).collect::<Vec<_>>());
         let gaps = crate::gear::contact::gap::Gaps::new(&pair, &profiles);
-        for point in Loading::new(&cycle, design, torque).curve(Wanted::default()) {
+        for point in LoadCase::new(&cycle, design, torque).curve(Wanted::default()) {
             close(point.loads.iter().sum(), torque / pair.pinion.base_radius, 1e-12);
             let places = (0..5).map(|spring| point.path_position + BASE_PITCH * (f64::from(spring) - 1.0));
             let springs: Vec<_> = places.enumerate().filter(|(_, s)| gaps.at(*s).is_some()).collect();
@@ -196,7 +196,7 @@ fn swapping_the_gears_mirrors_the_curve() {
     let swapped = swapped(&pair);
     let tip = [("amount", Quantity(30e-6)), ("length", Quantity(2e-3)), ("curve", Choice("parabolic"))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
-    let of = |pair: &Pair, one: &'static str, two: &'static str| {
+    let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root)]).unwrap()
     };
     let (one, two) = (of(&pair, "pinion", "gear"), of(&swapped, "gear", "pinion"));
@@ -205,8 +205,8 @@ fn swapping_the_gears_mirrors_the_curve() {
             PairCompliance { pinion: compliance.gear.clone(), gear: compliance.pinion.clone(), ..compliance.clone() };
         let (here, there) = (exact(&pair, &compliance, 24), exact(&swapped, &mirrored, 24));
         for (torque, designs) in [(50.0, [&one, &two]), (2500.0, [&one, &two]), (50.0, [&Design::default(); 2])] {
-            let here = Loading::new(&here, designs[0], torque);
-            let there = Loading::new(&there, designs[1], torque * 48.0 / 19.0);
+            let here = LoadCase::new(&here, designs[0], torque);
+            let there = LoadCase::new(&there, designs[1], torque * 48.0 / 19.0);
             for index in 0..200 {
                 let tau = BASE_PITCH * (f64::from(index) + 0.3) / 200.0;
                 // E folded into the cycle is where the mirrored one starts.
@@ -229,7 +229,7 @@ fn a_vanishing_load_gives_the_nominal_curve() {
         let (with, without) = (exact(&pair, &compliance, 64), cycle(&pair, &compliance));
         let design = Design::default();
         let change = |torque: f64| {
-            let of = |cycle: &MeshCycle| Loading::new(cycle, &design, torque).summary(Wanted::default());
+            let of = |cycle: &MeshCycle| LoadCase::new(cycle, &design, torque).summary(Wanted::default());
             let (with, without) = (of(&with), of(&without));
             if torque < 60.0 {
                 close(with.peak_to_peak, without.peak_to_peak, 0.02);
@@ -253,11 +253,11 @@ fn relief_above_the_deflection_leaves_no_corner_contact() {
     let cycle = exact(&pair, &varying(), 64);
     let relief = [("amount", Quantity(40e-6)), ("length", Quantity(4.5e-3))];
     let design = design(&pair, &[("tip_relief", "both", &relief)]).unwrap();
-    let loading = Loading::new(&cycle, &design, 50.0);
+    let loading = LoadCase::new(&cycle, &design, 50.0);
     let points = loading.curve(Wanted::default());
     assert!(points.iter().all(|point| point.loads[0] == 0.0 && point.loaded_pairs <= point.pairs));
     let unmodified = Design::default();
-    let touched = Loading::new(&cycle, &unmodified, 50.0).curve(Wanted::default());
+    let touched = LoadCase::new(&cycle, &unmodified, 50.0).curve(Wanted::default());
     assert!(touched.iter().any(|point| point.loads[0] > 0.0 && point.loaded_pairs > point.pairs));
 }
 
@@ -267,11 +267,11 @@ fn vanishing_torques_are_solved_and_absurd_ones_refused() {
     for compliance in models() {
         let cycle = exact(&pair, &compliance, 24);
         for design in designs(&pair) {
-            let small = Loading::new(&cycle, &design, 1e-9);
+            let small = LoadCase::new(&cycle, &design, 1e-9);
             assert!(small.peak_to_peak().is_finite());
             let summary = small.summary(Wanted { harmonics: 2, pressure: true });
             assert!(small.holds(summary.largest.value) && summary.mean.is_finite() && summary.variance >= 0.0);
-            let absurd = Loading::new(&cycle, &design, 1e9);
+            let absurd = LoadCase::new(&cycle, &design, 1e9);
             assert!(absurd.peak_to_peak().is_infinite() && absurd.variance().is_infinite());
             let summary = absurd.summary(Wanted::default());
             assert!(!absurd.holds(summary.largest.value));
@@ -285,20 +285,20 @@ fn the_model_ends_where_a_tip_would_pass_the_other() {
     let pair = pair();
     let cycle = exact(&pair, &varying(), 24);
     let design = Design::default();
-    let limit = Loading::new(&cycle, &design, 1.0).largest_approach();
+    let limit = LoadCase::new(&cycle, &design, 1.0).largest_approach();
     let ends = [Side::Gear, Side::Pinion].map(|side| {
         let facing = Facing::new(&pair, side);
         facing.corner(facing.reach(BASE_PITCH)).separation
     });
     close(limit, ends[0].min(ends[1]), 1e-6);
-    let largest = |torque: f64| Loading::new(&cycle, &design, torque).summary(Wanted::default()).largest.value;
+    let largest = |torque: f64| LoadCase::new(&cycle, &design, torque).summary(Wanted::default()).largest.value;
     let (mut low, mut high) = (1e3, 1e6);
     for _ in 0..40 {
         let middle = 0.5 * (low + high);
         if largest(middle) < limit { low = middle } else { high = middle }
     }
-    assert!(Loading::new(&cycle, &design, 0.999 * low).peak_to_peak().is_finite());
-    assert!(Loading::new(&cycle, &design, 1.001 * high).peak_to_peak().is_infinite());
+    assert!(LoadCase::new(&cycle, &design, 0.999 * low).peak_to_peak().is_finite());
+    assert!(LoadCase::new(&cycle, &design, 1.001 * high).peak_to_peak().is_infinite());
 }
 
 #[test]
@@ -309,6 +309,6 @@ fn more_pairs_than_the_solver_holds_are_refused() {
     assert!(message.contains("with corner contact it must be 1 to 4"), "{message}");
     // End of contact near the gear's base circle.
     let high = exact(&pair_with_contact_ratio(3.2), &varying(), 24);
-    let summary = Loading::new(&high, &Design::default(), 50.0).summary(Wanted::default());
+    let summary = LoadCase::new(&high, &Design::default(), 50.0).summary(Wanted::default());
     assert!(summary.loaded_contact_ratio > 3.2 && summary.peak_to_peak.is_finite());
 }

@@ -11,9 +11,9 @@ fn without_gaps_everything_is_proportional_to_the_torque() {
     for compliance in [varying(), coupled()] {
         let cycle = cycle(&pair, &compliance);
         let design = Design::default();
-        let unit = Loading::new(&cycle, &design, 1.0).summary(Wanted::default());
+        let unit = LoadCase::new(&cycle, &design, 1.0).summary(Wanted::default());
         for torque in [1e-12, 1e-3, 50.0, 1e6, 1e9] {
-            let scaled = Loading::new(&cycle, &design, torque).summary(Wanted::default());
+            let scaled = LoadCase::new(&cycle, &design, torque).summary(Wanted::default());
             close(scaled.peak_to_peak, torque * unit.peak_to_peak, 1e-12);
             close(scaled.mean, torque * unit.mean, 1e-13);
         }
@@ -31,7 +31,7 @@ fn loads_balance_the_torque() {
             for crown in [0.0, 20e-6] {
                 for torque in [1e-12, 1.0, 50.0, 1e9] {
                     let design = ga_design(&pair, 15e-6, 5e-3, crown);
-                    for point in Loading::new(&cycle, &design, torque).curve(Wanted::default()) {
+                    for point in LoadCase::new(&cycle, &design, torque).curve(Wanted::default()) {
                         assert!(point.loads.iter().all(|load| *load >= 0.0));
                         close(point.loads.iter().sum(), torque / pair.pinion.base_radius, 1e-12);
                         assert!(point.loaded_pairs >= 1 && point.loaded_pairs <= point.pairs);
@@ -50,7 +50,7 @@ fn coupled_states_fulfil_complementarity() {
     let cycle = cycle(&pair, &compliance);
     let design = ga_design(&pair, 9e-6, 5e-3, 0.0);
     let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
-    for point in Loading::new(&cycle, &design, 80.0).curve(Wanted::default()) {
+    for point in LoadCase::new(&cycle, &design, 80.0).curve(Wanted::default()) {
         for j in 0..point.pairs {
             let s = |pair_index: usize| point.path_position + BASE_PITCH * pair_index as f64;
             let u1 = |index: usize| s(index) / pair.pinion.base_radius;
@@ -83,8 +83,9 @@ fn coupling_of_nothing_is_no_coupling_and_coupling_softens_double_contact() {
         tooth.neighbours = vec![Surface::from_values([0.0; 2], [2.0; 2], [1, 1], &[0.0])];
     }
     let design = ga_design(&pair, 6.93e-6, 3.41e-3, 5.67e-6);
-    let of =
-        |compliance: &PairCompliance| Loading::new(&cycle(&pair, compliance), &design, 50.0).summary(Wanted::default());
+    let of = |compliance: &PairCompliance| {
+        LoadCase::new(&cycle(&pair, compliance), &design, 50.0).summary(Wanted::default())
+    };
     let (summed, zero) = (of(&varying()), of(&nothing));
     close(zero.peak_to_peak, summed.peak_to_peak, 1e-10);
     close(zero.variance, summed.variance, 1e-10);
@@ -102,7 +103,7 @@ fn crowning_has_its_closed_form_at_every_size() {
     for crown in [0.0, 1e-300, 1e-15, 6e-6, 20e-6] {
         for torque in [1e-12, 1e-3, 50.0, 1e9] {
             let design = crowned(&pair, crown);
-            let point = Loading::new(&cycle, &design, torque).curve(Wanted::default())[3];
+            let point = LoadCase::new(&cycle, &design, torque).curve(Wanted::default())[3];
             let (w, edge) = (point.transmission_error, crown * 0.81);
             let t = if w >= edge { 1.0 } else { (w / edge).sqrt() };
             let force = STIFFNESS * (w * t - edge * t * t * t / 3.0);
@@ -121,7 +122,7 @@ fn relief_above_the_deflection_shortens_the_contact() {
     let (amount, length) = (50e-6, 2.5e-3);
     let linear = [("amount", Quantity(amount)), ("length", Quantity(length))];
     let design = design(&pair, &[("tip_relief", "both", &linear)]).unwrap();
-    let summary = Loading::new(&cycle, &design, torque(force)).summary(Wanted::default());
+    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted::default());
     // A relieved pair carries load as long as its gap is below F/k, at each end of the path.
     let lost = 2.0 * length * (1.0 - force / STIFFNESS / amount);
     close(summary.loaded_contact_ratio, pair.contact_ratio - lost / BASE_PITCH, 1e-9);
@@ -136,14 +137,14 @@ fn the_load_dependent_law_survives_vanishing_and_absurd_loads() {
     for exponent in -12..=9 {
         let torque = libm::pow(10.0, f64::from(exponent));
         for design in [Design::default(), crowned(&pair, 5e-6)] {
-            let summary = Loading::new(&cycle, &design, torque).summary(Wanted { harmonics: 2, pressure: true });
+            let summary = LoadCase::new(&cycle, &design, torque).summary(Wanted { harmonics: 2, pressure: true });
             assert!(summary.mean.is_finite() && summary.peak_to_peak > 0.0 && summary.variance > 0.0, "{torque}");
         }
         let (_, stiffness) = stiffness(&cycle, torque);
         assert!(stiffness.mean > before, "stiffer under more load");
         before = stiffness.mean;
     }
-    assert_eq!(Loading::new(&cycle, &Design::default(), 0.0).peak_to_peak(), 0.0);
+    assert_eq!(LoadCase::new(&cycle, &Design::default(), 0.0).peak_to_peak(), 0.0);
 }
 
 /// The driven gear's tip meets the driver's root: relieving either is the same.
@@ -164,7 +165,7 @@ fn root_relief_is_the_other_gears_tip_relief() {
             design(&pair, &[("root_relief", "pinion", &values(if counted == "tip" { "root" } else { counted }))])
                 .unwrap();
         let tip = design(&pair, &[("tip_relief", "gear", &values(counted))]).unwrap();
-        let of = |design: &Design| Loading::new(&cycle, design, 50.0).summary(Wanted::default());
+        let of = |design: &Design| LoadCase::new(&cycle, design, 50.0).summary(Wanted::default());
         close(of(&root).peak_to_peak, of(&tip).peak_to_peak, 1e-11);
         close(of(&root).variance, of(&tip).variance, 1e-11);
     }
@@ -175,7 +176,7 @@ fn root_relief_is_the_other_gears_tip_relief() {
 fn relief_of_no_length_is_the_limit_of_short_ones() {
     let pair = pair();
     let cycle = cycle(&pair, &varying());
-    let of = |design: &Design| Loading::new(&cycle, design, 50.0).summary(Wanted::default());
+    let of = |design: &Design| LoadCase::new(&cycle, design, 50.0).summary(Wanted::default());
     let plain = of(&Design::default());
     for length in [0.0, 1e-300, 1e-15, 1e-9] {
         let found = of(&ga_design(&pair, 7e-6, length, 0.0));
@@ -190,7 +191,7 @@ fn both_limits_at_the_ends_of_the_zones_are_sampled() {
     let pair = pair();
     let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
     let design = Design::default();
-    let points = Loading::new(&cycle, &design, torque(1000.0)).curve(Wanted::default());
+    let points = LoadCase::new(&cycle, &design, torque(1000.0)).curve(Wanted::default());
     let shared = pair.end_of_contact - pair.start_of_contact - BASE_PITCH;
     let at_b: Vec<usize> =
         points.iter().filter(|point| (point.cycle_position - shared).abs() < 1e-15).map(|point| point.pairs).collect();
@@ -209,7 +210,7 @@ fn gaps_that_are_equal_but_for_rounding_are_walked_once() {
     let design = design(&pair, &[("profile_slope", "both", &[("amount", Quantity(8e-6))])]).unwrap();
     for torque in [0.0, 1e-12] {
         let mut visits = 0;
-        Loading::new(&cycle, &design, torque).walk(cycle.period() / 16.0, |_, _| visits += 1);
+        LoadCase::new(&cycle, &design, torque).walk(cycle.period() / 16.0, |_, _| visits += 1);
         assert!(visits < 1000, "{visits} spans");
     }
 }

@@ -2,18 +2,23 @@
 
 use super::*;
 use crate::gear::contact::SliceCoupling;
-use crate::gear::fixtures::Part;
+use crate::gear::fixtures::NamedModification;
 use crate::gear::transmission_error::curve::Summary;
 use crate::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, SLICES};
 
 const TORQUE: f64 = 50.0;
 
 /// The summary of a design on a cycle of its own, and what it took.
-fn counted(contact: ContactLaw, settings: Settings, parts: &[Part], pressure: bool) -> (Summary, [u64; 3]) {
+fn counted(
+    contact: ContactLaw,
+    settings: Settings,
+    parts: &[NamedModification],
+    pressure: bool,
+) -> (Summary, [u64; 3]) {
     let pair = pair();
     let cycle = MeshCycle::new(&pair, &PairCompliance { contact, ..varying() }, settings).unwrap();
     let design = design(&pair, parts).unwrap();
-    let summary = Loading::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure });
+    let summary = LoadCase::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure });
     let work = cycle.work();
     (summary, [&SLICES, &CONTACT_SOLVES, &CONTACT_PRESSURES].map(|counter| work.count(counter)))
 }
@@ -27,7 +32,7 @@ fn a_face_is_cut_into_slices_only_where_no_closed_form_exists() {
     let settings = Settings { slices: 9, ..Settings::default() };
     let crown = [amount(8e-6)];
     let ends = [amount(8e-6), ("length", Quantity(5e-3)), ("curve", Choice("power")), ("exponent", Number(1.7))];
-    let slices = |contact, parts: &[Part]| counted(contact, settings, parts, false).1[0];
+    let slices = |contact, parts: &[NamedModification]| counted(contact, settings, parts, false).1[0];
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
         assert_eq!(slices(contact, &[]), 1, "nothing varies across the face");
         assert_eq!(slices(contact, &[("tip_relief", "both", &[amount(8e-6), ("fraction", Number(0.5))])]), 1);
@@ -64,8 +69,8 @@ fn half_of_an_even_face_stands_for_both() {
             for (part, slices) in [("lead_crowning", counts[0]), ("end_relief", counts[1]), ("end_relief", counts[0])] {
                 let settings = Settings { slices, slice_coupling: coupling, ..Settings::default() };
                 let values: &[_] = if part == "lead_crowning" { &crown } else { &ends };
-                let even: Vec<Part> = vec![(part, "pinion", values)];
-                let not_even: Vec<Part> = vec![even[0], ("helix_slope", "gear", &nothing)];
+                let even: Vec<NamedModification> = vec![(part, "pinion", values)];
+                let not_even: Vec<NamedModification> = vec![even[0], ("helix_slope", "gear", &nothing)];
                 let (half, [few, ..]) = counted(contact, settings, &even, true);
                 let (whole, [many, ..]) = counted(contact, settings, &not_even, true);
                 let expected = if many == 1 { 1 } else { many.div_ceil(2) };

@@ -4,14 +4,14 @@
 use super::super::Gaps;
 use super::profiles;
 use crate::gear::fixtures::{design, standard};
-use crate::gear::geometry::{Gear, Pair, Side};
+use crate::gear::geometry::{Gear, GearPair, Side};
 use declare::record::Value::Number;
 
 const POINTS: u32 = 3000;
 
 /// The pair of mei2016: 30/40, module 3 mm.
-fn article() -> Pair {
-    Pair::new(standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0), None).unwrap()
+fn article() -> GearPair {
+    GearPair::new(standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0), None).unwrap()
 }
 
 /// What a tip is cut by: the curve, A as a share of the tip thickness and B as a share of the involute.
@@ -68,7 +68,7 @@ fn between(line: &[[f64; 2]], x: f64) -> Option<f64> {
 }
 
 /// By how much the gear of `moving` turns, along its base circle, until its flank touches the other one.
-fn turn(pair: &Pair, outlines: [&[[f64; 2]]; 2], s: f64, moving: Side) -> f64 {
+fn turn(pair: &GearPair, outlines: [&[[f64; 2]]; 2], s: f64, moving: Side) -> f64 {
     let (fixed, own, other) = match moving {
         Side::Pinion => (outlines[1], outlines[0], pair.gear.base_radius),
         Side::Gear => (outlines[0], outlines[1], pair.pinion.base_radius),

@@ -7,7 +7,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::super::curve::{Curve, Part, Segment};
+use super::super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
 
@@ -115,14 +115,14 @@ impl Base {
         let root = Some(place + libm::acos(root)).filter(|place| reaches(*place));
         let middle = Some(2.0 * PI - libm::acos(beside) - self.half_pitch).filter(|place| reaches(*place));
         let end = [root, middle].into_iter().flatten().fold(down, f64::min);
-        let arc = Segment { part: Part::Root, curve: Curve::Arc { centre, radius }, from: end, to: start };
+        let arc = Segment { part: OutlinePart::Root, curve: Curve::Arc { centre, radius }, from: end, to: start };
         let lowest = arc.start();
         let height = libm::hypot(lowest[0], lowest[1]);
         let stops = [root, middle].into_iter().flatten().all(|place| end < place - SAME_PLACE);
         let mut segments = Vec::new();
         if stops && height > self.root_radius * (1.0 + 1e-12) {
             let foot = lowest.map(|part| part * self.root_radius / height);
-            segments.push(Segment::straight(Part::Step, foot, lowest));
+            segments.push(Segment::straight(OutlinePart::Step, foot, lowest));
         }
         segments.push(arc);
         segments

@@ -3,7 +3,7 @@
 //! Where the rack undercuts, the trochoid ends where it crosses the involute, and the profile has a corner there. Must not
 //! know: other roots.
 
-use super::super::curve::{Curve, Part, Segment};
+use super::super::curve::{Curve, OutlinePart, Segment};
 use super::{Family, Root, Toe};
 use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
 use crate::gear::geometry::{Gear, Rack, Specification, trochoid};
@@ -51,7 +51,7 @@ impl Root for Trochoid {
                 return Err(Problem::CutOff { height: Millimetres(height), teeth: given.teeth, least }.into());
             }
         }
-        let root = Segment { part: Part::Root, curve: Curve::Trochoid(curve), from: 0.0, to };
+        let root = Segment { part: OutlinePart::Root, curve: Curve::Trochoid(curve), from: 0.0, to };
         Ok(Toe { segments: vec![root], form_roll: other.form_roll })
     }
 }

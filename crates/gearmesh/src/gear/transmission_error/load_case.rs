@@ -5,6 +5,7 @@
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
 use super::sliced::Sliced;
+use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
@@ -12,29 +13,48 @@ use crate::gear::contact::gap::Gaps;
 use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
 use crate::gear::geometry::Side;
 use crate::gear::modification::{Design, Modification};
-use crate::numeric::complementarity::{self, Balance, Coupling, MOST, PerSpring, Springs};
+use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
 /// Places closer than this share of the base pitch are one.
 pub(super) const CLOSEST: f64 = 1e-10;
 
 /// A design under a torque.
 #[derive(Clone)]
-pub struct Loading<'a> {
+pub struct LoadCase<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
     face: Face<'a>,
-    /// Where slices of the face hold each other.
-    pub(super) slices: Option<Sliced<'a>>,
+    regime: Regime<'a>,
     profiles: [Vec<&'a dyn Modification>; 2],
-    corners: Option<Corners<'a>>,
+    touching: Touching<'a>,
     /// Cycle positions at which a profile is not smooth, ascending.
     pub(super) breaks: Vec<f64>,
-    /// Interferences at which the load of a pair is not smooth, besides 0.
+    /// Penetrations at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
     pub(super) count: Count<'a>,
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
+}
+
+/// What holds what when the load spreads; each costs more than the one before.
+#[derive(Clone)]
+enum Regime<'a> {
+    /// Nothing is transmitted: the nearest pair just touches.
+    Unloaded,
+    /// Each pair holds itself.
+    Pairs,
+    /// Each pair's load deflects its neighbours too.
+    CoupledPairs,
+    /// Each slice's load deflects all others.
+    CoupledSlices(Sliced<'a>),
+}
+
+/// Where a pair may touch.
+#[derive(Clone)]
+enum Touching<'a> {
+    LineOfAction,
+    Anywhere(Box<Corners<'a>>),
 }
 
 /// What corner contact adds.
@@ -47,23 +67,12 @@ struct Corners<'a> {
     limit: f64,
 }
 
-/// The pairs of one position that can carry load.
-struct Carried {
-    count: usize,
-    /// Their places among the springs of the position, ascending.
-    springs: [usize; MOST],
-    positions: PerSpring,
-    /// From the smallest one up.
-    gaps: PerSpring,
-    smallest: f64,
-}
-
-/// The interference of a pair that is out of reach \[m\]: far from any contact.
+/// The penetration of a pair that is out of reach \[m\]: far from any contact.
 const OUT_OF_REACH: f64 = -1.0;
 
 /// Equilibrium at one position.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub struct Equilibrium {
     /// The approach without load: the smallest gap and what the whole face has lost \[m\].
     pub unloaded: f64,
     pub balance: Balance,
@@ -71,7 +80,7 @@ pub struct State {
     peaks: Option<PerSpring>,
 }
 
-impl State {
+impl Equilibrium {
     /// δ \[m\].
     #[must_use]
     pub fn transmission_error(&self) -> f64 {
@@ -79,7 +88,7 @@ impl State {
     }
 }
 
-impl<'a> Loading<'a> {
+impl<'a> LoadCase<'a> {
     /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair just touches.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
@@ -89,36 +98,42 @@ impl<'a> Loading<'a> {
             parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
         };
         let profiles = [of(Side::Pinion), of(Side::Gear)];
-        let slices = Sliced::new(cycle, design, &face);
-        // Where slices hold each other, the load of a pair is no function of its interference alone.
-        let levels = if slices.is_some() { Vec::new() } else { face.levels() };
+        let sliced = Sliced::new(cycle, design, &face);
+        // Where slices hold each other, the load of a pair is no function of its penetration alone.
+        let levels = if sliced.is_some() { Vec::new() } else { face.levels() };
         let uncoupled = match cycle.elasticity {
             Elasticity::Linear(_) => face.slices_passed(),
             Elasticity::Logarithmic { .. } => face.slices(),
         };
-        let count = Count::new(&cycle.work, slices.as_ref().map_or(uncoupled, Sliced::count));
+        let count = Count::new(&cycle.work, sliced.as_ref().map_or(uncoupled, Sliced::count));
         // Slices take up load one by one: no cut makes what they carry smooth.
         // Corners come into contact as a square root: halving goes on to no end there, at three times the price.
-        let refines = slices.is_none() && !face.is_sliced() && cycle.settings.corner_contact == CornerContact::None;
-        let mut loading = Self {
+        let refines = sliced.is_none() && !face.is_sliced() && cycle.settings.corner_contact == CornerContact::None;
+        let regime = match sliced {
+            _ if torque <= 0.0 => Regime::Unloaded,
+            Some(sliced) => Regime::CoupledSlices(sliced),
+            None if cycle.coupled() => Regime::CoupledPairs,
+            None => Regime::Pairs,
+        };
+        let mut load_case = Self {
             count,
             levels,
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
-            slices,
+            regime,
             face,
             profiles,
-            corners: None,
+            touching: Touching::LineOfAction,
             breaks: Vec::new(),
             refines,
         };
         let pair = &cycle.pair;
         if cycle.settings.corner_contact == CornerContact::Exact {
-            loading.add_corners();
-            return loading;
+            load_case.add_corners();
+            return load_case;
         }
         let mut breaks = Vec::new();
-        for (side, profile) in loading.profiles.iter().enumerate() {
+        for (side, profile) in load_case.profiles.iter().enumerate() {
             for roll in profile.iter().flat_map(|part| part.profile_breaks()).flatten() {
                 let s = if side == 0 {
                     roll * pair.pinion.base_radius
@@ -132,8 +147,8 @@ impl<'a> Loading<'a> {
             }
         }
         breaks.sort_by(f64::total_cmp);
-        loading.breaks = breaks;
-        loading
+        load_case.breaks = breaks;
+        load_case
     }
 
     fn add_corners(&mut self) {
@@ -164,13 +179,13 @@ impl<'a> Loading<'a> {
         };
         self.breaks = gaps.breaks(window).into_iter().map(fold).collect();
         self.breaks.sort_by(f64::total_cmp);
-        self.corners = Some(Corners { gaps, window, limit });
+        self.touching = Touching::Anywhere(Box::new(Corners { gaps, window, limit }));
     }
 
     /// Whether the number of slices across the face matters: not where every pair's load has a closed form.
     #[must_use]
     pub fn uses_slices(&self) -> bool {
-        self.slices.is_some()
+        self.slices().is_some()
             || self.face.is_sliced()
             || (!self.face.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
     }
@@ -185,7 +200,15 @@ impl<'a> Loading<'a> {
     /// The largest approach that is modelled \[m\].
     #[must_use]
     pub fn largest_approach(&self) -> f64 {
-        self.corners.as_ref().map_or(f64::INFINITY, |corners| corners.limit)
+        match &self.touching {
+            Touching::LineOfAction => f64::INFINITY,
+            Touching::Anywhere(corners) => corners.limit,
+        }
+    }
+
+    /// Where slices hold each other.
+    pub(super) fn slices(&self) -> Option<&Sliced<'a>> {
+        if let Regime::CoupledSlices(slices) = &self.regime { Some(slices) } else { None }
     }
 
     /// The same without the cuts that only integrals need, since extrema are refined on the function itself.
@@ -197,14 +220,15 @@ impl<'a> Loading<'a> {
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
-        Self { force: 0.0, levels: Vec::new(), refines: false, ..self.clone() }
+        Self { force: 0.0, regime: Regime::Unloaded, levels: Vec::new(), refines: false, ..self.clone() }
     }
 
     /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
     /// too far apart.
     #[must_use]
     pub fn gap(&self, s: f64) -> Option<f64> {
-        if let Some(Corners { gaps, window, .. }) = &self.corners {
+        if let Touching::Anywhere(corners) = &self.touching {
+            let Corners { gaps, window, .. } = corners.as_ref();
             return if s >= window.0 && s <= window.1 { gaps.at(s) } else { None };
         }
         let pair = &self.cycle.pair;
@@ -217,79 +241,44 @@ impl<'a> Loading<'a> {
 
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
-    pub fn state(&self, position: f64, pairs: usize) -> State {
-        let carried = self.carried(position, pairs);
-        let Carried { count, springs, positions, gaps, smallest } = &carried;
-        let (springs, positions, gaps) = (&springs[..*count], &positions[..*count], &gaps[..*count]);
-        let (balance, peaks) = if self.force > 0.0 {
-            self.loaded(springs, positions, gaps)
-        } else {
-            (complementarity::unloaded(gaps), None)
-        };
-        let unloaded = smallest + self.face.offset;
-        if self.corners.is_none() {
-            return State { unloaded, balance, peaks };
+    pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
+        let reach = self.within_reach(position, pairs);
+        let (balance, peaks) = self.balance(&reach);
+        let unloaded = reach.smallest + self.face.offset;
+        if matches!(self.touching, Touching::LineOfAction) {
+            return Equilibrium { unloaded, balance, peaks };
         }
         let spread = |values: &PerSpring, missing: f64| {
-            let mut spread = [missing; MOST];
-            springs.iter().zip(values).for_each(|(&spring, value)| spread[spring] = *value);
+            let mut spread = [missing; MOST_SPRINGS];
+            reach.springs().iter().zip(values).for_each(|(&spring, value)| spread[spring] = *value);
             spread
         };
-        let (loads, interference) = (spread(&balance.loads, 0.0), spread(&balance.interference, OUT_OF_REACH));
-        let balance = Balance { loads, interference, ..balance };
-        State { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
+        let (loads, penetration) = (spread(&balance.loads, 0.0), spread(&balance.penetration, OUT_OF_REACH));
+        let balance = Balance { loads, penetration, ..balance };
+        Equilibrium { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
     }
 
-    /// Where slices hold each other: the load, over the force, that a slice carries and its recomputed interference does not
+    /// Where slices hold each other: the load, over the force, that a slice carries and its recomputed penetration does not
     /// explain, and its limit in roundings.
     #[must_use]
     pub fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
-        let slices = self.slices.as_ref()?;
-        let Carried { count, springs, positions, gaps, .. } = self.carried(position, pairs);
-        let (positions, gaps) = (&positions[..count], &gaps[..count]);
-        let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
-        let given = [self.force, self.alone(positions[nearest])];
-        Some(slices.unexplained(self.cycle, &springs[..count], positions, gaps, given))
+        let slices = self.slices()?;
+        let reach = self.within_reach(position, pairs);
+        let above = self.alone(reach.nearest_position());
+        Some(slices.unexplained(self.cycle, &reach, [self.force, above]))
     }
 
     /// The pairs that can touch at all; with corner contact, only those that come near enough.
-    fn carried(&self, position: f64, pairs: usize) -> Carried {
-        let mut carried = Carried {
-            count: 0,
-            springs: [0; MOST],
-            positions: [0.0; MOST],
-            gaps: [0.0; MOST],
-            smallest: f64::INFINITY,
-        };
-        let mut nearest = 0.0;
-        for spring in 0..self.cycle.springs(pairs) {
+    fn within_reach(&self, position: f64, pairs: usize) -> WithinReach {
+        let springs = 0..self.cycle.springs(pairs);
+        let mut reach = WithinReach::of(springs.filter_map(|spring| {
             let s = self.cycle.path_position(position, spring);
-            if let Some(gap) = self.gap(s) {
-                let index = carried.count;
-                (carried.springs[index], carried.positions[index], carried.gaps[index]) = (spring, s, gap);
-                carried.count += 1;
-                if gap < carried.smallest {
-                    (carried.smallest, nearest) = (gap, s);
-                }
-            }
+            self.gap(s).map(|gap| (spring, s, gap))
+        }));
+        if matches!(self.touching, Touching::Anywhere(_)) && self.force > 0.0 {
+            reach.keep_nearer_than(self.alone(reach.nearest_position()));
         }
-        for gap in &mut carried.gaps[..carried.count] {
-            *gap -= carried.smallest;
-        }
-        if self.corners.is_some() && self.force > 0.0 {
-            let near_enough = self.alone(nearest);
-            let mut kept = 0;
-            for index in 0..carried.count {
-                if carried.gaps[index] <= near_enough {
-                    carried.springs[kept] = carried.springs[index];
-                    carried.positions[kept] = carried.positions[index];
-                    carried.gaps[kept] = carried.gaps[index];
-                    kept += 1;
-                }
-            }
-            carried.count = kept;
-        }
-        carried
+        reach
     }
 
     /// An approach that no equilibrium exceeds, from the smallest gap on, where the nearest pair is at `s`: twice that of
@@ -299,54 +288,52 @@ impl<'a> Loading<'a> {
         let width = self.cycle.face_width;
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
-            Elasticity::Logarithmic { .. } => self.slice(s).interference(self.force / width),
+            Elasticity::Logarithmic { .. } => self.slice(s).penetration(self.force / width),
         };
         2.0 * (alone + self.face.mean)
     }
 
-    fn loaded(&self, springs: &[usize], positions: &[f64], gaps: &[f64]) -> (Balance, Option<PerSpring>) {
+    /// Equilibrium of the pairs within reach and, where slices hold each other, the largest load per width of each.
+    fn balance(&self, reach: &WithinReach) -> (Balance, Option<PerSpring>) {
+        let slices = match &self.regime {
+            Regime::Unloaded => return (complementarity::unloaded(reach.gaps()), None),
+            Regime::Pairs | Regime::CoupledPairs => None,
+            Regime::CoupledSlices(slices) => Some(slices),
+        };
         self.count.solve();
-        if let Some(slices) = &self.slices {
-            let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
-            let above = self.alone(positions[nearest]);
-            let (balance, peaks) = slices.balance(self.cycle, springs, positions, gaps, [self.force, above]);
+        if let Some(slices) = slices {
+            let above = self.alone(reach.nearest_position());
+            let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
             return (balance, Some(peaks));
         }
         let balance = match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
-                let mut stiffness = [0.0; MOST];
-                for (slot, s) in stiffness.iter_mut().zip(positions) {
+                let mut stiffness = [0.0; MOST_SPRINGS];
+                for (slot, s) in stiffness.iter_mut().zip(reach.positions()) {
                     *slot = graded.value(*s);
                 }
-                let above = complementarity::linear_approach(&stiffness, gaps, self.force) + self.face.mean;
-                self.balanced(springs, positions, gaps, &LinearPairs { stiffness, face: &self.face }, above)
+                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + self.face.mean;
+                self.balance_of_pairs(reach, &LinearPairs { stiffness, face: &self.face }, above)
             }
             Elasticity::Logarithmic { .. } => {
-                let mut slices = [InSeries::NONE; MOST];
-                for (slot, s) in slices.iter_mut().zip(positions) {
+                let mut slices = [InSeries::NONE; MOST_SPRINGS];
+                for (slot, s) in slices.iter_mut().zip(reach.positions()) {
                     *slot = self.slice(*s);
                 }
                 let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face };
-                let nearest = gaps.iter().position(|gap| *gap == 0.0).unwrap_or(0);
-                let above = pairs.above(nearest, self.force);
-                self.balanced(springs, positions, gaps, &pairs, above)
+                let above = pairs.above(reach.nearest(), self.force);
+                self.balance_of_pairs(reach, &pairs, above)
             }
         };
         (balance, None)
     }
 
-    fn balanced(
-        &self,
-        springs: &[usize],
-        positions: &[f64],
-        gaps: &[f64],
-        responses: &impl Springs,
-        above: f64,
-    ) -> Balance {
-        if !self.cycle.coupled() || gaps.len() < 2 {
+    fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
+        let (springs, positions, gaps) = (reach.springs(), reach.positions(), reach.gaps());
+        if matches!(self.regime, Regime::Pairs) || gaps.len() < 2 {
             return complementarity::balance(responses, gaps, self.force, above);
         }
-        let mut coupling: Coupling = [PerSpring::default(); MOST];
+        let mut coupling: Coupling = [PerSpring::default(); MOST_SPRINGS];
         for (ahead, &spring) in springs.iter().enumerate() {
             for behind in 0..ahead {
                 let value = self.cycle.coupling(positions[behind], spring - springs[behind]);
@@ -368,18 +355,18 @@ impl<'a> Loading<'a> {
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
     #[must_use]
-    pub fn line_load(&self, position: f64, state: &State, spring: usize) -> f64 {
+    pub fn line_load(&self, position: f64, state: &Equilibrium, spring: usize) -> f64 {
         if let Some(peaks) = state.peaks {
             return peaks[spring];
         }
-        let interference = state.balance.interference[spring];
-        if self.face.is_flat() || interference <= 0.0 {
+        let penetration = state.balance.penetration[spring];
+        if self.face.is_flat() || penetration <= 0.0 {
             return state.balance.loads[spring] / self.cycle.face_width;
         }
         let s = self.cycle.path_position(position, spring);
         match &self.cycle.elasticity {
-            Elasticity::Linear(stiffness) => stiffness.value(s) * interference / self.cycle.face_width,
-            Elasticity::Logarithmic { .. } => self.slice(s).load(interference).0,
+            Elasticity::Linear(stiffness) => stiffness.value(s) * penetration / self.cycle.face_width,
+            Elasticity::Logarithmic { .. } => self.slice(s).load(penetration).0,
         }
     }
 }

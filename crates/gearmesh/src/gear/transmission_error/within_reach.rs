@@ -1,0 +1,83 @@
+//! The pairs of one position that can carry load.
+//!
+//! Must not know: what a gap is made of, how loads are found.
+
+use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring};
+
+/// Pairs and the gaps they stand behind, in the order of the springs of the position.
+pub(super) struct WithinReach {
+    count: usize,
+    springs: [usize; MOST_SPRINGS],
+    positions: PerSpring,
+    gaps: PerSpring,
+    /// The smallest gap \[m\]; all others count from it.
+    pub(super) smallest: f64,
+    nearest: usize,
+}
+
+impl WithinReach {
+    /// From spring, path position and gap of each pair.
+    pub(super) fn of(pairs: impl Iterator<Item = (usize, f64, f64)>) -> Self {
+        let mut reach = Self {
+            count: 0,
+            springs: [0; MOST_SPRINGS],
+            positions: [0.0; MOST_SPRINGS],
+            gaps: [0.0; MOST_SPRINGS],
+            smallest: f64::INFINITY,
+            nearest: 0,
+        };
+        for (index, (spring, position, gap)) in pairs.enumerate() {
+            (reach.springs[index], reach.positions[index], reach.gaps[index]) = (spring, position, gap);
+            reach.count += 1;
+            if gap < reach.smallest {
+                (reach.smallest, reach.nearest) = (gap, index);
+            }
+        }
+        for gap in &mut reach.gaps[..reach.count] {
+            *gap -= reach.smallest;
+        }
+        reach
+    }
+
+    /// Leaves out the pairs whose gap is larger.
+    pub(super) fn keep_nearer_than(&mut self, gap: f64) {
+        let nearest = self.springs[self.nearest];
+        let mut kept = 0;
+        for index in 0..self.count {
+            if self.gaps[index] <= gap {
+                self.springs[kept] = self.springs[index];
+                self.positions[kept] = self.positions[index];
+                self.gaps[kept] = self.gaps[index];
+                if self.springs[kept] == nearest {
+                    self.nearest = kept;
+                }
+                kept += 1;
+            }
+        }
+        self.count = kept;
+    }
+
+    /// The places of the pairs among the springs of the position, ascending.
+    pub(super) fn springs(&self) -> &[usize] {
+        &self.springs[..self.count]
+    }
+
+    /// Path positions \[m\].
+    pub(super) fn positions(&self) -> &[f64] {
+        &self.positions[..self.count]
+    }
+
+    /// Gaps from the smallest one up \[m\].
+    pub(super) fn gaps(&self) -> &[f64] {
+        &self.gaps[..self.count]
+    }
+
+    /// Which pair is the nearest.
+    pub(super) fn nearest(&self) -> usize {
+        self.nearest
+    }
+
+    pub(super) fn nearest_position(&self) -> f64 {
+        self.positions[self.nearest]
+    }
+}
