@@ -4,10 +4,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::AtomicBool;
 
-use crate::support::record;
 use declare::seed::Seed;
 use declare::work::Tally;
-use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, PairCompliance};
+use gearmesh::gear::compliance::energy::Energy;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::modification::{self, Design};
@@ -123,9 +123,7 @@ pub fn assumptions(contact: ContactLaw, coupled: bool) -> Assumptions {
 
 /// The energy method on a pair.
 pub fn compliance(pair: &GearPair, assumptions: Assumptions) -> PairCompliance {
-    let method = compliance::method("energy").expect("it is registered");
-    let options = record(method.member.fields, &[]);
-    (method.tabulate)(&options, pair, assumptions).expect("the study runs with it").compliance
+    Energy::default().tabulate(pair, assumptions).expect("the study runs with it").compliance
 }
 
 /// 64 positions, 33 slices.

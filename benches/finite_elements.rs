@@ -8,13 +8,14 @@ use criterion::{Criterion, criterion_group};
 use crate::accuracy::{relative, seconds};
 use crate::article::{Stages, study_path};
 use crate::brief;
-use crate::support::record;
-use declare::record::Value;
-use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, Tabulated};
+use gearmesh::gear::compliance::finite_element::FiniteElement;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, Tabulated};
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::modification::{Design, family};
+use gearmesh::gear::modification::arc::ArcRelief;
+use gearmesh::gear::modification::tip_curve::{FlankPoint, Formulas, Through, TipPoint};
+use gearmesh::gear::modification::{Design, Gears};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
@@ -29,10 +30,9 @@ const COUPLED: Assumptions = Assumptions {
 };
 
 /// Both gears of a pair, from so many elements across, to an accuracy if one is wanted.
-fn tabulate(pair: &GearPair, across: i64, accuracy: Option<f64>) -> Tabulated {
-    let method = compliance::method("finite_element").expect("it is registered");
-    let options = record(method.member.fields, &[("elements_across", Value::Integer(across))]);
-    (method.tabulate)(&options, pair, Assumptions { accuracy, ..COUPLED }).expect("the pair can be meshed")
+fn tabulate(pair: &GearPair, elements_across: u32, accuracy: Option<f64>) -> Tabulated {
+    let method = FiniteElement { elements_across, ..FiniteElement::default() };
+    method.tabulate(pair, Assumptions { accuracy, ..COUPLED }).expect("the pair can be meshed")
 }
 
 /// Two gears of 48 teeth: half of the time is one gear's.
@@ -115,17 +115,14 @@ fn sweeps() {
     let base =
         MeshCycle::new(&pair, &compliance, Settings { corner_contact: CornerContact::Exact, ..Settings::default() })
             .expect("its contact ratio is 1.68");
-    let arc = family("arc").expect("it is registered");
     let design = |index: u32| {
         let mut design = Design::default();
         let level = |place: u32| f64::from(index / 5_u32.pow(place) % 5);
-        for (gear, place) in [("gear", 0), ("pinion", 2)] {
-            let values = [
-                ("gear", Value::Choice(gear)),
-                ("tip_share", Value::Number(0.02 + 0.02 * level(place + 1))),
-                ("length_share", Value::Number(0.05 + 0.05 * level(place))),
-            ];
-            design.add(arc, &record(arc.member.fields, &values), &pair).expect("the article has it");
+        for (gears, place) in [(Gears::Gear, 0), (Gears::Pinion, 2)] {
+            let tip = TipPoint::Share(0.02 + 0.02 * level(place + 1));
+            let start = FlankPoint::Share(0.05 + 0.05 * level(place));
+            let arc = ArcRelief { through: Through { tip, start, formulas: Formulas::Derived } };
+            design.add(gears, &arc, &pair).expect("the article has it");
         }
         design
     };

@@ -5,10 +5,11 @@ use std::hint::black_box;
 use criterion::{Criterion, criterion_group};
 
 use crate::brief;
-use crate::support::record;
+use gearmesh::gear::geometry::outline::Outline;
+use gearmesh::gear::geometry::outline::roots::Root;
+use gearmesh::gear::geometry::outline::roots::trochoid::Trochoid;
 use gearmesh::gear::geometry::outline::sample::Density;
 use gearmesh::gear::geometry::outline::tip::Tip;
-use gearmesh::gear::geometry::outline::{Outline, roots};
 use gearmesh::gear::geometry::validity::{Mating, Validity};
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
@@ -30,9 +31,7 @@ fn specification(teeth: u32, profile_shift: f64, tip_radius: f64) -> Specificati
 }
 
 fn outline(gear: &Gear) -> Option<Outline> {
-    let family = roots::family("trochoid").expect("it is registered");
-    let options = record(family.member.fields, &[]);
-    let toe = (family.read)(&options).toe(gear).ok()?;
+    let toe = Trochoid::default().toe(gear).ok()?;
     Outline::new(gear, toe, Tip::Land, None).ok()
 }
 

@@ -15,9 +15,6 @@ mod optimize;
 mod program;
 mod storage;
 mod summary;
-#[allow(dead_code, reason = "benches use a part of what tests share")]
-#[path = "../tests/it/support.rs"]
-mod support;
 
 use std::time::Duration;
 

@@ -3,7 +3,7 @@
 use criterion::{Criterion, criterion_group};
 
 use crate::brief;
-use crate::support::record;
+use declare::declared::record_of;
 use declare::error::Failure;
 use declare::record::Value;
 use declare::seed::Seed;
@@ -16,7 +16,7 @@ fn methods(criterion: &mut Criterion) {
     let bench = |criterion: &mut Criterion, name: &str, method: &str, given: &[(&str, Value)]| {
         let fields =
             METHODS.iter().find(|entry| entry.member.name == method).map_or(&[][..], |entry| entry.member.fields);
-        let method = optimize::method(method, &record(fields, given)).expect("the method is registered");
+        let method = optimize::read(method, &record_of(fields, given)).expect("the method is registered");
         criterion.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let bounds =

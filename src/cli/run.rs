@@ -9,6 +9,7 @@ use indicatif::MultiProgress;
 
 use super::Ending;
 use super::arguments::{self, Places, Selection};
+use super::draw;
 use super::pages;
 use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
@@ -18,6 +19,7 @@ use crate::program::PROGRAM;
 use crate::stage::Want;
 use declare::error::Diagnostic;
 use studygraph::runner::execute::{self, RunError};
+use studygraph::runner::fault::Fault;
 use studygraph::runner::limits::{Limits, MOST_ROWS};
 use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
@@ -116,10 +118,7 @@ fn run_one(
     let run = || execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw));
     let (outcome, published) = watcher.telling(run).map_err(|error| match error {
         RunError::Study(diagnostic) => unknown(&diagnostic),
-        RunError::Beyond(diagnostic) => {
-            let (path, text) = (study.path.clone(), study.text.clone());
-            Ending::Invalid(Box::new(LoadError { path, text, diagnostic }))
-        }
+        RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(error_in(study, &diagnostic))),
         RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
     })?;
@@ -132,6 +131,11 @@ fn run_one(
     ended(study, &outcome, &folder, verdicts.take().as_deref(), how.quiet)
 }
 
+/// What is wrong with a study that was read, to show the line.
+fn error_in(study: &Study, wrong: &Diagnostic) -> LoadError {
+    LoadError { path: study.path.clone(), text: study.text.clone(), diagnostic: Box::new(wrong.clone()) }
+}
+
 /// What somebody else had changed.
 fn rewritten(study: &Study, published: &Published) -> String {
     let line =
@@ -142,6 +146,11 @@ fn rewritten(study: &Study, published: &Published) -> String {
 fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&str>, quiet: bool) -> Result<(), Ending> {
     if outcome.stopped {
         return Err(Ending::Stopped);
+    }
+    for (_, fault) in outcome.faults() {
+        if let Fault::Study(wrong) = fault {
+            draw::invalid_study(&error_in(study, wrong));
+        }
     }
     let failed: Vec<&str> = outcome.faults().map(|(stage, _)| stage).collect();
     if !failed.is_empty() {

@@ -3,13 +3,14 @@
 //! A field that is added to one of these tables is a field of every kind that has it. Must not know: what any kind computes.
 
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
+use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
 use declare::record::Record;
-use gearmesh::gear::compliance::{self, Assumptions, CONTACT_LAWS, ContactLaw, Method};
-use gearmesh::gear::contact::{CORNER_CONTACTS, CornerContact, MOST_COUPLED_SLICES, SLICE_COUPLINGS, SliceCoupling};
+use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, Method};
+use gearmesh::gear::contact::{CornerContact, MOST_COUPLED_SLICES, SliceCoupling};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::geometry::root::{ROOT_SHAPES, RootShape};
+use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::trace::NODES;
 use gearmesh::gear::work::CONTACT_SOLVES;
@@ -18,41 +19,44 @@ use gearmesh::gear::work::CONTACT_SOLVES;
 pub const TEETH: &[Field] = &[
     Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
         .default("energy"),
-    Field::choice("root", ROOT_SHAPES, "The shape of the tooth below its involute.").default("trochoid"),
-    Field::choice("contact", CONTACT_LAWS, "How the flanks flatten against each other.").default("linear"),
+    Field::choice("root", RootShape::CHOICES, "The shape of the tooth below its involute.").default("trochoid"),
+    Field::choice("contact", ContactLaw::CHOICES, "How the flanks flatten against each other.").default("linear"),
 ];
 
-/// The method with its options, and what it is to assume, but for what is each kind's own.
+/// How teeth deflect: a method, what it is called, and what it is to assume but for what is each kind's own.
+pub struct Teeth {
+    pub name: &'static str,
+    pub method: Box<dyn Method>,
+    pub assumptions: Assumptions,
+}
+
+/// What [`TEETH`] says.
 ///
 /// # Errors
 /// When the choices exclude each other.
-pub fn teeth(record: &Record) -> Result<(&'static Method, Record, Assumptions), Diagnostic> {
+pub fn teeth(record: &Record) -> Result<Teeth, Diagnostic> {
     let (name, options) = record.member("method");
-    let (root, contact) = (record.choice("root"), record.choice("contact"));
-    let unknown = |word: &str| Diagnostic::new(format!("unknown choice `{word}`"));
-    let method = compliance::method(name).ok_or_else(|| unknown(name))?;
-    let assumptions = Assumptions {
-        root: RootShape::named(root).ok_or_else(|| unknown(root))?,
-        contact: ContactLaw::named(contact).ok_or_else(|| unknown(contact))?,
-        coupled: record.choice("coupling") == "body",
-        torque: None,
-        accuracy: None,
-    };
-    if method.whole_pair && assumptions.contact != ContactLaw::Linear {
+    let method = compliance::read(name, options)?;
+    let (root, contact): (RootShape, ContactLaw) = (record.word("root"), record.word("contact"));
+    if method.whole_pair() && contact != ContactLaw::Linear {
         return Err(Diagnostic::new(format!(
-            "`contact: {contact}` is not for the method `{name}`: its stiffness is that of a pair with its contact"
+            "`contact: {}` is not for the method `{name}`: its stiffness is that of a pair with its contact",
+            contact.word()
         ))
         .at(record.place_of("contact"))
         .help("leave `contact` out, or take a method of single teeth"));
     }
-    if method.needs_fillet && assumptions.root == RootShape::BaseCircle {
+    if method.needs_fillet() && root == RootShape::BaseCircle {
         return Err(Diagnostic::new(format!(
-            "`root: {root}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite"
+            "`root: {}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite",
+            root.word()
         ))
         .at(record.place_of("root"))
         .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
     }
-    Ok((method, options.clone(), assumptions))
+    let coupled = record.choice("coupling") == "body";
+    let assumptions = Assumptions { root, contact, coupled, torque: None, accuracy: None };
+    Ok(Teeth { name, method, assumptions })
 }
 
 pub const STIFFNESS: Field = Field::reference("stiffness", &["stiffness"], "The pair's compliances.");
@@ -74,9 +78,14 @@ pub const SLICES: Field = Field::integer(
 
 /// Where flanks touch and what holds them.
 pub const CONTACT: &[Field] = &[
-    Field::choice("corner_contact", CORNER_CONTACTS, "Where flanks can touch: on the line of action, or also off it.")
+    Field::choice(
+        "corner_contact",
+        CornerContact::CHOICES,
+        "Where flanks can touch: on the line of action, or also off it.",
+    )
+    .default("none"),
+    Field::choice("slice_coupling", SliceCoupling::CHOICES, "Whether slices across the face hold each other.")
         .default("none"),
-    Field::choice("slice_coupling", SLICE_COUPLINGS, "Whether slices across the face hold each other.").default("none"),
 ];
 
 /// What [`positions`], [`SLICES`] and [`CONTACT`] say.
@@ -87,8 +96,8 @@ pub fn settings(record: &Record) -> Result<Settings, Diagnostic> {
     let settings = Settings {
         positions: whole(record, "positions"),
         slices: whole(record, "slices"),
-        corner_contact: CornerContact::named(record.choice("corner_contact")),
-        slice_coupling: SliceCoupling::named(record.choice("slice_coupling")),
+        corner_contact: record.word("corner_contact"),
+        slice_coupling: record.word("slice_coupling"),
     };
     let slices = settings.slices;
     if settings.slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {

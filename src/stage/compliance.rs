@@ -4,6 +4,7 @@
 //! last few bits. Must not know: which method made them.
 
 use super::pair::si;
+use declare::declared::Words;
 use declare::error::Failure;
 use declare::units::in_unit;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
@@ -24,6 +25,9 @@ const SERIES: &[(&str, &str, &str, Getter)] = &[
         &tooth.contact_depth
     }),
 ];
+
+/// Instead of a contact law, where the compliances of the teeth include the contact.
+const INCLUDED: &str = "included";
 
 #[must_use]
 pub fn compliance_schema() -> Schema {
@@ -115,11 +119,7 @@ pub fn write(
             }
         }
     }
-    let contact = match compliance.contact {
-        ContactLaw::Linear => "linear",
-        ContactLaw::LoadDependent => "load_dependent",
-        ContactLaw::Included => "included",
-    };
+    let contact = compliance.contact.map_or(INCLUDED, ContactLaw::word);
     let coupling = if compliance.coupled { "body" } else { "none" };
     let model: Row = vec![method.into(), root.into(), contact.into(), coupling.into()];
     Ok([
@@ -144,11 +144,9 @@ fn surface_nodes(surface: &Surface) -> [Vec<f64>; 2] {
 /// # Errors
 /// When a table is not one that [`write`] made.
 pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<PairCompliance, Failure> {
-    let contact = match model.texts("contact").first().map(String::as_str) {
-        Some("linear") => ContactLaw::Linear,
-        Some("load_dependent") => ContactLaw::LoadDependent,
-        Some("included") => ContactLaw::Included,
-        other => return Err(Failure::new(format!("unknown contact law {other:?}"))),
+    let contact = match model.texts("contact").first().map_or("", String::as_str) {
+        INCLUDED => None,
+        word => Some(ContactLaw::of(word).ok_or_else(|| Failure::new(format!("unknown contact law `{word}`")))?),
     };
     Ok(PairCompliance {
         pinion: tooth("pinion", compliance, neighbours)?,
@@ -237,17 +235,21 @@ mod tests {
                 Surface::from_values([0.07; 2], [0.62; 2], [1, 1], &[scale * 2e-10]),
             ],
         };
-        let pair =
-            PairCompliance { pinion: tooth(1.0), gear: tooth(0.7), contact: ContactLaw::LoadDependent, coupled: true };
+        let pair = PairCompliance {
+            pinion: tooth(1.0),
+            gear: tooth(0.7),
+            contact: Some(ContactLaw::LoadDependent),
+            coupled: true,
+        };
         let round = |pair: &PairCompliance| {
             let [compliance, neighbours, model] = write(pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
             read(&compliance, &neighbours, &model).unwrap()
         };
-        for contact in [ContactLaw::Linear, ContactLaw::Included] {
+        for contact in [Some(ContactLaw::Linear), None] {
             assert_eq!(round(&PairCompliance { contact, ..pair.clone() }).contact, contact);
         }
         let back = round(&pair);
-        assert!(back.coupled && back.contact == ContactLaw::LoadDependent);
+        assert!(back.coupled && back.contact == Some(ContactLaw::LoadDependent));
         for roll in [0.07, 0.2, 0.41, 0.62] {
             assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);
             assert!(

@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use declare::error::{Failure, Place};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::{Field, Member, Shape};
 use declare::record::{PlacedValue, Record, Value};
 use gearmesh::gear::geometry::GearPair;
@@ -34,15 +34,16 @@ impl NamedDesign {
     /// The design on a pair.
     ///
     /// # Errors
-    /// When a modification does not fit the pair; the message names the design.
+    /// When a modification does not fit the pair; the message names the design, and the place where a study states it.
     pub fn built(&self, pair: &GearPair) -> Result<Design, Failure> {
         let mut design = Design::default();
         for Element { family, record } in &self.elements {
             let known = modification::family(family)
                 .ok_or_else(|| Failure::new(format!("design `{}`: unknown family `{family}`", self.name)))?;
-            design
-                .add(known, record, pair)
-                .map_err(|error| Failure::new(format!("design `{}`, {family}: {}", self.name, error.message)))?;
+            design.add_record(known, record, pair).map_err(|wrong| {
+                let message = format!("design `{}`, {family}: {}", self.name, wrong.message);
+                Failure::of(Diagnostic { message, ..wrong })
+            })?;
         }
         Ok(design)
     }

@@ -174,7 +174,7 @@ fn harris_relations_hold_through_the_stage() {
         contact_depth: constant(2.5e-3),
         neighbours: Vec::new(),
     };
-    let elastic = PairCompliance { pinion: tooth(), gear: tooth(), contact: ContactLaw::Linear, coupled: false };
+    let elastic = PairCompliance { pinion: tooth(), gear: tooth(), contact: Some(ContactLaw::Linear), coupled: false };
     let pair = pair::read(table(&ran, "pair", "gears"), table(&ran, "pair", "pair")).unwrap();
     let radii = [pair.pinion.base_radius, pair.gear.base_radius];
     let written = compliance::write(&elastic, radii, "energy", "trochoid").unwrap();

@@ -114,8 +114,9 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
         quote! {
             impl ::core::default::Default for #name {
                 fn default() -> Self {
-                    <Self as ::declare::declared::Declared>::read(&::declare::declared::defaults(
+                    <Self as ::declare::declared::Declared>::read(&::declare::declared::record_of(
                         <Self as ::declare::declared::Declared>::MEMBER.fields,
+                        &[],
                     ))
                 }
             }
@@ -161,6 +162,25 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
                 let mut fields = ::std::vec::Vec::new();
                 #(#written)*
                 ::declare::record::Record { fields, place: ::core::default::Default::default() }
+            }
+        }
+
+        impl ::declare::declared::Joint for #name {
+            const FIELDS: &'static [::declare::parameter::Field] =
+                <Self as ::declare::declared::Declared>::MEMBER.fields;
+
+            fn consistent(
+                record: &::declare::record::Record,
+            ) -> ::core::result::Result<(), ::declare::error::Diagnostic> {
+                <Self as ::declare::declared::Declared>::consistent(record)
+            }
+
+            fn read(record: &::declare::record::Record) -> Self {
+                <Self as ::declare::declared::Declared>::read(record)
+            }
+
+            fn write(&self, fields: &mut ::std::vec::Vec<(&'static str, ::declare::record::PlacedValue)>) {
+                fields.extend(<Self as ::declare::declared::Declared>::record(self).fields);
             }
         }
 

@@ -8,7 +8,7 @@ use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Ident, LitStr};
 
 use crate::doc::sentence;
 use crate::fields::{Declaration, Marks, declaration};
-use crate::words::snake;
+use crate::words::name_of;
 
 /// Each variant holds one value and is a field of its own; exactly one of them is given.
 pub fn alternatives(input: &DeriveInput) -> Result<TokenStream, Error> {
@@ -61,7 +61,7 @@ pub fn tagged(input: &DeriveInput) -> Result<TokenStream, Error> {
     let (mut choices, mut tables, mut proofs, mut checks) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
     let (mut reads, mut writes) = (Vec::new(), Vec::new());
     for variant in &variants(input)?.variants {
-        let (ident, word) = (&variant.ident, snake(&variant.ident.to_string()));
+        let (ident, word) = (&variant.ident, name_of(&variant.attrs, &variant.ident)?);
         let summary = sentence(&variant.attrs, ident)?;
         choices.push(quote!(::declare::parameter::Choice { name: #word, summary: #summary }));
         let (mut read_fields, mut bound, mut write_fields) = (Vec::new(), Vec::new(), Vec::new());
@@ -109,8 +109,7 @@ fn variants(input: &DeriveInput) -> Result<&DataEnum, Error> {
 
 /// The marks and the name as a study writes it, which is among them.
 fn marks(attributes: &[Attribute], ident: &Ident) -> Result<(Marks, String), Error> {
-    let mut marks = Marks::of(attributes)?;
-    let text = marks.name.as_ref().map_or_else(|| snake(&ident.to_string()), LitStr::value);
+    let (mut marks, text) = (Marks::of(attributes)?, name_of(attributes, ident)?);
     marks.name = Some(LitStr::new(&text, ident.span()));
     Ok((marks, text))
 }

@@ -16,7 +16,7 @@ use syn::{DeriveInput, Error, parse_macro_input};
 ///
 /// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `least`, `most` (numbers, in
 /// SI), `multiple` (of integers), `dimension` (of `declare::units`, for quantities), `default` (as in a study), `range` (an
-/// optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (an enum that is `Joint`). The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of
+/// optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (what is `Joint`). The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of
 /// these, words, and structs that are declared themselves. Where every field has a default, `Default` is implemented too.
 #[proc_macro_derive(Declared, attributes(declared))]
 pub fn declared(input: TokenStream) -> TokenStream {
@@ -24,8 +24,9 @@ pub fn declared(input: TokenStream) -> TokenStream {
     fields::expand(&input).unwrap_or_else(Error::into_compile_error).into()
 }
 
-/// Implements `declare::Words` for an enum without fields: each variant is a word, in small letters with `_`.
-#[proc_macro_derive(Words)]
+/// Implements `declare::Words` for an enum without fields: each variant is a word, in small letters with `_`, or as its
+/// mark `name` says.
+#[proc_macro_derive(Words, attributes(declared))]
 pub fn words(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);
     words::expand(&input).unwrap_or_else(Error::into_compile_error).into()

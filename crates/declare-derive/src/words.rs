@@ -4,9 +4,10 @@
 
 use proc_macro2::TokenStream;
 use quote::quote;
-use syn::{Data, DeriveInput, Error, Fields};
+use syn::{Attribute, Data, DeriveInput, Error, Fields, Ident};
 
 use crate::doc::sentence;
+use crate::fields::Marks;
 
 pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
     let name = &input.ident;
@@ -18,7 +19,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
         if !matches!(variant.fields, Fields::Unit) {
             return Err(Error::new(variant.ident.span(), "a word has no fields"));
         }
-        let (ident, text) = (&variant.ident, snake(&variant.ident.to_string()));
+        let (ident, text) = (&variant.ident, name_of(&variant.attrs, &variant.ident)?);
         let summary = sentence(&variant.attrs, ident)?;
         choices.push(quote!(::declare::parameter::Choice { name: #text, summary: #summary }));
         of.push(quote!(#text => ::core::option::Option::Some(Self::#ident)));
@@ -57,8 +58,13 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
     })
 }
 
+/// What is called `ident` in the code, as a study writes it: in small letters with `_`, or as its mark `name` says.
+pub fn name_of(attributes: &[Attribute], ident: &Ident) -> Result<String, Error> {
+    Ok(Marks::of(attributes)?.name.map_or_else(|| snake(&ident.to_string()), |name| name.value()))
+}
+
 /// `CurrentToBest` as a study writes it: `current_to_best`.
-pub fn snake(name: &str) -> String {
+fn snake(name: &str) -> String {
     let mut text = String::new();
     for (at, character) in name.char_indices() {
         if character.is_uppercase() && at > 0 {

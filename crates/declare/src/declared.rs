@@ -25,13 +25,12 @@ pub trait Declared: Sized {
     /// The record that says the same.
     fn record(&self) -> Record;
 
-    /// Itself, when every number is within its declared range.
+    /// Refuses a number that is not within its declared range: a struct that was written by hand may hold anything.
     ///
     /// # Errors
-    /// The first number that is not, with what it may be; lengths and the like in SI.
-    fn checked(self) -> Result<Self, Diagnostic> {
-        check(&self.record(), Self::MEMBER.fields)?;
-        Ok(self)
+    /// The first such number, with what it may be; lengths and the like in SI.
+    fn in_range(&self) -> Result<(), Diagnostic> {
+        check(&self.record(), Self::MEMBER.fields)
     }
 }
 
@@ -46,7 +45,8 @@ pub trait Words: Copy + Sized {
     fn word(self) -> &'static str;
 }
 
-/// An enum whose variants have fields of their own, which stand beside those of the struct that has it.
+/// What has fields that stand beside those of the struct that has it: an enum whose variants have some of their own, or
+/// another struct.
 pub trait Joint: Sized {
     const FIELDS: &'static [Field];
 
@@ -73,24 +73,57 @@ pub trait Parameter: Sized {
     fn to_value(&self) -> Value;
 }
 
-/// The record of fields that all have a default or are optional.
+/// The record of a study that gives these values and leaves the other fields to their defaults.
 ///
 /// # Panics
-/// When one must be given, or a default cannot be read: mistakes of a declaration, which its tests find.
+/// When a field must be given and is not, or has another name: the declaration and its caller are one program.
 #[must_use]
-pub fn defaults(fields: &[Field]) -> Record {
-    let entry_of = |field: &Field| match field.presence {
-        Presence::Optional => None,
-        Presence::Required => panic!("`{}` has no default", field.name),
-        Presence::Default(text) => Some((field.name, entry(default(&field.shape, text)))),
+pub fn record_of(fields: &[Field], given: &[(&str, Value)]) -> Record {
+    for (name, _) in given {
+        assert!(fields.iter().any(|field| field.name == *name), "`{name}` is not declared");
+    }
+    let value_of = |field: &Field| {
+        let value = given.iter().find(|(name, _)| *name == field.name).map(|(_, value)| value.clone());
+        value.or_else(|| match field.presence {
+            Presence::Optional => None,
+            Presence::Required => panic!("`{}` must be given", field.name),
+            Presence::Default(text) => Some(default(&field.shape, text)),
+        })
     };
-    Record { fields: fields.iter().filter_map(entry_of).collect(), place: Place::default() }
+    let fields = fields.iter().filter_map(|field| Some((field.name, entry(value_of(field)?)))).collect();
+    Record { fields, place: Place::default() }
+}
+
+// Here and not beside the other getters, since these know declarations.
+impl Record {
+    /// A choice, as the enum whose words it was declared with.
+    ///
+    /// # Panics
+    /// When the declaration has no such field, or another enum's words.
+    #[must_use]
+    pub fn word<T: Words>(&self, name: &str) -> T {
+        let word = self.choice(name);
+        T::of(word).unwrap_or_else(|| panic!("field `{name}` was declared with other words than `{word}`"))
+    }
+
+    /// The same record with the least value of each range.
+    #[must_use]
+    pub fn without_ranges(&self, fields: &[Field]) -> Self {
+        let mut fixed = self.clone();
+        for (name, entry) in &mut fixed.fields {
+            let Value::Range(least, _) = entry.value else { continue };
+            let shape = fields.iter().find(|field| field.name == *name).map(|field| field.shape);
+            let plain = matches!(shape, Some(Shape::Number { .. }));
+            entry.value = if plain { Value::Number(least) } else { Value::Quantity(least) };
+        }
+        fixed
+    }
 }
 
 /// A default as a study would write it.
 ///
 /// # Panics
-/// As [`defaults`].
+/// When it cannot be read: a mistake of a declaration, which its tests find.
 #[must_use]
 pub fn default(shape: &Shape, text: &str) -> Value {
     let read = match shape {
@@ -104,10 +137,10 @@ pub fn default(shape: &Shape, text: &str) -> Value {
         }
         Shape::List(_) if text == "[]" => Some(Value::List(Vec::new())),
         Shape::List(item) => Some(Value::List(vec![entry(default(item, text))])),
-        Shape::Group(fields) if text == "{}" => Some(Value::Group(defaults(fields))),
+        Shape::Group(fields) if text == "{}" => Some(Value::Group(record_of(fields, &[]))),
         Shape::Member(members) => {
             let member = members().iter().find(|member| member.name == text);
-            member.map(|member| Value::Member(member.name, defaults(member.fields)))
+            member.map(|member| Value::Member(member.name, record_of(member.fields, &[])))
         }
         _ => None,
     };

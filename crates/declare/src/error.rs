@@ -64,6 +64,9 @@ pub enum Failure {
     /// The stage's own finding: the message says what, with the values and the admissible range.
     #[error("{0}")]
     Failed(String),
+    /// The same about a place in the study, which no check could find before it ran.
+    #[error("{0}")]
+    Study(Box<Diagnostic>),
     /// The user asked to stop; nothing of this stage is kept.
     #[error("stopped before it finished")]
     Stopped,
@@ -73,6 +76,13 @@ impl Failure {
     #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
         Self::Failed(message.into())
+    }
+
+    /// What is wrong with the study, where its place is known: what comes from a table has none.
+    #[must_use]
+    pub fn of(wrong: Diagnostic) -> Self {
+        let is_known = wrong.place.is_some_and(|place| place != Place::default());
+        if is_known { Self::Study(Box::new(wrong)) } else { Self::Failed(wrong.message) }
     }
 }
 

@@ -8,7 +8,6 @@ use std::collections::BTreeSet;
 
 use super::digest::Writer;
 use super::error::{Diagnostic, Place};
-use super::parameter::{Field, Shape};
 use super::units::Dimension;
 
 /// One value.
@@ -135,19 +134,6 @@ impl Record {
             }
         }
         part
-    }
-
-    /// The same record with the least value of each range.
-    #[must_use]
-    pub fn without_ranges(&self, fields: &[Field]) -> Self {
-        let mut fixed = self.clone();
-        for (name, entry) in &mut fixed.fields {
-            let Value::Range(least, _) = entry.value else { continue };
-            let shape = fields.iter().find(|field| field.name == *name).map(|field| field.shape);
-            let plain = matches!(shape, Some(Shape::Number { .. }));
-            entry.value = if plain { Value::Number(least) } else { Value::Quantity(least) };
-        }
-        fixed
     }
 
     /// The kinds of the variants of other stages inside, by name, each once.

@@ -1,27 +1,49 @@
-//! The registry of a family whose members are modules: what is listed is what a user may write.
+//! The registry of a family: what is listed is what a user may write.
 //!
 //! A macro, because a constant list of all members' declarations cannot be made of the list of members by a function.
 //! Must not know: what a family is.
 
-/// `registry!(Family: one, other)`, where every module has a `FAMILY` with a `member`, makes `FAMILIES`, in the order in
-/// which they are listed to the user, `family(name)`, and `members()` for [`crate::parameter::Shape::Member`].
+/// `registry!(METHODS: Method = energy::Energy, iso6336::Iso6336)`, of declared structs that implement the trait `Method`,
+/// makes the list `METHODS`, in the order in which they are listed to the user, `members()` for
+/// [`crate::parameter::Shape::Member`], and `read(name, record)`, the struct that a decoded record says.
 #[macro_export]
 macro_rules! registry {
-    ($family:ty: $($module:ident),+) => {
-        /// Every family, in the order in which they are listed to the user.
-        pub const FAMILIES: &[&$family] = &[$(&$module::FAMILY),+];
-
-        /// The family called `name`.
-        #[must_use]
-        pub fn family(name: &str) -> Option<&'static $family> {
-            FAMILIES.iter().copied().find(|family| family.member.name == name)
+    ($list:ident: $family:ident = $($member:path),+ $(,)?) => {
+        /// A member as registered.
+        #[derive(Clone, Copy)]
+        pub struct Registered {
+            pub member: $crate::parameter::Member,
+            /// Itself, as a record that was decoded by `member` says.
+            pub read: fn(&$crate::record::Record) -> Box<dyn $family>,
         }
 
-        /// The families as a user may write them.
+        /// Every member, in the order in which they are listed to the user.
+        pub const $list: &[Registered] = &[$(Registered {
+            member: <$member as $crate::declared::Declared>::MEMBER,
+            read: |record| Box::new(<$member as $crate::declared::Declared>::read(record)),
+        }),+];
+
+        /// The members as a user may write them.
         #[must_use]
         pub fn members() -> &'static [$crate::parameter::Member] {
-            const MEMBERS: &[$crate::parameter::Member] = &[$($module::FAMILY.member),+];
+            const MEMBERS: &[$crate::parameter::Member] = &[$(<$member as $crate::declared::Declared>::MEMBER),+];
             MEMBERS
+        }
+
+        /// The member called `name`, as `record` says.
+        ///
+        /// # Errors
+        /// When there is none of that name.
+        pub fn read(
+            name: &str,
+            record: &$crate::record::Record,
+        ) -> Result<Box<dyn $family>, $crate::error::Diagnostic> {
+            let found = $list.iter().find(|registered| registered.member.name == name);
+            found.map(|registered| (registered.read)(record)).ok_or_else(|| {
+                let known = $list.iter().map(|registered| registered.member.name);
+                let help = $crate::error::suggest(name, known);
+                $crate::error::Diagnostic::new(format!("there is no `{name}`")).at(record.place).help(help)
+            })
         }
     };
 }

@@ -2,12 +2,12 @@
 
 #![allow(clippy::float_cmp, reason = "values are copied, not computed")]
 
-use declare::declared::{Declared, Words};
+use declare::declared::{Declared, Words, record_of};
 use declare::digest::Writer;
 use declare::parameter::{Field, Presence, Shape, Span};
 use declare::record::{Record, Value};
 use declare::units::LENGTH;
-use declare::{Declared, Words};
+use declare::{Alternatives, Declared, Tagged, Words};
 
 /// Where a search starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
@@ -110,7 +110,7 @@ fn a_struct_and_its_record_say_the_same() {
 
 #[test]
 fn a_number_outside_its_range_is_refused() {
-    let refused = |toy: Toy| toy.checked().err().map(|error| format!("{}; {}", error.message, error.help.unwrap()));
+    let refused = |toy: Toy| toy.in_range().err().map(|error| format!("{}; {}", error.message, error.help.unwrap()));
     assert_eq!(refused(Toy::default()), None);
     let few = Toy { population: 1, ..Toy::default() };
     assert_eq!(refused(few).as_deref(), Some("`population` is 1; it may be 2 to 100"));
@@ -122,4 +122,76 @@ fn a_number_outside_its_range_is_refused() {
     assert_eq!(refused(level).as_deref(), Some("`levels` is 51; it may be 2 to 50"));
     let impatient = Toy { patience: Some(0), ..Toy::default() };
     assert_eq!(refused(impatient).as_deref(), Some("`patience` is 0; it may be 1 to 9"));
+}
+
+/// How far.
+#[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
+enum Reach {
+    /// L.
+    #[declared(least = 0.0, most = 1.0, dimension = LENGTH, range)]
+    Length(f64),
+    /// As a share.
+    #[declared(name = "length_share", least = 0.0, most = 2.0)]
+    Share(f64),
+}
+
+/// How it grows.
+#[derive(Clone, Copy, Debug, PartialEq, Tagged)]
+#[declared(name = "curve", default = "straight")]
+enum Growth {
+    /// t
+    Straight,
+    /// t^n
+    Power {
+        /// n
+        #[declared(least = 1.0, most = 9.0)]
+        exponent: f64,
+    },
+}
+
+/// relief that exists only here
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "relief")]
+struct Relief {
+    #[declared(flatten)]
+    pub reach: Reach,
+    #[declared(flatten)]
+    pub growth: Growth,
+}
+
+#[test]
+fn an_enum_stands_for_fields_that_exclude_each_other() {
+    let names: Vec<_> = Relief::MEMBER.fields.iter().map(|field| field.name).collect();
+    assert_eq!(names, ["length", "length_share", "curve", "exponent"]);
+    assert!(Relief::MEMBER.fields[..2].iter().all(|field| field.presence == Presence::Optional));
+    assert!(Relief::MEMBER.fields[0].span == Span::Range && Relief::MEMBER.fields[1].span == Span::Single);
+    assert_eq!([Reach::Length(0.5).field(), Reach::Share(0.5).field()], ["length", "length_share"]);
+    for relief in [
+        Relief { reach: Reach::Length(0.25), growth: Growth::Straight },
+        Relief { reach: Reach::Share(1.5), growth: Growth::Power { exponent: 2.0 } },
+    ] {
+        let record = relief.record();
+        assert!(Relief::consistent(&record).is_ok() && relief.in_range().is_ok());
+        assert_eq!(Relief::read(&record), relief);
+    }
+    let outside = Relief { reach: Reach::Share(3.0), growth: Growth::Straight };
+    assert_eq!(outside.in_range().unwrap_err().message, "`length_share` is 3");
+}
+
+#[test]
+fn fields_that_do_not_go_together_are_refused() {
+    let refused =
+        |given: &[(&str, Value)]| Relief::consistent(&record_of(Relief::MEMBER.fields, given)).unwrap_err().message;
+    let (length, share) = (("length", Value::Quantity(0.1)), ("length_share", Value::Number(0.1)));
+    let both = "exactly one of `length`, `length_share` is needed, not both `length` and `length_share`";
+    assert_eq!(refused(&[length.clone(), share]), both);
+    assert_eq!(refused(&[]), "exactly one of `length`, `length_share` is needed, and there is none");
+    let power = ("curve", Value::Choice("power"));
+    assert_eq!(refused(&[length.clone(), power]), "the curve `power` needs its `exponent`");
+    let exponent = ("exponent", Value::Number(2.0));
+    assert_eq!(refused(&[length, exponent]), "`exponent` goes with `curve: power` only");
+    // A range is as good as a value until somebody chooses.
+    let range = record_of(Relief::MEMBER.fields, &[("length", Value::Range(0.1, 0.2))]);
+    assert!(Relief::consistent(&range).is_ok());
+    assert_eq!(Relief::read(&range.without_ranges(Relief::MEMBER.fields)).reach, Reach::Length(0.1));
 }

@@ -20,7 +20,7 @@ use declare::work::Work;
 use drawn::Drawn;
 use gearmesh::gear::geometry::error::GeometryError;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
-use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::outline::tip;
 use gearmesh::gear::geometry::outline::{Outline, roots};
 use gearmesh::gear::geometry::validity::Mating;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
@@ -155,11 +155,11 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     };
     let drawn = |((side, stated), gear): ((Side, &Record), Gear)| {
         let (name, root) = stated.maybe_member("root").unwrap_or_else(|| options.member("root"));
-        // The decoder lets only registered families through.
-        let family = roots::family(name).ok_or_else(|| Diagnostic::new(format!("there is no root `{name}`")))?;
-        let outline = (family.read)(root)
+        let (root, tip) = (roots::read(name, root)?, options.member("tip"));
+        let tip = tip::read(tip.0, tip.1)?.tip();
+        let outline = root
             .toe(&gear)
-            .and_then(|toe| Outline::new(&gear, toe, Tip::of(options.member("tip")), design.relief(side)))
+            .and_then(|toe| Outline::new(&gear, toe, tip, design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })
     };

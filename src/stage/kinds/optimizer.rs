@@ -127,7 +127,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }
     let optimizer = Optimizer {
         stiffness: record.reference("stiffness").to_owned(),
-        method: optimize::method(method, options)?,
+        method: optimize::read(method, options)?,
         objective: record.choice("minimize"),
         torques: at.axis("torque").to_vec(),
         worst: at.choice("combine") == "worst",

@@ -12,7 +12,7 @@ use declare::record::Record;
 use declare::seed::Seed;
 use declare::units::{LENGTH, in_unit};
 use gearmesh::gear::geometry::{Gear, Side};
-use gearmesh::gear::problem::{self, Family, Problem, Variable, Worth};
+use gearmesh::gear::problem::{self, Problem, Stated, Variable, Worth};
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::search::{Candidate, Reason};
@@ -48,7 +48,7 @@ const GEARS: &[Choice] =
 struct RootOptimizer {
     pair: String,
     side: Side,
-    problem: (&'static Family, Record),
+    problem: Box<dyn Stated>,
     method: Box<dyn Method>,
     /// Where its settings stand.
     how: Record,
@@ -57,13 +57,12 @@ struct RootOptimizer {
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let (name, options) = record.member("problem");
     // The decoder lets only registered problems through.
-    let family = problem::family(name).ok_or_else(|| Diagnostic::new(format!("there is no problem `{name}`")))?;
     let (method, how) = record.member("method");
     Ok(Box::new(RootOptimizer {
         pair: record.reference("pair").to_owned(),
         side: if record.choice("gear") == "gear" { Side::Gear } else { Side::Pinion },
-        problem: (family, options.clone()),
-        method: optimize::method(method, how)?,
+        problem: problem::read(name, options)?,
+        method: optimize::read(method, how)?,
         how: how.clone(),
     }))
 }
@@ -95,7 +94,7 @@ fn variables_schema() -> Schema {
 
 impl RootOptimizer {
     fn unit(&self) -> &'static str {
-        if self.problem.0.dimension == LENGTH { "mm" } else { "" }
+        if self.problem.dimension() == LENGTH { "mm" } else { "" }
     }
 
     fn best_schema(&self) -> Schema {
@@ -213,15 +212,14 @@ impl Stage for RootOptimizer {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let (family, options) = &self.problem;
-        let [variables, constraints] = family.most;
+        let [variables, constraints] = self.problem.most();
         let Ok(foreseen) = self.method.foresee(variables) else {
             return Estimate::new(true);
         };
         let kept = (foreseen.evaluations as u64).saturating_mul(120);
         let tried = RowCount::at_most(foreseen.evaluations.saturating_mul(variables));
         Estimate::new(true)
-            .taking((family.seconds)(options) * foreseen.evaluations as f64)
+            .taking(self.problem.seconds() * foreseen.evaluations as f64)
             .holding((foreseen.memory as u64).saturating_add(kept))
             .rows(demand, self.best_schema(), RowCount::exact(1))
             .rows(demand, variables_schema(), RowCount::at_most(variables))
@@ -235,8 +233,7 @@ impl Stage for RootOptimizer {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let (family, options) = &self.problem;
-        let problem = (family.build)(options, &pair, self.side).map_err(|error| Failure::new(error.to_string()))?;
+        let problem = self.problem.on(&pair, self.side).map_err(|error| Failure::new(error.to_string()))?;
         let module = pair.side(self.side).specification.module;
         let mut search =
             self.search(&problem.variables(), context.seed).map_err(|error| Failure::new(error.message))?;

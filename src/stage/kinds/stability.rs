@@ -7,6 +7,7 @@ mod tables;
 
 use rayon::prelude::*;
 
+use crate::stage::common::Teeth;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, common, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape, count, joined};
@@ -112,7 +113,7 @@ struct Stability {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let (method, options, assumptions) = common::teeth(record)?;
+    let Teeth { method, assumptions, .. } = common::teeth(record)?;
     let settings = common::settings(record)?;
     let given = record.group("axes");
     let axes = AXES.iter().enumerate();
@@ -120,7 +121,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     Ok(Box::new(Stability {
         pair: record.reference("pair").to_owned(),
         load: ["torque", "relief", "relief_length", "crowning"].map(|field| record.quantity(field)),
-        model: Model { method, options, assumptions, settings },
+        model: Model { method: method.into(), assumptions, settings },
         axes: axes.collect(),
         traps: record.flag("traps"),
         samples: common::whole(record, "samples"),

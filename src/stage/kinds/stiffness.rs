@@ -2,19 +2,22 @@
 //!
 //! Must not know: how any method works. Stiffness is F/δ along the line of action.
 
+use std::any::Any;
 use std::time::Instant;
 
+use crate::stage::common::Teeth;
 use crate::stage::compliance as codec;
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, pair,
 };
+use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE, in_unit};
 use declare::work::Work;
-use gearmesh::gear::compliance::iso6336;
-use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, Method, RootStress, Tabulated};
+use gearmesh::gear::compliance::iso6336::{self, Iso6336};
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::stiffness::stiffness;
@@ -77,19 +80,16 @@ const ANY_TORQUE: f64 = 1.0;
 
 struct Stiffness {
     pair: String,
-    method: &'static Method,
-    options: Record,
-    assumptions: Assumptions,
-    root: &'static str,
+    teeth: Teeth,
     torque: f64,
     settings: Settings,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let (method, options, assumptions) = common::teeth(record)?;
+    let mut teeth = common::teeth(record)?;
     let torque = record.maybe_quantity("torque");
-    let assumptions = Assumptions { torque, accuracy: record.maybe_quantity("accuracy"), ..assumptions };
-    if assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
+    teeth.assumptions = Assumptions { torque, accuracy: record.maybe_quantity("accuracy"), ..teeth.assumptions };
+    if teeth.assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
             .at(record.place_of("contact"))
             .help("add for example `torque: 50 N m`"));
@@ -97,10 +97,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let positions = common::whole(record, "positions");
     Ok(Box::new(Stiffness {
         pair: record.reference("pair").to_owned(),
-        method,
-        options,
-        assumptions,
-        root: record.choice("root"),
+        teeth,
         torque: torque.unwrap_or(ANY_TORQUE),
         settings: Settings { positions, ..Settings::default() },
     }))
@@ -170,8 +167,8 @@ fn iso_schema() -> Schema {
     .on_demand()
 }
 
-fn iso_table(pair: &GearPair, options: &Record) -> Result<Table, TableError> {
-    let found = iso6336::stiffness(&iso6336::Inputs::of(pair, options));
+fn iso_table(pair: &GearPair, method: &Iso6336) -> Result<Table, TableError> {
+    let found = iso6336::stiffness(&iso6336::Inputs::of(pair, method));
     let row: Row = [found.theoretical, found.single, found.mesh].map(|value| in_unit(value, "N/(mm um)").into()).into();
     Table::from_rows(iso_schema(), vec![row])
 }
@@ -243,7 +240,7 @@ fn root_stress_table(stresses: &[RootStress]) -> Result<Table, TableError> {
 
 impl Stiffness {
     fn root_name(&self) -> &str {
-        if self.method.whole_pair { "none" } else { self.root }
+        if self.teeth.method.whole_pair() { "none" } else { self.teeth.assumptions.root.word() }
     }
 }
 
@@ -263,16 +260,16 @@ impl Stage for Stiffness {
             cost_schema(),
             iso_schema(),
         ];
-        if self.method.root_stress.is_some() {
+        if self.teeth.method.root_stresses().is_some() {
             schemas.push(root_stress_schema());
         }
         schemas
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let foreseen = (self.method.foresee)(&self.options, self.assumptions);
+        let foreseen = self.teeth.method.foresee(self.teeth.assumptions);
         let curve = common::curve_rows(self.settings, 0);
-        let meshed = self.method.root_stress.is_some();
+        let meshed = self.teeth.method.root_stresses().is_some();
         let solves = Work::of(&CONTACT_SOLVES, 2 * curve);
         let mut estimate =
             Estimate::new(false).work(&foreseen.work, foreseen.times).work(&solves, 1.0).holding(foreseen.memory);
@@ -289,7 +286,7 @@ impl Stage for Stiffness {
             estimate = estimate.rows(demand, schema, rows);
         }
         if demand.table("root_stress") {
-            let meshes = if self.assumptions.accuracy.is_some() { 6 } else { 2 };
+            let meshes = if self.teeth.assumptions.accuracy.is_some() { 6 } else { 2 };
             estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
         }
         estimate
@@ -297,17 +294,17 @@ impl Stage for Stiffness {
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = Vec::new();
-        if self.method.root_stress.is_none() {
-            let reason = format!("method `{}` needs none", self.method.member.name);
+        if self.teeth.method.root_stresses().is_none() {
+            let reason = format!("method `{}` needs none", self.teeth.name);
             let saved = Some(Saved::Fixed(&MESH_FACTORISATIONS, USUAL_FACTORISATIONS));
             omissions.push(Omission::new("finite-element mesh and factorisation", reason).saving(saved));
         }
-        if self.method.whole_pair {
-            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.method.member.name);
+        if self.teeth.method.whole_pair() {
+            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.teeth.name);
             for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
                 omissions.push(Omission::new(what, &why));
             }
-        } else if !self.assumptions.coupled {
+        } else if !self.teeth.assumptions.coupled {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
         }
         omissions
@@ -320,25 +317,27 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings, error_estimate, meshes, work } =
-            (self.method.tabulate)(&self.options, &pair, self.assumptions)
-                .map_err(|error| Failure::new(error.to_string()))?;
+        let Tabulated { compliance, warnings, error_estimate, meshes, work } = self
+            .teeth
+            .method
+            .tabulate(&pair, self.teeth.assumptions)
+            .map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
             (context.warn)(warning);
         }
-        if let Some(accuracy) = self.assumptions.accuracy.filter(|accuracy| error_estimate > *accuracy) {
+        if let Some(accuracy) = self.teeth.assumptions.accuracy.filter(|accuracy| error_estimate > *accuracy) {
             (context.warn)(format!(
                 "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
                  {accuracy:.1e}",
-                self.method.member.name
+                self.teeth.name
             ));
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
         let mut tables =
-            Vec::from(codec::write(&compliance, radii, self.method.member.name, self.root_name()).map_err(failed)?);
+            Vec::from(codec::write(&compliance, radii, self.teeth.name, self.root_name()).map_err(failed)?);
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
@@ -368,11 +367,13 @@ impl Stage for Stiffness {
             tables.push(Table::from_rows(cost_schema(), vec![row]).map_err(failed)?);
         }
         if context.demand.table("iso6336") {
-            tables.push(iso_table(&pair, &self.options).map_err(failed)?);
+            // The standard's own factors where the method is another one.
+            let method = (self.teeth.method.as_ref() as &dyn Any).downcast_ref().cloned().unwrap_or_default();
+            tables.push(iso_table(&pair, &method).map_err(failed)?);
         }
-        if let Some(root_stress) = self.method.root_stress.filter(|_| context.demand.table("root_stress")) {
+        if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table("root_stress")) {
             let (found, work) =
-                root_stress(&self.options, &pair, self.assumptions).map_err(|error| Failure::new(error.to_string()))?;
+                method.root_stress(&pair, self.teeth.assumptions).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);
             tables.push(root_stress_table(&found).map_err(failed)?);
         }

@@ -7,9 +7,8 @@ use std::env;
 
 use super::press::{Fineness, Pressed, press, sizing};
 use super::{displacements, model, specification, work};
-use crate::support::record;
-use declare::record::Value;
-use gearmesh::gear::compliance::{Assumptions, ContactLaw, PairCompliance, method};
+use gearmesh::gear::compliance::finite_element::FiniteElement;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use gearmesh::gear::contact::flattening;
 use gearmesh::gear::finite_elements::element::{self, NODES, Plane};
 use gearmesh::gear::finite_elements::mesh::Mesh;
@@ -77,8 +76,7 @@ fn inside(mesh: &Mesh, point: [f64; 2]) -> ([usize; NODES], [f64; NODES]) {
 
 /// The finite-element method's tables, coupled, with load-dependent contact.
 fn tabulated(pair: &GearPair) -> PairCompliance {
-    let method = method("finite_element").unwrap();
-    let options = record(method.member.fields, &[("elements_across", Value::Integer(12))]);
+    let method = FiniteElement { elements_across: 12, ..FiniteElement::default() };
     let assumptions = Assumptions {
         root: RootShape::Trochoid,
         contact: ContactLaw::LoadDependent,
@@ -86,7 +84,7 @@ fn tabulated(pair: &GearPair) -> PairCompliance {
         torque: None,
         accuracy: None,
     };
-    (method.tabulate)(&options, pair, assumptions).unwrap().compliance
+    method.tabulate(pair, assumptions).unwrap().compliance
 }
 
 /// The tables with what the flanks at `path` do beyond a half space; between two it changes linearly.

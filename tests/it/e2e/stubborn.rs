@@ -124,6 +124,22 @@ fn designs_of_one_name_are_refused() {
     assert!(error.contains("can be built on this pair; in the middle: the relief starts"), "{error}");
 }
 
+/// What only the pair can tell of a relief is told where the study states it.
+#[test]
+fn a_relief_that_does_not_fit_is_shown_in_its_line() {
+    let desk = Desk::with("quick.yaml");
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let (from, to) = ("fraction: 0.5, curve: linear", "length: 40 mm, curve: linear");
+    let line = 1 + text.lines().position(|line| line.contains(from)).unwrap();
+    let column = 1 + text.lines().nth(line - 1).unwrap().find("fraction").unwrap();
+    fs::write(desk.path("quick.yaml"), text.replace(from, to)).unwrap();
+    desk.run(&["check", "quick.yaml"], 0);
+    let (_, error) = desk.run(&["run", "quick.yaml"], 3);
+    let place =
+        format!("quick.yaml:{line}:{}: design `short`, tip_relief: the relief starts 40.0", column + "length: ".len());
+    assert!(error.contains(&place), "{place}: {error}");
+}
+
 /// A byte that changed in a published table: whoever reads it says what to do, and a run does it.
 #[test]
 fn a_damaged_table_is_told_with_the_way_out() {

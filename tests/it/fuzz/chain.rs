@@ -3,10 +3,12 @@
 use rand_core::Rng;
 
 use super::drive;
-use crate::properties::{base, model};
-use declare::record::Value;
+use crate::properties::{base, coarse_mesh, model, ring};
 use declare::seed::Seed;
 use gearmesh::gear::compliance::ContactLaw;
+use gearmesh::gear::compliance::energy::Energy;
+use gearmesh::gear::compliance::iso6336::Iso6336;
+use gearmesh::gear::compliance::weber_banaschek::WeberBanaschek;
 use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Specification};
@@ -49,11 +51,11 @@ fn any_model(number: u64, generator: &mut impl Rng) -> Model {
     let contact = pick(generator, &[ContactLaw::Linear, ContactLaw::LoadDependent]);
     let coupled = generator.next_u64().is_multiple_of(2);
     let mut found = match number % 8 {
-        0 => model("weber_banaschek", &[], contact, coupled),
-        1 => model("iso6336", &[], ContactLaw::Linear, coupled),
-        2 if number % 40 == 2 => model("finite_element", &[("elements_across", Value::Integer(6))], contact, coupled),
-        2..=4 => model("energy", &[("body", Value::Choice("ring"))], contact, coupled),
-        _ => model("energy", &[], contact, coupled),
+        0 => model(WeberBanaschek {}, contact, coupled),
+        1 => model(Iso6336::default(), ContactLaw::Linear, coupled),
+        2 if number % 40 == 2 => model(coarse_mesh(), contact, coupled),
+        2..=4 => model(ring(), contact, coupled),
+        _ => model(Energy::default(), contact, coupled),
     };
     found.assumptions.root =
         pick(generator, &[RootShape::Trochoid, RootShape::Trochoid, RootShape::CircularFillet, RootShape::BaseCircle]);
@@ -120,7 +122,7 @@ fn case(number: u64) -> Case {
 fn run(case: &Case, corner_contact: CornerContact) {
     let Ok(pair) = case.pair() else { return };
     let Ok(design) = case.design(&pair) else { return };
-    let Ok(found) = (case.model.method.tabulate)(&case.model.options, &pair, case.model.assumptions) else { return };
+    let Ok(found) = case.model.method.tabulate(&pair, case.model.assumptions) else { return };
     let settings = Settings { corner_contact, ..case.model.settings };
     let Ok(cycle) = MeshCycle::new(&pair, &found.compliance, settings) else { return };
     follow(&pair, &cycle, &design, case.torque);

@@ -7,9 +7,9 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 
 use super::{choice, integer, run, search, with};
-use crate::support::record;
-use declare::error::{Failure, Place};
-use declare::record::{PlacedValue, Value};
+use declare::declared::{entry, record_of};
+use declare::error::Failure;
+use declare::record::Value;
 use declare::seed::Seed;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Optimizer, Reason};
@@ -17,7 +17,7 @@ use gearmesh::optimize::{self, METHODS, members};
 
 /// Short runs of every method, and of the variants that take another path.
 fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
-    let levels = Value::List(vec![PlacedValue { value: integer(3), place: Place::default() }]);
+    let levels = Value::List(vec![entry(integer(3))]);
     let few = || ("population", integer(9));
     vec![
         ("genetic", vec![few(), ("generations", integer(7))]),
@@ -298,16 +298,12 @@ fn impossible_set_ups_are_refused() {
     let refusal = |method: &str, given: &[(&str, Value)], dimension: usize| {
         let fields = members().iter().find(|member| member.name == method).map_or(&[][..], |member| member.fields);
         let bounds = Bounds::new(vec![(0.0, 1.0); dimension]).unwrap();
-        let method_of = optimize::method(method, &record(fields, given));
+        let method_of = optimize::read(method, &record_of(fields, given));
         let refused = method_of.and_then(|method| optimize::search(&*method, bounds, Seed::of_stage(1, "optimum")));
         refused.err().unwrap_or_else(|| panic!("{method} was accepted")).message
     };
-    let list = |levels: &[i64]| {
-        Value::List(
-            levels.iter().map(|level| PlacedValue { value: integer(*level), place: Place::default() }).collect(),
-        )
-    };
-    assert!(refusal("genetics", &[], 1).contains("no optimisation method `genetics`"));
+    let list = |levels: &[i64]| Value::List(levels.iter().map(|level| entry(integer(*level))).collect());
+    assert!(refusal("genetics", &[], 1).contains("there is no `genetics`"));
     assert!(refusal("genetic", &[("elite", integer(100))], 1).contains("no room for offspring"));
     assert!(refusal("grid", &[("levels", list(&[3, 4]))], 3).contains("2 levels are given for 3 variables"));
     assert!(refusal("grid", &[("levels", list(&[1000]))], 3).contains("1000000000 points"));

@@ -6,7 +6,7 @@ mod functions;
 mod kinks;
 mod reference;
 
-use crate::support::record;
+use declare::declared::record_of;
 use declare::error::Failure;
 use declare::record::Value;
 use declare::seed::Seed;
@@ -23,7 +23,7 @@ fn search(method: &str, given: &[(&str, Value)], bounds: &[(f64, f64)], seed: u6
 
 fn with(method: &str, given: &[(&str, Value)]) -> Box<dyn Method> {
     let fields = METHODS.iter().find(|entry| entry.member.name == method).unwrap().member.fields;
-    optimize::method(method, &record(fields, given)).unwrap()
+    optimize::read(method, &record_of(fields, given)).unwrap()
 }
 
 /// Runs a search to its end on one thread.

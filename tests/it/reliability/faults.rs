@@ -7,6 +7,8 @@
 use std::fs;
 use std::path::Path;
 
+use rayon::prelude::*;
+
 use super::cache::TINY;
 use super::disk::{self, EINTR, EIO, ENOSPC, EROFS, Ended, Place, SHORT};
 use super::published::{Published, differences, published};
@@ -202,8 +204,10 @@ fn publishing_survives_the_failure_of_an_allocation() {
     let (_, allocations) = counted(&before, TINY);
     assert!(allocations > 500, "{allocations}");
     let tries = if thorough() > 0 { allocations } else { 24 };
+    println!("{allocations} allocations, {tries} cases");
     let wrong: Vec<String> = (0..tries)
-        .flat_map(|index| {
+        .into_par_iter()
+        .flat_map_iter(|index| {
             let at = 1 + index * allocations / tries;
             tried(&before, TINY, &expected, &[("SHIM_MEMORY", at.to_string())], true)
         })

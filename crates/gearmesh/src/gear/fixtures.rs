@@ -8,8 +8,9 @@ use super::material::Material;
 use super::modification::{Design, family};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::surface::Surface;
-use declare::error::{Diagnostic, Place};
-use declare::record::{PlacedValue, Record, Value};
+use declare::declared::record_of;
+use declare::error::Diagnostic;
+use declare::record::{Record, Value};
 
 pub const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 pub const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
@@ -108,14 +109,14 @@ pub fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
     let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * width);
     let half = 0.5 * (1.0 / stiffness - contact);
-    PairCompliance { pinion: tooth(|_| half), gear: tooth(|_| half), contact: ContactLaw::Linear, coupled: false }
+    PairCompliance { pinion: tooth(|_| half), gear: tooth(|_| half), contact: Some(ContactLaw::Linear), coupled: false }
 }
 
 /// Teeth that get softer towards their tips, much like real ones.
 pub fn varying() -> PairCompliance {
     let pinion = tooth(|u| 0.8e-9 + 2.4e-9 * u * u + 1.5e-9 * u * u * u);
     let gear = tooth(|u| 0.5e-9 + 3.0e-9 * u * u);
-    PairCompliance { pinion, gear, contact: ContactLaw::Linear, coupled: false }
+    PairCompliance { pinion, gear, contact: Some(ContactLaw::Linear), coupled: false }
 }
 
 /// As [`varying`], with neighbouring teeth deflecting each other.
@@ -132,26 +133,9 @@ pub fn coupled() -> PairCompliance {
     PairCompliance { coupled: true, ..compliance }
 }
 
-/// A record of the family `name` with defaults filled in.
+/// A record of the family `name`.
 pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
-    let family = family(name).unwrap();
-    let defaults = [
-        ("counted_from", if name == "root_relief" { "root" } else { "tip" }),
-        ("curve", "linear"),
-        ("end", "both"),
-        ("formulas", "derived"),
-    ];
-    let mut fields = Vec::new();
-    for field in family.member.fields {
-        let given = values.iter().find(|(given, _)| *given == field.name).map(|(_, value)| value.clone());
-        let default = defaults.iter().find(|(default, _)| *default == field.name).map(|(_, word)| Value::Choice(word));
-        if let Some(value) = given.or(default) {
-            fields.push((field.name, PlacedValue { value, place: Place::default() }));
-        }
-    }
-    let known = |name: &str| family.member.fields.iter().any(|field| field.name == name);
-    assert!(values.iter().all(|(name, _)| known(name)), "no such field");
-    Record { fields, place: Place::default() }
+    record_of(family(name).unwrap().member.fields, values)
 }
 
 /// A modification: family, gear, other values.
@@ -162,7 +146,7 @@ pub fn design(pair: &GearPair, parts: &[NamedModification]) -> Result<Design, Di
     let mut design = Design::default();
     for (name, gear, values) in parts {
         let values = [&[("gear", Value::Choice(gear))], *values].concat();
-        design.add(family(name).unwrap(), &record(name, &values), pair)?;
+        design.add_record(family(name).unwrap(), &record(name, &values), pair)?;
     }
     Ok(design)
 }

@@ -35,9 +35,8 @@ use std::fmt::Debug;
 
 use bounds::Bounds;
 use declare::declared::Declared;
-use declare::error::{Diagnostic, suggest};
-use declare::parameter::Member;
-use declare::record::Record;
+use declare::error::Diagnostic;
+use declare::registry;
 use declare::seed::Seed;
 use search::{Optimizer, Reason};
 
@@ -66,29 +65,15 @@ pub trait Method: Debug + Send + Sync {
     fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy>;
 }
 
-/// A method as registered.
-pub struct Registered {
-    pub member: Member,
-    /// The method, as a record that was decoded by `member` says.
-    pub read: fn(&Record) -> Box<dyn Method>,
-}
-
-impl Registered {
-    const fn of<T: Declared + Method + 'static>() -> Self {
-        Self { member: T::MEMBER, read: |record| Box::new(T::read(record)) }
-    }
-}
-
-/// Every method, in the order in which `gearstudy kinds` lists them.
-pub const METHODS: &[Registered] = &[
-    Registered::of::<genetic::Genetic>(),
-    Registered::of::<differential_evolution::DifferentialEvolution>(),
-    Registered::of::<nelder_mead::NelderMead>(),
-    Registered::of::<powell::Powell>(),
-    Registered::of::<grid::Grid>(),
-    Registered::of::<latin_hypercube::LatinHypercube>(),
-    Registered::of::<sobol::Sobol>(),
-];
+registry!(
+    METHODS: Method = genetic::Genetic,
+    differential_evolution::DifferentialEvolution,
+    nelder_mead::NelderMead,
+    powell::Powell,
+    grid::Grid,
+    latin_hypercube::LatinHypercube,
+    sobol::Sobol,
+);
 
 /// What a method does: proposes points of the unit cube and learns their values. Deterministic: the same values give
 /// the same points.
@@ -121,33 +106,6 @@ pub trait Local {
     fn start_over(&mut self, at: Vec<f64>);
 }
 
-/// The methods as a user sees them, for [`declare::parameter::Shape::Member`].
-#[must_use]
-pub fn members() -> &'static [Member] {
-    const MEMBERS: [Member; METHODS.len()] = {
-        let mut members = [METHODS[0].member; METHODS.len()];
-        let mut at = 0;
-        while at < METHODS.len() {
-            members[at] = METHODS[at].member;
-            at += 1;
-        }
-        members
-    };
-    &MEMBERS
-}
-
-/// The method `name`, as `record` says.
-///
-/// # Errors
-/// When there is no such method.
-pub fn method(name: &str, record: &Record) -> Result<Box<dyn Method>, Diagnostic> {
-    let found = METHODS.iter().find(|method| method.member.name == name);
-    found.map(|method| (method.read)(record)).ok_or_else(|| {
-        let known = METHODS.iter().map(|method| method.member.name);
-        Diagnostic::new(format!("there is no optimisation method `{name}`")).at(record.place).help(suggest(name, known))
-    })
-}
-
 /// A search of `bounds` by a method whose settings were read from a study, where their ranges were checked.
 ///
 /// # Errors
@@ -166,7 +124,8 @@ pub fn optimizer<M: Declared + Method + Clone>(
     bounds: Bounds,
     seed: Seed,
 ) -> Result<Optimizer, Diagnostic> {
-    search(&method.clone().checked()?, bounds, seed)
+    method.in_range()?;
+    search(method, bounds, seed)
 }
 
 /// Bytes of so many points as vectors of coordinates, with what the allocator keeps of each.
@@ -191,7 +150,7 @@ mod tests {
             search.run(|points| Ok::<_, Failure>(points.iter().map(|point| point[0] * point[0]).collect())).unwrap();
             search.best().cloned()
         };
-        let read = method("genetic", &settings.record()).unwrap();
+        let read = read("genetic", &settings.record()).unwrap();
         let typed = best(optimizer(&settings, bounds(), seed()).unwrap());
         assert!(typed.is_some() && typed == best(search(&*read, bounds(), seed()).unwrap()));
         let wrong = Genetic { crossover: 1.5, ..settings.clone() };
@@ -203,7 +162,7 @@ mod tests {
     #[test]
     fn every_method_and_its_record_say_the_same() {
         for method in METHODS {
-            let record = declare::declared::defaults(method.member.fields);
+            let record = declare::declared::record_of(method.member.fields, &[]);
             assert!((method.read)(&record).foresee(3).is_ok(), "{}", method.member.name);
         }
     }

@@ -3,6 +3,7 @@
 //! Must not know: what becomes of the others.
 
 use crate::store::error::StoreError;
+use declare::error::Diagnostic;
 
 /// Why a stage gave no tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -10,6 +11,9 @@ pub enum Fault {
     /// The stage's own finding.
     #[error("{0}")]
     Failed(String),
+    /// The same about a place in the study.
+    #[error("{0}")]
+    Study(Box<Diagnostic>),
     /// A mistake of this program.
     #[error("this is a bug: {0}")]
     Bug(String),

@@ -184,6 +184,7 @@ impl Run<'_> {
         let tables = match result {
             Ok(Ok(tables)) => tables,
             Ok(Err(Failure::Failed(message))) => return Err(Ended::Fault(Fault::Failed(message))),
+            Ok(Err(Failure::Study(wrong))) => return Err(Ended::Fault(Fault::Study(wrong))),
             Ok(Err(Failure::Stopped)) => return Err(Ended::GivenUp),
             Err(panic) => return Err(Ended::Fault(Fault::Bug(message(&*panic)))),
         };

@@ -16,9 +16,8 @@ use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::quadrature::GaussLegendre;
 use crate::numeric::surface::Surface;
-use declare::parameter::{Choice, Field, Member};
-use declare::record::Record;
 use declare::work::Work;
+use declare::{Declared, Words};
 
 /// Points per piece of the root: twice as many as 1e-12 takes.
 const ROOT_POINTS: usize = 40;
@@ -30,65 +29,61 @@ const BORE_RATIOS: [f64; 2] = [1.2, 20.0];
 /// and for still more teeth it comes back hundreds of times too large.
 const LEAST_HALF_ANGLE: f64 = 0.005;
 
-const BODIES: &[Choice] = &[
-    Choice { name: "sainsot", summary: "the formula that Sainsot, Velex and Duverger fitted to the elastic ring" },
-    Choice { name: "ring", summary: "the elastic ring itself, for any bore and root angle" },
-];
+/// What the gear body under the tooth is taken from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum GearBody {
+    /// the formula that Sainsot, Velex and Duverger fitted to the elastic ring
+    #[default]
+    Sainsot,
+    /// the elastic ring itself, for any bore and root angle
+    Ring,
+}
 
-const FIELDS: &[Field] = &[
-    Field::number("shear_factor", 1.0, 2.0, "how much more a section shears than under a uniform shear stress")
-        .default("1.2"),
-    Field::choice("body", BODIES, "what the gear body under the tooth is taken from").default("sainsot"),
-    Field::integer(
-        "harmonics",
-        LEAST_HARMONICS,
-        MOST_HARMONICS,
-        "harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes",
-    )
-    .default("100"),
-];
+/// Cantilever of varying section (bending, shear, compression) on an elastic gear body.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "energy")]
+pub struct Energy {
+    /// how much more a section shears than under a uniform shear stress
+    #[declared(least = 1.0, most = 2.0, default = "1.2")]
+    pub shear_factor: f64,
+    /// what the gear body under the tooth is taken from
+    #[declared(default = "sainsot")]
+    pub body: GearBody,
+    /// harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes
+    #[declared(least = LEAST_HARMONICS, most = MOST_HARMONICS, default = "100")]
+    pub harmonics: u32,
+}
 
 const LEAST_HARMONICS: i64 = 10;
 const MOST_HARMONICS: i64 = 2000;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "energy",
-        summary: "Cantilever of varying section (bending, shear, compression) on an elastic gear body.",
-        fields: FIELDS,
-    },
-    whole_pair: false,
-    needs_fillet: false,
-    tabulate,
-    root_stress: None,
-    foresee: super::integrated,
-};
-
-fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let mut warnings = Vec::new();
-    let uses_ring = assumptions.coupled || options.choice("body") == "ring";
-    let [least, most] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
-    let harmonics = match assumptions.accuracy {
-        Some(accuracy) => ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, least, most),
-        None => options.integer("harmonics") as f64,
-    };
-    let (mut error_estimate, mut evaluations) = (ROUNDING, 0);
-    let side = |side| {
-        let (compliance, warning) = tabulate_side(options, pair, side, assumptions, harmonics, &mut evaluations)?;
-        warnings.extend(warning);
-        if uses_ring {
-            let ends = [compliance.body.lower(), compliance.body.upper()];
-            let share = ends.map(|roll| compliance.body.value(roll) / compliance.total(roll));
-            let of_ring = ring::error(harmonics, assumptions.coupled) * share[0].max(share[1]);
-            error_estimate = error_estimate.max(ROUNDING + of_ring);
-        }
-        Ok::<_, ComplianceError>(compliance)
-    };
-    let [pinion, gear] = of_both(pair, side)?;
-    let Assumptions { contact, coupled, .. } = assumptions;
-    let compliance = PairCompliance { pinion, gear, contact, coupled };
-    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
-    Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new(), work })
+impl Method for Energy {
+    fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+        let mut warnings = Vec::new();
+        let uses_ring = assumptions.coupled || self.body == GearBody::Ring;
+        let [least, most] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
+        let harmonics = match assumptions.accuracy {
+            Some(accuracy) => ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, least, most),
+            None => f64::from(self.harmonics),
+        };
+        let (mut error_estimate, mut evaluations) = (ROUNDING, 0);
+        let side = |side| {
+            let (compliance, warning) = tabulate_side(self, pair, side, assumptions, harmonics, &mut evaluations)?;
+            warnings.extend(warning);
+            if uses_ring {
+                let ends = [compliance.body.lower(), compliance.body.upper()];
+                let share = ends.map(|roll| compliance.body.value(roll) / compliance.total(roll));
+                let of_ring = ring::error(harmonics, assumptions.coupled) * share[0].max(share[1]);
+                error_estimate = error_estimate.max(ROUNDING + of_ring);
+            }
+            Ok::<_, ComplianceError>(compliance)
+        };
+        let [pinion, gear] = of_both(pair, side)?;
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
+        Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new(), work })
+    }
 }
 
 /// The integrals over a tooth up to a load, and the load's angle: everything the beam gives.
@@ -197,7 +192,7 @@ enum Foundation {
 
 /// One gear's tables, and a warning.
 fn tabulate_side(
-    options: &Record,
+    method: &Energy,
     pair: &GearPair,
     side: Side,
     assumptions: Assumptions,
@@ -208,10 +203,10 @@ fn tabulate_side(
     let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
     let (lower, upper) = (root.form_roll, gear.tip_roll());
     let unresolved = ComplianceError::Unresolved { side, thickness: gear.tip_thickness() };
-    let beam = Beam::new(gear, &root, options.number("shear_factor")).ok_or_else(|| unresolved.clone())?;
+    let beam = Beam::new(gear, &root, method.shear_factor).ok_or_else(|| unresolved.clone())?;
 
     let bore_ratio = gear.root_radius / gear.specification.bore_radius;
-    let (foundation, warning) = if options.choice("body") == "ring" {
+    let (foundation, warning) = if method.body == GearBody::Ring {
         (Foundation::Ring, None)
     } else {
         let body = Body::new(root.half_angle, bore_ratio);

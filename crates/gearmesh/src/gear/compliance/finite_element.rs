@@ -9,10 +9,10 @@
 mod tests;
 
 use super::{
-    Assumptions, ComplianceError, Foreseen, MeshFacts, Method, PairCompliance, RootStress, Tabulated, ToothCompliance,
-    neighbours, of_both,
+    Assumptions, ComplianceError, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses, Tabulated,
+    ToothCompliance, neighbours, of_both,
 };
-use crate::gear::finite_elements::element::{PLANES, Plane};
+use crate::gear::finite_elements::element::Plane;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
@@ -21,8 +21,7 @@ use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::surface::Surface;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
+use declare::Declared;
 use declare::work::Work;
 
 /// Nodes along the flank: interpolation between them is exact to 1e-4, which a test holds.
@@ -35,88 +34,87 @@ const MOST_POISSON: f64 = 0.49;
 /// The order that the error estimate counts on; 2 to 4 are observed.
 const ORDER: f64 = 1.5;
 
-const FIELDS: &[Field] = &[
-    Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
-    Field::integer(
-        "elements_across",
-        6,
-        64,
-        "elements across a tooth, an even number; all other sizes follow from it; where an accuracy is wanted, from how \
-         many on",
-    )
-    .multiple_of(2)
-    .default("16"),
-];
-
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "finite_element",
-        summary: "Plane finite elements of the whole gear: teeth and body as one.",
-        fields: FIELDS,
-    },
-    whole_pair: false,
-    needs_fillet: true,
-    tabulate,
-    root_stress: Some(root_stress),
-    foresee,
-};
+/// Plane finite elements of the whole gear: teeth and body as one.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "finite_element")]
+pub struct FiniteElement {
+    /// the plane state of the gear
+    #[declared(default = "strain")]
+    pub plane: Plane,
+    /// elements across a tooth, an even number; all other sizes follow from it; where an accuracy is wanted, from how many
+    /// on
+    #[declared(least = 6, most = 64, multiple = 2, default = "16")]
+    pub elements_across: u32,
+}
 
 /// Elements across with which a factorisation takes the usual time; it grows with their square.
 const USUAL: f64 = 8.0;
 /// Bytes that a mesh takes over the square of its elements across: 58,000 to 67,000 were measured with 6 to 48.
 const MESH_BYTES: usize = 100_000;
 
-fn foresee(options: &Record, assumptions: Assumptions) -> Foreseen {
-    let told = usize::try_from(options.integer("elements_across")).unwrap_or(MOST_ELEMENTS);
-    // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones may follow.
-    let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST_ELEMENTS, 2) } else { (even(told), 1) };
-    let meshes = 4 * rounds;
-    let neighbours = if assumptions.coupled { 6 * ROLLS * ROLLS } else { 0 };
-    Foreseen {
-        nodes: 48,
-        neighbours,
-        work: Work::of(&MESH_FACTORISATIONS, meshes).with(&COMPLIANCE_EVALUATIONS, meshes * ROLLS),
-        times: (even(told) as f64 / USUAL).powi(2),
-        memory: (finest * finest * MESH_BYTES) as u64,
+impl Method for FiniteElement {
+    fn needs_fillet(&self) -> bool {
+        true
+    }
+
+    fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+        let mut work = Work::NONE;
+        let side = |side| {
+            let task = Task::new(self, pair, side, assumptions)?;
+            let (solution, facts) = task.solve(&mut work)?;
+            Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
+        };
+        let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
+        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
+    }
+
+    fn foresee(&self, assumptions: Assumptions) -> Foreseen {
+        let told = self.elements_across as usize;
+        // Each gear with its mesh and one half as fine; where an accuracy is wanted, finer ones may follow.
+        let (finest, rounds) = if assumptions.accuracy.is_some() { (MOST_ELEMENTS, 2) } else { (told, 1) };
+        let meshes = 4 * rounds;
+        let neighbours = if assumptions.coupled { 6 * ROLLS * ROLLS } else { 0 };
+        Foreseen {
+            nodes: 48,
+            neighbours,
+            work: Work::of(&MESH_FACTORISATIONS, meshes).with(&COMPLIANCE_EVALUATIONS, meshes * ROLLS),
+            times: (told as f64 / USUAL).powi(2),
+            memory: (finest * finest * MESH_BYTES) as u64,
+        }
+    }
+
+    fn root_stresses(&self) -> Option<&dyn RootStresses> {
+        Some(self)
     }
 }
 
-fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let mut work = Work::NONE;
-    let side = |side| {
-        let task = Task::new(options, pair, side, assumptions)?;
-        let (solution, facts) = task.solve(&mut work)?;
-        Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
-    };
-    let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
-    let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
-    let Assumptions { contact, coupled, .. } = assumptions;
-    let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
-    let compliance = PairCompliance { pinion, gear, contact, coupled };
-    Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
-}
-
-fn root_stress(
-    options: &Record,
-    pair: &GearPair,
-    assumptions: Assumptions,
-) -> Result<(Vec<RootStress>, Work), ComplianceError> {
-    let mut work = Work::NONE;
-    let side = |side| {
-        let task = Task::new(options, pair, side, assumptions)?;
-        let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
-        let module = task.gear.specification.module;
-        work.add(&Work::of(&MESH_FACTORISATIONS, 1));
-        let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
-        let row = |(&roll, points): (&f64, &Vec<_>)| {
-            let (stress, radius) = root_stress::largest(points)?;
-            Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
+impl RootStresses for FiniteElement {
+    fn root_stress(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+    ) -> Result<(Vec<RootStress>, Work), ComplianceError> {
+        let mut work = Work::NONE;
+        let side = |side| {
+            let task = Task::new(self, pair, side, assumptions)?;
+            let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
+            let module = task.gear.specification.module;
+            work.add(&Work::of(&MESH_FACTORISATIONS, 1));
+            let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
+            let row = |(&roll, points): (&f64, &Vec<_>)| {
+                let (stress, radius) = root_stress::largest(points)?;
+                Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
+            };
+            Ok::<_, ComplianceError>(task.rolls.iter().zip(&found).filter_map(row).collect::<Vec<_>>())
         };
-        Ok::<_, ComplianceError>(task.rolls.iter().zip(&found).filter_map(row).collect::<Vec<_>>())
-    };
-    let [mut rows, of_gear] = of_both(pair, side)?;
-    rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
-    Ok((rows, work))
+        let [mut rows, of_gear] = of_both(pair, side)?;
+        rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
+        Ok((rows, work))
+    }
 }
 
 /// One gear, and how it is to be solved.
@@ -133,26 +131,25 @@ struct Task<'a> {
 
 impl<'a> Task<'a> {
     fn new(
-        options: &Record,
+        method: &FiniteElement,
         pair: &'a GearPair,
         side: Side,
         assumptions: Assumptions,
     ) -> Result<Self, ComplianceError> {
         let gear = pair.side(side);
         let root = gear.root(assumptions.root).map_err(|error| ComplianceError::Root(error.on(side)))?;
-        let plane = if options.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain };
+        let plane = method.plane;
         let poisson_ratio = gear.specification.material.poisson_ratio;
         if plane == Plane::Strain && poisson_ratio > MOST_POISSON {
             return Err(ComplianceError::Incompressible { side, poisson_ratio, most: MOST_POISSON });
         }
-        let across = usize::try_from(options.integer("elements_across")).unwrap_or(MOST_ELEMENTS);
         let rolls = nodes(root.form_roll, gear.tip_roll(), ROLLS);
         Ok(Self {
             side,
             gear,
             root,
             plane,
-            across: even(across),
+            across: method.elements_across as usize,
             accuracy: assumptions.accuracy,
             rolls,
             neighbours: if assumptions.coupled { neighbours(pair, side) } else { 0 },

@@ -8,32 +8,26 @@
 //! flanks is in c′. For standard basic rack teeth, x1 ≥ x2, −0.5 ≤ x1 + x2 ≤ 2, F_t/b ≥ 100 N/mm, ε_α of 1.2 and more.
 //! Must not know: the tooth's shape beyond teeth numbers and shifts. Results in SI, N/(m·m) = Pa: 1 N/(mm µm) = 1e9 Pa.
 
-use super::{Assumptions, ComplianceError, ContactLaw, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance};
+use super::{
+    Assumptions, ComplianceError, Foreseen, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, integrated,
+};
 use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
+use declare::Declared;
 use declare::work::Work;
 
-const FIELDS: &[Field] = &[
-    Field::number("correction_factor", 0.1, 2.0, "C_M: measured over theoretical stiffness").default("0.8"),
-    Field::number("blank_factor", 0.1, 2.0, "C_R: gear blank factor, 1 for solid discs, less for rims on webs")
-        .default("1.0"),
-];
-
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "iso6336",
-        summary: "ISO 6336-1: a parabola over the path of contact with c′ as its top and c_γα as the mean of the mesh.",
-        fields: FIELDS,
-    },
-    whole_pair: true,
-    needs_fillet: false,
-    tabulate,
-    root_stress: None,
-    foresee: |options, assumptions| super::Foreseen { neighbours: 0, ..super::integrated(options, assumptions) },
-};
+/// ISO 6336-1: a parabola over the path of contact with c′ as its top and c_γα as the mean of the mesh.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "iso6336")]
+pub struct Iso6336 {
+    /// C_M: measured over theoretical stiffness
+    #[declared(least = 0.1, most = 2.0, default = "0.8")]
+    pub correction_factor: f64,
+    /// C_R: gear blank factor, 1 for solid discs, less for rims on webs
+    #[declared(least = 0.1, most = 2.0, default = "1.0")]
+    pub blank_factor: f64,
+}
 
 /// E_St, what the standard measured its factors on \[Pa\].
 const STEEL_MODULUS: f64 = 206e9;
@@ -70,10 +64,9 @@ pub struct Inputs {
 }
 
 impl Inputs {
-    /// The facts of a spur pair, with the factors of the method's `options`; a record of another method does not have them,
-    /// and the standard's own take their place.
+    /// The facts of a spur pair, with the factors of the method.
     #[must_use]
-    pub fn of(pair: &GearPair, options: &Record) -> Self {
+    pub fn of(pair: &GearPair, method: &Iso6336) -> Self {
         let mut both = [&pair.pinion.specification, &pair.gear.specification];
         // The standard's first gear is the smaller one, whichever drives.
         let later = |gear: &Specification| (gear.teeth, -gear.profile_shift);
@@ -88,8 +81,8 @@ impl Inputs {
             helix_angle: 0.0,
             contact_ratio: pair.contact_ratio,
             youngs_modulus: both.map(|gear| gear.material.youngs_modulus),
-            correction_factor: options.maybe_number("correction_factor").unwrap_or(0.8),
-            blank_factor: options.maybe_number("blank_factor").unwrap_or(1.0),
+            correction_factor: method.correction_factor,
+            blank_factor: method.blank_factor,
         }
     }
 }
@@ -128,45 +121,51 @@ pub fn stiffness(inputs: &Inputs) -> Stiffness {
     Stiffness { theoretical, single, mesh: single * (0.75 * inputs.contact_ratio + 0.25) }
 }
 
-fn tabulate(options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let inputs = Inputs::of(pair, options);
-    let Stiffness { single, mesh, .. } = stiffness(&inputs);
-    if !(single > 0.0 && single.is_finite()) {
-        return Err(ComplianceError::NoIsoStiffness { single });
+impl Method for Iso6336 {
+    fn whole_pair(&self) -> bool {
+        true
     }
-    let top = single * pair.contact_width();
-    let fall = 3.0 * (1.0 - mesh / (single * pair.contact_ratio));
-    let (start, end) = (pair.start_of_contact, pair.end_of_contact);
-    let mut evaluations = 0;
-    let mut tooth = |side: Side| {
-        let rolls = [pair.roll(side, start), pair.roll(side, end)];
-        let (lower, upper) = (rolls[0].min(rolls[1]), rolls[0].max(rolls[1]));
-        let half = |roll: f64| {
-            evaluations += 1;
-            let along = (2.0 * pair.path_position(side, roll) - start - end) / (end - start);
-            [0.5 / (top * (1.0 - fall * along * along))]
+
+    fn foresee(&self, assumptions: Assumptions) -> Foreseen {
+        Foreseen { neighbours: 0, ..integrated(assumptions) }
+    }
+
+    fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+        let inputs = Inputs::of(pair, self);
+        let Stiffness { single, mesh, .. } = stiffness(&inputs);
+        if !(single > 0.0 && single.is_finite()) {
+            return Err(ComplianceError::NoIsoStiffness { single });
+        }
+        let top = single * pair.contact_width();
+        let fall = 3.0 * (1.0 - mesh / (single * pair.contact_ratio));
+        let (start, end) = (pair.start_of_contact, pair.end_of_contact);
+        let mut evaluations = 0;
+        let mut tooth = |side: Side| {
+            let rolls = [pair.roll(side, start), pair.roll(side, end)];
+            let (lower, upper) = (rolls[0].min(rolls[1]), rolls[0].max(rolls[1]));
+            let half = |roll: f64| {
+                evaluations += 1;
+                let along = (2.0 * pair.path_position(side, roll) - start - end) / (end - start);
+                [0.5 / (top * (1.0 - fall * along * along))]
+            };
+            let unresolved = ComplianceError::Unresolved { side, thickness: pair.side(side).tip_thickness() };
+            let [whole] = Series::converged(lower, upper, half).ok_or(unresolved)?;
+            let nothing = || Series::from_values(lower, upper, &[0.0]);
+            Ok::<_, ComplianceError>(ToothCompliance {
+                bending: whole,
+                shear: nothing(),
+                axial: nothing(),
+                body: nothing(),
+                contact_depth: nothing(),
+                neighbours: Vec::new(),
+            })
         };
-        let unresolved = ComplianceError::Unresolved { side, thickness: pair.side(side).tip_thickness() };
-        let [whole] = Series::converged(lower, upper, half).ok_or(unresolved)?;
-        let nothing = || Series::from_values(lower, upper, &[0.0]);
-        Ok::<_, ComplianceError>(ToothCompliance {
-            bending: whole,
-            shear: nothing(),
-            axial: nothing(),
-            body: nothing(),
-            contact_depth: nothing(),
-            neighbours: Vec::new(),
-        })
-    };
-    let compliance = PairCompliance {
-        pinion: tooth(Side::Pinion)?,
-        gear: tooth(Side::Gear)?,
-        contact: ContactLaw::Included,
-        coupled: false,
-    };
-    let warnings = warnings(&inputs, pair, assumptions.torque);
-    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
-    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
+        let compliance =
+            PairCompliance { pinion: tooth(Side::Pinion)?, gear: tooth(Side::Gear)?, contact: None, coupled: false };
+        let warnings = warnings(&inputs, pair, assumptions.torque);
+        let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
+        Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
+    }
 }
 
 /// A sentence for each range of the standard that the pair is outside of.
@@ -198,6 +197,7 @@ fn warnings(inputs: &Inputs, pair: &GearPair, torque: Option<f64>) -> Vec<String
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::compliance::ContactLaw;
     use crate::gear::geometry::Rack;
     use crate::gear::geometry::root::RootShape;
     use crate::gear::material::Material;
@@ -255,7 +255,7 @@ mod tests {
             torque,
             accuracy: None,
         };
-        tabulate(&Record::default(), pair, assumptions).unwrap()
+        Iso6336::default().tabulate(pair, assumptions).unwrap()
     }
 
     /// Tier: the standard's own two numbers, through the whole mesh cycle: the largest stiffness of a single pair is c′ b, the
@@ -265,9 +265,9 @@ mod tests {
         for (teeth, addendum) in [([19, 48], 1.0), ([30, 40], 1.0), ([48, 19], 1.0), ([50, 60], 0.8), ([50, 60], 1.35)]
         {
             let pair = pair(teeth, [0.0; 2], addendum);
-            let expected = stiffness(&Inputs::of(&pair, &Record::default()));
+            let expected = stiffness(&Inputs::of(&pair, &Iso6336::default()));
             let Tabulated { compliance, warnings, .. } = tables(&pair, None);
-            assert!(warnings.is_empty() && compliance.contact == ContactLaw::Included, "{warnings:?}");
+            assert!(warnings.is_empty() && compliance.contact.is_none(), "{warnings:?}");
             let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
             for torque in [1e-6, 50.0, 1e6] {
                 let (_, summary) = mesh_stiffness(&cycle, torque);
@@ -290,7 +290,7 @@ mod tests {
     /// Tier: invariant; the smaller gear is the standard's first, whichever drives.
     #[test]
     fn swapping_the_gears_changes_nothing() {
-        let of = |teeth, shift| stiffness(&Inputs::of(&pair(teeth, shift, 1.0), &Record::default()));
+        let of = |teeth, shift| stiffness(&Inputs::of(&pair(teeth, shift, 1.0), &Iso6336::default()));
         assert_eq!(of([19, 48], [0.3, -0.1]), of([48, 19], [-0.1, 0.3]));
         assert_eq!(of([30, 30], [0.2, 0.0]), of([30, 30], [0.0, 0.2]));
         assert_ne!(of([19, 48], [0.3, -0.1]), of([19, 48], [-0.1, 0.3]));
@@ -314,7 +314,7 @@ mod tests {
     /// Tier: published; ISO 6336-1:2019, clause 9.3, C1 to C9 as printed, each from differences that leave it alone.
     #[test]
     fn every_constant_of_the_flexibility_is_the_standard_s() {
-        let steel = Inputs::of(&pair([19, 48], [0.0; 2], 1.0), &Record::default());
+        let steel = Inputs::of(&pair([19, 48], [0.0; 2], 1.0), &Iso6336::default());
         let q = |teeth, profile_shift| {
             PER_MILLIMETRE_AND_MICROMETRE / stiffness(&Inputs { teeth, profile_shift, ..steel }).theoretical
         };
@@ -355,7 +355,7 @@ mod tests {
     /// Tier: the standard's factor for other materials, ξ = E/E_St with E = 2E1E2/(E1 + E2), and its two other factors.
     #[test]
     fn factors_multiply() {
-        let steel = Inputs::of(&pair([19, 48], [0.0; 2], 1.0), &Record::default());
+        let steel = Inputs::of(&pair([19, 48], [0.0; 2], 1.0), &Iso6336::default());
         let base = stiffness(&steel);
         let other = stiffness(&Inputs { youngs_modulus: [206e9, 103e9], ..steel });
         assert!((other.single / base.single - 2.0 / 3.0).abs() < 1e-15);

@@ -13,6 +13,9 @@ pub mod sainsot;
 mod tests;
 pub mod weber_banaschek;
 
+use std::any::Any;
+use std::fmt::Debug;
+
 use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
@@ -21,28 +24,56 @@ use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::surface::Surface;
-use declare::parameter::{Choice, Member};
-use declare::record::Record;
 use declare::work::Work;
+use declare::{Words, registry};
 
-/// Every way to the compliance of a pair, one line per member.
-pub const METHODS: &[Method] = &[energy::METHOD, weber_banaschek::METHOD, iso6336::METHOD, finite_element::METHOD];
+registry!(
+    METHODS: Method = energy::Energy,
+    weber_banaschek::WeberBanaschek,
+    iso6336::Iso6336,
+    finite_element::FiniteElement,
+);
 
-/// A way to the compliance of a pair.
-#[derive(Clone, Copy)]
-pub struct Method {
-    pub member: Member,
+/// A way to the compliance of a pair: a declared struct, which anybody can make.
+pub trait Method: Any + Debug + Send + Sync {
     /// Whether it knows a pair of teeth only as a whole, so that root, contact law and coupling mean nothing to it.
-    pub whole_pair: bool,
+    fn whole_pair(&self) -> bool {
+        false
+    }
+
     /// Whether it cannot treat a root with a sharp corner, the shape `base_circle`.
-    pub needs_fillet: bool,
-    /// The tables of a pair, with sentences for the user where a formula is used outside its range; an error when the
-    /// method does not hold for this pair. The record holds the options of this method alone.
-    pub tabulate: fn(&Record, &GearPair, Assumptions) -> Result<Tabulated, ComplianceError>,
-    /// The stress at the roots, for methods that mesh the teeth; the others do not know it.
-    pub root_stress: Option<RootStresses>,
+    fn needs_fillet(&self) -> bool {
+        false
+    }
+
+    /// The tables of a pair, with sentences for the user where a formula is used outside its range.
+    ///
+    /// # Errors
+    /// When the method does not hold for this pair.
+    fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError>;
+
     /// What it takes to tabulate a pair.
-    pub foresee: fn(&Record, Assumptions) -> Foreseen,
+    fn foresee(&self, assumptions: Assumptions) -> Foreseen {
+        integrated(assumptions)
+    }
+
+    /// Itself as a method that knows the stress at the roots: those that mesh the teeth.
+    fn root_stresses(&self) -> Option<&dyn RootStresses> {
+        None
+    }
+}
+
+/// A method that knows the largest stress at the root of both gears' teeth.
+pub trait RootStresses {
+    /// For loads along the flank, and what it took.
+    ///
+    /// # Errors
+    /// When the method does not hold for this pair.
+    fn root_stress(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+    ) -> Result<(Vec<RootStress>, Work), ComplianceError>;
 }
 
 /// What a method takes, before it runs.
@@ -61,7 +92,7 @@ pub struct Foreseen {
 
 /// What methods take that integrate along a tooth: series of some dozens of nodes and, where teeth are coupled, a table of
 /// every pair of nodes for up to three neighbours.
-pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
+fn integrated(assumptions: Assumptions) -> Foreseen {
     Foreseen {
         nodes: 128,
         neighbours: if assumptions.coupled { 3000 } else { 0 },
@@ -70,9 +101,6 @@ pub fn integrated(_: &Record, assumptions: Assumptions) -> Foreseen {
         memory: 4 << 20,
     }
 }
-
-/// The largest stress at the root of both gears' teeth, for loads along the flank, and what it took.
-pub type RootStresses = fn(&Record, &GearPair, Assumptions) -> Result<(Vec<RootStress>, Work), ComplianceError>;
 
 /// What every method is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -132,12 +160,6 @@ pub struct RootStress {
 /// Relative error of what is integrated and interpolated to rounding, as values of another program with 40 digits bound it.
 pub const ROUNDING: f64 = 1e-12;
 
-/// The method called `name`.
-#[must_use]
-pub fn method(name: &str) -> Option<&'static Method> {
-    METHODS.iter().find(|method| method.member.name == name)
-}
-
 /// What `tooth` gives for both gears; for gears that are alike it is called once.
 ///
 /// # Errors
@@ -146,21 +168,6 @@ pub fn of_both<T: Clone, E>(pair: &GearPair, mut tooth: impl FnMut(Side) -> Resu
     let pinion = tooth(Side::Pinion)?;
     let gear = if pair.pinion == pair.gear { pinion.clone() } else { tooth(Side::Gear)? };
     Ok([pinion, gear])
-}
-
-/// The methods as a study names them.
-#[must_use]
-pub fn members() -> &'static [Member] {
-    const MEMBERS: [Member; METHODS.len()] = {
-        let mut members = [METHODS[0].member; METHODS.len()];
-        let mut index = 1;
-        while index < METHODS.len() {
-            members[index] = METHODS[index].member;
-            index += 1;
-        }
-        members
-    };
-    &MEMBERS
 }
 
 /// Why a method cannot give a compliance for a pair.
@@ -249,32 +256,16 @@ pub fn neighbours(pair: &GearPair, side: Side) -> u32 {
 }
 
 /// How two flanks flatten against each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
 pub enum ContactLaw {
-    /// 4(1 − ν²)/(π E b): the article `energy_ga`.
+    /// 4(1 − ν²)/(π E b), whatever the load
+    ///
+    /// The article `energy_ga`.
     Linear,
-    /// Weber and Banaschek: 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
+    /// Weber and Banaschek: grows with the logarithm of the load
+    ///
+    /// 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
     LoadDependent,
-    /// The compliances of the teeth already include it, for methods that know a pair as a whole. No study chooses it.
-    Included,
-}
-
-/// The contact laws as a study names them.
-pub const CONTACT_LAWS: &[Choice] = &[
-    Choice { name: "linear", summary: "4(1 − ν²)/(π E b), whatever the load" },
-    Choice { name: "load_dependent", summary: "Weber and Banaschek: grows with the logarithm of the load" },
-];
-
-impl ContactLaw {
-    /// The law called `name` in [`CONTACT_LAWS`].
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "linear" => Some(Self::Linear),
-            "load_dependent" => Some(Self::LoadDependent),
-            _ => None,
-        }
-    }
 }
 
 /// Everything the contact solver needs to know of a pair's elasticity.
@@ -282,7 +273,8 @@ impl ContactLaw {
 pub struct PairCompliance {
     pub pinion: ToothCompliance,
     pub gear: ToothCompliance,
-    pub contact: ContactLaw,
+    /// None where the compliances of the teeth include it already, for methods that know a pair as a whole.
+    pub contact: Option<ContactLaw>,
     /// Whether loads on neighbouring teeth deflect each other through the gear bodies.
     pub coupled: bool,
 }

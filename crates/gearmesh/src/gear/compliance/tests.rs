@@ -3,10 +3,11 @@
 mod accuracy;
 mod reference;
 
-use super::energy::Beam;
+use super::energy::{Beam, Energy, GearBody};
 use super::ring::Ring;
 use super::sainsot::Body;
-use super::{Assumptions, ComplianceError, ContactLaw, Tabulated, ToothCompliance, members, method};
+use super::weber_banaschek::WeberBanaschek;
+use super::{Assumptions, ComplianceError, ContactLaw, Method, Tabulated, ToothCompliance, members};
 use crate::gear::contact::flattening;
 use crate::gear::fixtures::STEEL;
 use crate::gear::geometry::root::RootShape;
@@ -14,8 +15,6 @@ use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::crossing::bracketed;
 use crate::numeric::quadrature::GaussLegendre;
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
 
 /// 19/48, m 3 mm, widths 20/18 mm; the rack's tip round is c m/(1 − sin α), its bores r_f/`bore_ratio`.
 fn specifications(module: f64, bore_ratio: f64) -> [Specification; 2] {
@@ -38,16 +37,8 @@ fn pair(bore_ratio: f64) -> GearPair {
     GearPair::new(pinion, gear, None).unwrap()
 }
 
-fn options(body: &'static str) -> Record {
-    let entry = |value| PlacedValue { value, place: Place::default() };
-    Record {
-        fields: vec![
-            ("shear_factor", entry(Value::Number(1.2))),
-            ("body", entry(Value::Choice(body))),
-            ("harmonics", entry(Value::Integer(100))),
-        ],
-        place: Place::default(),
-    }
+fn energy_on(body: GearBody) -> Energy {
+    Energy { body, ..Energy::default() }
 }
 
 const SUMMED: Assumptions = Assumptions {
@@ -59,7 +50,7 @@ const SUMMED: Assumptions = Assumptions {
 };
 
 fn energy(pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    (method("energy").unwrap().tabulate)(&options("sainsot"), pair, assumptions)
+    Energy::default().tabulate(pair, assumptions)
 }
 
 /// Stiffness of the mesh \[N/m\] at a path position: all pairs in contact pressed by one common approach, with the
@@ -235,7 +226,7 @@ fn adding_pairs_overstates_double_contact() {
 fn neighbours_are_those_of_the_ring() {
     let pair = pair(1.75);
     let coupled = Assumptions { coupled: true, ..SUMMED };
-    let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair, coupled).unwrap().compliance;
+    let by_ring = energy_on(GearBody::Ring).tabulate(&pair, coupled).unwrap().compliance;
     let by_formula = energy(&pair, coupled).unwrap().compliance;
     for (gear, ring_table, table) in
         [(&pair.pinion, &by_ring.pinion, &by_formula.pinion), (&pair.gear, &by_ring.gear, &by_formula.gear)]
@@ -271,9 +262,9 @@ fn three_coupled_teeth_give_a_positive_definite_matrix() {
     };
     let pair = GearPair::new(high(50), high(60), None).unwrap();
     assert!(pair.contact_ratio > 2.0);
-    for body in ["sainsot", "ring"] {
+    for body in [GearBody::Sainsot, GearBody::Ring] {
         let coupled = Assumptions { coupled: true, ..SUMMED };
-        let tabulated = (method("energy").unwrap().tabulate)(&options(body), &pair, coupled).unwrap();
+        let tabulated = energy_on(body).tabulate(&pair, coupled).unwrap();
         for (gear, table) in [(&pair.pinion, &tabulated.compliance.pinion), (&pair.gear, &tabulated.compliance.gear)] {
             let pitch = std::f64::consts::TAU / f64::from(gear.specification.teeth);
             assert!(table.neighbours.len() >= 2, "{} neighbours", table.neighbours.len());
@@ -282,10 +273,10 @@ fn three_coupled_teeth_give_a_positive_definite_matrix() {
             let [second, third] = [1.0, 2.0].map(|k| first + k * pitch);
             let (a, b) = (table.neighbours[0].value(first, second), table.neighbours[0].value(second, third));
             let c = table.neighbours[1].value(first, third);
-            assert!(a > 0.0 && c > 0.0 && c < a && c < b, "{body}: {a} {b} {c}");
+            assert!(a > 0.0 && c > 0.0 && c < a && c < b, "{body:?}: {a} {b} {c}");
             let minor = own[0] * own[1] - a * a;
             let determinant = own[0] * (own[1] * own[2] - b * b) - a * (a * own[2] - b * c) + c * (a * b - own[1] * c);
-            assert!(minor > 0.0 && determinant > 0.0, "{body}: {minor} {determinant}");
+            assert!(minor > 0.0 && determinant > 0.0, "{body:?}: {minor} {determinant}");
         }
     }
 }
@@ -300,7 +291,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
         warning.starts_with("pinion: ") && warning.contains("0.1586 rad") && warning.contains("1.750"),
         "{warning}"
     );
-    let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair(1.75), SUMMED).unwrap();
+    let by_ring = energy_on(GearBody::Ring).tabulate(&pair(1.75), SUMMED).unwrap();
     assert!(by_ring.warnings.is_empty());
     let roll = 0.3;
     let ratio = by_ring.compliance.pinion.body.value(roll) / tabulated.compliance.pinion.body.value(roll);
@@ -320,7 +311,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
         };
         assert!(refused, "z {teeth}: {error}");
         assert_eq!(error.field(), "gear.teeth");
-        let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &large(teeth, 1.75), SUMMED).unwrap();
+        let by_ring = energy_on(GearBody::Ring).tabulate(&large(teeth, 1.75), SUMMED).unwrap();
         assert!(by_ring.compliance.gear.body.value(20_f64.to_radians().tan()) > 0.0);
     }
     for (ratio, shown) in [(1.05, "1.05"), (20.5, "20.5")] {
@@ -338,7 +329,7 @@ fn formulas_outside_their_range_are_told_or_refused() {
     for teeth in [26, 60, 150] {
         for ratio in [8.0, 12.0, 16.0, 19.9] {
             let pair = large(teeth, ratio);
-            let by_ring = (method("energy").unwrap().tabulate)(&options("ring"), &pair, SUMMED).unwrap();
+            let by_ring = energy_on(GearBody::Ring).tabulate(&pair, SUMMED).unwrap();
             let roll = 20_f64.to_radians().tan();
             let [formula, ring] =
                 [energy(&pair, SUMMED).unwrap(), by_ring].map(|found| found.compliance.gear.total(roll));
@@ -391,21 +382,11 @@ fn a_tip_that_is_all_but_pointed() {
     }
 }
 
-/// What a study may write is what the tables name.
+/// What a study may leave out can be read.
 #[test]
-fn names_and_choices_agree() {
-    use super::CONTACT_LAWS;
-    use crate::gear::geometry::root::ROOT_SHAPES;
+fn defaults_are_within_their_ranges() {
     use declare::parameter::{Presence, Shape};
-    for choice in ROOT_SHAPES {
-        assert!(RootShape::named(choice.name).is_some(), "{}", choice.name);
-    }
-    for choice in CONTACT_LAWS {
-        assert!(ContactLaw::named(choice.name).is_some(), "{}", choice.name);
-    }
-    assert!(RootShape::named("square").is_none() && ContactLaw::named("none").is_none() && method("guess").is_none());
     for member in members() {
-        assert!(method(member.name).is_some(), "{}", member.name);
         for field in member.fields {
             let text = match field.presence {
                 Presence::Default(text) => text,
@@ -427,15 +408,16 @@ fn gears_that_are_alike_take_half_of_the_evaluations() {
         let [pinion, gear] = teeth.map(|teeth| Specification { teeth, ..pinion });
         GearPair::new(pinion, gear, None).unwrap()
     };
-    for name in ["energy", "weber_banaschek"] {
-        let found = |pair: &GearPair| (method(name).unwrap().tabulate)(&options("sainsot"), pair, SUMMED).unwrap();
+    let methods: [&dyn Method; 2] = [&Energy::default(), &WeberBanaschek {}];
+    for method in methods {
+        let found = |pair: &GearPair| method.tabulate(pair, SUMMED).unwrap();
         let evaluations = |tabulated: &Tabulated| tabulated.work.count(&COMPLIANCE_EVALUATIONS);
         let (one, two) = (found(&alike([25, 25])), found(&alike([24, 25])));
         // 24 teeth take as many nodes as 25, and as many again.
-        assert!(evaluations(&one) > 0, "{name}");
-        assert_eq!(2 * evaluations(&one), evaluations(&two), "{name}");
-        assert_eq!(one.compliance.gear, two.compliance.gear, "{name}");
-        assert_eq!(one.compliance.pinion, one.compliance.gear, "{name}");
-        assert_eq!(one.work.count(&MESH_FACTORISATIONS), 0, "{name}");
+        assert!(evaluations(&one) > 0, "{method:?}");
+        assert_eq!(2 * evaluations(&one), evaluations(&two), "{method:?}");
+        assert_eq!(one.compliance.gear, two.compliance.gear, "{method:?}");
+        assert_eq!(one.compliance.pinion, one.compliance.gear, "{method:?}");
+        assert_eq!(one.work.count(&MESH_FACTORISATIONS), 0, "{method:?}");
     }
 }

@@ -22,7 +22,10 @@ mod tests;
 use std::f64::consts::PI;
 
 use super::energy::Beam;
-use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, of_both};
+use super::{
+    Assumptions, ComplianceError, Foreseen, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, integrated,
+    of_both,
+};
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
@@ -30,35 +33,33 @@ use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::crossing::bracketed;
 use crate::numeric::surface::Surface;
-use declare::parameter::Member;
-use declare::record::Record;
+use declare::Declared;
 use declare::work::Work;
 
 /// 2.4/(1 − ν) over what makes it a compliance in shear.
 const SHEAR_FACTOR: f64 = 1.2;
 
-pub const METHOD: Method = Method {
-    member: Member {
-        name: "weber_banaschek",
-        summary: "Cantilever of varying section in plane strain, clamped in a half plane, on a ring that winds up.",
-        fields: &[],
-    },
-    whole_pair: false,
-    needs_fillet: false,
-    tabulate,
-    root_stress: None,
-    // Neighbours turn with the body: one number each.
-    foresee: |options, assumptions| super::Foreseen { neighbours: 12, ..super::integrated(options, assumptions) },
-};
+/// Cantilever of varying section in plane strain, clamped in a half plane, on a ring that winds up.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "weber_banaschek")]
+pub struct WeberBanaschek {}
 
-fn tabulate(_options: &Record, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    let mut warnings = Vec::new();
-    let mut evaluations = 0;
-    let [pinion, gear] = of_both(pair, |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations))?;
-    let Assumptions { contact, coupled, .. } = assumptions;
-    let compliance = PairCompliance { pinion, gear, contact, coupled };
-    let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
-    Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
+impl Method for WeberBanaschek {
+    fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+        let mut warnings = Vec::new();
+        let mut evaluations = 0;
+        let side = |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations);
+        let [pinion, gear] = of_both(pair, side)?;
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
+        Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
+    }
+
+    fn foresee(&self, assumptions: Assumptions) -> Foreseen {
+        // Neighbours turn with the body: one number each.
+        Foreseen { neighbours: 12, ..integrated(assumptions) }
+    }
 }
 
 fn tabulate_side(

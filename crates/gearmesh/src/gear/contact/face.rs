@@ -60,7 +60,7 @@ impl<'a> Face<'a> {
         let mut cuts = vec![from, to];
         #[allow(clippy::float_cmp)] // the middle of the face is 0 only where it was put there
         let even = from == -to && design.lead_is_even();
-        for z in parts().flat_map(|part| part.lead_breaks()).flatten() {
+        for z in parts().flat_map(|part| part.lead_breaks()).copied() {
             if z > from && z < to {
                 cuts.push(z);
             }

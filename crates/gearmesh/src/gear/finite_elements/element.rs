@@ -4,7 +4,7 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, 5th edition, volume 1, chapters 8 and 9.
 //! Must not know: gears, the mesh.
 
-use declare::parameter::Choice;
+use declare::Words;
 
 /// Nodes of an element.
 pub const NODES: usize = 8;
@@ -17,28 +17,13 @@ const GAUSS: f64 = 0.774_596_669_241_483_4;
 pub const RULE: [(f64, f64); 3] = [(-GAUSS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (GAUSS, 5.0 / 9.0)];
 
 /// Which plane state.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
 pub enum Plane {
+    /// no strain along the width: wide faces
+    #[default]
     Strain,
+    /// no stress along the width: thin discs
     Stress,
-}
-
-/// The plane states as a study names them.
-pub const PLANES: &[Choice] = &[
-    Choice { name: "strain", summary: "no strain along the width: wide faces" },
-    Choice { name: "stress", summary: "no stress along the width: thin discs" },
-];
-
-impl Plane {
-    /// The state called `name` in [`PLANES`].
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "strain" => Some(Self::Strain),
-            "stress" => Some(Self::Stress),
-            _ => None,
-        }
-    }
 }
 
 /// σ = D ε with ε = (ε_x, ε_y, γ_xy).

@@ -15,37 +15,17 @@ use super::error::{GeometryError, Millimetres, Problem};
 use super::involute::Section;
 use super::trochoid::Trochoid;
 use crate::numeric::crossing;
-use declare::parameter::Choice;
+use declare::Words;
 
 /// How a tooth ends at its root.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
 pub enum RootShape {
+    /// the root curve that the rack generates
     Trochoid,
+    /// an arc of the rack's tip radius between flank and root circle
     CircularFillet,
+    /// no root: the involute clamped at the base circle (or root circle, if larger)
     BaseCircle,
-}
-
-/// The shapes as a study names them.
-pub const ROOT_SHAPES: &[Choice] = &[
-    Choice { name: "trochoid", summary: "the root curve that the rack generates" },
-    Choice { name: "circular_fillet", summary: "an arc of the rack's tip radius between flank and root circle" },
-    Choice {
-        name: "base_circle",
-        summary: "no root: the involute clamped at the base circle (or root circle, if larger)",
-    },
-];
-
-impl RootShape {
-    /// The shape called `name` in [`ROOT_SHAPES`].
-    #[must_use]
-    pub fn named(name: &str) -> Option<Self> {
-        match name {
-            "trochoid" => Some(Self::Trochoid),
-            "circular_fillet" => Some(Self::CircularFillet),
-            "base_circle" => Some(Self::BaseCircle),
-            _ => None,
-        }
-    }
 }
 
 /// A tooth's root of a certain shape.

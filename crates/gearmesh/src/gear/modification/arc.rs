@@ -4,19 +4,25 @@
 
 use std::sync::Arc;
 
-use super::Family;
-use super::tip_curve::{self, Conic, CurveThrough, Ends, TipCurve};
-use declare::parameter::Member;
+use super::tip_curve::{Conic, CurveThrough, Ends, Through, TipCurve};
+use super::{Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "arc",
-        summary: "Circular arc that leaves the flank along its tangent and ends inside the tip corner (mei2016).",
-        fields: &tip_curve::FIELDS,
-    },
-    check: tip_curve::check,
-    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &CurveThrough { derived, printed })?)),
-};
+/// Circular arc that leaves the flank along its tangent and ends inside the tip corner (mei2016).
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "arc")]
+pub struct ArcRelief {
+    #[declared(flatten)]
+    pub through: Through,
+}
+
+impl Specified for ArcRelief {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        Ok(Arc::new(TipCurve::new(self.through, pair.side(side), &CurveThrough { derived, printed })?))
+    }
+}
 
 /// κ(X² + Y²) + 2Y = 0: the centre lies on the normal of B, on the bisector of AB.
 fn derived(ends: &Ends) -> Conic {

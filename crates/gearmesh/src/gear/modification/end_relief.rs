@@ -4,75 +4,77 @@
 
 use std::sync::Arc;
 
-use super::curve::{CURVE, Curve, EXPONENT};
-use super::{Family, GEAR, MOST_AMOUNT, Modification};
+use super::curve::{Curve, Growth};
+use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field, Member};
-use declare::units;
+use declare::units::LENGTH;
+use declare::{Declared, Words};
 
-const AMOUNT: Field =
-    Field::quantity("amount", units::LENGTH, 0.0, MOST_AMOUNT, "C_βI, C_βII: depth at the end of the gear's own face.")
-        .range();
-const LENGTH: Field = Field::quantity(
-    "length",
-    units::LENGTH,
-    0.0,
-    10.0,
-    "L_CβI, L_CβII: how far from the end of the face the relief starts; at most the face width for one end, half of it \
-     for both; a relief of no length removes nothing.",
-)
-.range();
-const END: Field = Field::choice(
-    "end",
-    &[
-        Choice { name: "I", summary: "the end at z = −b/2" },
-        Choice { name: "II", summary: "the end at z = +b/2" },
-        Choice { name: "both", summary: "both, alike" },
-    ],
-    "Which end of the face is relieved; two of them with different values are two entries.",
-)
-.default("both");
+/// Which end of the face is relieved.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum FaceEnd {
+    /// the end at z = −b/2
+    #[declared(name = "I")]
+    First,
+    /// the end at z = +b/2
+    #[declared(name = "II")]
+    Second,
+    /// both, alike
+    #[default]
+    Both,
+}
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "end_relief",
-        summary: "C_βI, C_βII: relief that grows from a start on the face to one or both of its ends.",
-        fields: &[GEAR, AMOUNT, LENGTH, END, CURVE, EXPONENT],
-    },
-    check: Curve::check,
-    build: |record, pair, side| {
-        let (end, length) = (record.choice(END.name), record.quantity(LENGTH.name));
+/// C_βI, C_βII: relief that grows from a start on the face to one or both of its ends.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "end_relief")]
+pub struct EndRelief {
+    /// C_βI, C_βII: depth at the end of the gear's own face.
+    #[declared(dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    pub amount: f64,
+    /// L_CβI, L_CβII: how far from the end of the face the relief starts; at most the face width for one end, half of it
+    /// for both; a relief of no length removes nothing.
+    #[declared(dimension = LENGTH, least = 0.0, most = 10.0, range)]
+    pub length: f64,
+    /// Which end of the face is relieved; two of them with different values are two entries.
+    #[declared(default = "both")]
+    pub end: FaceEnd,
+    #[declared(flatten)]
+    pub curve: Curve,
+}
+
+impl Specified for EndRelief {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
         let face_width = pair.side(side).specification.face_width;
-        let longest = if end == "both" { 0.5 * face_width } else { face_width };
-        if length > longest {
-            let (given, longest) = (length * 1e3, longest * 1e3);
+        let longest = if self.end == FaceEnd::Both { 0.5 * face_width } else { face_width };
+        if self.length > longest {
+            let (given, longest) = (self.length * 1e3, longest * 1e3);
             let message =
                 format!("the end relief is {given:.6} mm long; the face leaves room for 0 to {longest:.6} mm");
-            return Err(Diagnostic::new(message).at(record.place_of(LENGTH.name)));
+            return Err(Diagnostic::new(message).of(Self::NAMES.length));
         }
-        Ok(Arc::new(EndRelief {
-            amount: record.quantity(AMOUNT.name),
-            length,
-            start: 0.5 * face_width - length,
-            first: end != "II",
-            second: end != "I",
-            curve: Curve::read(record),
-        }))
-    },
-};
+        let start = 0.5 * face_width - self.length;
+        let (first, second) = (self.end != FaceEnd::Second, self.end != FaceEnd::First);
+        let breaks = [first.then_some(-start), second.then_some(start)].into_iter().flatten().collect();
+        let (amount, length) = (self.amount, self.length);
+        Ok(Arc::new(Ramps { amount, length, start, first, second, breaks, growth: self.curve.growth() }))
+    }
+}
 
+/// The same on a gear.
 #[derive(Debug)]
-struct EndRelief {
+struct Ramps {
     amount: f64,
     length: f64,
     /// Distance from the middle of the face at which the relief starts; negative when it crosses the middle.
     start: f64,
     first: bool,
     second: bool,
-    curve: Curve,
+    breaks: Vec<f64>,
+    growth: Growth,
 }
 
-impl EndRelief {
+impl Ramps {
     /// −1 or 1 where z lies in a relief towards end I or II, 0 elsewhere.
     fn direction(&self, z: f64) -> f64 {
         if self.second && z > self.start {
@@ -85,13 +87,13 @@ impl EndRelief {
     }
 }
 
-impl Modification for EndRelief {
+impl Modification for Ramps {
     fn lead(&self, z: f64) -> f64 {
         let distance = self.direction(z) * z - self.start;
         if self.direction(z) == 0.0 || self.length == 0.0 {
             0.0
         } else {
-            self.amount * self.curve.value(distance / self.length)
+            self.amount * self.growth.value(distance / self.length)
         }
     }
 
@@ -100,7 +102,7 @@ impl Modification for EndRelief {
         if direction == 0.0 || self.length == 0.0 {
             return Some([0.0; 3]);
         }
-        let Curve::Quadratic { linear } = self.curve else { return None };
+        let Growth::Quadratic { linear } = self.growth else { return None };
         // amount · (a t + (1 − a) t²) with t = (±z − start)/length.
         let (start, scale) = (self.start / self.length, direction / self.length);
         let bend = 1.0 - linear;
@@ -109,8 +111,8 @@ impl Modification for EndRelief {
         Some(coefficients.map(|coefficient| self.amount * coefficient))
     }
 
-    fn lead_breaks(&self) -> [Option<f64>; 2] {
-        [self.first.then_some(-self.start), self.second.then_some(self.start)]
+    fn lead_breaks(&self) -> &[f64] {
+        &self.breaks
     }
 
     fn varies_along_face(&self) -> bool {

@@ -4,39 +4,35 @@
 
 use std::sync::Arc;
 
-use super::{Family, GEAR, MOST_AMOUNT, Modification, no_check};
-use declare::parameter::{Field, Member};
-use declare::units;
+use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
+use declare::units::LENGTH;
 
-const AMOUNT: Field = Field::quantity(
-    "amount",
-    units::LENGTH,
-    -MOST_AMOUNT,
-    MOST_AMOUNT,
-    "C_Hβ over the face width: positive takes material off at z = +b/2, negative at z = −b/2; the other end keeps it.",
-)
-.range();
+/// C_Hβ: straight line across the gear's own face width; also stands for a misalignment.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "helix_slope")]
+pub struct HelixSlope {
+    /// C_Hβ over the face width: positive takes material off at z = +b/2, negative at z = −b/2; the other end keeps it.
+    #[declared(dimension = LENGTH, least = -MOST_AMOUNT, most = MOST_AMOUNT, range)]
+    pub amount: f64,
+}
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "helix_slope",
-        summary: "C_Hβ: straight line across the gear's own face width; also stands for a misalignment.",
-        fields: &[GEAR, AMOUNT],
-    },
-    check: no_check,
-    build: |record, pair, side| {
-        let face_width = pair.side(side).specification.face_width;
-        Ok(Arc::new(HelixSlope { amount: record.quantity(AMOUNT.name), face_width }))
-    },
-};
+impl Specified for HelixSlope {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        Ok(Arc::new(Line { amount: self.amount, face_width: pair.side(side).specification.face_width }))
+    }
+}
 
+/// The same on a gear.
 #[derive(Debug)]
-struct HelixSlope {
+struct Line {
     amount: f64,
     face_width: f64,
 }
 
-impl Modification for HelixSlope {
+impl Modification for Line {
     fn lead_quadratic(&self, _z: f64) -> Option<[f64; 3]> {
         Some([0.5 * self.amount.abs(), self.amount / self.face_width, 0.0])
     }

@@ -4,34 +4,35 @@
 
 use std::sync::Arc;
 
-use super::{Family, GEAR, MOST_AMOUNT, Modification, no_check};
-use declare::parameter::{Field, Member};
-use declare::units;
+use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
+use declare::units::LENGTH;
 
-const AMOUNT: Field =
-    Field::quantity("amount", units::LENGTH, 0.0, MOST_AMOUNT, "C_β: depth at both ends of the gear's own face.")
-        .range();
+/// C_β: parabola C_β(2z/b)² across the gear's own face width.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "lead_crowning")]
+pub struct LeadCrowning {
+    /// C_β: depth at both ends of the gear's own face.
+    #[declared(dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    pub amount: f64,
+}
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "lead_crowning",
-        summary: "C_β: parabola C_β(2z/b)² across the gear's own face width.",
-        fields: &[GEAR, AMOUNT],
-    },
-    check: no_check,
-    build: |record, pair, side| {
-        let face_width = pair.side(side).specification.face_width;
-        Ok(Arc::new(LeadCrowning { amount: record.quantity(AMOUNT.name), face_width }))
-    },
-};
+impl Specified for LeadCrowning {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        Ok(Arc::new(Parabola { amount: self.amount, face_width: pair.side(side).specification.face_width }))
+    }
+}
 
+/// The same on a gear.
 #[derive(Debug)]
-struct LeadCrowning {
+struct Parabola {
     amount: f64,
     face_width: f64,
 }
 
-impl Modification for LeadCrowning {
+impl Modification for Parabola {
     fn lead_quadratic(&self, _z: f64) -> Option<[f64; 3]> {
         let per_length = 2.0 / self.face_width;
         Some([0.0, 0.0, self.amount * per_length * per_length])

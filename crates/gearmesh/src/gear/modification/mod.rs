@@ -23,40 +23,123 @@ pub mod tip_curve;
 pub mod tip_relief;
 
 use std::fmt::Debug;
+use std::marker::PhantomData;
 use std::sync::Arc;
 
 use self::flank::Flank;
 use super::geometry::{GearPair, Side};
+use declare::declared::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field, Member};
+use declare::parameter::{Field, Member};
 use declare::record::Record;
+use declare::{Declared, Words};
 
 /// Every family, in the order in which they are listed to the user.
 pub const FAMILIES: &[Family] = &[
-    tip_relief::FAMILY,
-    root_relief::FAMILY,
-    arc::FAMILY,
-    parabola::FAMILY,
-    profile_crowning::FAMILY,
-    profile_slope::FAMILY,
-    lead_crowning::FAMILY,
-    helix_slope::FAMILY,
-    end_relief::FAMILY,
+    Family::of::<tip_relief::TipRelief>(),
+    Family::of::<root_relief::RootRelief>(),
+    Family::of::<arc::ArcRelief>(),
+    Family::of::<parabola::ParabolicRelief>(),
+    Family::of::<profile_crowning::ProfileCrowning>(),
+    Family::of::<profile_slope::ProfileSlope>(),
+    Family::of::<lead_crowning::LeadCrowning>(),
+    Family::of::<helix_slope::HelixSlope>(),
+    Family::of::<end_relief::EndRelief>(),
 ];
 
-/// Builds the modification of one gear.
-pub type Build = fn(&Record, &GearPair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
+/// A modification as a drawing states it: a declared struct, which anybody can make.
+pub trait Specified: Declared {
+    /// Refuses combinations that no declaration can express.
+    ///
+    /// # Errors
+    /// Which field does not go with which.
+    fn check(&self) -> Result<(), Diagnostic> {
+        Ok(())
+    }
+
+    /// What it is on one gear of a pair. It has passed [`Specified::check`].
+    ///
+    /// # Errors
+    /// When it does not fit, for example a relief longer than the flank, with the admissible range.
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic>;
+}
+
+/// Which gears are modified.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Gears {
+    /// the driving gear
+    Pinion,
+    /// the driven gear
+    Gear,
+    /// each of the two, with the same values
+    Both,
+}
+
+impl Gears {
+    fn sides(self) -> &'static [Side] {
+        match self {
+            Self::Pinion => &[Side::Pinion],
+            Self::Gear => &[Side::Gear],
+            Self::Both => &[Side::Pinion, Side::Gear],
+        }
+    }
+}
+
+/// What a study states of every modification.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Declared)]
+pub struct Where {
+    /// Which gear is modified.
+    pub gear: Gears,
+}
+
+type Build = fn(&Record, &GearPair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
 
 /// A family as registered.
 #[derive(Clone, Copy)]
 pub struct Family {
-    /// Its name, meaning and fields; one of the fields is [`GEAR`].
+    /// Its name, meaning and fields, those of [`Where`] before its own.
     pub member: Member,
     /// Refuses combinations of fields that no declaration can express; values may still be ranges.
     pub check: fn(&Record) -> Result<(), Diagnostic>,
     /// The modification of one gear. The record has passed `check` and holds no ranges.
-    pub build: Build,
+    build: Build,
 }
+
+impl Family {
+    const fn of<T: Specified>() -> Self {
+        Self {
+            member: Member { fields: Stated::<T>::FIELDS, ..T::MEMBER },
+            check: |record| {
+                T::consistent(record)?;
+                let stated = T::read(&record.without_ranges(T::MEMBER.fields));
+                stated.check().map_err(|wrong| record.locate(wrong))
+            },
+            build: |record, pair, side| T::read(record).on(pair, side).map_err(|wrong| record.locate(wrong)),
+        }
+    }
+}
+
+/// The fields of a family as a study states them.
+struct Stated<T>(PhantomData<T>);
+
+impl<T: Declared> Stated<T> {
+    const COUNT: usize = Where::MEMBER.fields.len() + T::MEMBER.fields.len();
+    const PADDED: &'static [Field; MOST_FIELDS] = &{
+        assert!(Self::COUNT <= MOST_FIELDS);
+        let (first, own) = (Where::MEMBER.fields, T::MEMBER.fields);
+        let mut fields = [first[0]; MOST_FIELDS];
+        let mut index = first.len();
+        while index < Self::COUNT {
+            fields[index] = own[index - first.len()];
+            index += 1;
+        }
+        fields
+    };
+    const FIELDS: &'static [Field] = Self::PADDED.split_at(Self::COUNT).0;
+}
+
+/// The most fields of a family.
+const MOST_FIELDS: usize = 16;
 
 /// One modification of one gear, with everything resolved.
 pub trait Modification: Debug + Send + Sync {
@@ -66,8 +149,8 @@ pub trait Modification: Debug + Send + Sync {
     }
 
     /// Roll angles at which the depth is not smooth.
-    fn profile_breaks(&self) -> [Option<f64>; 2] {
-        [None; 2]
+    fn profile_breaks(&self) -> &[f64] {
+        &[]
     }
 
     fn varies_along_profile(&self) -> bool {
@@ -87,8 +170,8 @@ pub trait Modification: Debug + Send + Sync {
     }
 
     /// The z at which the lead is not smooth.
-    fn lead_breaks(&self) -> [Option<f64>; 2] {
-        [None; 2]
+    fn lead_breaks(&self) -> &[f64] {
+        &[]
     }
 
     fn varies_along_face(&self) -> bool {
@@ -133,23 +216,50 @@ impl Design {
         self.pinion.iter().chain(&self.gear).all(|part| part.modification.lead_is_even())
     }
 
-    /// Adds a modification, as `family: { fields }` states it, to the gears that its field `gear` names.
+    /// Adds a modification to one gear or both.
     ///
     /// # Errors
-    /// When the fields contradict each other or do not fit the pair, or when all modifications of a gear together take
-    /// off more than half of its tooth.
-    pub fn add(&mut self, family: &'static Family, record: &Record, pair: &GearPair) -> Result<(), Diagnostic> {
+    /// When a value is out of its range, when values contradict each other or do not fit the pair, or when all
+    /// modifications of a gear together take off more than half of its tooth.
+    pub fn add<T: Specified>(&mut self, gears: Gears, stated: &T, pair: &GearPair) -> Result<(), Diagnostic> {
+        stated.in_range()?;
+        self.add_of_any_size(gears, stated, pair)
+    }
+
+    /// The same beyond the ranges that a study may state.
+    pub(crate) fn add_of_any_size<T: Specified>(
+        &mut self,
+        gears: Gears,
+        stated: &T,
+        pair: &GearPair,
+    ) -> Result<(), Diagnostic> {
+        stated.check()?;
+        self.add_to(gears, T::MEMBER.name, pair, |side| stated.on(pair, side))
+    }
+
+    /// The same, as `family: { fields }` of a study states it.
+    ///
+    /// # Errors
+    /// As [`Design::add`], with places.
+    pub fn add_record(&mut self, family: &'static Family, record: &Record, pair: &GearPair) -> Result<(), Diagnostic> {
         (family.check)(record)?;
-        let gear = record.choice(GEAR.name);
-        if gear != "gear" {
-            let modification = (family.build)(record, pair, Side::Pinion)?;
-            self.pinion.push(NamedModification { family: family.member.name, modification });
-            self.check_room(Side::Pinion, pair).map_err(|error| error.or_at(record.place))?;
-        }
-        if gear != "pinion" {
-            let modification = (family.build)(record, pair, Side::Gear)?;
-            self.gear.push(NamedModification { family: family.member.name, modification });
-            self.check_room(Side::Gear, pair).map_err(|error| error.or_at(record.place))?;
+        let added =
+            self.add_to(Where::read(record).gear, family.member.name, pair, |side| (family.build)(record, pair, side));
+        added.map_err(|error| error.or_at(record.place))
+    }
+
+    fn add_to(
+        &mut self,
+        gears: Gears,
+        family: &'static str,
+        pair: &GearPair,
+        on: impl Fn(Side) -> Result<Arc<dyn Modification>, Diagnostic>,
+    ) -> Result<(), Diagnostic> {
+        for &side in gears.sides() {
+            let modification = on(side)?;
+            let parts = if side == Side::Pinion { &mut self.pinion } else { &mut self.gear };
+            parts.push(NamedModification { family, modification });
+            self.check_room(side, pair)?;
         }
         Ok(())
     }
@@ -161,9 +271,9 @@ impl Design {
         let (gear, flank, parts) = (pair.side(side), Flank::new(pair, side), self.side(side));
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
-        let edges = parts.iter().flat_map(|part| part.modification.lead_breaks());
+        let edges = parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();
         let lead = looks(face, edges).map(|z| sum(&|part| part.lead(z))).fold(0.0, f64::max);
-        let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks());
+        let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks()).copied();
         // The place with the least room; NaN counts as none.
         let mut tightest = (f64::INFINITY, flank.tip_roll, 0.0);
         for roll in looks((flank.root_roll, flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll)), breaks) {
@@ -212,8 +322,8 @@ impl Design {
 }
 
 /// The ends of a range, the `breaks` inside it, and equidistant places between.
-fn looks((from, to): (f64, f64), breaks: impl Iterator<Item = Option<f64>>) -> impl Iterator<Item = f64> {
-    let inside = breaks.flatten().filter(move |place| *place > from && *place < to);
+fn looks((from, to): (f64, f64), breaks: impl Iterator<Item = f64>) -> impl Iterator<Item = f64> {
+    let inside = breaks.filter(move |place| *place > from && *place < to);
     let between = (1..LOOKS).map(move |look| from + (to - from) * f64::from(look) / f64::from(LOOKS));
     [from, to].into_iter().chain(between).chain(inside)
 }
@@ -239,24 +349,8 @@ pub fn members() -> &'static [Member] {
     &MEMBERS
 }
 
-/// Which gear is modified.
-pub const GEAR: Field = Field::choice(
-    "gear",
-    &[
-        Choice { name: "pinion", summary: "the driving gear" },
-        Choice { name: "gear", summary: "the driven gear" },
-        Choice { name: "both", summary: "each of the two, with the same values" },
-    ],
-    "Which gear is modified.",
-);
-
 /// Into how many parts flank and face are divided to see whether enough of the tooth is left.
 const LOOKS: u32 = 16;
 
 /// The largest amount \[m\]: beyond it a relief is no longer small against the tooth.
 pub(crate) const MOST_AMOUNT: f64 = 5e-3;
-
-#[allow(clippy::unnecessary_wraps)] // has the type of every family's check
-pub(crate) fn no_check(_: &Record) -> Result<(), Diagnostic> {
-    Ok(())
-}

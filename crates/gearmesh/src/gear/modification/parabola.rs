@@ -5,19 +5,25 @@
 
 use std::sync::Arc;
 
-use super::Family;
-use super::tip_curve::{self, Conic, CurveThrough, Ends, TipCurve};
-use declare::parameter::Member;
+use super::tip_curve::{Conic, CurveThrough, Ends, Through, TipCurve};
+use super::{Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "parabola",
-        summary: "Parabola that leaves the flank along its tangent and ends inside the tip corner (mei2016).",
-        fields: &tip_curve::FIELDS,
-    },
-    check: tip_curve::check,
-    build: |record, pair, side| Ok(Arc::new(TipCurve::build(record, pair, side, &CurveThrough { derived, printed })?)),
-};
+/// Parabola that leaves the flank along its tangent and ends inside the tip corner (mei2016).
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "parabola")]
+pub struct ParabolicRelief {
+    #[declared(flatten)]
+    pub through: Through,
+}
+
+impl Specified for ParabolicRelief {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        Ok(Arc::new(TipCurve::new(self.through, pair.side(side), &CurveThrough { derived, printed })?))
+    }
+}
 
 /// With q = X cos t + Y sin t, the distance from B along the article's x axis: y − y_B − q tan t = −Y/cos t = a q².
 fn derived(ends: &Ends) -> Conic {

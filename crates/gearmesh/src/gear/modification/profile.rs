@@ -18,8 +18,7 @@ impl Relief for Profile {
     }
 
     fn breaks(&self) -> Vec<f64> {
-        let mut places: Vec<f64> =
-            self.0.iter().flat_map(|part| part.modification.profile_breaks()).flatten().collect();
+        let mut places: Vec<f64> = self.0.iter().flat_map(|part| part.modification.profile_breaks()).copied().collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
         places

@@ -5,36 +5,39 @@
 use std::sync::Arc;
 
 use super::flank::Flank;
-use super::{Family, GEAR, MOST_AMOUNT, Modification, no_check};
-use declare::parameter::{Field, Member};
-use declare::units;
+use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
+use declare::units::LENGTH;
 
-const AMOUNT: Field =
-    Field::quantity("amount", units::LENGTH, 0.0, MOST_AMOUNT, "C_α: depth at both ends of the active flank.").range();
+/// C_α: parabola over the roll length of the active flank, nothing in its middle.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "profile_crowning")]
+pub struct ProfileCrowning {
+    /// C_α: depth at both ends of the active flank.
+    #[declared(dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    pub amount: f64,
+}
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "profile_crowning",
-        summary: "C_α: parabola over the roll length of the active flank, nothing in its middle.",
-        fields: &[GEAR, AMOUNT],
-    },
-    check: no_check,
-    build: |record, pair, side| {
+impl Specified for ProfileCrowning {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
         let flank = Flank::new(pair, side);
         let middle = 0.5 * (flank.tip_roll + flank.root_roll);
         let per_roll = 2.0 / (flank.tip_roll - flank.root_roll);
-        Ok(Arc::new(ProfileCrowning { amount: record.quantity(AMOUNT.name), middle, per_roll }))
-    },
-};
+        Ok(Arc::new(Parabola { amount: self.amount, middle, per_roll }))
+    }
+}
 
+/// The same on a gear.
 #[derive(Debug)]
-struct ProfileCrowning {
+struct Parabola {
     amount: f64,
     middle: f64,
     per_roll: f64,
 }
 
-impl Modification for ProfileCrowning {
+impl Modification for Parabola {
     fn depth(&self, roll: f64) -> f64 {
         let t = (roll - self.middle) * self.per_roll;
         self.amount * t * t

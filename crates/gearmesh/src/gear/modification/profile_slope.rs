@@ -5,43 +5,40 @@
 use std::sync::Arc;
 
 use super::flank::Flank;
-use super::{Family, GEAR, MOST_AMOUNT, Modification, no_check};
-use declare::parameter::{Field, Member};
-use declare::units;
+use super::{MOST_AMOUNT, Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::error::Diagnostic;
+use declare::units::LENGTH;
 
-const AMOUNT: Field = Field::quantity(
-    "amount",
-    units::LENGTH,
-    -MOST_AMOUNT,
-    MOST_AMOUNT,
-    "C_Hα: positive takes material off at the tip, negative at the root end; the other end keeps it.",
-)
-.range();
+/// C_Hα: straight line over the roll length of the active flank.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+#[declared(name = "profile_slope")]
+pub struct ProfileSlope {
+    /// C_Hα: positive takes material off at the tip, negative at the root end; the other end keeps it.
+    #[declared(dimension = LENGTH, least = -MOST_AMOUNT, most = MOST_AMOUNT, range)]
+    pub amount: f64,
+}
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "profile_slope",
-        summary: "C_Hα: straight line over the roll length of the active flank.",
-        fields: &[GEAR, AMOUNT],
-    },
-    check: no_check,
-    build: |record, pair, side| {
+impl Specified for ProfileSlope {
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
         let flank = Flank::new(pair, side);
-        let amount = record.quantity(AMOUNT.name);
-        let kept = if amount < 0.0 { flank.tip_roll } else { flank.root_roll };
-        Ok(Arc::new(ProfileSlope { amount, kept, per_roll: amount / (flank.tip_roll - flank.root_roll) }))
-    },
-};
+        let kept = if self.amount < 0.0 { flank.tip_roll } else { flank.root_roll };
+        let per_roll = self.amount / (flank.tip_roll - flank.root_roll);
+        Ok(Arc::new(Line { amount: self.amount, kept, per_roll }))
+    }
+}
 
+/// The same on a gear.
 #[derive(Debug)]
-struct ProfileSlope {
+struct Line {
     amount: f64,
     /// Roll angle of the end that keeps its material.
     kept: f64,
     per_roll: f64,
 }
 
-impl Modification for ProfileSlope {
+impl Modification for Line {
     fn depth(&self, roll: f64) -> f64 {
         (roll - self.kept) * self.per_roll
     }

@@ -4,31 +4,43 @@
 
 use std::sync::Arc;
 
-use super::curve::{CURVE, EXPONENT};
+use super::curve::Curve;
 use super::flank::Flank;
-use super::relief::{
-    self, AMOUNT, COUNTED_FROM_ROOT, End, FRACTION, ISO_AMOUNT, LENGTH, Ramp, START_DIAMETER, START_ROLL_ANGLE,
-};
-use super::{Family, GEAR};
-use declare::parameter::Member;
+use super::relief::{Amount, End, FromRoot, Ramp, Start, Stated};
+use super::{Modification, Specified};
+use crate::gear::geometry::{GearPair, Side};
+use declare::Declared;
+use declare::declared::Words;
+use declare::error::Diagnostic;
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "root_relief",
-        summary: "C_αf: relief that grows from a start on the flank to the root end of its active part.",
-        fields: &[
-            GEAR,
-            AMOUNT,
-            ISO_AMOUNT,
-            LENGTH,
-            FRACTION,
-            START_ROLL_ANGLE,
-            START_DIAMETER,
-            COUNTED_FROM_ROOT,
-            CURVE,
-            EXPONENT,
-        ],
-    },
-    check: relief::check,
-    build: |record, pair, side| Ok(Arc::new(Ramp::build(record, pair, &Flank::new(pair, side), End::Root)?)),
-};
+/// C_αf: relief that grows from a start on the flank to the root end of its active part.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "root_relief")]
+pub struct RootRelief {
+    #[declared(flatten)]
+    pub amount: Amount,
+    #[declared(flatten)]
+    pub start: Start,
+    /// Where `length` or `fraction` counts from.
+    #[declared(default = "root")]
+    pub counted_from: FromRoot,
+    #[declared(flatten)]
+    pub curve: Curve,
+}
+
+impl RootRelief {
+    fn stated(&self) -> Stated<'_> {
+        let (start, origin, curve) = (self.start, self.counted_from.origin(), self.curve);
+        Stated { amount: &self.amount, start, origin, curve, end: End::Root }
+    }
+}
+
+impl Specified for RootRelief {
+    fn check(&self) -> Result<(), Diagnostic> {
+        self.stated().check(self.counted_from.word())
+    }
+
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        Ok(Arc::new(Ramp::new(&self.stated(), pair, &Flank::new(pair, side))?))
+    }
+}

@@ -2,8 +2,9 @@
 //!
 //! Must not know: optimisers, compliance, load.
 
-use super::{Design, Family, family};
+use super::{Design, Family, Gears, Where, family};
 use crate::gear::geometry::GearPair;
+use declare::declared::{Declared, Words};
 use declare::error::Diagnostic;
 use declare::parameter::Shape;
 use declare::record::{PlacedValue, Record, Value};
@@ -54,8 +55,8 @@ impl Template {
             let Value::Range(least, most) = entry.value else { continue };
             let shape = family.member.fields.iter().find(|declared| declared.name == *field).map(|found| found.shape);
             let dimension = if let Some(Shape::Quantity { dimension, .. }) = shape { dimension } else { RATIO };
-            let gear = record.choice("gear");
-            let gear = if gear == "both" { String::new() } else { format!("{gear}.") };
+            let gears = Where::read(record).gear;
+            let gear = if gears == Gears::Both { String::new() } else { format!("{}.", gears.word()) };
             let plain = format!("{gear}{}.{field}", family.member.name);
             let taken = |name: &str| self.variables.iter().any(|variable| variable.name == name);
             let numbered = (2..).map(|number| format!("{plain}_{number}"));
@@ -84,7 +85,7 @@ impl Template {
         let mut next = 0;
         for (index, (family, record)) in self.parts.iter().enumerate() {
             if self.slots.get(next).is_none_or(|(part, _)| *part != index) {
-                design.add(family, record, pair)?;
+                design.add_record(family, record, pair)?;
                 continue;
             }
             let mut record = record.clone();
@@ -94,7 +95,7 @@ impl Template {
                 record.fields[*field].1.value = if plain { Value::Number(value) } else { Value::Quantity(value) };
                 next += 1;
             }
-            design.add(family, &record, pair)?;
+            design.add_record(family, &record, pair)?;
         }
         Ok(design)
     }

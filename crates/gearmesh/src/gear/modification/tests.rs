@@ -3,11 +3,12 @@
 mod tip_curve;
 
 use super::flank::Flank;
+use super::relief::IsoAmount;
 use super::template::Template;
 use super::{Design, FAMILIES, members};
 use crate::gear::fixtures::{BASE_PITCH, NamedModification, design, pair, record};
 use crate::gear::geometry::{GearPair, Side};
-use declare::error::Place;
+use declare::declared::{Declared, entry, record_of};
 use declare::record::PlacedValue;
 use declare::record::Value::{self, Choice, Group, Member, Number, Quantity, Range};
 
@@ -111,9 +112,7 @@ fn the_iso_amount_is_the_printed_formula() {
             fields.push((name, if *name == "contact_ratio" { Number(*value) } else { Quantity(*value) }));
         }
         fields.push(("mesh_stiffness", Quantity(19.05e9)));
-        let fields =
-            fields.into_iter().map(|(name, value)| (name, PlacedValue { value, place: Place::default() })).collect();
-        let group = declare::record::Record { fields, place: Place::default() };
+        let group = record_of(IsoAmount::MEMBER.fields, &fields);
         let values = [("iso_amount", Group(group)), ("fraction", Number(1.0))];
         pinion_depth("tip_relief", &values, pair.end_of_contact)
     };
@@ -282,9 +281,8 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
     }
     // 10 · 1 GN on 0.1 mm of width, over 1e6 N/m²: 1e8 m of relief.
     let fields = [("application_factor", Number(10.0)), ("tangential_load", Quantity(1e9))];
-    let group = fields.into_iter().chain([("face_width", Quantity(1e-4)), ("mesh_stiffness", Quantity(1e6))]);
-    let fields = group.map(|(name, value)| (name, PlacedValue { value, place: Place::default() })).collect();
-    let iso = Group(declare::record::Record { fields, place: Place::default() });
+    let more = [("face_width", Quantity(1e-4)), ("mesh_stiffness", Quantity(1e6))];
+    let iso = Group(record_of(IsoAmount::MEMBER.fields, &[fields, more].concat()));
     assert!(refused("tip_relief", &[("iso_amount", iso), ("fraction", Number(1.0))]).contains("half of the tooth"));
 }
 
@@ -322,11 +320,7 @@ fn every_family_is_listed_once_with_its_gear() {
 }
 
 fn members_of(parts: &[(&'static str, &[(&'static str, Value)])]) -> Vec<PlacedValue> {
-    let member = |(name, values): &(&'static str, &[(&'static str, Value)])| PlacedValue {
-        value: Member(name, record(name, values)),
-        place: Place::default(),
-    };
-    parts.iter().map(member).collect()
+    parts.iter().map(|(name, values)| entry(Member(name, record(name, values)))).collect()
 }
 
 #[test]

@@ -8,65 +8,54 @@
 //! beyond the roll angle u_a of the nominal corner, where the depth is less. Must not know: compliance, load.
 
 use super::{MOST_AMOUNT, Modification};
-use crate::gear::geometry::{Gear, GearPair, Side};
+use crate::gear::geometry::Gear;
 use declare::error::Diagnostic;
-use declare::parameter::{Choice, Field};
-use declare::record::Record;
-use declare::units;
+use declare::units::LENGTH;
+use declare::{Alternatives, Declared, Words};
 
-const TIP_SHARE: Field = Field::number(
-    "tip_share",
-    0.0,
-    0.5,
-    "How far A is moved from the corner inwards along the tip circle, as a share of the tip thickness s_a.",
-)
-.range()
-.optional();
+/// Where the curve ends: how far A is moved from the corner inwards along the tip circle.
+#[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
+pub enum TipPoint {
+    /// How far A is moved from the corner inwards along the tip circle, as a share of the tip thickness s_a.
+    #[declared(name = "tip_share", least = 0.0, most = 0.5, range)]
+    Share(f64),
+    /// Instead of `tip_share`: the same as a length along the tip circle.
+    #[declared(name = "tip_amount", dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    Amount(f64),
+}
 
-const TIP_AMOUNT: Field = Field::quantity(
-    "tip_amount",
-    units::LENGTH,
-    0.0,
-    MOST_AMOUNT,
-    "Instead of `tip_share`: the same as a length along the tip circle.",
-)
-.range()
-.optional();
+/// Where the curve starts: B.
+#[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
+pub enum FlankPoint {
+    /// How far B is from the tip, as a share of the arc length of the whole involute, from the form circle to the tip.
+    #[declared(name = "length_share", least = 0.0, most = 1.0, range)]
+    Share(f64),
+    /// Instead of `length_share`: diameter at which B lies.
+    #[declared(name = "start_diameter", dimension = LENGTH, least = 1e-4, most = 100.0, range)]
+    Diameter(f64),
+}
 
-const LENGTH_SHARE: Field = Field::number(
-    "length_share",
-    0.0,
-    1.0,
-    "How far B is from the tip, as a share of the arc length of the whole involute, from the form circle to the tip.",
-)
-.range()
-.optional();
+/// Which formulas give the curve.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum Formulas {
+    /// tangent to the involute at B, through A
+    #[default]
+    Derived,
+    /// equations 9 to 15 of mei2016 to the letter, in mm; refused where they give no flank
+    Printed,
+}
 
-const START_DIAMETER: Field = Field::quantity(
-    "start_diameter",
-    units::LENGTH,
-    1e-4,
-    100.0,
-    "Instead of `length_share`: diameter at which B lies.",
-)
-.range()
-.optional();
-
-const FORMULAS: Field = Field::choice(
-    "formulas",
-    &[
-        Choice { name: "derived", summary: "tangent to the involute at B, through A" },
-        Choice {
-            name: "printed",
-            summary: "equations 9 to 15 of mei2016 to the letter, in mm; refused where they give no flank",
-        },
-    ],
-    "Which formulas give the curve.",
-)
-.default("derived");
-
-/// The fields of both families, after `gear`.
-pub(super) const FIELDS: [Field; 6] = [super::GEAR, TIP_SHARE, TIP_AMOUNT, LENGTH_SHARE, START_DIAMETER, FORMULAS];
+/// What `arc` and `parabola` go through.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+pub struct Through {
+    #[declared(flatten)]
+    pub tip: TipPoint,
+    #[declared(flatten)]
+    pub start: FlankPoint,
+    /// Which formulas give the curve.
+    #[declared(default = "derived")]
+    pub formulas: Formulas,
+}
 
 /// xx X² + 2 xy XY + yy Y² + 2 x X + 2 y Y + constant, 0 on the curve, positive outside the tooth.
 #[derive(Clone, Copy, Debug)]
@@ -194,6 +183,8 @@ pub(super) struct CurveThrough {
 pub(super) struct TipCurve {
     ends: Ends,
     conic: Conic,
+    /// Roll angles of B and A.
+    breaks: [f64; 2],
 }
 
 /// At how many places the curve is checked before it is accepted.
@@ -202,22 +193,10 @@ const LOOKS: u32 = 64;
 /// A curve whose distance from B is more than this share of the base radius does not pass through B.
 const THROUGH: f64 = 1e-9;
 
-pub(super) fn check(record: &Record) -> Result<(), Diagnostic> {
-    super::relief::exactly_one(record, &[TIP_SHARE.name, TIP_AMOUNT.name])?;
-    super::relief::exactly_one(record, &[LENGTH_SHARE.name, START_DIAMETER.name])?;
-    Ok(())
-}
-
 impl TipCurve {
-    pub(super) fn build(
-        record: &Record,
-        pair: &GearPair,
-        side: Side,
-        shape: &CurveThrough,
-    ) -> Result<Self, Diagnostic> {
-        let gear = pair.side(side);
-        let (share, tip_name) = tip_share(record, gear)?;
-        let (start, start_name) = start(record, gear)?;
+    pub(super) fn new(through: Through, gear: &Gear, shape: &CurveThrough) -> Result<Self, Diagnostic> {
+        let (share, tip_name) = (through.tip.share(gear)?, through.tip.field());
+        let (start, start_name) = (through.start.roll(gear)?, through.start.field());
         let ends = |share: f64, start: f64| Ends {
             base_radius: gear.base_radius,
             half_base_angle: gear.half_base_angle,
@@ -226,7 +205,7 @@ impl TipCurve {
             shift: share * gear.tip_thickness() / gear.tip_radius,
         };
         let mut given = ends(share, start);
-        if record.choice(FORMULAS.name) == "printed" {
+        if through.formulas == Formulas::Printed {
             let angle = given.pressure_angle();
             // The article calls α' the pressure angle and puts it where its own source has the roll angle.
             given.start = angle;
@@ -237,15 +216,15 @@ impl TipCurve {
             let Conic { xx, xy, yy, constant, .. } = printed;
             let metres = Conic { xx: xx * 1e3, xy: xy * 1e3, yy: yy * 1e3, constant: constant * 1e-3, ..printed };
             let metres = if metres.y < 0.0 { metres.times(-1.0) } else { metres };
-            let curve = Self { ends: given, conic: metres };
+            let curve = Self::along(given, metres);
             return match curve.fault() {
                 None => Ok(curve),
                 Some(fault) => Err(Diagnostic::new(format!("the formulas as printed give no flank: {fault}"))
-                    .at(record.place_of(FORMULAS.name))
+                    .of(Through::NAMES.formulas)
                     .help("`formulas: derived` is the curve they are meant to give")),
             };
         }
-        let curve = |ends: Ends| Self { ends, conic: (shape.derived)(&ends) };
+        let curve = |ends: Ends| Self::along(ends, (shape.derived)(&ends));
         let Some(fault) = curve(given).fault() else { return Ok(curve(given)) };
         let fits = |share: f64, start: f64| curve(ends(share, start)).fault().is_none();
         let roll = |length: f64| roll_at_length(gear, length);
@@ -262,7 +241,11 @@ impl TipCurve {
         } else {
             (tip_name, "with this A no B will do".to_owned())
         };
-        Err(Diagnostic::new(format!("{fault}; {remedy}")).at(record.place_of(name)))
+        Err(Diagnostic::new(format!("{fault}; {remedy}")).of(name))
+    }
+
+    fn along(ends: Ends, conic: Conic) -> Self {
+        Self { ends, conic, breaks: [ends.start, ends.corner()] }
     }
 
     /// The smaller root of the quadratic at a roll angle; none where the normal misses the curve or is its tangent.
@@ -331,34 +314,40 @@ fn range(most: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
     Some((edge(first, first.checked_sub(1)), edge(last, (last < 50).then_some(last + 1))))
 }
 
-/// The share of the tip thickness by which A is moved, and the field that gives it.
-fn tip_share(record: &Record, gear: &Gear) -> Result<(f64, &'static str), Diagnostic> {
-    if let Some(share) = record.maybe_number(TIP_SHARE.name) {
-        return Ok((share, TIP_SHARE.name));
+impl TipPoint {
+    /// The share of the tip thickness by which A is moved.
+    fn share(self, gear: &Gear) -> Result<f64, Diagnostic> {
+        let amount = match self {
+            Self::Share(share) => return Ok(share),
+            Self::Amount(amount) => amount,
+        };
+        let thickness = gear.tip_thickness();
+        if amount > 0.5 * thickness {
+            let (given, most) = (amount * 1e3, thickness * 0.5e3);
+            let message =
+                format!("A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {most:.6} mm");
+            return Err(Diagnostic::new(message).of(self.field()));
+        }
+        Ok(amount / thickness)
     }
-    let (amount, thickness) = (record.quantity(TIP_AMOUNT.name), gear.tip_thickness());
-    if amount > 0.5 * thickness {
-        let (given, most) = (amount * 1e3, thickness * 0.5e3);
-        let message =
-            format!("A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {most:.6} mm");
-        return Err(Diagnostic::new(message).at(record.place_of(TIP_AMOUNT.name)));
-    }
-    Ok((amount / thickness, TIP_AMOUNT.name))
 }
 
-/// The roll angle of B, and the field that gives it.
-fn start(record: &Record, gear: &Gear) -> Result<(f64, &'static str), Diagnostic> {
-    if let Some(share) = record.maybe_number(LENGTH_SHARE.name) {
-        return Ok((roll_at_length(gear, share), LENGTH_SHARE.name));
+impl FlankPoint {
+    /// The roll angle of B.
+    fn roll(self, gear: &Gear) -> Result<f64, Diagnostic> {
+        let radius = match self {
+            Self::Share(share) => return Ok(roll_at_length(gear, share)),
+            Self::Diameter(diameter) => 0.5 * diameter,
+        };
+        if !(radius >= gear.form_radius && radius <= gear.tip_radius) {
+            let [given, least, most] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
+            let message = format!(
+                "the start diameter is {given:.6} mm; the involute has diameters of {least:.6} to {most:.6} mm"
+            );
+            return Err(Diagnostic::new(message).of(self.field()));
+        }
+        Ok(gear.roll_at(radius))
     }
-    let radius = 0.5 * record.quantity(START_DIAMETER.name);
-    if !(radius >= gear.form_radius && radius <= gear.tip_radius) {
-        let [given, least, most] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
-        let message =
-            format!("the start diameter is {given:.6} mm; the involute has diameters of {least:.6} to {most:.6} mm");
-        return Err(Diagnostic::new(message).at(record.place_of(START_DIAMETER.name)));
-    }
-    Ok((gear.roll_at(radius), START_DIAMETER.name))
 }
 
 /// The roll angle above which this share of the involute lies, whose arc length grows with the square of the roll angle.
@@ -376,8 +365,8 @@ impl Modification for TipCurve {
         self.intersection(roll.min(self.ends.corner())).unwrap_or(0.0)
     }
 
-    fn profile_breaks(&self) -> [Option<f64>; 2] {
-        [Some(self.ends.start), Some(self.ends.corner())]
+    fn profile_breaks(&self) -> &[f64] {
+        &self.breaks
     }
 
     fn varies_along_profile(&self) -> bool {

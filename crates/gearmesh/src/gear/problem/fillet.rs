@@ -7,9 +7,9 @@
 //! displacement times E b/F. They jump by the meshes' error where the mesh changes, so a search needs no finer tolerance
 //! than 1e-3. Must not know: how anything is searched, strength.
 
-use super::{Family, Problem, Variable, Worth};
+use super::{Problem, Stated, Variable, Worth};
 use crate::gear::finite_elements::MeshError;
-use crate::gear::finite_elements::element::{PLANES, Plane};
+use crate::gear::finite_elements::element::Plane;
 use crate::gear::finite_elements::gear_model::GearModel;
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
@@ -18,59 +18,88 @@ use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
 use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification, trochoid};
-use declare::parameter::{Choice, Field, Member};
-use declare::units::RATIO;
+use declare::units::{Dimension, RATIO};
+use declare::{Declared, Words};
 
-pub const FAMILY: Family = Family {
-    member: Member {
-        name: "fillet",
-        summary: "The root with the least stress, or the stiffest tooth, at the same clearance, by finite elements.",
-        fields: FIELDS,
-    },
-    dimension: RATIO,
-    most: [1, 2],
+/// Which root, and what is free of it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum FreeRoot {
+    /// generated; the rack's tip radius is free
+    #[default]
+    Rack,
+    /// an arc tangent to root circle and flank; its radius is free
+    Arc,
+}
+
+/// What is to be small.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum Objective {
+    /// the largest tension along the root's surface
+    #[default]
+    Stress,
+    /// the displacement of the loaded tooth
+    Compliance,
+}
+
+/// Where the load acts.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum LoadPoint {
+    /// at the outer point of single contact
+    #[default]
+    SingleContact,
+    /// at the tip
+    Tip,
+}
+
+/// The root with the least stress, or the stiffest tooth, at the same clearance, by finite elements.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "fillet")]
+pub struct FilletProblem {
+    /// which root, and what is free of it
+    #[declared(default = "rack")]
+    pub root: FreeRoot,
+    /// what is to be small
+    #[declared(default = "stress")]
+    pub minimize: Objective,
+    /// where the load acts
+    #[declared(default = "single_contact")]
+    pub load: LoadPoint,
+    /// the plane state of the gear
+    #[declared(default = "strain")]
+    pub plane: Plane,
+    /// elements across a tooth, an even number
+    #[declared(least = 6, most = 64, multiple = 2, default = "12")]
+    pub elements_across: u32,
+}
+
+impl Stated for FilletProblem {
+    fn dimension(&self) -> Dimension {
+        RATIO
+    }
+
+    fn most(&self) -> [usize; 2] {
+        [1, 2]
+    }
+
     // Assembling and solving grow with the square of the elements across; at a dozen it is a fiftieth of a second.
-    seconds: |record| 0.02 * (record.integer("elements_across") as f64 / 12.0).powi(2),
-    build: |record, pair, side| {
-        let across = usize::try_from(record.integer("elements_across")).unwrap_or(MOST_ACROSS);
-        let tip = record.choice("load") == "tip";
+    fn seconds(&self) -> f64 {
+        0.02 * (f64::from(self.elements_across) / 12.0).powi(2)
+    }
+
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Box<dyn Problem>, GeometryError> {
+        let gear = pair.side(side);
         Ok(Box::new(Fillet {
-            gear: pair.side(side).clone(),
-            arc: record.choice("root") == "arc",
-            stress: record.choice("minimize") == "stress",
-            plane: if record.choice("plane") == "stress" { Plane::Stress } else { Plane::Strain },
-            across: across.next_multiple_of(2),
-            roll: if tip { pair.side(side).tip_roll() } else { single_contact(pair, side) },
-            active_radius: pair.side(side).radius_at(pair.lowest_roll(side)),
+            gear: gear.clone(),
+            stated: self.clone(),
+            roll: match self.load {
+                LoadPoint::Tip => gear.tip_roll(),
+                LoadPoint::SingleContact => single_contact(pair, side),
+            },
+            active_radius: gear.radius_at(pair.lowest_roll(side)),
             tip: TipPath::new(pair, side, vec![Corner::of(pair.side(side.other()))]),
         }))
-    },
-};
-
-const MOST_ACROSS: usize = 64;
-
-const FIELDS: &[Field] = &[
-    Field::choice("root", ROOTS, "which root, and what is free of it").default("rack"),
-    Field::choice("minimize", OBJECTIVES, "what is to be small").default("stress"),
-    Field::choice("load", LOADS, "where the load acts").default("single_contact"),
-    Field::choice("plane", PLANES, "the plane state of the gear").default("strain"),
-    Field::integer("elements_across", 6, 64, "elements across a tooth, an even number").multiple_of(2).default("12"),
-];
-
-const ROOTS: &[Choice] = &[
-    Choice { name: "rack", summary: "generated; the rack's tip radius is free" },
-    Choice { name: "arc", summary: "an arc tangent to root circle and flank; its radius is free" },
-];
-
-const OBJECTIVES: &[Choice] = &[
-    Choice { name: "stress", summary: "the largest tension along the root's surface" },
-    Choice { name: "compliance", summary: "the displacement of the loaded tooth" },
-];
-
-const LOADS: &[Choice] = &[
-    Choice { name: "single_contact", summary: "at the outer point of single contact" },
-    Choice { name: "tip", summary: "at the tip" },
-];
+    }
+}
 
 /// The smallest radius that is tried, as a share of the largest; a sharp root has no finite stress.
 const LEAST_SHARE: f64 = 0.1;
@@ -86,10 +115,7 @@ fn single_contact(pair: &GearPair, side: Side) -> f64 {
 
 struct Fillet {
     gear: Gear,
-    arc: bool,
-    stress: bool,
-    plane: Plane,
-    across: usize,
+    stated: FilletProblem,
     roll: f64,
     /// Radius that the mate's tip reaches.
     active_radius: f64,
@@ -97,9 +123,13 @@ struct Fillet {
 }
 
 impl Fillet {
+    fn arc(&self) -> bool {
+        self.stated.root == FreeRoot::Arc
+    }
+
     /// The gear and the root of a radius \[m\].
     fn shaped(&self, radius: f64) -> Result<(Gear, Root), GeometryError> {
-        if self.arc {
+        if self.arc() {
             return Ok((self.gear.clone(), self.gear.fillet(radius)?));
         }
         let given = self.gear.specification;
@@ -110,8 +140,8 @@ impl Fillet {
     }
 
     fn objective(&self, gear: &Gear, root: &Root) -> Result<f64, MeshError> {
-        let model = GearModel::new(gear, root, self.plane, &Sizing::even(self.across))?;
-        if !self.stress {
+        let model = GearModel::new(gear, root, self.stated.plane, &Sizing::even(self.stated.elements_across as usize))?;
+        if self.stated.minimize == Objective::Compliance {
             return Ok(model.influences(&[self.roll], 0)?.own[0]);
         }
         let points = model.root_stresses(&[self.roll])?;
@@ -128,9 +158,9 @@ impl Fillet {
 impl Problem for Fillet {
     fn variables(&self) -> Vec<Variable> {
         let given = self.gear.specification;
-        let largest = if self.arc { self.gear.largest_fillet() } else { given.module * trochoid::full_round(&given) };
+        let largest = if self.arc() { self.gear.largest_fillet() } else { given.module * trochoid::full_round(&given) };
         let most = largest * (1.0 - 1e-9);
-        vec![Variable { name: if self.arc { "radius" } else { "rack_tip_radius" }, least: LEAST_SHARE * most, most }]
+        vec![Variable { name: if self.arc() { "radius" } else { "rack_tip_radius" }, least: LEAST_SHARE * most, most }]
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -150,8 +180,6 @@ impl Problem for Fillet {
 mod tests {
     use super::*;
     use crate::gear::material::Material;
-    use declare::error::Place;
-    use declare::record::{PlacedValue, Record, Value};
 
     fn pair(shift: f64) -> GearPair {
         let gear = |teeth, profile_shift| Specification {
@@ -168,16 +196,9 @@ mod tests {
         GearPair::new(gear(25, shift), gear(40, 0.1), None).unwrap()
     }
 
-    fn problem(pair: &GearPair, side: Side, given: &[(&'static str, &'static str)]) -> Box<dyn Problem> {
-        let place = Place::default();
-        let entry = |value| PlacedValue { value, place };
-        let chosen =
-            |name: &str, usual| given.iter().find(|(field, _)| *field == name).map_or(usual, |(_, word)| *word);
-        let words = [("root", "rack"), ("minimize", "stress"), ("load", "tip"), ("plane", "strain")];
-        let mut fields: Vec<_> =
-            words.into_iter().map(|(name, usual)| (name, entry(Value::Choice(chosen(name, usual))))).collect();
-        fields.push(("elements_across", entry(Value::Integer(6))));
-        (FAMILY.build)(&Record { fields, place }, pair, side).unwrap()
+    fn problem(pair: &GearPair, side: Side, root: FreeRoot, minimize: Objective) -> Box<dyn Problem> {
+        let load = LoadPoint::Tip;
+        FilletProblem { root, minimize, load, elements_across: 6, ..FilletProblem::default() }.on(pair, side).unwrap()
     }
 
     /// Tier: invariant. The rack that generates the root leaves room for a mate of any size.
@@ -185,7 +206,7 @@ mod tests {
     fn a_generated_root_keeps_the_constraints() {
         let pair = pair(0.0);
         for side in [Side::Pinion, Side::Gear] {
-            let problem = problem(&pair, side, &[("minimize", "compliance")]);
+            let problem = problem(&pair, side, FreeRoot::Rack, Objective::Compliance);
             let [variable] = problem.variables()[..] else { panic!("one variable") };
             for share in [0.1, 0.5, 0.9] {
                 let radius = variable.least + share * (variable.most - variable.least);
@@ -199,14 +220,14 @@ mod tests {
     #[test]
     fn rounder_roots_are_less_stressed_until_the_mate_is_in_the_way() {
         let pair = pair(0.0);
-        for minimize in ["stress", "compliance"] {
-            for root in ["rack", "arc"] {
-                let problem = problem(&pair, Side::Pinion, &[("root", root), ("minimize", minimize)]);
+        for minimize in [Objective::Stress, Objective::Compliance] {
+            for root in [FreeRoot::Rack, FreeRoot::Arc] {
+                let problem = problem(&pair, Side::Pinion, root, minimize);
                 let [variable] = problem.variables()[..] else { panic!("one variable") };
                 let [small, large] =
                     [0.2, 0.9].map(|share| problem.worth(&[variable.least + share * (variable.most - variable.least)]));
-                assert!(large.objective < small.objective, "{root} {minimize}: {small:?} {large:?}");
-                assert!(large.constraints.iter().zip(&small.constraints).all(|(a, b)| a < b), "{root}: {large:?}");
+                assert!(large.objective < small.objective, "{root:?} {minimize:?}: {small:?} {large:?}");
+                assert!(large.constraints.iter().zip(&small.constraints).all(|(a, b)| a < b), "{root:?}: {large:?}");
             }
         }
     }

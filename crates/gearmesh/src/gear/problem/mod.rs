@@ -5,10 +5,10 @@
 pub mod fillet;
 pub mod root_arc;
 
+use std::fmt::Debug;
+
 use super::geometry::error::GeometryError;
 use super::geometry::{GearPair, Side};
-use declare::parameter::Member;
-use declare::record::Record;
 use declare::registry;
 use declare::units::Dimension;
 
@@ -40,19 +40,22 @@ pub trait Problem: Send + Sync {
     fn worth(&self, point: &[f64]) -> Worth;
 }
 
-/// Sets a problem up for a gear of a pair, or says why there is none.
-pub type Build = fn(&Record, &GearPair, Side) -> Result<Box<dyn Problem>, GeometryError>;
-
-/// A problem as registered.
-pub struct Family {
-    pub member: Member,
+/// A problem as it is stated: a declared struct, which anybody can make.
+pub trait Stated: Debug + Send + Sync {
     /// The dimension of the objective.
-    pub dimension: Dimension,
+    fn dimension(&self) -> Dimension;
+
     /// The most variables that are free, and the most constraints.
-    pub most: [usize; 2],
+    fn most(&self) -> [usize; 2];
+
     /// About how many seconds a point of the box takes.
-    pub seconds: fn(&Record) -> f64,
-    pub build: Build,
+    fn seconds(&self) -> f64;
+
+    /// The problem of a gear of a pair.
+    ///
+    /// # Errors
+    /// Why there is none.
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Box<dyn Problem>, GeometryError>;
 }
 
-registry!(Family: root_arc, fillet);
+registry!(PROBLEMS: Stated = root_arc::RootArcProblem, fillet::FilletProblem);

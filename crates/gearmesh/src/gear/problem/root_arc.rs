@@ -9,38 +9,55 @@
 
 use std::f64::consts::PI;
 
-use super::{Family, Problem, Variable, Worth};
-use crate::gear::geometry::Gear;
+use super::{Problem, Stated, Variable, Worth};
 use crate::gear::geometry::error::GeometryError;
 use crate::gear::geometry::involute::involute;
 use crate::gear::geometry::outline::roots::base_arc::{Base, Circle};
 use crate::gear::geometry::outline::roots::optimised_arc;
-use declare::parameter::{Choice, Field, Member};
-use declare::units::LENGTH;
+use crate::gear::geometry::{Gear, GearPair, Side};
+use declare::units::{Dimension, LENGTH};
+use declare::{Declared, Words};
 
-pub const FAMILY: Family = Family {
-    member: Member { name: "root_arc", summary: "The root arc of zhai2020, equations 26 to 30.", fields: FIELDS },
-    dimension: LENGTH,
-    most: [2, 3],
-    seconds: |_| 1e-6,
-    build: |record, pair, side| {
+/// Which problem.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum Formulas {
+    /// the problem as corrected; its variable is r_c
+    #[default]
+    Derived,
+    /// the problem as printed; its variables are x_c and r_c
+    Printed,
+}
+
+/// The root arc of zhai2020, equations 26 to 30.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "root_arc")]
+pub struct RootArcProblem {
+    /// Which problem.
+    #[declared(default = "derived")]
+    pub formulas: Formulas,
+}
+
+impl Stated for RootArcProblem {
+    fn dimension(&self) -> Dimension {
+        LENGTH
+    }
+
+    fn most(&self) -> [usize; 2] {
+        [2, 3]
+    }
+
+    fn seconds(&self) -> f64 {
+        1e-6
+    }
+
+    fn on(&self, pair: &GearPair, side: Side) -> Result<Box<dyn Problem>, GeometryError> {
         let arc = RootArc::new(pair.side(side))?;
-        Ok(match record.choice("formulas") {
-            "printed" => Box::new(Printed(arc)),
-            _ => Box::new(Corrected(arc)),
+        Ok(match self.formulas {
+            Formulas::Derived => Box::new(Corrected(arc)),
+            Formulas::Printed => Box::new(Printed(arc)),
         })
-    },
-};
-
-const FIELDS: &[Field] = &[Field::choice(
-    "formulas",
-    &[
-        Choice { name: "derived", summary: "the problem as corrected; its variable is r_c" },
-        Choice { name: "printed", summary: "the problem as printed; its variables are x_c and r_c" },
-    ],
-    "Which problem.",
-)
-.default("derived")];
+    }
+}
 
 /// What the article's equations name.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -163,8 +180,6 @@ mod tests {
     use super::*;
     use crate::gear::geometry::{GearPair, Rack, Side, Specification};
     use crate::gear::material::Material;
-    use declare::error::Place;
-    use declare::record::{PlacedValue, Record, Value};
 
     fn specification(teeth: u32) -> Specification {
         Specification {
@@ -189,11 +204,9 @@ mod tests {
         if worth.constraints.iter().all(|value| *value >= 0.0) { worth.objective } else { f64::INFINITY }
     }
 
-    fn problem(teeth: u32, formulas: &'static str) -> Box<dyn Problem> {
-        let place = Place::default();
-        let fields = vec![("formulas", PlacedValue { value: Value::Choice(formulas), place })];
+    fn problem(teeth: u32, formulas: Formulas) -> Box<dyn Problem> {
         let pair = GearPair::new(specification(teeth), specification(teeth), None).unwrap();
-        (FAMILY.build)(&Record { fields, place }, &pair, Side::Pinion).unwrap()
+        RootArcProblem { formulas }.on(&pair, Side::Pinion).unwrap()
     }
 
     /// Tier: published value; X of equation 31 is the arc of equations 17 to 20, but its F is not the printed one, and it
@@ -217,7 +230,7 @@ mod tests {
     #[test]
     fn the_problem_as_printed_has_no_admissible_point() {
         for teeth in [17, 23, 30, 41] {
-            let problem = problem(teeth, "printed");
+            let problem = problem(teeth, Formulas::Printed);
             let [x, radius] = problem.variables()[..] else { panic!("two variables") };
             for i in 0..=200 {
                 for k in 0..=50 {
@@ -232,7 +245,7 @@ mod tests {
     #[test]
     fn a_scan_finds_the_optimum_of_the_corrected_problem() {
         for (teeth, touches) in [(17, false), (23, true), (30, true), (41, true)] {
-            let problem = problem(teeth, "derived");
+            let problem = problem(teeth, Formulas::Derived);
             let [radius] = problem.variables()[..] else { panic!("one variable") };
             let point = |k: u32| radius.most * f64::from(k) / 200_000.0;
             let worth = |k: &u32| admissible(&problem.worth(&[point(*k)]));

@@ -66,13 +66,13 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
             found.largest_gap = found.largest_gap.max(found.gaps[j]);
         }
         let teeth = compliance.pinion.total(pinion) + compliance.gear.total(gear);
-        let contact = if compliance.contact == ContactLaw::Linear {
+        let contact = if compliance.contact == Some(ContactLaw::Linear) {
             flattening::linear(materials) / cycle.face_width
         } else {
             0.0
         };
         found.compliance[j][j] = teeth + contact;
-        if compliance.contact == ContactLaw::LoadDependent {
+        if compliance.contact == Some(ContactLaw::LoadDependent) {
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
             let radius = flattening::combined_radius(cycle.radii(s(j)));
             found.laws[j] = Some(Logarithmic::new(materials, radius, depths));

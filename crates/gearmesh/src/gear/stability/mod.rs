@@ -14,27 +14,38 @@ mod symmetry;
 mod tests;
 mod trap;
 
+use std::any::Any;
+use std::sync::Arc;
+
 pub use axis::{AXES, Axis, Point, axis, sample};
 pub use trap::{Continuity, continuity, traps};
 
+use super::compliance::energy::{Energy, GearBody};
 use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use super::contact::{CornerContact, SliceCoupling};
 use super::geometry::{GearPair, Specification};
-use super::modification::{Design, family};
+use super::modification::curve::Curve;
+use super::modification::lead_crowning::LeadCrowning;
+use super::modification::relief::{Amount, FromTip, Start};
+use super::modification::tip_relief::TipRelief;
+use super::modification::{Design, Gears};
 use super::transmission_error::cycle::{MeshCycle, Settings};
 use crate::numeric::double_double::Double;
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
 use precise::Rule;
 
 /// How the case is computed.
 #[derive(Clone)]
 pub struct Model {
-    pub method: &'static Method,
-    /// The options of the method alone.
-    pub options: Record,
+    pub method: Arc<dyn Method>,
     pub assumptions: Assumptions,
     pub settings: Settings,
+}
+
+impl Model {
+    /// The energy method, where that is the method: the one that the second evaluation knows.
+    fn energy(&self) -> Option<&Energy> {
+        (self.method.as_ref() as &dyn Any).downcast_ref()
+    }
 }
 
 /// A pair under a load. SI.
@@ -153,27 +164,15 @@ impl Case {
     /// When one does not fit the pair.
     pub fn design(&self, pair: &GearPair) -> Result<Design, String> {
         let mut design = Design::default();
-        let parts: [(&str, &[(&'static str, Value)]); 2] = [
-            (
-                "tip_relief",
-                &[
-                    ("gear", Value::Choice("both")),
-                    ("amount", Value::Quantity(self.relief)),
-                    ("length", Value::Quantity(self.relief_length)),
-                    ("counted_from", Value::Choice("tip")),
-                    ("curve", Value::Choice("linear")),
-                ],
-            ),
-            ("lead_crowning", &[("gear", Value::Choice("both")), ("amount", Value::Quantity(self.crowning))]),
-        ];
-        for (part, (name, fields)) in parts.into_iter().enumerate() {
-            let amount = [self.relief, self.crowning][part];
-            let entry = |value: &Value| PlacedValue { value: value.clone(), place: Place::default() };
-            let fields = fields.iter().map(|(name, value)| (*name, entry(value))).collect();
-            let record = Record { fields, place: Place::default() };
-            if let Some(family) = family(name).filter(|_| amount != 0.0) {
-                design.add(family, &record, pair).map_err(|error| error.message)?;
-            }
+        if self.relief != 0.0 {
+            let amount = Amount::Depth(self.relief);
+            let start = Start::Length(self.relief_length);
+            let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
+            design.add_of_any_size(Gears::Both, &relief, pair).map_err(|error| error.message)?;
+        }
+        if self.crowning != 0.0 {
+            let crowning = LeadCrowning { amount: self.crowning };
+            design.add_of_any_size(Gears::Both, &crowning, pair).map_err(|error| error.message)?;
         }
         Ok(design)
     }
@@ -181,8 +180,8 @@ impl Case {
     pub(crate) fn build(&self) -> Result<Built, Refusal> {
         let pair = self.pair().map_err(|reason| ("geometry", reason))?;
         let design = self.design(&pair).map_err(|reason| ("modification", reason))?;
-        let Model { method, options, assumptions, settings } = &self.model;
-        let tabulated = (method.tabulate)(options, &pair, *assumptions);
+        let Model { method, assumptions, settings } = &self.model;
+        let tabulated = method.tabulate(&pair, *assumptions);
         let compliance = tabulated.map_err(|error| ("compliance", error.to_string()))?.compliance;
         let cycle = MeshCycle::new(&pair, &compliance, *settings).map_err(|error| ("mesh cycle", error.to_string()))?;
         Ok(Built { pair, design, compliance, cycle })
@@ -196,9 +195,8 @@ impl Case {
 
     /// Why the second evaluation does not cover it.
     fn not_covered(&self) -> Option<&'static str> {
-        let Model { method, options, assumptions, settings } = &self.model;
-        let plain = method.member.name == "energy" && options.choice("body") == "sainsot";
-        if !plain {
+        let Model { assumptions, settings, .. } = &self.model;
+        if self.model.energy().is_none_or(|energy| energy.body != GearBody::Sainsot) {
             Some("the second evaluation knows the energy method with the fitted gear body only")
         } else if assumptions.root != super::geometry::root::RootShape::Trochoid {
             Some("the second evaluation knows the generated root only")
@@ -236,13 +234,12 @@ impl Case {
             relief_length: self.relief_length.into(),
             crowning: self.crowning.into(),
         };
-        let energy = self.model.method.member.name == "energy";
         precise::Inputs {
             gears: [of(&self.gears[0]), of(&self.gears[1])],
             module: self.gears[0].module.into(),
             pressure_angle: self.gears[0].pressure_angle.into(),
             torque: self.torque.into(),
-            shear_factor: if energy { self.model.options.number("shear_factor") } else { 1.2 },
+            shear_factor: self.model.energy().map_or(1.2, |energy| energy.shear_factor),
             load_dependent: self.model.assumptions.contact == ContactLaw::LoadDependent && self.crowning == 0.0,
         }
     }

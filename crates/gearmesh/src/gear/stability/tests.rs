@@ -8,22 +8,12 @@ use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::Rack;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::material::Material;
-use declare::record::Value;
 
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 
 pub fn model() -> Model {
-    let entry = |value| PlacedValue { value, place: Place::default() };
     Model {
-        method: super::super::compliance::method("energy").unwrap(),
-        options: Record {
-            fields: vec![
-                ("shear_factor", entry(Value::Number(1.2))),
-                ("body", entry(Value::Choice("sainsot"))),
-                ("harmonics", entry(Value::Integer(100))),
-            ],
-            place: Place::default(),
-        },
+        method: Arc::new(Energy::default()),
         assumptions: Assumptions {
             root: RootShape::Trochoid,
             contact: ContactLaw::Linear,
@@ -177,7 +167,7 @@ fn teeth_that_turn_together_share_the_load_exactly() {
         [(0.01, ContactLaw::LoadDependent), (0.001, ContactLaw::LoadDependent), (0.001, ContactLaw::Linear)]
     {
         let mut case = base();
-        case.model.options.fields[1].1.value = Value::Choice("ring");
+        case.model.method = Arc::new(Energy { body: GearBody::Ring, ..Energy::default() });
         case.model.assumptions = Assumptions { contact, coupled: true, ..case.model.assumptions };
         (case.relief, case.relief_length, case.crowning) = (8e-6, 4e-3, 6e-6);
         for gear in &mut case.gears {

@@ -3,12 +3,14 @@
 //!
 //! Must not know: what is checked, except for the continuity in the contact ratio, which takes two cases.
 
+use std::sync::Arc;
+
 use super::axis::Point;
 use super::symmetry::values;
 use super::{Case, Finding, Model, TABLE};
 use crate::gear::compliance::ContactLaw;
+use crate::gear::compliance::energy::{Energy, GearBody};
 use crate::gear::geometry::root::RootShape;
-use declare::record::{PlacedValue, Value};
 
 /// Distance of the contact ratio from a whole number.
 const NEAR: f64 = 1e-6;
@@ -116,10 +118,8 @@ fn ends(model: &Model, add: &mut impl FnMut(&str, &Model, &dyn Fn(&mut Point))) 
 
 /// The same model on the elastic ring, where its method has the choice.
 fn with_ring(model: &Model) -> Option<Model> {
-    let mut ring = model.clone();
-    let slot = ring.options.fields.iter_mut().find(|(name, _)| *name == "body")?;
-    slot.1 = PlacedValue { value: Value::Choice("ring"), place: slot.1.place };
-    Some(ring)
+    let energy = Energy { body: GearBody::Ring, ..model.energy()?.clone() };
+    Some(Model { method: Arc::new(energy), ..model.clone() })
 }
 
 /// A check of the mean transmission error just below and above a whole contact ratio.

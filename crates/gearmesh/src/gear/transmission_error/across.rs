@@ -6,8 +6,8 @@
 //! is positive definite where the one of whole pairs is. Must not know: designs, loads.
 
 use super::path::Path;
+use crate::gear::compliance::PairCompliance;
 use crate::gear::compliance::across_face::Layers;
-use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::contact::flattening;
 use crate::gear::geometry::GearPair;
 use crate::numeric::graded::Graded;
@@ -44,7 +44,7 @@ impl Across {
         path: &Path,
         face_width: f64,
     ) -> Result<Self, Failure> {
-        if compliance.contact == ContactLaw::Included {
+        if compliance.contact.is_none() {
             return Err(Failure::new(
                 "`slice_coupling: plate` needs compliances of single teeth; this stiffness is that of pairs as a whole",
             ));

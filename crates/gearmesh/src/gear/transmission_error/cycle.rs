@@ -126,12 +126,12 @@ impl MeshCycle {
             Logarithmic::new(materials, flattening::combined_radius(path.radii(s)), depths)
         };
         let elasticity = match compliance.contact {
-            ContactLaw::Linear => {
+            Some(ContactLaw::Linear) => {
                 let contact = flattening::linear(materials) / face_width;
                 Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
             }
-            ContactLaw::Included => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
-            ContactLaw::LoadDependent => Elasticity::Logarithmic {
+            None => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
+            Some(ContactLaw::LoadDependent) => Elasticity::Logarithmic {
                 compliance: fit(&|s| teeth(s) * face_width),
                 constant: fit(&|s| law(s).constant),
                 rate: law(pair.start_of_contact).rate,

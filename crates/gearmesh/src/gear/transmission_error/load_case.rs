@@ -134,7 +134,7 @@ impl<'a> LoadCase<'a> {
         }
         let mut breaks = Vec::new();
         for (side, profile) in load_case.profiles.iter().enumerate() {
-            for roll in profile.iter().flat_map(|part| part.profile_breaks()).flatten() {
+            for roll in profile.iter().flat_map(|part| part.profile_breaks()).copied() {
                 let s = if side == 0 {
                     roll * pair.pinion.base_radius
                 } else {

@@ -155,7 +155,7 @@ fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
 #[test]
 fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     let pair = pair();
-    let logarithmic = PairCompliance { contact: ContactLaw::LoadDependent, ..varying() };
+    let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
     let power =
         [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
@@ -255,7 +255,7 @@ fn swapping_the_gears_changes_nothing() {
     };
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
         for compliance in [varying(), coupled()] {
-            let compliance = PairCompliance { contact, ..compliance };
+            let compliance = PairCompliance { contact: Some(contact), ..compliance };
             let mirrored = PairCompliance {
                 pinion: compliance.gear.clone(),
                 gear: compliance.pinion.clone(),

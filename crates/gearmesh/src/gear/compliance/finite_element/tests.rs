@@ -1,14 +1,15 @@
 //! The method as a study uses it: a published pair, the error estimate, refusals, and the energy method beside it.
 
-use super::super::{Assumptions, ComplianceError, ContactLaw, Tabulated, method};
+use super::super::energy::{Energy, GearBody};
+use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStresses, Tabulated};
+use super::FiniteElement;
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
+use crate::gear::finite_elements::element::Plane;
 use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::material::Material;
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
 
 const COUPLED: Assumptions =
     Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None, accuracy: None };
@@ -18,14 +19,12 @@ fn pair(teeth: [u32; 2], bore_ratio: f64) -> GearPair {
     GearPair::new(pinion, gear, None).unwrap()
 }
 
-fn options(plane: &'static str, across: i64) -> Record {
-    let entry = |value| PlacedValue { value, place: Place::default() };
-    let fields = vec![("plane", entry(Value::Choice(plane))), ("elements_across", entry(Value::Integer(across)))];
-    Record { fields, place: Place::default() }
+fn method(plane: Plane, elements_across: u32) -> FiniteElement {
+    FiniteElement { plane, elements_across }
 }
 
-fn finite_element(pair: &GearPair, across: i64, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-    super::tabulate(&options("strain", across), pair, assumptions)
+fn finite_element(pair: &GearPair, across: u32, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
+    method(Plane::Strain, across).tabulate(pair, assumptions)
 }
 
 /// Tier: second method; pair 17/43 of the standard rack at the pitch point with the log-law contact, by another
@@ -71,7 +70,7 @@ fn the_error_estimate_holds() {
 #[test]
 fn an_accuracy_is_reached_and_named() {
     let pair = pair([17, 30], 1.4);
-    let found = super::tabulate(&options("strain", 6), &pair, Assumptions { accuracy: Some(2e-3), ..COUPLED }).unwrap();
+    let found = method(Plane::Strain, 6).tabulate(&pair, Assumptions { accuracy: Some(2e-3), ..COUPLED }).unwrap();
     assert!(found.warnings.is_empty() && found.error_estimate <= 2e-3);
     for mesh in &found.meshes {
         assert!(mesh.error_estimate <= 2e-3 && mesh.elements_across > 6, "{mesh:?}");
@@ -85,7 +84,7 @@ fn interpolation_between_nodes_is_exact_enough() {
     let found = finite_element(&pair, 16, Assumptions { coupled: false, ..COUPLED }).unwrap().compliance;
     let gear = &pair.gear;
     let root = gear.root(RootShape::Trochoid).unwrap();
-    let task = super::Task::new(&options("strain", 16), &pair, Side::Gear, COUPLED).unwrap();
+    let task = super::Task::new(&method(Plane::Strain, 16), &pair, Side::Gear, COUPLED).unwrap();
     let rolls: Vec<f64> =
         (0..=20).map(|k| root.form_roll + f64::from(k) / 20.0 * (gear.tip_roll() - root.form_roll)).collect();
     let direct = task.model(16).unwrap().influences(&rolls, 0).unwrap().own;
@@ -100,17 +99,9 @@ fn interpolation_between_nodes_is_exact_enough() {
 #[test]
 fn the_energy_method_is_near() {
     let pair = pair([26, 48], 2.0);
-    let entry = |value| PlacedValue { value, place: Place::default() };
-    let ring = Record {
-        fields: vec![
-            ("shear_factor", entry(Value::Number(1.2))),
-            ("body", entry(Value::Choice("ring"))),
-            ("harmonics", entry(Value::Integer(100))),
-        ],
-        place: Place::default(),
-    };
-    let energy = (method("energy").unwrap().tabulate)(&ring, &pair, COUPLED).unwrap().compliance;
-    let found = super::tabulate(&options("stress", 8), &pair, COUPLED).unwrap().compliance;
+    let ring = Energy { body: GearBody::Ring, ..Energy::default() };
+    let energy = ring.tabulate(&pair, COUPLED).unwrap().compliance;
+    let found = method(Plane::Stress, 8).tabulate(&pair, COUPLED).unwrap().compliance;
     for (side, fe, beam) in [(Side::Pinion, &found.pinion, &energy.pinion), (Side::Gear, &found.gear, &energy.gear)] {
         let gear = pair.side(side);
         assert_eq!(fe.neighbours.len(), beam.neighbours.len());
@@ -154,7 +145,7 @@ fn what_cannot_be_solved_is_refused() {
     let error = finite_element(&with(0.5), 8, COUPLED).unwrap_err();
     assert_eq!(error.field(), "material.poisson_ratio");
     assert!(error.to_string().starts_with("pinion: Poisson's ratio is 0.5, but must be 0 to 0.49"), "{error}");
-    assert!(super::tabulate(&options("stress", 8), &with(0.5), COUPLED).is_ok());
+    assert!(method(Plane::Stress, 8).tabulate(&with(0.5), COUPLED).is_ok());
     // Up to there 12 elements across are within 0.3 %; beyond they lock.
     for (poisson_ratio, least, most) in [(0.3, 0.0, 5e-4), (0.49, 0.0, 3e-3), (0.499, 5e-3, 1.0)] {
         let pair = with(poisson_ratio);
@@ -178,7 +169,7 @@ fn what_cannot_be_solved_is_refused() {
 #[test]
 fn root_stress_is_where_and_as_large_as_it_should_be() {
     let pair = pair([17, 48], 2.0);
-    let (found, work) = super::root_stress(&options("strain", 16), &pair, COUPLED).unwrap();
+    let (found, work) = method(Plane::Strain, 16).root_stress(&pair, COUPLED).unwrap();
     assert_eq!(work.count(&MESH_FACTORISATIONS), 2);
     assert_eq!(found.len(), 2 * super::ROLLS);
     for row in &found {

@@ -2,25 +2,17 @@
 
 use rayon::prelude::*;
 
-use crate::gear::compliance::{Assumptions, ContactLaw, ROUNDING, Tabulated, ToothCompliance, method};
+use crate::gear::compliance::energy::{Energy, GearBody};
+use crate::gear::compliance::finite_element::FiniteElement;
+use crate::gear::compliance::iso6336::Iso6336;
+use crate::gear::compliance::weber_banaschek::WeberBanaschek;
+use crate::gear::compliance::{Assumptions, ContactLaw, Method, ROUNDING, Tabulated, ToothCompliance};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::random::Random;
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
 
-fn record(fields: Vec<(&'static str, Value)>) -> Record {
-    let entry = |value| PlacedValue { value, place: Place::default() };
-    Record { fields: fields.into_iter().map(|(name, value)| (name, entry(value))).collect(), place: Place::default() }
-}
-
-fn energy(pair: &GearPair, body: &'static str, harmonics: i64, assumptions: Assumptions) -> Option<Tabulated> {
-    let fields = vec![
-        ("shear_factor", Value::Number(1.2)),
-        ("body", Value::Choice(body)),
-        ("harmonics", Value::Integer(harmonics)),
-    ];
-    (method("energy").unwrap().tabulate)(&record(fields), pair, assumptions).ok()
+fn energy(pair: &GearPair, body: GearBody, harmonics: u32, assumptions: Assumptions) -> Option<Tabulated> {
+    Energy { body, harmonics, ..Energy::default() }.tabulate(pair, assumptions).ok()
 }
 
 /// The largest difference along both flanks, of own and neighbours' compliances, in units of the tooth's own.
@@ -64,7 +56,7 @@ fn the_estimate_of_the_ring_s_harmonics_holds() {
     while ratios.len() < 200 {
         let pair = random.pair();
         let root = random.of(&[RootShape::Trochoid, RootShape::CircularFillet]);
-        let (body, coupled) = random.of(&[("ring", false), ("ring", true), ("sainsot", true)]);
+        let (body, coupled) = random.of(&[(GearBody::Ring, false), (GearBody::Ring, true), (GearBody::Sainsot, true)]);
         let assumptions = Assumptions { root, contact: ContactLaw::Linear, coupled, torque: None, accuracy: None };
         // Sainsot's formula refuses some bodies.
         let Some(truth) = energy(&pair, body, 400, assumptions) else { continue };
@@ -87,16 +79,11 @@ fn the_estimate_of_the_ring_s_harmonics_holds() {
         torque: None,
         accuracy: Some(1e-3),
     };
-    for name in ["energy", "weber_banaschek", "iso6336"] {
-        let method = method(name).unwrap();
-        let fields = vec![
-            ("shear_factor", Value::Number(1.2)),
-            ("body", Value::Choice("sainsot")),
-            ("harmonics", Value::Integer(10)),
-        ];
-        let options = if name == "energy" { record(fields) } else { Record::default() };
-        let found = (method.tabulate)(&options, &pair, assumptions).unwrap();
-        assert!(found.error_estimate <= ROUNDING, "{name}");
+    let energy = Energy { harmonics: 10, ..Energy::default() };
+    let methods: [&dyn Method; 3] = [&energy, &WeberBanaschek {}, &Iso6336::default()];
+    for method in methods {
+        let found = method.tabulate(&pair, assumptions).unwrap();
+        assert!(found.error_estimate <= ROUNDING, "{method:?}");
     }
 }
 
@@ -111,9 +98,8 @@ fn the_estimate_of_the_mesh_holds() {
         torque: None,
         accuracy: None,
     };
-    let solve = |pair: &GearPair, across: i64| {
-        let fields = vec![("plane", Value::Choice("strain")), ("elements_across", Value::Integer(across))];
-        (method("finite_element").unwrap().tabulate)(&record(fields), pair, assumptions).unwrap()
+    let solve = |pair: &GearPair, elements_across: u32| {
+        FiniteElement { elements_across, ..FiniteElement::default() }.tabulate(pair, assumptions).unwrap()
     };
     let pairs: Vec<GearPair> = (0..100).map(|_| random.pair()).collect();
     let of_pair = |pair: &GearPair| {

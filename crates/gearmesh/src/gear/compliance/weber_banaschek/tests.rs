@@ -1,8 +1,8 @@
 //! The tooth against closed forms, another quadrature, another program and finite elements; the body against the ring.
 
 use super::*;
+use crate::gear::compliance::ContactLaw;
 use crate::gear::compliance::ring::Ring;
-use crate::gear::compliance::{ContactLaw, METHODS};
 use crate::gear::fixtures::standard;
 use crate::gear::geometry::Specification;
 use crate::gear::geometry::root::RootShape;
@@ -14,9 +14,8 @@ fn specification(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
 }
 
 fn tabulated(pair: &GearPair, root: RootShape, coupled: bool) -> Tabulated {
-    let method = METHODS.iter().find(|method| method.member.name == "weber_banaschek").unwrap();
     let assumptions = Assumptions { root, contact: ContactLaw::LoadDependent, coupled, torque: None, accuracy: None };
-    (method.tabulate)(&Record::default(), pair, assumptions).unwrap()
+    WeberBanaschek {}.tabulate(pair, assumptions).unwrap()
 }
 
 fn pair(teeth: [u32; 2], module: f64, bore_ratio: f64) -> GearPair {

@@ -7,9 +7,8 @@ use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
 use crate::numeric::crossing;
-use declare::parameter::{Field, Member};
-use declare::record::Record;
 use declare::units::LENGTH;
+use declare::{Declared, registry};
 
 /// What becomes of the corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -21,37 +20,55 @@ pub enum Tip {
     Rounding(f64),
 }
 
-const MEMBERS: &[Member] = &[
-    Member { name: "land", summary: "The flank ends in a corner on the tip circle.", fields: &[] },
-    Member {
-        name: "chamfer",
-        summary: "A straight chamfer, as high as it is wide.",
-        fields: &[Field::quantity("size", LENGTH, 0.0, 1.0, "How far it begins below the tip circle.")],
-    },
-    Member {
-        name: "rounding",
-        summary: "An arc tangent to the flank and to the tip circle.",
-        fields: &[Field::quantity("radius", LENGTH, 0.0, 1.0, "Radius of the arc.")],
-    },
-];
+/// The flank ends in a corner on the tip circle.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "land")]
+pub struct Land {}
 
-/// The tips as a user may write them.
-#[must_use]
-pub fn members() -> &'static [Member] {
-    MEMBERS
+/// A straight chamfer, as high as it is wide.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "chamfer")]
+pub struct Chamfer {
+    /// How far it begins below the tip circle.
+    #[declared(dimension = LENGTH, least = 0.0, most = 1.0)]
+    pub size: f64,
 }
 
-impl Tip {
-    /// The tip that a study states.
-    #[must_use]
-    pub fn of((name, record): (&str, &Record)) -> Self {
-        match name {
-            "chamfer" => Self::Chamfer(record.quantity("size")),
-            "rounding" => Self::Rounding(record.quantity("radius")),
-            _ => Self::Land,
-        }
-    }
+/// An arc tangent to the flank and to the tip circle.
+#[derive(Clone, Debug, PartialEq, Declared)]
+#[declared(name = "rounding")]
+pub struct Rounding {
+    /// Radius of the arc.
+    #[declared(dimension = LENGTH, least = 0.0, most = 1.0)]
+    pub radius: f64,
+}
 
+/// What a study states of a tip.
+pub trait Stated {
+    fn tip(&self) -> Tip;
+}
+
+impl Stated for Land {
+    fn tip(&self) -> Tip {
+        Tip::Land
+    }
+}
+
+impl Stated for Chamfer {
+    fn tip(&self) -> Tip {
+        Tip::Chamfer(self.size)
+    }
+}
+
+impl Stated for Rounding {
+    fn tip(&self) -> Tip {
+        Tip::Rounding(self.radius)
+    }
+}
+
+registry!(TIPS: Stated = Land, Chamfer, Rounding);
+
+impl Tip {
     /// Where the flank ends, and what lies between it and the tooth's centreline.
     ///
     /// # Errors

@@ -6,25 +6,28 @@ use super::cutter::distance_to_swept_rack;
 use super::*;
 use crate::gear::geometry::outline::curve::{Curve, OutlinePart, Relief, Segment};
 use crate::gear::geometry::outline::junction::Place as Where;
+use crate::gear::geometry::outline::roots::Root;
 use crate::gear::geometry::outline::roots::base_arc::Base;
 use crate::gear::geometry::outline::sample::{Density, Point};
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::outline::{Outline, roots};
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
+use declare::declared::record_of;
+use declare::record::Value;
 
 const MICROMETRE: f64 = 1e-6;
 
-pub fn options(values: &[(&'static str, Value)]) -> Record {
-    let place = Place::default();
-    let fields = values.iter().map(|(name, value)| (*name, PlacedValue { value: value.clone(), place }));
-    Record { fields: fields.collect(), place }
+/// A root of a family with those of the words that it has a field for.
+pub fn root(family: &str, words: &[(&str, &'static str)]) -> Box<dyn Root> {
+    let member = roots::members().iter().find(|member| member.name == family).unwrap();
+    let has = |name: &str| member.fields.iter().any(|field| field.name == name);
+    let words = words.iter().filter(|(name, _)| has(name));
+    let words: Vec<_> = words.map(|(name, word)| (*name, Value::Choice(word))).collect();
+    roots::read(family, &record_of(member.fields, &words)).unwrap()
 }
 
 /// The outline of a gear with a root of a family and its one option that is a word.
 pub fn outlined(gear: &Gear, family: &str, option: (&'static str, &'static str)) -> Result<Outline, GeometryError> {
-    let options = options(&[(option.0, Value::Choice(option.1))]);
-    let toe = (roots::family(family).unwrap().read)(&options).toe(gear)?;
+    let toe = root(family, &[option]).toe(gear)?;
     Outline::new(gear, toe, Tip::Land, None)
 }
 
@@ -122,10 +125,8 @@ proptest! {
         let tip = [Tip::Land, Tip::Chamfer(size), Tip::Rounding(size)][usize::from(tip)];
         let relief: Shared<dyn Relief> = Shared::new(Linear { start: 0.6 * gear.tip_roll(), slope: depth * 1e-3 * gear.specification.module });
         for family in roots::FAMILIES {
-            let option = options(&[
-                ("rack_tip", Value::Choice("given")), ("formulas", Value::Choice("derived")), ("size", Value::Choice("largest")),
-            ]);
-            let Ok(toe) = (family.read)(&option).toe(&gear) else { continue };
+            let words = [("rack_tip", "given"), ("formulas", "derived"), ("size", "largest")];
+            let Ok(toe) = root(family.member.name, &words).toe(&gear) else { continue };
             for relief in [None, Some(Shared::clone(&relief))] {
                 let Ok(outline) = Outline::new(&gear, toe.clone(), tip, relief) else { continue };
                 let r = gear.tip_radius;
@@ -188,8 +189,7 @@ fn check_rates(segment: &Segment, size: f64) -> Result<(), String> {
 fn tangents_and_curvatures_are_rates() {
     let gear = gear(23, 3.0, 0.2);
     let relief: Shared<dyn Relief> = Shared::new(Linear { start: 0.0, slope: 2e-4 });
-    let toe =
-        |family| (roots::family(family).unwrap().read)(&options(&[("rack_tip", Value::Choice("given"))])).toe(&gear);
+    let toe = |family| root(family, &[("rack_tip", "given")]).toe(&gear);
     let plain = Outline::new(&gear, toe("trochoid").unwrap(), Tip::Rounding(2e-4), None).unwrap();
     let modified = Outline::new(&gear, toe("trochoid").unwrap(), Tip::Chamfer(2e-4), Some(relief)).unwrap();
     let mut seen = std::collections::BTreeSet::new();
@@ -317,8 +317,7 @@ fn arcs_that_do_not_exist_are_refused_with_numbers() {
 fn tips_are_broken_as_asked() {
     let gear = gear(19, 3.0, 0.0);
     let with = |tip| {
-        let toe =
-            (roots::family("trochoid").unwrap().read)(&options(&[("rack_tip", Value::Choice("given"))])).toe(&gear);
+        let toe = root("trochoid", &[("rack_tip", "given")]).toe(&gear);
         Outline::new(&gear, toe.unwrap(), tip, None)
     };
     let chamfered = with(Tip::Chamfer(0.3e-3)).unwrap();

@@ -1,14 +1,13 @@
 //! The mate's tip on its way past a root: against polylines of the path, against what is known of it, and how many points
 //! of a root it takes.
 
-use super::outline::{options, shaped};
+use super::outline::{root, shaped};
 use super::*;
+use crate::gear::geometry::outline::Outline;
 use crate::gear::geometry::outline::curve::{Curve, OutlinePart};
 use crate::gear::geometry::outline::sample::Density;
 use crate::gear::geometry::outline::tip::Tip;
-use crate::gear::geometry::outline::{Outline, roots};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
-use declare::record::Value;
 
 const SIDES: [Side; 2] = [Side::Pinion, Side::Gear];
 
@@ -73,9 +72,7 @@ fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 
 
 fn with_tip(gear: &Gear, family: &str, tip: Tip) -> Outline {
     let words = [("rack_tip", "given"), ("formulas", "derived"), ("size", "largest")];
-    let toe = (roots::family(family).unwrap().read)(&options(&words.map(|(name, word)| (name, Value::Choice(word)))))
-        .toe(gear);
-    Outline::new(gear, toe.unwrap(), tip, None).unwrap()
+    Outline::new(gear, root(family, &words).toe(gear).unwrap(), tip, None).unwrap()
 }
 
 /// Tier: second method; polylines of the path, turned gear by gear, to 20 nm, for every kind of root and tip, with

@@ -30,7 +30,8 @@ fn models() -> Vec<PairCompliance> {
     [varying(), coupled()]
         .into_iter()
         .flat_map(|model| {
-            [ContactLaw::Linear, ContactLaw::LoadDependent].map(|contact| PairCompliance { contact, ..model.clone() })
+            [ContactLaw::Linear, ContactLaw::LoadDependent]
+                .map(|contact| PairCompliance { contact: Some(contact), ..model.clone() })
         })
         .collect()
 }
@@ -97,7 +98,7 @@ fn an_even_load_is_that_of_independent_slices() {
 fn without_length_slices_are_independent() {
     let pair = pair();
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
-        let compliance = PairCompliance { contact, ..varying() };
+        let compliance = PairCompliance { contact: Some(contact), ..varying() };
         let none = independent(&pair, &compliance);
         let mut plate = cycle(&pair, &compliance, 12);
         plate.across = plate.across.map(|across| across.scaled(0.0));
@@ -297,7 +298,7 @@ fn coupling_makes_a_crowned_face_stiffer() {
 fn results_converge_with_the_slices() {
     let pair = pair();
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
-        let compliance = PairCompliance { contact, ..coupled() };
+        let compliance = PairCompliance { contact: Some(contact), ..coupled() };
         for (crown, slope) in [(6e-6, 0.0), (15e-6, 10e-6), (40e-6, 0.0)] {
             let design = crowned(&pair, crown, slope);
             let mean = |slices: usize| {
@@ -410,7 +411,7 @@ fn corner_contact_and_coupled_slices_go_together() {
 
 #[test]
 fn pairs_that_are_known_as_a_whole_only_are_refused() {
-    let compliance = PairCompliance { contact: ContactLaw::Included, ..varying() };
+    let compliance = PairCompliance { contact: None, ..varying() };
     let message = MeshCycle::new(&pair(), &compliance, settings(5)).unwrap_err().to_string();
     assert!(message.contains("single teeth"), "{message}");
 }

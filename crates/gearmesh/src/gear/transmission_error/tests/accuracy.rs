@@ -1,7 +1,8 @@
 //! Estimated errors of sampling against the truth, over hundreds of random pairs, loads and designs, with corners and with
 //! slices that hold each other among them.
 
-use crate::gear::compliance::{Assumptions, ContactLaw, method};
+use crate::gear::compliance::energy::Energy;
+use crate::gear::compliance::{Assumptions, ContactLaw, Method};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::modification::Design;
@@ -10,8 +11,6 @@ use crate::gear::transmission_error::curve::{Point, Wanted};
 use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
 use crate::gear::transmission_error::load_case::LoadCase;
 use crate::gear::transmission_error::sampling::{Against, Sampled};
-use declare::error::Place;
-use declare::record::{PlacedValue, Record, Value};
 
 /// Below this an error is not that of sampling: the floor of the estimates.
 const FLOOR: f64 = 1e-10;
@@ -32,17 +31,10 @@ impl Case {
 
     fn random_with(random: &mut Random, settings: Settings) -> Self {
         let pair = random.pair();
-        let entry = |value| PlacedValue { value, place: Place::default() };
-        let fields = vec![
-            ("shear_factor", entry(Value::Number(1.2))),
-            ("body", entry(Value::Choice("sainsot"))),
-            ("harmonics", entry(Value::Integer(10))),
-        ];
-        let options = Record { fields, place: Place::default() };
         let contact = random.of(&[ContactLaw::Linear, ContactLaw::LoadDependent]);
         let coupled = random.share() < 0.2;
         let assumptions = Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None, accuracy: None };
-        let Ok(found) = (method("energy").unwrap().tabulate)(&options, &pair, assumptions) else {
+        let Ok(found) = Energy { harmonics: 10, ..Energy::default() }.tabulate(&pair, assumptions) else {
             return Self::random_with(random, settings);
         };
         let base = MeshCycle::new(&pair, &found.compliance, settings).unwrap();

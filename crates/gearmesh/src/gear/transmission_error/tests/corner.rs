@@ -31,8 +31,8 @@ fn designs(pair: &GearPair) -> Vec<Design> {
 }
 
 fn models() -> Vec<PairCompliance> {
-    let logarithmic = PairCompliance { contact: ContactLaw::LoadDependent, ..varying() };
-    vec![varying(), coupled(), PairCompliance { contact: ContactLaw::LoadDependent, ..coupled() }, logarithmic]
+    let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
+    vec![varying(), coupled(), PairCompliance { contact: Some(ContactLaw::LoadDependent), ..coupled() }, logarithmic]
 }
 
 /// Off the line of action both ends of contact are passed without a jump.

@@ -26,7 +26,7 @@ fn loads_balance_the_torque() {
     let pair = pair_with_contact_ratio(2.3);
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
         for compliance in [varying(), coupled()] {
-            let compliance = PairCompliance { contact, ..compliance };
+            let compliance = PairCompliance { contact: Some(contact), ..compliance };
             let cycle = cycle(&pair, &compliance);
             for crown in [0.0, 20e-6] {
                 for torque in [1e-12, 1.0, 50.0, 1e9] {
@@ -132,7 +132,7 @@ fn relief_above_the_deflection_shortens_the_contact() {
 #[test]
 fn the_load_dependent_law_survives_vanishing_and_absurd_loads() {
     let pair = pair();
-    let cycle = cycle(&pair, &PairCompliance { contact: ContactLaw::LoadDependent, ..varying() });
+    let cycle = cycle(&pair, &PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() });
     let mut before = 0.0;
     for exponent in -12..=9 {
         let torque = libm::pow(10.0, f64::from(exponent));

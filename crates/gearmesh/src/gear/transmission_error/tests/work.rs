@@ -16,7 +16,7 @@ fn counted(
     pressure: bool,
 ) -> (Summary, [u64; 3]) {
     let pair = pair();
-    let cycle = MeshCycle::new(&pair, &PairCompliance { contact, ..varying() }, settings).unwrap();
+    let cycle = MeshCycle::new(&pair, &PairCompliance { contact: Some(contact), ..varying() }, settings).unwrap();
     let design = design(&pair, parts).unwrap();
     let summary = LoadCase::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure });
     let work = cycle.work();

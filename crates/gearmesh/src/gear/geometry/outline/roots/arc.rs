@@ -6,12 +6,10 @@
 //! Liang and Fu 2020, as in `base_arc.rs`. Must not know: other roots.
 
 use super::base_arc::{Base, Circle, DOWN_THE_PAGE};
-use super::{Family, Root, Toe};
+use super::{Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
 use declare::{Declared, Words};
-
-pub const FAMILY: Family = Family::of::<Arc>();
 
 /// Arc from the base circle down by r_b − r_f, as in zhai2020; it need not meet the root circle.
 #[derive(Clone, Debug, PartialEq, Declared)]

@@ -13,9 +13,6 @@ use std::fmt::Debug;
 use super::curve::Segment;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
-use declare::declared::Declared;
-use declare::parameter::Member;
-use declare::record::Record;
 use declare::registry;
 
 /// A root on the right half of a tooth.
@@ -36,17 +33,9 @@ pub trait Root: Debug + Send + Sync {
     fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError>;
 }
 
-/// A family as registered.
-pub struct Family {
-    pub member: Member,
-    /// The root, as a record that was decoded by `member` says.
-    pub read: fn(&Record) -> Box<dyn Root>,
-}
-
-impl Family {
-    const fn of<T: Declared + Root + 'static>() -> Self {
-        Self { member: T::MEMBER, read: |record| Box::new(T::read(record)) }
-    }
-}
-
-registry!(Family: trochoid, arc, tangent_arc, optimised_arc);
+registry!(
+    FAMILIES: Root = trochoid::Trochoid,
+    arc::Arc,
+    tangent_arc::TangentArc,
+    optimised_arc::OptimisedArc,
+);

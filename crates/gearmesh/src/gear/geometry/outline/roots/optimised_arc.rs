@@ -9,12 +9,10 @@
 use std::f64::consts::PI;
 
 use super::base_arc::Base;
-use super::{Family, Root, Toe};
+use super::{Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Plain, Problem};
 use declare::Declared;
-
-pub const FAMILY: Family = Family::of::<OptimisedArc>();
 
 /// Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).
 #[derive(Clone, Debug, PartialEq, Declared)]

@@ -5,13 +5,11 @@
 //! know: other roots.
 
 use super::base_arc::Base;
-use super::{Family, Root, Toe};
+use super::{Root, Toe};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
 use declare::units::LENGTH;
 use declare::{Declared, Words};
-
-pub const FAMILY: Family = Family::of::<TangentArc>();
 
 /// Arc tangent to the root circle and to the flank (or the radial line below the base circle).
 #[derive(Clone, Debug, PartialEq, Declared)]

@@ -4,13 +4,11 @@
 //! know: other roots.
 
 use super::super::curve::{Curve, OutlinePart, Segment};
-use super::{Family, Root, Toe};
+use super::{Root, Toe};
 use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
 use crate::gear::geometry::{Gear, Rack, Specification, trochoid};
 use crate::numeric::crossing;
 use declare::{Declared, Words};
-
-pub const FAMILY: Family = Family::of::<Trochoid>();
 
 /// The root curve that the rack generates.
 #[derive(Clone, Debug, PartialEq, Declared)]
