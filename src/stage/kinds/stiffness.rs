@@ -14,15 +14,16 @@ use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
-use declare::units::{RATIO, TORQUE, in_unit};
+use declare::units::{RATIO, TORQUE};
 use declare::work::Work;
 use gearmesh::gear::compliance::iso6336::{self, Iso6336};
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
-use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
-use gearmesh::gear::transmission_error::stiffness::stiffness;
+use gearmesh::gear::transmission_error::stiffness::{StiffnessSummary, stiffness};
 use gearmesh::gear::work::{CONTACT_SOLVES, MESH_FACTORISATIONS};
-use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -103,139 +104,117 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }))
 }
 
-fn curve_schema() -> Schema {
-    Schema::new(
-        "curve",
-        "Mesh stiffness over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.",
-        vec![
-            Column::integer("point", "Counts the positions, from 1.").key(),
-            Column::float(
-                "cycle_position",
-                "mm",
-                "Distance from where a pair starts contact, along the line of action.",
-            ),
-            Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
-            Column::integer("pairs", "Pairs in contact."),
-            Column::float("stiffness", "N/m", "Mesh stiffness F/δ of the unmodified pair."),
-        ],
-    )
+/// Where a row of the curve stands, from 1, and what is there.
+type CurveRow = (usize, Point);
+
+fn curve() -> Columns<CurveRow> {
+    let description =
+        "Mesh stiffness over one mesh cycle. Where the number of pairs changes there are two rows, one for each side.";
+    let cycle_position = "Distance from where a pair starts contact, along the line of action.";
+    Columns::new("curve", description)
+        .integer("point", "Counts the positions, from 1.", |row: &CurveRow| row.0)
+        .key()
+        .float("cycle_position", "mm", cycle_position, |row| row.1.cycle_position)
+        .float("roll_angle", "deg", "The pinion's roll angle at the newest pair.", |row| row.1.roll_angle)
+        .integer("pairs", "Pairs in contact.", |row| row.1.pairs)
+        .float("stiffness", "N/m", "Mesh stiffness F/δ of the unmodified pair.", |row| row.1.secant_stiffness)
 }
 
-fn summary_schema() -> Schema {
-    let extreme = |name: &str, description: &str| Column::float(name, "N/m", description).allows_nan();
-    Schema::new(
-        "summary",
-        "Extremes of the mesh stiffness; NaN where that many pairs are never in contact.",
-        vec![
-            extreme("single_min", "Smallest stiffness with one pair in contact."),
-            extreme("single_max", "Largest stiffness with one pair in contact."),
-            extreme("double_min", "Smallest stiffness with two pairs in contact."),
-            extreme("double_max", "Largest stiffness with two pairs in contact."),
-            Column::float("mean", "N/m", "Integral mean over the mesh cycle."),
-            Column::integer("fewest_pairs", "Pairs in contact where they are fewest."),
-            Column::float(
-                "error_estimate",
-                "%",
-                "Estimated numerical error of the compliances, in units of a tooth's own.",
-            )
-            .tolerance(1e-9, 1e-2),
-        ],
-    )
+/// What the curve amounts to, and how far off the compliances may be.
+struct SummaryRow {
+    summary: StiffnessSummary,
+    error_estimate: f64,
+    /// Seconds that tabulating took.
+    seconds: f64,
+}
+
+impl SummaryRow {
+    /// Least and largest stiffness with so many pairs in contact.
+    fn zone(&self, pairs: usize) -> [f64; 2] {
+        let zones = [Some(self.summary.fewest), self.summary.most];
+        let found = zones.into_iter().flatten().find(|zone| zone.pairs == pairs);
+        found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
+    }
+}
+
+fn summary() -> Columns<SummaryRow> {
+    let description = "Extremes of the mesh stiffness; NaN where that many pairs are never in contact.";
+    let error = "Estimated numerical error of the compliances, in units of a tooth's own.";
+    let extreme = |columns: Columns<SummaryRow>, name, description, pairs, end: usize| {
+        columns.float(name, "N/m", description, move |row| row.zone(pairs)[end]).but(Column::allows_nan)
+    };
+    let columns = Columns::new("summary", description);
+    let columns = extreme(columns, "single_min", "Smallest stiffness with one pair in contact.", 1, 0);
+    let columns = extreme(columns, "single_max", "Largest stiffness with one pair in contact.", 1, 1);
+    let columns = extreme(columns, "double_min", "Smallest stiffness with two pairs in contact.", 2, 0);
+    extreme(columns, "double_max", "Largest stiffness with two pairs in contact.", 2, 1)
+        .float("mean", "N/m", "Integral mean over the mesh cycle.", |row| row.summary.mean)
+        .integer("fewest_pairs", "Pairs in contact where they are fewest.", |row| row.summary.fewest.pairs)
+        .float("error_estimate", "%", error, |row| row.error_estimate)
+        .but(|column| column.tolerance(1e-9, 1e-2))
 }
 
 /// By itself, since a table with measured times differs from run to run.
-fn cost_schema() -> Schema {
-    let columns = vec![
-        Column::float("mean", "N/m", "As in the table `summary`."),
-        Column::float("error_estimate", "%", "As in the table `summary`.").tolerance(1e-9, 1e-2),
-        Column::float("seconds", "s", "Time for tabulating the compliances.").volatile(),
-    ];
-    Schema::new("cost", "Error of the compliances against the time they took.", columns).on_demand()
+fn cost() -> Columns<SummaryRow> {
+    Columns::new("cost", "Error of the compliances against the time they took.")
+        .float("mean", "N/m", "As in the table `summary`.", |row: &SummaryRow| row.summary.mean)
+        .float("error_estimate", "%", "As in the table `summary`.", |row| row.error_estimate)
+        .but(|column| column.tolerance(1e-9, 1e-2))
+        .float("seconds", "s", "Time for tabulating the compliances.", |row| row.seconds)
+        .but(Column::volatile)
+        .on_demand()
 }
 
-fn iso_schema() -> Schema {
-    let column = |name: &str, description: &str| Column::float(name, "N/(mm um)", description);
-    Schema::new(
-        "iso6336",
-        "Mesh stiffness per face width by ISO 6336-1; for solid discs unless the method says otherwise.",
-        vec![
-            column("theoretical", "c′_th: theoretical stiffness of a pair."),
-            column("single", "c′: maximum stiffness of a pair."),
-            column("mesh", "c_γα: mean stiffness of the mesh."),
-        ],
-    )
-    .on_demand()
+fn iso() -> Columns<iso6336::Stiffness> {
+    let description = "Mesh stiffness per face width by ISO 6336-1; for solid discs unless the method says otherwise.";
+    let unit = "N/(mm um)";
+    Columns::new("iso6336", description)
+        .float("theoretical", unit, "c′_th: theoretical stiffness of a pair.", |found: &iso6336::Stiffness| {
+            found.theoretical
+        })
+        .float("single", unit, "c′: maximum stiffness of a pair.", |found| found.single)
+        .float("mesh", unit, "c_γα: mean stiffness of the mesh.", |found| found.mesh)
+        .on_demand()
 }
 
-fn iso_table(pair: &GearPair, method: &Iso6336) -> Result<Table, TableError> {
-    let found = iso6336::stiffness(&iso6336::Inputs::of(pair, method));
-    let row: Row = [found.theoretical, found.single, found.mesh].map(|value| in_unit(value, "N/(mm um)").into()).into();
-    Table::from_rows(iso_schema(), vec![row])
+fn mesh() -> Columns<MeshFacts> {
+    let error = "Estimated error of the compliances, in units of the tooth's own, from a mesh half as fine.";
+    let unknowns = "Unknown displacements of one tooth and its share of the body.";
+    Columns::new("mesh", "The finite-element mesh of each gear; no rows for methods without one.")
+        .text("gear", "Which gear: pinion or gear.", |mesh: &MeshFacts| mesh.side.name())
+        .key()
+        .integer("elements_across", "Elements across a tooth.", |mesh| mesh.elements_across)
+        .integer("elements", "Elements of one tooth and its share of the body.", |mesh| mesh.elements)
+        .integer("unknowns", unknowns, |mesh| mesh.unknowns)
+        .float("error_estimate", "%", error, |mesh| mesh.error_estimate)
+        // The difference of two compliances, which move by 1e-12 of themselves: docs/methods.md, "Same bits anywhere".
+        .but(|column| column.tolerance(1e-7, 1e-9))
 }
 
-fn mesh_schema() -> Schema {
-    Schema::new(
-        "mesh",
-        "The finite-element mesh of each gear; no rows for methods without one.",
-        vec![
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::integer("elements_across", "Elements across a tooth."),
-            Column::integer("elements", "Elements of one tooth and its share of the body."),
-            Column::integer("unknowns", "Unknown displacements of one tooth and its share of the body."),
-            Column::float(
-                "error_estimate",
-                "%",
-                "Estimated error of the compliances, in units of the tooth's own, from a mesh half as fine.",
-            )
-            // The difference of two compliances, which move by 1e-12 of themselves: docs/methods.md, "Same bits anywhere".
-            .tolerance(1e-7, 1e-9),
-        ],
-    )
+/// The Chebyshev node of a gear, from 1, and the stress under a load there.
+type StressRow = (usize, RootStress);
+
+fn root_stress() -> Columns<StressRow> {
+    let stress = "Largest first principal stress per load per face width.";
+    Columns::new("root_stress", "The largest stress on the surface of a loaded tooth's root, on the side of the load.")
+        .text("gear", "Which gear: pinion or gear.", |row: &StressRow| row.1.side.name())
+        .key()
+        .integer("node", "Chebyshev node, from 1 at the root side.", |row| row.0)
+        .key()
+        .float("roll_angle", "rad", "Roll angle of the loaded point.", |row| row.1.roll)
+        .float("stress", "MPa mm/N", stress, |row| row.1.stress)
+        .float("radius", "mm", "Radius at which it is.", |row| row.1.radius)
+        .on_demand()
 }
 
-fn mesh_table(meshes: &[MeshFacts]) -> Result<Table, TableError> {
-    let row = |mesh: &MeshFacts| -> Row {
-        vec![
-            mesh.side.name().into(),
-            mesh.elements_across.into(),
-            mesh.elements.into(),
-            mesh.unknowns.into(),
-            in_unit(mesh.error_estimate, "%").into(),
-        ]
-    };
-    Table::from_rows(mesh_schema(), meshes.iter().map(row).collect())
-}
-
-fn root_stress_schema() -> Schema {
-    Schema::new(
-        "root_stress",
-        "The largest stress on the surface of a loaded tooth's root, on the side of the load.",
-        vec![
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::integer("node", "Chebyshev node, from 1 at the root side.").key(),
-            Column::float("roll_angle", "rad", "Roll angle of the loaded point."),
-            Column::float("stress", "MPa mm/N", "Largest first principal stress per load per face width."),
-            Column::float("radius", "mm", "Radius at which it is."),
-        ],
-    )
-    .on_demand()
-}
-
-fn root_stress_table(stresses: &[RootStress]) -> Result<Table, TableError> {
-    let mut rows: Vec<Row> = Vec::new();
+fn stress_rows(stresses: Vec<RootStress>) -> Vec<StressRow> {
     let (mut node, mut before) = (0, None);
-    for found in stresses {
+    let numbered = |found: RootStress| {
         node = if before == Some(found.side) { node + 1 } else { 1 };
         before = Some(found.side);
-        rows.push(vec![
-            found.side.name().into(),
-            node.into(),
-            found.roll.into(),
-            in_unit(found.stress, "MPa mm/N").into(),
-            in_unit(found.radius, "mm").into(),
-        ]);
-    }
-    Table::from_rows(root_stress_schema(), rows)
+        (node, found)
+    };
+    stresses.into_iter().map(numbered).collect()
 }
 
 impl Stiffness {
@@ -254,14 +233,14 @@ impl Stage for Stiffness {
             codec::compliance_schema(),
             codec::neighbours_schema(),
             codec::model_schema(),
-            curve_schema(),
-            summary_schema(),
-            mesh_schema(),
-            cost_schema(),
-            iso_schema(),
+            curve().schema(),
+            summary().schema(),
+            mesh().schema(),
+            cost().schema(),
+            iso().schema(),
         ];
         if self.teeth.method.root_stresses().is_some() {
-            schemas.push(root_stress_schema());
+            schemas.push(root_stress().schema());
         }
         schemas
     }
@@ -341,41 +320,27 @@ impl Stage for Stiffness {
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
-        let (points, summary) = stiffness(&cycle, self.torque);
+        let (points, of_curve) = stiffness(&cycle, self.torque);
         context.work.add(&cycle.work());
-        let rows = points.iter().enumerate().map(|(index, point)| -> Row {
-            vec![
-                (index + 1).into(),
-                in_unit(point.cycle_position, "mm").into(),
-                in_unit(point.roll_angle, "deg").into(),
-                point.pairs.into(),
-                point.secant_stiffness.into(),
-            ]
-        });
-        tables.push(Table::from_rows(curve_schema(), rows.collect()).map_err(failed)?);
-        let zone = |pairs: usize| {
-            let zones = [Some(summary.fewest), summary.most];
-            let found = zones.into_iter().flatten().find(|zone| zone.pairs == pairs);
-            found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
-        };
-        let mut row: Row = [zone(1), zone(2)].concat().into_iter().map(Into::into).collect();
-        row.extend([summary.mean.into(), summary.fewest.pairs.into(), in_unit(error_estimate, "%").into()]);
-        tables.push(Table::from_rows(summary_schema(), vec![row]).map_err(failed)?);
-        tables.push(mesh_table(&meshes).map_err(failed)?);
+        let rows: Vec<CurveRow> = (1..).zip(points).collect();
+        tables.push(curve().table(&rows).map_err(failed)?);
+        let row = [SummaryRow { summary: of_curve, error_estimate, seconds }];
+        tables.push(summary().table(&row).map_err(failed)?);
+        tables.push(mesh().table(&meshes).map_err(failed)?);
         if context.demand.table("cost") {
-            let row: Row = vec![summary.mean.into(), in_unit(error_estimate, "%").into(), seconds.into()];
-            tables.push(Table::from_rows(cost_schema(), vec![row]).map_err(failed)?);
+            tables.push(cost().table(&row).map_err(failed)?);
         }
         if context.demand.table("iso6336") {
             // The standard's own factors where the method is another one.
             let method = (self.teeth.method.as_ref() as &dyn Any).downcast_ref().cloned().unwrap_or_default();
-            tables.push(iso_table(&pair, &method).map_err(failed)?);
+            let found = iso6336::stiffness(&iso6336::Inputs::of(&pair, &method));
+            tables.push(iso().table(&[found]).map_err(failed)?);
         }
         if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table("root_stress")) {
             let (found, work) =
                 method.root_stress(&pair, self.teeth.assumptions).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);
-            tables.push(root_stress_table(&found).map_err(failed)?);
+            tables.push(root_stress().table(&stress_rows(found)).map_err(failed)?);
         }
         Ok(tables)
     }

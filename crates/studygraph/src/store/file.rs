@@ -127,6 +127,7 @@ mod tests {
         let missing = write(&folder.path().join("no/such"), b"", Durability::Lazy).unwrap_err().to_string();
         assert!(missing.contains("no"), "{missing}");
     }
+
     /// Neither is opened: a pipe would be waited for, a device has no end.
     #[cfg(unix)]
     #[test]

@@ -2,6 +2,7 @@
 //!
 //! Must not know: files, stages, gears.
 
+pub mod columns;
 pub mod data;
 pub mod schema;
 pub mod select;
