@@ -12,6 +12,7 @@ macro_rules! registry {
         /// A member as registered.
         #[derive(Clone, Copy)]
         pub struct Registered {
+            /// Its declaration: name, meaning and fields.
             pub member: $crate::parameter::Member,
             /// Itself, as a record that was decoded by `member` says.
             pub read: fn(&$crate::record::Record) -> Box<dyn $family>,

@@ -16,7 +16,7 @@ use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE};
 use declare::work::Work;
-use gearmesh::gear::compliance::iso6336::{self, Iso6336};
+use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};

@@ -2,7 +2,8 @@
 //! well in every case.
 //!
 //! By itself some of the operations see one error each, for time; `GEARSTUDY_FAULTS=each` fails every operation once and
-//! lasting and every fourth allocation, `GEARSTUDY_FAULTS=all` with every error and every allocation. Must not know: which operations there are.
+//! lasting and every fourth allocation, `GEARSTUDY_FAULTS=all` with every error and every allocation. Must not know: which
+//! operations there are.
 
 use std::fs;
 use std::path::Path;

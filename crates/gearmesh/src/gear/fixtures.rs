@@ -12,8 +12,8 @@ use declare::declared::record_of;
 use declare::error::Diagnostic;
 use declare::record::{Record, Value};
 
-pub const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-pub const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
+pub(crate) const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+pub(crate) const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
 
 fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
     let module = 3e-3;
@@ -33,7 +33,7 @@ fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
 }
 
 /// A gear of the standard rack without profile shift, 7 modules wide, its bore r_f/`bore_ratio`.
-pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
+pub(crate) fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
     Specification {
         teeth,
         module,
@@ -48,7 +48,7 @@ pub fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specification {
 }
 
 /// 19/48, 20 and 18 mm wide.
-pub fn pair() -> GearPair {
+pub(crate) fn pair() -> GearPair {
     let (start, end) = (2.009_266_843_717_533_4e-3, 16.583_582_258_918_156e-3);
     let pinion_base = 19.0 * BASE_PITCH / std::f64::consts::TAU;
     GearPair {
@@ -66,7 +66,7 @@ pub fn pair() -> GearPair {
 
 /// The same gears with the end of contact moved: the pinion's teeth are higher, and thicker, so that the angle of their
 /// tips is unchanged.
-pub fn pair_with_contact_ratio(ratio: f64) -> GearPair {
+pub(crate) fn pair_with_contact_ratio(ratio: f64) -> GearPair {
     let mut pair = pair();
     let involute = |pair: &GearPair| {
         let roll = pair.end_of_contact / pair.pinion.base_radius;
@@ -81,7 +81,7 @@ pub fn pair_with_contact_ratio(ratio: f64) -> GearPair {
 }
 
 /// The same pair with the gear driving: its path of contact is run through backwards.
-pub fn swapped(pair: &GearPair) -> GearPair {
+pub(crate) fn swapped(pair: &GearPair) -> GearPair {
     GearPair {
         pinion: pair.gear.clone(),
         gear: pair.pinion.clone(),
@@ -92,7 +92,7 @@ pub fn swapped(pair: &GearPair) -> GearPair {
 }
 
 /// Teeth whose compliance is `value(u, centre)` with u the roll angle; everything in the bending part.
-pub fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
+pub(crate) fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
     let nothing = || Series::from_values(0.0, 2.0, &[0.0]);
     ToothCompliance {
         bending: Series::fit(0.0, 2.0, 40, value),
@@ -105,7 +105,7 @@ pub fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
 }
 
 /// Every pair has the stiffness `stiffness`, linear contact included, wherever it is.
-pub fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
+pub(crate) fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
     let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * width);
     let half = 0.5 * (1.0 / stiffness - contact);
@@ -113,14 +113,14 @@ pub fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
 }
 
 /// Teeth that get softer towards their tips, much like real ones.
-pub fn varying() -> PairCompliance {
+pub(crate) fn varying() -> PairCompliance {
     let pinion = tooth(|u| 0.8e-9 + 2.4e-9 * u * u + 1.5e-9 * u * u * u);
     let gear = tooth(|u| 0.5e-9 + 3.0e-9 * u * u);
     PairCompliance { pinion, gear, contact: Some(ContactLaw::Linear), coupled: false }
 }
 
 /// As [`varying`], with neighbouring teeth deflecting each other.
-pub fn coupled() -> PairCompliance {
+pub(crate) fn coupled() -> PairCompliance {
     let mut compliance = varying();
     for tooth in [&mut compliance.pinion, &mut compliance.gear] {
         tooth.neighbours = (1..5)
@@ -134,15 +134,15 @@ pub fn coupled() -> PairCompliance {
 }
 
 /// A record of the family `name`.
-pub fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
+pub(crate) fn record(name: &str, values: &[(&'static str, Value)]) -> Record {
     record_of(family(name).unwrap().member.fields, values)
 }
 
 /// A modification: family, gear, other values.
-pub type NamedModification<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
+pub(crate) type NamedModification<'a> = (&'a str, &'static str, &'a [(&'static str, Value)]);
 
 /// A design of several modifications.
-pub fn design(pair: &GearPair, parts: &[NamedModification]) -> Result<Design, Diagnostic> {
+pub(crate) fn design(pair: &GearPair, parts: &[NamedModification]) -> Result<Design, Diagnostic> {
     let mut design = Design::default();
     for (name, gear, values) in parts {
         let values = [&[("gear", Value::Choice(gear))], *values].concat();

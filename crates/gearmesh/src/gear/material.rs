@@ -10,3 +10,8 @@ pub struct Material {
     /// ν.
     pub poisson_ratio: f64,
 }
+
+impl Material {
+    /// Steel as ISO 6336-1 has it: E = 206 GPa, ν = 0.3.
+    pub const STEEL: Self = Self { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+}

@@ -11,35 +11,35 @@ use super::modification::Design;
 use declare::record::Value::{Choice, Number, Quantity};
 
 /// Draws from ranges.
-pub struct Random(ChaCha8Rng);
+pub(crate) struct Random(ChaCha8Rng);
 
 impl Random {
-    pub fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(ChaCha8Rng::seed_from_u64(seed))
     }
 
     /// 0 to 1.
-    pub fn share(&mut self) -> f64 {
+    pub(crate) fn share(&mut self) -> f64 {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub fn between(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
         least + (most - least) * self.share()
     }
 
     /// Evenly over the orders of magnitude.
-    pub fn scaled(&mut self, least: f64, most: f64) -> f64 {
+    pub(crate) fn scaled(&mut self, least: f64, most: f64) -> f64 {
         libm::exp(self.between(libm::log(least), libm::log(most)))
     }
 
-    pub fn of<T: Copy>(&mut self, choices: &[T]) -> T {
+    pub(crate) fn of<T: Copy>(&mut self, choices: &[T]) -> T {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let index = (self.share() * choices.len() as f64) as usize;
         choices[index]
     }
 
     /// A possible pair: 12 to 60 teeth with up to five times as many, module 1 to 8 mm, shifted or not.
-    pub fn pair(&mut self) -> GearPair {
+    pub(crate) fn pair(&mut self) -> GearPair {
         loop {
             let module = self.scaled(1e-3, 8e-3);
             let angle = self.of(&[17.5_f64, 20.0, 20.0, 22.5, 25.0]).to_radians();
@@ -69,13 +69,13 @@ impl Random {
     }
 
     /// A torque that bends the teeth by about 1 to 30 µm \[N m\].
-    pub fn torque(&mut self, pair: &GearPair) -> f64 {
+    pub(crate) fn torque(&mut self, pair: &GearPair) -> f64 {
         let width = pair.pinion.specification.face_width;
         self.scaled(2e4, 6e5) * width * pair.pinion.base_radius
     }
 
     /// Profile and lead modifications of a few micrometres; some have no closed form across the face.
-    pub fn design(&mut self, pair: &GearPair) -> Design {
+    pub(crate) fn design(&mut self, pair: &GearPair) -> Design {
         loop {
             let curve = self.of(&["linear", "parabolic", "power"]);
             let tip = [

@@ -105,17 +105,19 @@ impl Series {
         self
     }
 
+    /// The lower end of the interval.
     #[must_use]
     pub fn lower(&self) -> f64 {
         self.lower
     }
 
+    /// The upper end of the interval.
     #[must_use]
     pub fn upper(&self) -> f64 {
         self.upper
     }
 
-    /// Highest order first dropped last: the coefficients c_0 … c_n.
+    /// The coefficients c_0 … c_n, lowest order first.
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {
         &self.coefficients

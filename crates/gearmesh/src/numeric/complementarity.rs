@@ -34,6 +34,7 @@ pub trait Springs {
 pub struct Balance {
     /// x, counted from the smallest gap.
     pub approach: f64,
+    /// 0 or more; they add up to the total.
     pub loads: PerSpring,
     /// w_j; where there is no load, minus the distance that is still open.
     pub penetration: PerSpring,

@@ -11,7 +11,9 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// high + low, |low| ≤ half a unit in the last place of high.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Double {
+    /// The number rounded to an `f64`.
     pub high: f64,
+    /// What that rounding left out.
     pub low: f64,
 }
 
@@ -44,26 +46,33 @@ fn exact_product(a: f64, b: f64) -> Double {
 }
 
 impl Double {
+    /// 0.
     pub const ZERO: Self = Self { high: 0.0, low: 0.0 };
+    /// 1.
     pub const ONE: Self = Self { high: 1.0, low: 0.0 };
+    /// π to twice the precision.
     pub const PI: Self = Self { high: std::f64::consts::PI, low: 1.224_646_799_147_353_2e-16 };
     const LN_2: Self = Self { high: std::f64::consts::LN_2, low: 2.319_046_813_846_299_6e-17 };
 
+    /// |self|.
     #[must_use]
     pub fn abs(self) -> Self {
         if self.high < 0.0 { -self } else { self }
     }
 
+    /// The larger of the two; `self` where one is NaN.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         if self < other { other } else { self }
     }
 
+    /// The smaller of the two; `self` where one is NaN.
     #[must_use]
     pub fn min(self, other: Self) -> Self {
         if self > other { other } else { self }
     }
 
+    /// self².
     #[must_use]
     pub fn square(self) -> Self {
         self * self
@@ -75,6 +84,7 @@ impl Double {
         Self { high: self.high * factor, low: self.low * factor }
     }
 
+    /// self/2, exact.
     #[must_use]
     pub fn half(self) -> Self {
         self.times_power_of_two(0.5)
@@ -123,6 +133,7 @@ impl Double {
         }
     }
 
+    /// tan self, of an angle \[rad\].
     #[must_use]
     pub fn tangent(self) -> Self {
         let (sine, cosine) = self.sine_cosine();

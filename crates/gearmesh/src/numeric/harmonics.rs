@@ -8,8 +8,11 @@ use std::f64::consts::TAU;
 /// One node: position in the period, quadrature weight (length), value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Node {
+    /// Distance from the start of the period.
     pub position: f64,
+    /// Quadrature weight, a length; all add up to the period.
     pub weight: f64,
+    /// The function there; at a jump, its limit from inside the piece.
     pub value: f64,
 }
 

@@ -9,7 +9,9 @@ use std::f64::consts::PI;
 /// Nodes and weights on `0..=1`, ascending.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rule {
+    /// The first is 0, the last is 1.
     pub nodes: Vec<f64>,
+    /// One per node; they add up to 1.
     pub weights: Vec<f64>,
 }
 

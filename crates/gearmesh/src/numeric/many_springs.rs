@@ -18,6 +18,7 @@ const ROUNDING: f64 = 1e-14;
 pub struct Balance {
     /// Counted from the smallest gap.
     pub approach: f64,
+    /// 0 or more; they add up to the total.
     pub loads: Vec<f64>,
     /// Where there is no load, minus the distance that is still open.
     pub penetration: Vec<f64>,

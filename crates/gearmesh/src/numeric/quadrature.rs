@@ -13,6 +13,7 @@ pub struct GaussLegendre {
 }
 
 impl GaussLegendre {
+    /// The rule with `count` nodes.
     #[must_use]
     pub fn new(count: usize) -> Self {
         let (nodes, weights) = (0..count).map(|k| node(k, count)).unzip();

@@ -47,11 +47,13 @@ impl Surface {
         Self { lower, upper, counts, coefficients }
     }
 
+    /// The lower ends of both intervals.
     #[must_use]
     pub fn lower(&self) -> [f64; 2] {
         self.lower
     }
 
+    /// The upper ends of both intervals.
     #[must_use]
     pub fn upper(&self) -> [f64; 2] {
         self.upper

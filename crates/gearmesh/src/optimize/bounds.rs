@@ -33,11 +33,13 @@ impl Bounds {
         Ok(Self(pairs))
     }
 
+    /// How many variables there are; at least one.
     #[must_use]
     pub fn dimension(&self) -> usize {
         self.0.len()
     }
 
+    /// Least and most of each variable.
     #[must_use]
     pub fn pairs(&self) -> &[(f64, f64)] {
         &self.0

@@ -38,7 +38,7 @@ fn halton(mut index: usize, base: usize) -> f64 {
 }
 
 /// The arms of the cross of this number around a point, one after the other, clipped to the cube.
-pub fn cross(at: &[f64], radius: f64, number: usize) -> Vec<Vec<f64>> {
+pub(super) fn cross(at: &[f64], radius: f64, number: usize) -> Vec<Vec<f64>> {
     let arm = |direction: &[f64], radius: f64| at.iter().zip(direction).map(|(x, d)| clip(x + radius * d)).collect();
     basis(number, at.len()).iter().flat_map(|direction| [arm(direction, radius), arm(direction, -radius)]).collect()
 }
@@ -46,7 +46,7 @@ pub fn cross(at: &[f64], radius: f64, number: usize) -> Vec<Vec<f64>> {
 /// Whether differences of second order fall otherwise than like the square of the radius, in any direction: values of a
 /// wide and of a narrow [`cross`] around a point of value `value`, the wide one `ratio` times as large. On a kink they fall
 /// like the radius, and beside one, which only the wide cross meets, much faster.
-pub fn kinked(value: f64, wide: &[f64], narrow: &[f64], ratio: f64) -> bool {
+pub(super) fn kinked(value: f64, wide: &[f64], narrow: &[f64], ratio: f64) -> bool {
     let second = |arms: &[f64]| ((arms[0] - value) + (arms[1] - value)).abs();
     wide.chunks_exact(2).zip(narrow.chunks_exact(2)).any(|(wide, narrow)| {
         let (wide, narrow) = (second(wide), second(narrow) * ratio * ratio);
@@ -56,7 +56,7 @@ pub fn kinked(value: f64, wide: &[f64], narrow: &[f64], ratio: f64) -> bool {
 
 /// The points whose values give the gradient in each of `places` by differences over `step`: the place itself, and one
 /// along each axis, towards the inside of the cube.
-pub fn stencils(places: &[Vec<f64>], step: f64) -> Vec<Vec<f64>> {
+pub(super) fn stencils(places: &[Vec<f64>], step: f64) -> Vec<Vec<f64>> {
     let mut points = Vec::new();
     for place in places {
         points.push(place.clone());
@@ -75,7 +75,7 @@ fn inward(coordinate: f64, step: f64) -> f64 {
 
 /// What gradients around a point say of it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Slope {
+pub(super) struct Slope {
     /// Down; its largest component is 1.
     pub along: Vec<f64>,
     /// Length of the shortest vector of the hull of the gradients, over that of the longest gradient.
@@ -83,7 +83,7 @@ pub struct Slope {
 }
 
 /// The gradients by the values at [`stencils`] of `places`, but for those that are not finite.
-pub fn gradients(places: &[Vec<f64>], step: f64, values: &[f64]) -> Vec<Vec<f64>> {
+pub(super) fn gradients(places: &[Vec<f64>], step: f64, values: &[f64]) -> Vec<Vec<f64>> {
     let gradient = |(place, values): (&Vec<f64>, &[f64])| -> Vec<f64> {
         place.iter().zip(&values[1..]).map(|(x, value)| (value - values[0]) / inward(*x, step)).collect()
     };
@@ -95,7 +95,7 @@ pub fn gradients(places: &[Vec<f64>], step: f64, values: &[f64]) -> Vec<Vec<f64>
 
 /// The way down from `at` where these are the gradients around; none where it is stationary or flat. A variable on its
 /// bound does not go out.
-pub fn slope(at: &[f64], mut gradients: Vec<Vec<f64>>) -> Option<Slope> {
+pub(super) fn slope(at: &[f64], mut gradients: Vec<Vec<f64>>) -> Option<Slope> {
     let longest = gradients.iter().map(|gradient| dot(gradient, gradient)).fold(0.0, f64::max).sqrt();
     if longest == 0.0 {
         return None;

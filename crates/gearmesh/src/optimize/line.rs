@@ -44,7 +44,7 @@ struct Bracket {
 }
 
 /// A search along one line that has begun at its place 0.
-pub struct Line {
+pub(super) struct Line {
     least: f64,
     most: f64,
     tolerance: f64,
@@ -57,7 +57,7 @@ pub struct Line {
 impl Line {
     /// From 0, where the value is `value`, within `least..=most` (which holds 0), first by `step` > 0; the place of the
     /// minimum is found to `tolerance` > 0.
-    pub fn new(value: f64, (least, most): (f64, f64), step: f64, tolerance: f64) -> Self {
+    pub(super) fn new(value: f64, (least, most): (f64, f64), step: f64, tolerance: f64) -> Self {
         let best = (0.0, value);
         let mut line = Self { least, most, tolerance, step, best, stage: Stage::Done, asked: 0.0 };
         if most > tolerance {
@@ -69,12 +69,12 @@ impl Line {
     }
 
     /// The next place to evaluate; none when the search has ended.
-    pub fn place(&self) -> Option<f64> {
+    pub(super) fn place(&self) -> Option<f64> {
         (!matches!(self.stage, Stage::Done)).then_some(self.asked)
     }
 
     /// The place with the lowest value, and that value.
-    pub fn best(&self) -> Met {
+    pub(super) fn best(&self) -> Met {
         self.best
     }
 
@@ -93,7 +93,7 @@ impl Line {
     }
 
     /// The value at [`Line::place`], a number or +∞.
-    pub fn learn(&mut self, value: f64) {
+    pub(super) fn learn(&mut self, value: f64) {
         let met = (self.asked, value);
         match std::mem::replace(&mut self.stage, Stage::Done) {
             Stage::Forward | Stage::Backward { .. } | Stage::Falling { .. } if value < self.best.1 => self.fall(met),

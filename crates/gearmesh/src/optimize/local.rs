@@ -9,7 +9,7 @@ use declare::error::Diagnostic;
 use declare::seed::Seed;
 
 /// A search from one point until it has converged by its own measure; what then becomes of it, [`super::restarts`] says.
-pub trait Search: Send {
+pub(super) trait Search: Send {
     /// As [`super::Strategy::batch`].
     fn batch(&self) -> &[Vec<f64>];
 
@@ -51,7 +51,7 @@ impl Start {
 
 /// When to stop.
 #[derive(Clone, Copy, Debug)]
-pub struct Limits {
+pub(super) struct Limits {
     /// The extent at which it has converged, in the maximum norm.
     pub tolerance: f64,
     pub restarts: usize,
@@ -62,7 +62,11 @@ pub struct Limits {
 ///
 /// # Errors
 /// With too few evaluations to begin.
-pub fn foresee(evaluations: usize, dimension: usize, (least, what): (usize, &str)) -> Result<Foreseen, Diagnostic> {
+pub(super) fn foresee(
+    evaluations: usize,
+    dimension: usize,
+    (least, what): (usize, &str),
+) -> Result<Foreseen, Diagnostic> {
     if evaluations < least {
         let message = format!("{evaluations} evaluations are too few for {what} {dimension} variables");
         return Err(Diagnostic::new(message).help(format!("give at least {least}")));
@@ -76,12 +80,12 @@ pub fn foresee(evaluations: usize, dimension: usize, (least, what): (usize, &str
 const MOST_HELD: usize = 64;
 
 /// Onto the range.
-pub fn clip(coordinate: f64) -> f64 {
+pub(super) fn clip(coordinate: f64) -> f64 {
     coordinate.clamp(0.0, 1.0)
 }
 
 /// The stretch of a line on which at least one variable is off its bounds.
-pub fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
+pub(super) fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
     let (mut least, mut most) = (0.0_f64, 0.0_f64);
     for (at, along) in at.iter().zip(along) {
         if *along != 0.0 {
@@ -94,6 +98,6 @@ pub fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
 }
 
 /// A variable that has met a bound stays there while the others go on.
-pub fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
+pub(super) fn moved(at: &[f64], along: &[f64], place: f64) -> Vec<f64> {
     at.iter().zip(along).map(|(at, along)| clip(at + place * along)).collect()
 }

@@ -88,6 +88,7 @@ pub trait Strategy: Send {
     /// When the method cannot work with such values; the message says why.
     fn learn(&mut self, values: &[f64]) -> Result<(), String>;
 
+    /// Why it has ended; `None` while it has another batch.
     fn finished(&self) -> Option<Reason>;
 
     /// The most evaluations it will ask for.

@@ -36,7 +36,7 @@ enum Phase {
 }
 
 /// A local search with its restarts.
-pub struct Restarted<S> {
+pub(super) struct Restarted<S> {
     search: S,
     limits: Limits,
     /// The first step of the search.
@@ -62,7 +62,7 @@ pub struct Restarted<S> {
 }
 
 impl<S: Search> Restarted<S> {
-    pub fn new(search: S, step: f64, limits: Limits) -> Self {
+    pub(super) fn new(search: S, step: f64, limits: Limits) -> Self {
         let batch = search.batch().to_vec();
         let mut restarted = Self {
             search,

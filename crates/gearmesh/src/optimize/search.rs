@@ -57,7 +57,9 @@ impl fmt::Display for Reason {
 /// A point of the box and its value.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
+    /// One value per variable, within its bounds.
     pub point: Vec<f64>,
+    /// The objective there.
     pub value: f64,
     /// The sum of what is broken of the constraints; 0 where all are kept.
     pub violation: f64,
@@ -231,6 +233,7 @@ impl Optimizer {
         });
     }
 
+    /// Why the search has ended; `None` while it goes on.
     #[must_use]
     pub fn finished(&self) -> Option<Reason> {
         self.strategy.finished()
@@ -256,6 +259,7 @@ impl Optimizer {
         &self.history
     }
 
+    /// How many points were evaluated so far.
     #[must_use]
     pub fn evaluations(&self) -> usize {
         self.evaluations
@@ -267,6 +271,7 @@ impl Optimizer {
         self.strategy.budget()
     }
 
+    /// The box that is searched.
     #[must_use]
     pub fn bounds(&self) -> &Bounds {
         &self.bounds

@@ -6,10 +6,12 @@ use super::data::{Cell, Data, Table, TableError};
 use super::schema::{Column, Schema};
 use declare::units::showing;
 
+type Getter<T> = Box<dyn Fn(&T) -> Cell>;
+
 /// The columns of a table and how to get them from a `T`, one per row.
 pub struct Columns<T> {
     schema: Schema,
-    getters: Vec<Box<dyn Fn(&T) -> Cell>>,
+    getters: Vec<Getter<T>>,
 }
 
 impl<T> Columns<T> {

@@ -101,8 +101,11 @@ pub struct Beam<'a> {
 /// Compliances \[m/N\] under a load at one roll angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Parts {
+    /// By bending, of the strain energy M²/(2EI).
     pub bending: f64,
+    /// By shear, times the shear factor.
     pub shear: f64,
+    /// By compression along the centreline.
     pub axial: f64,
     /// Distance from the contact point to the tooth's centreline along the load line \[m\].
     pub contact_depth: f64,

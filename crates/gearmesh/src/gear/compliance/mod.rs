@@ -83,6 +83,8 @@ pub struct Foreseen {
     pub nodes: usize,
     /// About the most nodes that the tables of neighbours of both have; 0 where there are none.
     pub neighbours: usize,
+    /// What it counts of its work: compliances that are evaluated or, where teeth are meshed, sectors that are
+    /// factorised.
     pub work: Work,
     /// How many times as long as usual a unit of work takes.
     pub times: f64,
@@ -105,7 +107,9 @@ fn integrated(assumptions: Assumptions) -> Foreseen {
 /// What every method is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Assumptions {
+    /// Shape of the root of every tooth; methods that know a pair only as a whole ignore it.
     pub root: RootShape,
+    /// How two flanks flatten against each other; methods that know a pair only as a whole ignore it.
     pub contact: ContactLaw,
     /// Whether loads on neighbouring teeth are to deflect each other through the gear bodies.
     pub coupled: bool,
@@ -117,10 +121,19 @@ pub struct Assumptions {
     pub accuracy: Option<f64>,
 }
 
+impl Default for Assumptions {
+    /// As a study that says nothing: generated roots, linear contact, teeth that deflect each other.
+    fn default() -> Self {
+        Self { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None, accuracy: None }
+    }
+}
+
 /// What a method gives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tabulated {
+    /// The tables of both gears.
     pub compliance: PairCompliance,
+    /// Sentences for the user, one for each formula that is used outside its range.
     pub warnings: Vec<String>,
     /// How far off the compliances may be from what the method would give with perfect numerics, in units of the tooth's
     /// own.
@@ -134,6 +147,7 @@ pub struct Tabulated {
 /// The mesh a gear's compliance was found with.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MeshFacts {
+    /// The gear that was meshed.
     pub side: Side,
     /// Elements across a tooth.
     pub elements_across: usize,
@@ -148,6 +162,7 @@ pub struct MeshFacts {
 /// The largest first principal stress on the surface of a loaded tooth's root.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootStress {
+    /// The gear whose tooth is loaded.
     pub side: Side,
     /// Roll angle of the loaded point \[rad\].
     pub roll: f64,
@@ -173,22 +188,75 @@ pub fn of_both<T: Clone, E>(pair: &GearPair, mut tooth: impl FnMut(Side) -> Resu
 /// Why a method cannot give a compliance for a pair.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ComplianceError {
+    /// The gear has no root of the shape that is asked for, such as fillets that would overlap.
     #[error(transparent)]
     Root(GeometryError),
+    /// The tip is so nearly pointed that no series of 512 nodes follows the compliance up to it.
     #[error("{}: the tip is too near to a point to be integrated: it is {} thick", .side.name(), Millimetres(*.thickness))]
-    Unresolved { side: Side, thickness: f64 },
+    Unresolved {
+        /// The gear with that tip.
+        side: Side,
+        /// s_a \[m\].
+        thickness: f64,
+    },
+    /// The bore is outside the range in which the formula of Sainsot, Velex and Duverger can be used for the gear body.
     #[error("{}: the root radius is {} times the bore radius, but must be {} to {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(.range[0]), Plain(.range[1]))]
-    BoreOfFormula { side: Side, bore_ratio: f64, range: [f64; 2] },
+    BoreOfFormula {
+        /// The gear with that bore.
+        side: Side,
+        /// h = r_f/r_bore.
+        bore_ratio: f64,
+        /// Least and most of h.
+        range: [f64; 2],
+    },
+    /// θ_f is below what the formula of the gear body can be used for: there are too many teeth.
     #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.least))]
-    ManyTeeth { side: Side, half_angle: f64, least: f64 },
+    ManyTeeth {
+        /// The gear with these teeth.
+        side: Side,
+        /// θ_f \[rad\].
+        half_angle: f64,
+        /// The least θ_f \[rad\].
+        least: f64,
+    },
+    /// The formula of the gear body gives a compliance that is not positive at some roll angle of the flank.
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
-    NegativeBody { side: Side, compliance: f64, half_angle: f64, bore_ratio: f64 },
+    NegativeBody {
+        /// The gear with that body.
+        side: Side,
+        /// 1/k_f \[m/N\], 0 or less.
+        compliance: f64,
+        /// θ_f \[rad\].
+        half_angle: f64,
+        /// h = r_f/r_bore.
+        bore_ratio: f64,
+    },
+    /// c′ of ISO 6336-1 is not a positive number for this pair.
     #[error("the formula of ISO 6336-1 gives no stiffness for these profile shifts, dedenda and pressure angle: c′ is {} N/(mm µm)", Plain(*.single * 1e-9))]
-    NoIsoStiffness { single: f64 },
+    NoIsoStiffness {
+        /// c′ \[N/m²\].
+        single: f64,
+    },
+    /// A gear cannot be meshed or solved with finite elements.
     #[error("{}, {across} elements across: {error}", .side.name())]
-    Mesh { side: Side, across: usize, error: MeshError },
+    Mesh {
+        /// The gear that was meshed.
+        side: Side,
+        /// Elements across a tooth.
+        across: usize,
+        /// Why not.
+        error: MeshError,
+    },
+    /// ν is above what the elements take in plane strain.
     #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.most))]
-    Incompressible { side: Side, poisson_ratio: f64, most: f64 },
+    Incompressible {
+        /// The gear of that material.
+        side: Side,
+        /// ν.
+        poisson_ratio: f64,
+        /// The largest ν that they take in plane strain.
+        most: f64,
+    },
 }
 
 impl ComplianceError {
@@ -216,8 +284,11 @@ impl ComplianceError {
 /// contact point.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ToothCompliance {
+    /// The tooth bent as a beam. ISO 6336 has half of the pair's compliance here, finite elements have 0.
     pub bending: Series,
+    /// The tooth sheared; 0 by ISO 6336 and finite elements.
     pub shear: Series,
+    /// The tooth compressed along its centreline; 0 by ISO 6336 and finite elements.
     pub axial: Series,
     /// Gear body under the tooth's own load.
     pub body: Series,
@@ -271,7 +342,9 @@ pub enum ContactLaw {
 /// Everything the contact solver needs to know of a pair's elasticity.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PairCompliance {
+    /// The pinion's teeth, over the pinion's roll angles.
     pub pinion: ToothCompliance,
+    /// The gear's teeth, over the gear's roll angles.
     pub gear: ToothCompliance,
     /// None where the compliances of the teeth include it already, for methods that know a pair as a whole.
     pub contact: Option<ContactLaw>,

@@ -28,6 +28,7 @@ pub struct Body {
 }
 
 impl Body {
+    /// The polynomials L, M, P and Q for θ_f \[rad\] and h = r_f/r_bore.
     #[must_use]
     pub fn new(half_angle: f64, bore_ratio: f64) -> Self {
         let (t, h) = (half_angle, bore_ratio);

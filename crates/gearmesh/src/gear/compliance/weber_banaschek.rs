@@ -124,6 +124,7 @@ pub struct Body {
 }
 
 impl Body {
+    /// The body of a gear whose teeth have this root, held at its bore.
     #[must_use]
     pub fn new(gear: &Gear, root: &Root) -> Self {
         let lowest = root.pieces.first().map(|piece| piece.section(piece.range().0));

@@ -1,4 +1,4 @@
-//! The deviation across the face and how much of an penetration it lets through.
+//! The deviation across the face and how much of a penetration it lets through.
 //!
 //! A tooth pair is a row of independent slices: under the penetration w its load is its stiffness times
 //! Φ(w) = 1/b ∫ max(0, w − h(z)) dz, where h is the deviation of both flanks above its smallest value. Where h is

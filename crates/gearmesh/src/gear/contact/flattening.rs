@@ -86,7 +86,9 @@ impl Logarithmic {
 /// Flanks and teeth in series, prepared for many inversions.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct InSeries {
+    /// The flanks.
     pub law: Logarithmic,
+    /// c: penetration of both teeth without the contact, per load per width \[1/Pa\].
     pub compliance: f64,
     /// The load per width above which the flanks' approach is constant.
     last: f64,
@@ -95,6 +97,7 @@ pub struct InSeries {
 }
 
 impl InSeries {
+    /// Fills the places of an array that no pair takes: flanks and teeth without compliance.
     pub const NONE: Self =
         Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0 };
 

@@ -18,6 +18,7 @@ pub enum Slice {
 
 /// Slice by slice, pair by pair.
 pub struct Slices<'a> {
+    /// All slices of the first pair, then those of the next.
     pub slices: Vec<Slice>,
     /// The deviations within each slice, the same for all pairs.
     pub faces: &'a [Face<'a>],

@@ -8,7 +8,9 @@ use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 
 /// Pairs with the linear contact law.
 pub struct LinearPairs<'a> {
+    /// Stiffness of each pair as if the face were flat \[N/m\].
     pub stiffness: PerSpring,
+    /// The deviation across the common face, the same for all pairs.
     pub face: &'a Face<'a>,
 }
 
@@ -23,8 +25,11 @@ impl Springs for LinearPairs<'_> {
 /// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
 pub struct LogarithmicPairs<'a> {
+    /// Contact and teeth of each pair, per width.
     pub slices: [InSeries; MOST_SPRINGS],
+    /// Common face width b \[m\].
     pub width: f64,
+    /// The deviation across the common face, the same for all pairs.
     pub face: &'a Face<'a>,
 }
 

@@ -27,7 +27,9 @@ pub struct GearModel<'a> {
     plane: Plane,
     /// Height at which the involute begins \[modules\].
     form: f64,
+    /// One tooth with its share of the body.
     pub mesh: Mesh,
+    /// The stiffness of that mesh, factorised.
     pub sector: Sector,
 }
 

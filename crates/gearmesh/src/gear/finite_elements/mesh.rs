@@ -47,8 +47,11 @@ impl Sizing {
 /// An element's edge on a boundary: the element, which of its edges, and its nodes (start, middle, end).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Edge {
+    /// Its place in [`Mesh::elements`].
     pub element: usize,
+    /// Which edge of the unit square it is, counterclockwise: 0 at η = −1, 1 at ξ = 1, 2 at η = 1, 3 at ξ = −1.
     pub side: usize,
+    /// Their places in [`Mesh::nodes`], in the direction in which the boundary runs.
     pub nodes: [usize; 3],
 }
 
@@ -57,11 +60,13 @@ pub struct Edge {
 pub struct Mesh {
     /// \[modules\], in the tooth's frame.
     pub nodes: Vec<[f64; 2]>,
+    /// The nodes of each element: its corners counterclockwise, then the middles of its edges in the same order.
     pub elements: Vec<[usize; NODES]>,
     /// Nodes on the bore.
     pub bore: Vec<usize>,
     /// Nodes on the radial edges outside the bore, outwards; one edge is the other turned by a pitch.
     pub left: Vec<usize>,
+    /// The same at the other edge, node by node.
     pub right: Vec<usize>,
     /// The right flank above the cut, upwards.
     pub flank: Vec<Edge>,
@@ -69,6 +74,7 @@ pub struct Mesh {
     pub root: Vec<Edge>,
     /// The tooth's centreline, outwards.
     pub centreline: Vec<Edge>,
+    /// π/z: half the angle of the sector \[rad\].
     pub half_pitch: f64,
 }
 

@@ -26,7 +26,9 @@ pub struct Stretch {
     part: OutlinePart,
     curve: Curve,
     module: f64,
+    /// The curve's parameter where the stretch starts.
     pub lower: f64,
+    /// The curve's parameter where it ends, nearer to the tip; it may be the smaller of the two.
     pub upper: f64,
 }
 

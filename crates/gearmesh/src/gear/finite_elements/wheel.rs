@@ -13,7 +13,9 @@ pub type Pressed = [Vec<f64>; 2];
 
 /// A ring of `sectors`, each with a stiffness (by columns, left edge before right edge).
 pub struct Wheel<'a> {
+    /// z: one sector per tooth.
     pub sectors: u32,
+    /// Forces on the edges of a sector per displacement of them, dimensionless as E = 1; square and symmetric.
     pub stiffness: &'a [Vec<f64>],
 }
 

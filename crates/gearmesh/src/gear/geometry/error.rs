@@ -12,6 +12,7 @@ use super::Side;
 pub struct GeometryError {
     /// The gear that is meant; `None` when there is only one gear or when the pair is meant.
     pub side: Option<Side>,
+    /// What is wrong, with its numbers.
     pub problem: Problem,
 }
 
@@ -27,75 +28,221 @@ pub struct Degrees(pub f64);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plain(pub f64);
 
+/// What makes a gear or a pair impossible, with the numbers of its message.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Problem {
+    /// A value is outside the range in which a gear can be computed at all.
     #[error("{} is {found}, but must be {range}", .parameter.words())]
-    OutOfRange { parameter: Parameter, found: String, range: String },
+    OutOfRange {
+        /// The parameter with that value.
+        parameter: Parameter,
+        /// The value, with its unit.
+        found: String,
+        /// The admissible range, in words.
+        range: String,
+    },
+    /// The flanks of the rack's teeth meet before its dedendum is reached: (π/4 − h_fP* tan α) is not positive.
     #[error(
         "the rack's teeth end in a point before they are {dedendum} modules deep: the pressure angle is {angle}, but must be below {largest}"
     )]
-    NoTipLand { dedendum: Plain, angle: Degrees, largest: Degrees },
+    NoTipLand {
+        /// h_fP*.
+        dedendum: Plain,
+        /// α \[rad\].
+        angle: Degrees,
+        /// The pressure angle at which they meet at that depth: atan(π/(4 h_fP*)) \[rad\].
+        largest: Degrees,
+    },
+    /// The round of the rack's tip is more than a full round.
     #[error("the rack's tip radius is {radius} modules, but must be 0 to {largest} (full round)")]
-    TipRoundTooLarge { radius: Plain, largest: Plain },
+    TipRoundTooLarge {
+        /// ρ_fP*.
+        radius: Plain,
+        /// ρ_fP* at which the tip land of the rack vanishes.
+        largest: Plain,
+    },
+    /// The form radius is not below the tip radius: undercut has cut the involute off, or the tip circle is too small.
     #[error(
         "no involute is left: the root curve reaches up to {form}, the tip circle is at {tip}; {teeth} teeth need a profile shift of at least {least} modules not to be undercut"
     )]
-    NoFlank { form: Millimetres, tip: Millimetres, teeth: u32, least: Plain },
+    NoFlank {
+        /// Form radius, where root curve and involute meet \[m\].
+        form: Millimetres,
+        /// r_a \[m\].
+        tip: Millimetres,
+        /// z.
+        teeth: u32,
+        /// x_min: the least profile shift without undercut \[modules\].
+        least: Plain,
+    },
+    /// The thickness s_a at the tip circle is not positive.
     #[error(
         "the teeth are pointed: the flanks meet at a radius of {apex}, the tip radius is {tip}, but must be below that"
     )]
-    Pointed { tip: Millimetres, apex: Millimetres, tip_is_given: bool },
+    Pointed {
+        /// r_a \[m\].
+        tip: Millimetres,
+        /// Radius at which the two flanks of a tooth meet \[m\].
+        apex: Millimetres,
+        /// Whether r_a was specified; otherwise it follows from the profile shift.
+        tip_is_given: bool,
+    },
+    /// The bore is so small that the body could turn about it without limit, or it reaches the root circle.
     #[error("the bore radius is {bore}, but must be at least {least} and below the root radius {root}")]
-    Bore { bore: Millimetres, least: Millimetres, root: Millimetres },
+    Bore {
+        /// Radius of the bore \[m\].
+        bore: Millimetres,
+        /// The least radius: r_f/1000 \[m\].
+        least: Millimetres,
+        /// r_f \[m\].
+        root: Millimetres,
+    },
+    /// Pinion and gear differ in what they must share to mesh: module or pressure angle.
     #[error("{} differs: {pinion} on the pinion, {gear} on the gear", .parameter.words())]
-    Differs { parameter: Parameter, pinion: String, gear: String },
+    Differs {
+        /// The parameter that differs.
+        parameter: Parameter,
+        /// Its value on the pinion, with its unit.
+        pinion: String,
+        /// Its value on the gear, with its unit.
+        gear: String,
+    },
+    /// a_w is more than a thousandth of a module below the one without backlash, or not finite.
     #[error("the centre distance is {found}, but must be at least {least} for the teeth to fit into each other")]
-    CentreDistance { found: Millimetres, least: Millimetres },
+    CentreDistance {
+        /// a_w \[m\].
+        found: Millimetres,
+        /// a_w without backlash \[m\].
+        least: Millimetres,
+    },
+    /// inv α_w = inv α + 2 tan α (x1 + x2)/(z1 + z2) is not positive, so there is no α_w.
     #[error(
         "profile shifts that add up to {sum} modules leave no working pressure angle; their sum must be above {least}"
     )]
-    ProfileShiftSum { sum: Plain, least: Plain },
+    ProfileShiftSum {
+        /// x1 + x2 \[modules\].
+        sum: Plain,
+        /// x1 + x2 at which inv α_w vanishes \[modules\].
+        least: Plain,
+    },
+    /// A tip circle overlaps the root circle of the mate.
     #[error(
         "its tip circle ({tip}) reaches to the root circle of the mate: clearance {clearance}, but must be at least 0 mm"
     )]
-    NoClearance { tip: Millimetres, clearance: Millimetres },
+    NoClearance {
+        /// r_a of the gear that is meant \[m\].
+        tip: Millimetres,
+        /// c = a_w − r_a − r_f of the mate \[m\]; negative here.
+        clearance: Millimetres,
+    },
+    /// The mate's tip touches below the form radius, where there is no involute of this gear.
     #[error(
         "interference: the mate's tip ({mate_tip}) would touch {reached}, below the form radius {form}; the mate's tip radius must be at most {largest}"
     )]
-    Interference { mate_tip: Millimetres, reached: Reached, form: Millimetres, largest: Millimetres },
+    Interference {
+        /// r_a of the mate \[m\].
+        mate_tip: Millimetres,
+        /// How far down it touches.
+        reached: Reached,
+        /// Form radius of this gear \[m\].
+        form: Millimetres,
+        /// The r_a of the mate with which it would touch at the form radius \[m\].
+        largest: Millimetres,
+    },
+    /// ε_α is not above 1: a pair of teeth would leave contact before the next one takes over.
     #[error("the contact ratio is {ratio}, but must be above 1")]
-    ContactRatio { ratio: Plain },
+    ContactRatio {
+        /// ε_α.
+        ratio: Plain,
+    },
+    /// Fillets of the rack's own tip radius overlap on the root circle.
     #[error(
         "a circular fillet of radius {radius} does not fit between two teeth: the fillets would overlap by {overlap}"
     )]
-    FilletDoesNotFit { radius: Millimetres, overlap: Millimetres },
+    FilletDoesNotFit {
+        /// ρ_fP \[m\].
+        radius: Millimetres,
+        /// How far neighbouring fillets overlap along the root circle \[m\].
+        overlap: Millimetres,
+    },
+    /// Root arcs of a stated radius overlap on the root circle.
     #[error(
         "an arc of radius {radius} at the root does not fit between two teeth: neighbouring arcs would overlap by {overlap}; its radius must be at most {largest}"
     )]
-    RootArcTooLarge { radius: Millimetres, overlap: Millimetres, largest: Millimetres },
+    RootArcTooLarge {
+        /// Radius of the arc \[m\].
+        radius: Millimetres,
+        /// How far neighbouring arcs overlap along the root circle \[m\].
+        overlap: Millimetres,
+        /// The radius with which neighbouring arcs meet in the middle of the space \[m\].
+        largest: Millimetres,
+    },
+    /// An arc from base circle to root circle is asked for, but the root circle is not inside the base circle.
     #[error(
         "{construction} begins on the base circle and ends on the root circle, so the root radius {root} must be below the base radius {base}; with this rack that is so below {most} teeth, and there are {teeth}"
     )]
-    NothingBelowBase { construction: &'static str, root: Millimetres, base: Millimetres, teeth: u32, most: Plain },
+    NothingBelowBase {
+        /// What asks for it, as the subject of the message.
+        construction: &'static str,
+        /// r_f \[m\].
+        root: Millimetres,
+        /// r_b \[m\].
+        base: Millimetres,
+        /// z.
+        teeth: u32,
+        /// The number of teeth at which r_f = r_b with this rack and profile shift; a real number.
+        most: Plain,
+    },
+    /// On the base circle the tooth is at least as wide as the pitch, so no arc can lie beside it.
     #[error(
         "no centre of an arc lies between tooth and space: on the base circle the tooth takes up {angle} deg on either side of its centreline, but must take up less than {most} deg"
     )]
-    NoSpace { angle: Plain, most: Plain },
+    NoSpace {
+        /// ψ_b \[deg\].
+        angle: Plain,
+        /// Half the angle of the pitch, π/z \[deg\].
+        most: Plain,
+    },
+    /// Undercut is so deep that no thickness is left at the tooth's neck.
     #[error(
         "the root curve cuts the tooth off at a radius of {height}; {teeth} teeth need a profile shift of at least {least} modules not to be undercut"
     )]
-    CutOff { height: Millimetres, teeth: u32, least: Plain },
+    CutOff {
+        /// Height of the neck above the gear's centre \[m\].
+        height: Millimetres,
+        /// z.
+        teeth: u32,
+        /// x_min: the least profile shift without undercut \[modules\].
+        least: Plain,
+    },
+    /// A chamfer or rounding of the tip does not fit the tooth.
     #[error(
         "the tip is broken by {size}, but must be by {largest} at most, where the two flanks' breaks meet or no flank is left"
     )]
-    TipBreakTooLarge { size: Millimetres, largest: Millimetres },
+    TipBreakTooLarge {
+        /// Size of the chamfer, or radius of the rounding \[m\].
+        size: Millimetres,
+        /// The largest one that fits, by bisection \[m\].
+        largest: Millimetres,
+    },
+    /// Modifications take off the flank so that it does not reach the tip circle.
+    #[error("the modified flank does not reach the tip circle: {depth} are taken off at the tip")]
+    TipTakenOff {
+        /// What is taken off at the tip, normal to the flank \[m\].
+        depth: Millimetres,
+    },
+    /// Modifications take off the whole flank at the form point.
     #[error("the modified flank ends below its own root: {depth} are taken off where the root begins")]
-    ReliefTooDeep { depth: Millimetres },
+    ReliefTooDeep {
+        /// What is taken off at the form point, normal to the flank \[m\].
+        depth: Millimetres,
+    },
 }
 
 /// How deep interference reaches.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Reached {
+    /// Down to this radius of the gear \[m\], below its form radius.
     Radius(Millimetres),
     /// Beyond the tangent point of the path of contact, where there is no involute.
     InsideBaseCircle,
@@ -104,18 +251,31 @@ pub enum Reached {
 /// What a user states about gears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
+    /// z.
     Teeth,
+    /// m.
     Module,
+    /// α.
     PressureAngle,
+    /// x, in units of the module.
     ProfileShift,
+    /// h_aP*.
     RackAddendum,
+    /// h_fP*.
     RackDedendum,
+    /// ρ_fP*.
     RackTipRadius,
+    /// r_a.
     TipRadius,
+    /// b.
     FaceWidth,
+    /// Radius of the bore.
     BoreRadius,
+    /// E.
     YoungsModulus,
+    /// ν.
     PoissonRatio,
+    /// a_w.
     CentreDistance,
 }
 
@@ -177,7 +337,7 @@ impl GeometryError {
             | Problem::NoSpace { .. }
             | Problem::CutOff { .. } => return "outline.root",
             Problem::TipBreakTooLarge { .. } => return "outline.tip",
-            Problem::ReliefTooDeep { .. } => return "outline.flank",
+            Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return "outline.flank",
             Problem::Pointed { tip_is_given, .. } if !tip_is_given => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,
             Problem::Bore { .. } => Parameter::BoreRadius,
@@ -188,6 +348,7 @@ impl GeometryError {
         parameter.field(self.side)
     }
 
+    /// The same error of the gear on a side, so that message and field name it.
     #[must_use]
     pub fn on(mut self, side: Side) -> Self {
         self.side = Some(side);

@@ -28,6 +28,11 @@ pub struct Rack {
     pub tip_radius: f64,
 }
 
+impl Rack {
+    /// Basic rack A of ISO 53.
+    pub const ISO_53_A: Self = Self { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 };
+}
+
 /// What defines one gear.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specification {
@@ -39,6 +44,7 @@ pub struct Specification {
     pub pressure_angle: f64,
     /// x, in units of the module.
     pub profile_shift: f64,
+    /// Basic rack that generates its teeth.
     pub rack: Rack,
     /// r_a \[m\] when it is not m(z/2 + h_aP* + x).
     pub tip_radius: Option<f64>,
@@ -46,17 +52,21 @@ pub struct Specification {
     pub face_width: f64,
     /// Radius of the bore, where the body is clamped \[m\].
     pub bore_radius: f64,
+    /// E and ν of tooth and body.
     pub material: Material,
 }
 
 /// Which of the two gears.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Side {
+    /// The driving gear, index 1.
     Pinion,
+    /// The driven gear, index 2.
     Gear,
 }
 
 impl Side {
+    /// `pinion` or `gear`, as in studies and tables.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -65,6 +75,7 @@ impl Side {
         }
     }
 
+    /// The mate's side.
     #[must_use]
     pub fn other(self) -> Self {
         match self {
@@ -77,6 +88,7 @@ impl Side {
 /// One gear with everything that follows from its specification.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Gear {
+    /// What defines it.
     pub specification: Specification,
     /// r = m z / 2.
     pub reference_radius: f64,
@@ -99,7 +111,9 @@ pub struct Gear {
 /// Two gears on their centre distance. Path positions `s` \[m\] count from the pinion's tangent point T1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GearPair {
+    /// Gear 1, which drives.
     pub pinion: Gear,
+    /// Gear 2, which is driven.
     pub gear: Gear,
     /// a_w \[m\].
     pub centre_distance: f64,
@@ -118,6 +132,7 @@ pub struct GearPair {
 }
 
 impl GearPair {
+    /// The gear on a side.
     #[must_use]
     pub fn side(&self, side: Side) -> &Gear {
         match side {

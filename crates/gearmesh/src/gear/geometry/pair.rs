@@ -105,6 +105,7 @@ impl GearPair {
         Ok(())
     }
 
+    /// The points A to E of the path of contact.
     #[must_use]
     pub fn zone_points(&self) -> ZonePoints {
         ZonePoints {

@@ -35,6 +35,7 @@ pub struct Root {
     pub half_angle: f64,
     /// Roll angle at which the involute begins.
     pub form_roll: f64,
+    /// Each begins where the one before ends; none where the involute itself is clamped.
     pub pieces: Vec<Piece>,
 }
 
@@ -44,9 +45,25 @@ pub enum Piece {
     /// Over q = asinh(cot γ).
     Trochoid(Trochoid),
     /// Over the angle about its centre, 0 where it touches the root circle.
-    Arc { centre_radius: f64, centre_angle: f64, radius: f64, extent: f64 },
+    Arc {
+        /// Distance of its centre from the gear's \[m\].
+        centre_radius: f64,
+        /// Angle of its centre from the tooth's centreline \[rad\].
+        centre_angle: f64,
+        /// Its radius \[m\].
+        radius: f64,
+        /// The parameter at its upper end \[rad\].
+        extent: f64,
+    },
     /// Over the radius.
-    Radial { angle: f64, lower: f64, upper: f64 },
+    Radial {
+        /// Its angle from the tooth's centreline, ψ_b \[rad\].
+        angle: f64,
+        /// Its lower end \[m\].
+        lower: f64,
+        /// Its upper end, r_b \[m\].
+        upper: f64,
+    },
 }
 
 impl Piece {

@@ -29,10 +29,13 @@ pub struct Trochoid {
 /// Where the root curve meets the involute.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Joint {
+    /// The form radius \[m\].
     pub radius: f64,
+    /// Roll angle of the involute there \[rad\].
     pub roll: f64,
     /// γ.
     pub normal_angle: f64,
+    /// Whether the root curve crosses the involute instead of being tangent to it.
     pub undercut: bool,
 }
 

@@ -21,6 +21,7 @@ pub struct Validity {
     pub form_radius: f64,
     /// How far the bottom of the space in the profile as drawn lies above the root circle.
     pub root_gap: f64,
+    /// s_a on the tip circle.
     pub tip_thickness: f64,
     /// Where the flanks would meet in a point.
     pub apex_radius: f64,
@@ -42,6 +43,7 @@ pub struct Mating {
 }
 
 impl Validity {
+    /// The validity of a gear that is drawn with this outline.
     #[must_use]
     pub fn new(gear: &Gear, outline: &Outline) -> Self {
         let specification = &gear.specification;

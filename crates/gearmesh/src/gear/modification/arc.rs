@@ -14,6 +14,7 @@ use declare::error::Diagnostic;
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 #[declared(name = "arc")]
 pub struct ArcRelief {
+    /// Where it starts and ends.
     #[declared(flatten)]
     pub through: Through,
 }

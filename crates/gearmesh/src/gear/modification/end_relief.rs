@@ -39,6 +39,7 @@ pub struct EndRelief {
     /// Which end of the face is relieved; two of them with different values are two entries.
     #[declared(default = "both")]
     pub end: FaceEnd,
+    /// How the depth grows from the start to the end of the face.
     #[declared(flatten)]
     pub curve: Curve,
 }

@@ -8,11 +8,13 @@ use crate::gear::geometry::{GearPair, Side};
 /// Where a gear's flank works.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Flank {
+    /// r_b \[m\].
     pub base_radius: f64,
     /// Roll angle where the other gear's tip works, nearest to the root (SAP).
     pub root_roll: f64,
     /// Roll angle where its own tip works.
     pub tip_roll: f64,
+    /// p_b \[m\].
     pub base_pitch: f64,
     /// p_b(ε_α − 1): the length of long relief.
     pub long_relief: f64,
@@ -24,6 +26,7 @@ pub struct Flank {
 }
 
 impl Flank {
+    /// The active flank of the gear on a side of a pair.
     #[must_use]
     pub fn new(pair: &GearPair, side: Side) -> Self {
         let gear = pair.side(side);

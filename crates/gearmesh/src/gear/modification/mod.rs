@@ -92,7 +92,7 @@ pub struct Where {
     pub gear: Gears,
 }
 
-type Build = fn(&Record, &GearPair, Side) -> Result<Arc<dyn Modification>, Diagnostic>;
+type Put = fn(&mut Design, &Record, &GearPair) -> Result<(), Diagnostic>;
 
 /// A family as registered.
 #[derive(Clone, Copy)]
@@ -101,8 +101,9 @@ pub struct Family {
     pub member: Member,
     /// Refuses combinations of fields that no declaration can express; values may still be ranges.
     pub check: fn(&Record) -> Result<(), Diagnostic>,
-    /// The modification of one gear. The record has passed `check` and holds no ranges.
-    build: Build,
+    /// Adds it to a design without a look at what is left of the tooth. The record has passed `check`, with ranges or
+    /// without, and holds none.
+    put: Put,
 }
 
 impl Family {
@@ -114,7 +115,9 @@ impl Family {
                 let stated = T::read(&record.without_ranges(T::MEMBER.fields));
                 stated.check().map_err(|wrong| record.locate(wrong))
             },
-            build: |record, pair, side| T::read(record).on(pair, side).map_err(|wrong| record.locate(wrong)),
+            put: |design, record, pair| {
+                design.put(Where::read(record).gear, &T::read(record), pair).map_err(|wrong| record.locate(wrong))
+            },
         }
     }
 }
@@ -153,6 +156,7 @@ pub trait Modification: Debug + Send + Sync {
         &[]
     }
 
+    /// Whether [`Modification::depth`] may differ from 0.
     fn varies_along_profile(&self) -> bool {
         false
     }
@@ -174,6 +178,7 @@ pub trait Modification: Debug + Send + Sync {
         &[]
     }
 
+    /// Whether [`Modification::lead`] may differ from 0.
     fn varies_along_face(&self) -> bool {
         false
     }
@@ -190,18 +195,23 @@ pub trait Modification: Debug + Send + Sync {
 /// What both gears of a pair are given.
 #[derive(Clone, Debug, Default)]
 pub struct Design {
+    /// Modifications of the pinion; their depths add up.
     pub pinion: Vec<NamedModification>,
+    /// Modifications of the gear; their depths add up.
     pub gear: Vec<NamedModification>,
 }
 
 /// One modification and the name of its family.
 #[derive(Clone, Debug)]
 pub struct NamedModification {
+    /// The name under which a study states it, such as `tip_relief`.
     pub family: &'static str,
+    /// What it takes off its gear.
     pub modification: Arc<dyn Modification>,
 }
 
 impl Design {
+    /// The modifications of the gear on a side.
     #[must_use]
     pub fn side(&self, side: Side) -> &[NamedModification] {
         match side {
@@ -233,8 +243,8 @@ impl Design {
         stated: &T,
         pair: &GearPair,
     ) -> Result<(), Diagnostic> {
-        stated.check()?;
-        self.add_to(gears, T::MEMBER.name, pair, |side| stated.on(pair, side))
+        self.put(gears, stated, pair)?;
+        self.check_rooms(gears, pair)
     }
 
     /// The same, as `family: { fields }` of a study states it.
@@ -243,25 +253,22 @@ impl Design {
     /// As [`Design::add`], with places.
     pub fn add_record(&mut self, family: &'static Family, record: &Record, pair: &GearPair) -> Result<(), Diagnostic> {
         (family.check)(record)?;
-        let added =
-            self.add_to(Where::read(record).gear, family.member.name, pair, |side| (family.build)(record, pair, side));
-        added.map_err(|error| error.or_at(record.place))
+        (family.put)(self, record, pair)?;
+        self.check_rooms(Where::read(record).gear, pair).map_err(|error| error.or_at(record.place))
     }
 
-    fn add_to(
-        &mut self,
-        gears: Gears,
-        family: &'static str,
-        pair: &GearPair,
-        on: impl Fn(Side) -> Result<Arc<dyn Modification>, Diagnostic>,
-    ) -> Result<(), Diagnostic> {
+    fn put<T: Specified>(&mut self, gears: Gears, stated: &T, pair: &GearPair) -> Result<(), Diagnostic> {
+        stated.check()?;
         for &side in gears.sides() {
-            let modification = on(side)?;
+            let modification = stated.on(pair, side)?;
             let parts = if side == Side::Pinion { &mut self.pinion } else { &mut self.gear };
-            parts.push(NamedModification { family, modification });
-            self.check_room(side, pair)?;
+            parts.push(NamedModification { family: T::MEMBER.name, modification });
         }
         Ok(())
+    }
+
+    fn check_rooms(&self, gears: Gears, pair: &GearPair) -> Result<(), Diagnostic> {
+        gears.sides().iter().try_for_each(|side| self.check_room(*side, pair))
     }
 
     /// Half of the tooth must be left, since the other flank may be modified the same way: no point of the flank may pass
@@ -269,6 +276,9 @@ impl Design {
     /// Depths nowhere add material to the active flank, so a part that is refused cannot be saved by one that follows.
     fn check_room(&self, side: Side, pair: &GearPair) -> Result<(), Diagnostic> {
         let (gear, flank, parts) = (pair.side(side), Flank::new(pair, side), self.side(side));
+        if parts.is_empty() {
+            return Ok(());
+        }
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
         let edges = parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();

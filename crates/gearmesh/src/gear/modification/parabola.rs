@@ -15,6 +15,7 @@ use declare::error::Diagnostic;
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 #[declared(name = "parabola")]
 pub struct ParabolicRelief {
+    /// Where it starts and ends.
     #[declared(flatten)]
     pub through: Through,
 }

@@ -17,13 +17,16 @@ use declare::error::Diagnostic;
 #[derive(Clone, Debug, PartialEq, Declared)]
 #[declared(name = "root_relief")]
 pub struct RootRelief {
+    /// C_αf: depth at the root end of the active flank.
     #[declared(flatten)]
     pub amount: Amount,
+    /// Where on the flank it starts.
     #[declared(flatten)]
     pub start: Start,
     /// Where `length` or `fraction` counts from.
     #[declared(default = "root")]
     pub counted_from: FromRoot,
+    /// How the depth grows from the start to the root end.
     #[declared(flatten)]
     pub curve: Curve,
 }

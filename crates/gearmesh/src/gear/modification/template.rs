@@ -15,9 +15,11 @@ use declare::units::{Dimension, RATIO};
 pub struct Variable {
     /// `family.field`, after the gear where that is not both, and with a number at the end where it would not be unique.
     pub name: String,
+    /// What kind of quantity the field is, and so its unit.
     pub dimension: Dimension,
     /// SI.
     pub least: f64,
+    /// SI.
     pub most: f64,
 }
 
@@ -81,11 +83,24 @@ impl Template {
     /// # Panics
     /// When there are fewer values than variables.
     pub fn design(&self, pair: &GearPair, values: &[f64]) -> Result<Design, Diagnostic> {
+        // Optimisers come by often: what is left of a tooth is looked at once, and again only to say which part takes it.
+        let design = self.put(values, |design, family, record| (family.put)(design, record, pair))?;
+        match design.check_rooms(Gears::Both, pair) {
+            Ok(()) => Ok(design),
+            Err(_) => self.put(values, |design, family, record| design.add_record(family, record, pair)),
+        }
+    }
+
+    fn put(
+        &self,
+        values: &[f64],
+        put: impl Fn(&mut Design, &'static Family, &Record) -> Result<(), Diagnostic>,
+    ) -> Result<Design, Diagnostic> {
         let mut design = Design::default();
         let mut next = 0;
         for (index, (family, record)) in self.parts.iter().enumerate() {
             if self.slots.get(next).is_none_or(|(part, _)| *part != index) {
-                design.add_record(family, record, pair)?;
+                put(&mut design, family, record)?;
                 continue;
             }
             let mut record = record.clone();
@@ -95,7 +110,7 @@ impl Template {
                 record.fields[*field].1.value = if plain { Value::Number(value) } else { Value::Quantity(value) };
                 next += 1;
             }
-            design.add_record(family, &record, pair)?;
+            put(&mut design, family, &record)?;
         }
         Ok(design)
     }

@@ -48,8 +48,10 @@ pub enum Formulas {
 /// What `arc` and `parabola` go through.
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct Through {
+    /// A, where it ends.
     #[declared(flatten)]
     pub tip: TipPoint,
+    /// B, where it starts.
     #[declared(flatten)]
     pub start: FlankPoint,
     /// Which formulas give the curve.

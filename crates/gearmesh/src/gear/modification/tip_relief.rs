@@ -17,13 +17,16 @@ use declare::error::Diagnostic;
 #[derive(Clone, Debug, PartialEq, Declared)]
 #[declared(name = "tip_relief")]
 pub struct TipRelief {
+    /// C_αa: depth at the tip.
     #[declared(flatten)]
     pub amount: Amount,
+    /// Where on the flank it starts.
     #[declared(flatten)]
     pub start: Start,
     /// Where `length` or `fraction` counts from.
     #[declared(default = "tip")]
     pub counted_from: FromTip,
+    /// How the depth grows from the start to the tip.
     #[declared(flatten)]
     pub curve: Curve,
 }

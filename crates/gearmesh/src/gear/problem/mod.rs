@@ -15,9 +15,11 @@ use declare::units::Dimension;
 /// A length that is free.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variable {
+    /// Its symbol in the source, such as `r_c`.
     pub name: &'static str,
     /// \[m\].
     pub least: f64,
+    /// \[m\].
     pub most: f64,
 }
 
@@ -32,11 +34,13 @@ pub struct Worth {
 
 /// A problem with everything but its variables fixed.
 pub trait Problem: Send + Sync {
+    /// What is free, in the order of the coordinates of a point.
     fn variables(&self) -> Vec<Variable>;
 
     /// What the constraints are called, in their order.
     fn constraints(&self) -> &'static [&'static str];
 
+    /// Objective and constraints at a point, one length \[m\] per variable; +∞ or NaN where there is nothing to judge.
     fn worth(&self, point: &[f64]) -> Worth;
 }
 

@@ -62,6 +62,7 @@ impl Stated for RootArcProblem {
 /// What the article's equations name.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RootArc {
+    /// Circles, angles and the point A, which stay as they are.
     pub base: Base,
     best: Circle,
     /// h_f \[m\].

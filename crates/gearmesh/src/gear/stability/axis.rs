@@ -14,36 +14,51 @@ use crate::gear::material::Material;
 /// A pair under a load. SI; arrays hold pinion and gear.
 #[derive(Clone, Debug)]
 pub struct Point {
+    /// m \[m\].
     pub module: f64,
+    /// α \[rad\].
     pub pressure_angle: f64,
+    /// z; whole numbers.
     pub teeth: [f64; 2],
+    /// x \[modules\].
     pub shift: [f64; 2],
+    /// The rack of both gears, whose addendum and dedendum give way to `contact_ratio`.
     pub rack: Rack,
     /// How far the tip circle is beyond m(z/2 + h_aP* + x) \[modules\].
     pub longer: [f64; 2],
     /// Addendum and dedendum follow from it where it is given.
     pub contact_ratio: Option<f64>,
+    /// b \[m\].
     pub face_width: [f64; 2],
     /// Bore radius over root radius.
     pub bore: [f64; 2],
+    /// E and ν.
     pub material: [Material; 2],
+    /// T on the pinion \[N m\].
     pub torque: f64,
+    /// C_αa: linear tip relief of both gears \[m\].
     pub relief: f64,
+    /// L: roll length of that relief along the line of action \[m\].
     pub relief_length: f64,
+    /// C_β: lead crowning of both gears \[m\].
     pub crowning: f64,
 }
 
 /// One coordinate.
 pub struct Axis {
+    /// How a study calls it.
     pub name: &'static str,
     /// Unit in which its values are shown.
     pub unit: &'static str,
     /// SI.
     pub least: f64,
+    /// SI.
     pub most: f64,
+    /// Whether a sample is spread evenly over the logarithm of the value instead of the value.
     pub logarithmic: bool,
     /// The part of the unit interval in which a sample leaves the base pair's value.
     absent: f64,
+    /// Gives a point a value (SI).
     pub set: fn(&mut Point, f64),
 }
 

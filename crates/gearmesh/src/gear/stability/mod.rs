@@ -36,8 +36,11 @@ use precise::Rule;
 /// How the case is computed.
 #[derive(Clone)]
 pub struct Model {
+    /// The method of the compliances.
     pub method: Arc<dyn Method>,
+    /// What that method is asked for.
     pub assumptions: Assumptions,
+    /// How the mesh cycle is sampled, and where flanks may touch.
     pub settings: Settings,
 }
 
@@ -51,30 +54,39 @@ impl Model {
 /// A pair under a load. SI.
 #[derive(Clone)]
 pub struct Case {
+    /// What makes it special, in words; it names the case in tables.
     pub name: String,
     /// The axis it lies on; `trap` and `sample` for those that lie on none.
     pub axis: &'static str,
     /// Where on the axis: 0 at its first value, 1 at its last.
     pub place: f64,
+    /// Pinion, gear; without backlash.
     pub gears: [Specification; 2],
+    /// T on the pinion \[N m\].
     pub torque: f64,
     /// Linear tip relief of both gears, and its roll length.
     pub relief: f64,
+    /// L: roll length of that relief along the line of action \[m\].
     pub relief_length: f64,
     /// Lead crowning of both gears.
     pub crowning: f64,
+    /// How it is computed.
     pub model: Model,
 }
 
 /// The finding about an invariant.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
+    /// The value is within its limit.
     Holds,
+    /// The value is above its limit, or not a number.
     Broken,
+    /// There is no value: the case is impossible, or the check does not cover it.
     Refused,
 }
 
 impl Verdict {
+    /// How tables write it.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -88,10 +100,15 @@ impl Verdict {
 /// One invariant of one case; value and limit are NaN where it is refused.
 #[derive(Clone, Debug)]
 pub struct Finding {
+    /// What must hold, in words; where a case is impossible, the step that refuses it.
     pub invariant: &'static str,
+    /// What was found; small is good.
     pub value: f64,
+    /// The largest value with which it holds.
     pub limit: f64,
+    /// What follows from value and limit.
     pub verdict: Verdict,
+    /// Why it is refused; empty otherwise.
     pub reason: String,
 }
 
@@ -103,6 +120,7 @@ impl Finding {
         Self { invariant, value, limit, verdict, reason: String::new() }
     }
 
+    /// An invariant that cannot be checked on this case, and why.
     #[must_use]
     pub fn refused(invariant: &'static str, reason: impl Into<String>) -> Self {
         Self { invariant, value: f64::NAN, limit: f64::NAN, verdict: Verdict::Refused, reason: reason.into() }
@@ -112,8 +130,11 @@ impl Finding {
 /// A quantity against its second evaluation.
 #[derive(Clone, Debug)]
 pub struct DigitsLost {
+    /// One of [`precise::NAMES`].
     pub quantity: &'static str,
+    /// The kernels' value. SI.
     pub value: f64,
+    /// That of the second evaluation, rounded to an `f64`. SI.
     pub exact: f64,
     /// 15.95 + log10 of the relative difference, at least 0.
     pub lost: f64,
@@ -124,7 +145,9 @@ pub struct DigitsLost {
 /// Everything that was found of a case.
 #[derive(Clone, Debug, Default)]
 pub struct Report {
+    /// One per invariant; a single refusal where the case is impossible.
     pub findings: Vec<Finding>,
+    /// One per quantity that was compared.
     pub digits: Vec<DigitsLost>,
 }
 
@@ -252,6 +275,7 @@ pub struct Rules {
 }
 
 impl Rules {
+    /// The two rules that [`check()`] takes; they serve any number of cases.
     #[must_use]
     pub fn new() -> Self {
         Self { fine: Rule::new(20, 24), coarse: Rule::new(10, 12) }

@@ -11,7 +11,7 @@ use crate::gear::material::Material;
 
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 
-pub fn model() -> Model {
+pub(super) fn model() -> Model {
     Model {
         method: Arc::new(Energy::default()),
         assumptions: Assumptions {
@@ -42,7 +42,7 @@ fn gear(teeth: u32, face_width: f64) -> Specification {
 }
 
 /// The pair 19/48 of the golden values.
-pub fn base() -> Case {
+pub(super) fn base() -> Case {
     Case {
         name: "base".to_owned(),
         axis: "trap",

@@ -124,7 +124,9 @@ fn with_ring(model: &Model) -> Option<Model> {
 
 /// A check of the mean transmission error just below and above a whole contact ratio.
 pub struct Continuity {
+    /// The contact ratio it is checked at, in words.
     pub name: String,
+    /// The relative change of the mean, against what so small a change of the contact ratio allows.
     pub finding: Finding,
 }
 

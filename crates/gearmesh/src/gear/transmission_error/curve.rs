@@ -45,8 +45,11 @@ pub struct Point {
 pub struct Summary {
     /// Integral mean over the cycle \[m\].
     pub mean: f64,
+    /// PPTE: the largest less the smallest δ \[m\].
     pub peak_to_peak: f64,
+    /// The largest δ \[m\], and where it is.
     pub largest: Extremum,
+    /// The smallest δ \[m\], and where it is.
     pub smallest: Extremum,
     /// Integral mean of the squared deviation from the mean \[m²\].
     pub variance: f64,
@@ -69,6 +72,7 @@ pub struct Summary {
 pub struct Wanted {
     /// How many harmonics.
     pub harmonics: usize,
+    /// Whether the Hertzian pressure is found at every position.
     pub pressure: bool,
 }
 
@@ -102,6 +106,7 @@ impl LoadCase<'_> {
         points
     }
 
+    /// What [`LoadCase::curve_and_summary`] gives, without the curve.
     #[must_use]
     pub fn summary(&self, wanted: Wanted) -> Summary {
         self.curve_and_summary(wanted).1

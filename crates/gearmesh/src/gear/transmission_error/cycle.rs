@@ -9,6 +9,7 @@
 use std::sync::Arc;
 
 use super::across::Across;
+use super::count::Total;
 use super::path::Path;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
@@ -21,7 +22,7 @@ use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
 use declare::error::Failure;
-use declare::work::{Tally, Work};
+use declare::work::Work;
 
 /// Zones shorter than this share of the base pitch are ignored: a contact ratio of 2 up to rounding is 2.
 const SHORTEST_ZONE: f64 = 1e-9;
@@ -37,7 +38,9 @@ pub struct Settings {
     /// Slices on each smooth stretch of the face that is in contact, where there is no closed form; where slices are
     /// coupled, equal ones on the whole face.
     pub slices: usize,
+    /// Whether flanks also touch off the line of action, before A and after E.
     pub corner_contact: CornerContact,
+    /// Whether a loaded slice of the face takes its neighbours along.
     pub slice_coupling: SliceCoupling,
 }
 
@@ -50,20 +53,26 @@ impl Default for Settings {
 /// A stretch of the cycle with the same pairs in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Zone {
+    /// τ where it begins \[m\].
     pub start: f64,
+    /// τ where it ends \[m\].
     pub end: f64,
+    /// Pairs inside the path of contact, loaded or not.
     pub pairs: usize,
 }
 
 /// A pair's mesh cycle.
 #[derive(Clone, Debug)]
 pub struct MeshCycle {
+    /// The gears, from which period and zones follow.
     pub pair: GearPair,
+    /// How it is sampled, and where flanks may touch.
     pub settings: Settings,
     /// How many pairs are considered in every position, where that is not the number in the zone.
     springs: Option<usize>,
     /// The common face width \[m\].
     pub face_width: f64,
+    /// In the order of τ, one base pitch together: two, or one where ε_α is whole; the first has the most pairs.
     pub zones: Vec<Zone>,
     pub(super) path: Path,
     pub(super) elasticity: Elasticity,
@@ -74,7 +83,7 @@ pub struct MeshCycle {
     pub(super) rows: SpanRule,
     pub(super) slices: Rule,
     /// Counted by every load case of this cycle and of those sampled otherwise.
-    pub(super) work: Arc<Tally>,
+    pub(super) work: Arc<Total>,
 }
 
 /// Against the path position.
@@ -179,7 +188,7 @@ impl MeshCycle {
     /// What was computed on this cycle so far, however sampled.
     #[must_use]
     pub fn work(&self) -> Work {
-        self.work.total()
+        self.work.work()
     }
 
     /// p_b \[m\].

@@ -21,6 +21,7 @@ pub(super) const CLOSEST: f64 = 1e-10;
 /// A design under a torque.
 #[derive(Clone)]
 pub struct LoadCase<'a> {
+    /// The pair's mesh cycle, without load and modifications.
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
@@ -75,6 +76,7 @@ const OUT_OF_REACH: f64 = -1.0;
 pub struct Equilibrium {
     /// The approach without load: the smallest gap and what the whole face has lost \[m\].
     pub unloaded: f64,
+    /// Loads of the pairs \[N\], and their approach beyond the smallest gap \[m\].
     pub balance: Balance,
     /// The largest load per width of each pair \[N/m\], where slices hold each other.
     peaks: Option<PerSpring>,

@@ -32,7 +32,9 @@ const MOST_SLICES: usize = 1025;
 /// What samplings are compared with.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Against {
+    /// Coarser ones where there are any: cheap. Slices also with twice as many, where that does not take too long.
     Coarser,
+    /// Four times the positions, twice and four times the slices: dearer, but right for means and variances too.
     Finer,
 }
 
@@ -46,6 +48,7 @@ pub struct Sampled<F> {
 }
 
 impl<F: FnMut(Settings) -> f64> Sampled<F> {
+    /// `number` computes it with given settings; `sliced` says whether it depends on the number of slices.
     pub fn new(sliced: bool, against: Against, number: F) -> Self {
         Self { number, sliced, against, known: Vec::new() }
     }

@@ -12,8 +12,11 @@ use crate::gear::modification::Design;
 /// Extremes of the stiffness where the same number of pairs is in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ZoneStiffness {
+    /// That number of pairs.
     pub pairs: usize,
+    /// The smallest stiffness \[N/m\].
     pub least: f64,
+    /// The largest stiffness \[N/m\].
     pub most: f64,
 }
 

@@ -22,13 +22,16 @@ const PLACE: f64 = 1e-5;
 /// Nodes and weights on the unit interval.
 #[derive(Clone, Debug)]
 pub struct SpanRule {
+    /// Gauss–Lobatto nodes, ascending, from 0 to 1.
     pub nodes: [f64; NODES],
+    /// Their quadrature weights, which add up to 1.
     pub weights: [f64; NODES],
     /// What turns values into the coefficients of the last two Legendre polynomials that the nodes hold.
     last: [[f64; NODES]; 2],
 }
 
 impl SpanRule {
+    /// The rule with [`NODES`] nodes.
     #[must_use]
     pub fn new() -> Self {
         let rule = Rule::new(NODES);
@@ -61,7 +64,9 @@ impl Default for SpanRule {
 /// A stretch of the cycle on which everything is smooth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Span {
+    /// τ where it begins \[m\].
     pub start: f64,
+    /// τ where it ends \[m\].
     pub end: f64,
     /// Pairs in contact, loaded or not.
     pub pairs: usize,
@@ -70,6 +75,7 @@ pub struct Span {
 }
 
 impl Span {
+    /// τ of a node \[m\], graded towards touches; that of the last one is exactly `end`.
     #[must_use]
     pub fn position(&self, rows: &SpanRule, node: usize) -> f64 {
         let u = rows.nodes[node];
@@ -102,14 +108,18 @@ impl Span {
 /// A function over the whole cycle, by position.
 #[derive(Clone, Debug, Default)]
 pub struct Trace {
+    /// Each span with the values at its nodes, in the order of τ.
     pub spans: Vec<(Span, [f64; NODES])>,
 }
 
 /// A place in the cycle and the value there; `pairs` tells which one-sided limit it is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Extremum {
+    /// τ \[m\].
     pub position: f64,
+    /// Pairs in contact in the zone it was found in, loaded or not.
     pub pairs: usize,
+    /// In the unit of the function.
     pub value: f64,
 }
 

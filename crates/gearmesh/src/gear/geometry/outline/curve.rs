@@ -28,15 +28,39 @@ pub trait Relief: Debug + Send + Sync {
 #[derive(Clone, Debug)]
 pub enum Curve {
     /// Over the length from its start; `direction` is a unit vector.
-    Line { start: [f64; 2], direction: [f64; 2] },
+    Line {
+        /// Where the parameter is 0 \[m\].
+        start: [f64; 2],
+        /// Unit vector towards larger parameters.
+        direction: [f64; 2],
+    },
     /// Over the angle about its centre, counterclockwise from the x axis.
-    Arc { centre: [f64; 2], radius: f64 },
+    Arc {
+        /// Its centre \[m\].
+        centre: [f64; 2],
+        /// Its radius \[m\].
+        radius: f64,
+    },
     /// Over q = asinh(cot γ).
     Trochoid(Trochoid),
     /// Over the roll angle.
-    Involute { base_radius: f64, half_base_angle: f64 },
+    Involute {
+        /// r_b \[m\].
+        base_radius: f64,
+        /// ψ_b \[rad\].
+        half_base_angle: f64,
+    },
     /// The same, with a relief taken off along its normals; the relief is smooth between the two roll angles of `smooth`.
-    Modified { base_radius: f64, half_base_angle: f64, relief: Shared<dyn Relief>, smooth: [f64; 2] },
+    Modified {
+        /// r_b \[m\].
+        base_radius: f64,
+        /// ψ_b \[rad\].
+        half_base_angle: f64,
+        /// What is taken off.
+        relief: Shared<dyn Relief>,
+        /// The two roll angles \[rad\]; infinite on a side where no break is known.
+        smooth: [f64; 2],
+    },
 }
 
 /// Where a curve is at a parameter, and how it runs there.
@@ -51,6 +75,7 @@ pub struct Local {
 }
 
 impl Curve {
+    /// Its name in tables and drawings.
     #[must_use]
     pub fn name(&self) -> &'static str {
         match self {
@@ -149,25 +174,35 @@ impl Curve {
 /// A stretch of a curve, from one parameter to the other.
 #[derive(Clone, Debug)]
 pub struct Segment {
+    /// The part of the tooth it belongs to.
     pub part: OutlinePart,
+    /// The curve it lies on.
     pub curve: Curve,
+    /// The curve's parameter where it starts.
     pub from: f64,
+    /// The curve's parameter where it ends; it may be the smaller of the two.
     pub to: f64,
 }
 
 /// Which part of the tooth a segment is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum OutlinePart {
+    /// Arc about the gear's centre between the roots of two neighbouring teeth, where they leave room for one.
     RootLand,
+    /// From the root land, or the middle of the space, up to where the flank begins.
     Root,
     /// Radial, or normal to the flank, where two curves do not meet.
     Step,
+    /// The involute, as modified; between two breaks of a relief each stretch is a segment of its own.
     Flank,
+    /// Chamfer or rounding between flank and tip land.
     TipBreak,
+    /// Arc of the tip circle, up to the tooth's centreline.
     TipLand,
 }
 
 impl OutlinePart {
+    /// Its name in tables and drawings.
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
@@ -207,11 +242,13 @@ impl Segment {
         Local { tangent: local.tangent.map(|part| -part), curvature: -local.curvature, ..local }
     }
 
+    /// The point \[m\] where it starts.
     #[must_use]
     pub fn start(&self) -> [f64; 2] {
         self.curve.point(self.from)
     }
 
+    /// The point \[m\] where it ends.
     #[must_use]
     pub fn end(&self) -> [f64; 2] {
         self.curve.point(self.to)

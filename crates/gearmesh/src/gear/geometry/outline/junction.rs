@@ -10,13 +10,15 @@ use super::curve::Local;
 /// A place where a segment ends and the next begins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Junction {
-    /// The segment that ends, counted from 0; the last one meets its mirror image on the tooth's centreline, and the
-    /// mirror image of the first one meets the first one in the middle of the space.
+    /// Which segments meet here.
     pub place: Place,
+    /// Where the segment before it ends.
     pub before: Local,
+    /// Where the segment after it starts.
     pub after: Local,
 }
 
+/// Which junction of the right half of a tooth it is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Place {
     /// In the middle of the space.

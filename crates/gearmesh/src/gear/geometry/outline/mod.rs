@@ -30,6 +30,7 @@ const NO_STEP: f64 = 1e-13;
 pub struct Outline {
     /// From the middle of the space to the tooth's centreline; each begins where the one before ends.
     pub segments: Vec<Segment>,
+    /// z: how often the tooth is repeated.
     pub teeth: u32,
     /// Roll angle \[rad\] at which the flank begins.
     pub form_roll: f64,

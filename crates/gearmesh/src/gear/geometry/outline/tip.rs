@@ -13,6 +13,7 @@ use declare::{Declared, registry};
 /// What becomes of the corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Tip {
+    /// It stays: flank and tip circle meet in it.
     Land,
     /// Its size \[m\].
     Chamfer(f64),
@@ -45,6 +46,7 @@ pub struct Rounding {
 
 /// What a study states of a tip.
 pub trait Stated {
+    /// The tip with its size in SI.
     fn tip(&self) -> Tip;
 }
 
@@ -147,7 +149,7 @@ impl Top<'_> {
             Curve::Modified { relief, .. } => relief.depth(self.gear.tip_roll()),
             _ => 0.0,
         });
-        let (end, angle) = self.corner().ok_or(Problem::ReliefTooDeep { depth })?;
+        let (end, angle) = self.corner().ok_or(Problem::TipTakenOff { depth })?;
         Ok((end, vec![self.on_tip(angle)]))
     }
 

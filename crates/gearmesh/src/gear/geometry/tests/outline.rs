@@ -17,7 +17,7 @@ use declare::record::Value;
 const MICROMETRE: f64 = 1e-6;
 
 /// A root of a family with those of the words that it has a field for.
-pub fn root(family: &str, words: &[(&str, &'static str)]) -> Box<dyn Root> {
+pub(super) fn root(family: &str, words: &[(&str, &'static str)]) -> Box<dyn Root> {
     let member = roots::members().iter().find(|member| member.name == family).unwrap();
     let has = |name: &str| member.fields.iter().any(|field| field.name == name);
     let words = words.iter().filter(|(name, _)| has(name));
@@ -26,7 +26,11 @@ pub fn root(family: &str, words: &[(&str, &'static str)]) -> Box<dyn Root> {
 }
 
 /// The outline of a gear with a root of a family and its one option that is a word.
-pub fn outlined(gear: &Gear, family: &str, option: (&'static str, &'static str)) -> Result<Outline, GeometryError> {
+pub(super) fn outlined(
+    gear: &Gear,
+    family: &str,
+    option: (&'static str, &'static str),
+) -> Result<Outline, GeometryError> {
     let toe = root(family, &[option]).toe(gear)?;
     Outline::new(gear, toe, Tip::Land, None)
 }
@@ -35,7 +39,7 @@ fn rack_cut(gear: &Gear) -> Result<Outline, GeometryError> {
     outlined(gear, "trochoid", ("rack_tip", "given"))
 }
 
-pub fn shaped(gear: &Gear, family: &str) -> Result<Outline, GeometryError> {
+pub(super) fn shaped(gear: &Gear, family: &str) -> Result<Outline, GeometryError> {
     let option = match family {
         "trochoid" => ("rack_tip", "given"),
         "arc" => ("formulas", "derived"),

@@ -15,7 +15,7 @@ const STEPS: usize = 24;
 const SHORTEST_ZONE: f64 = 1e-9;
 
 /// The pair on its path of contact.
-pub struct Mesh<'a> {
+pub(super) struct Mesh<'a> {
     inputs: &'a Inputs,
     pub centre_distance: Double,
     tangent_length: Double,
@@ -36,7 +36,7 @@ fn flattening(gears: &[GearInputs; 2]) -> Double {
     (of(&gears[0]) + of(&gears[1])).times_power_of_two(2.0) / Double::PI
 }
 
-/// How a pair of teeth answers an penetration.
+/// How a pair of teeth answers a penetration.
 enum Spring {
     Linear {
         stiffness: Double,
@@ -51,7 +51,7 @@ enum Spring {
 }
 
 impl Spring {
-    /// Load and rate of a pair without crowning at an penetration > 0.
+    /// Load and rate of a pair without crowning at a penetration > 0.
     fn flat(&self, penetration: Double) -> (Double, Double) {
         match self {
             Self::Linear { stiffness } => (*stiffness * penetration, *stiffness),
@@ -110,7 +110,7 @@ struct SolvedPosition {
 }
 
 impl<'a> Mesh<'a> {
-    pub fn new(inputs: &'a Inputs, teeth: &[Tooth; 2]) -> Self {
+    pub(super) fn new(inputs: &'a Inputs, teeth: &[Tooth; 2]) -> Self {
         let (sine, cosine) = inputs.pressure_angle.sine_cosine();
         let tangent = sine / cosine;
         let [one, two] = &inputs.gears;
@@ -135,12 +135,12 @@ impl<'a> Mesh<'a> {
         }
     }
 
-    pub fn contact_ratio(&self) -> Double {
+    pub(super) fn contact_ratio(&self) -> Double {
         (self.end - self.start) / self.base_pitch
     }
 
     /// Start, end and number of pairs of each zone; a contact ratio within 1e-9 of a whole number is that number.
-    pub fn zones(&self) -> Vec<(Double, Double, usize)> {
+    pub(super) fn zones(&self) -> Vec<(Double, Double, usize)> {
         let ratio = self.contact_ratio();
         let whole = (ratio.high + SHORTEST_ZONE).floor().max(1.0);
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a contact ratio
@@ -219,7 +219,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// F/δ without modifications, in the middle of the zones with the fewest and with the most pairs.
-    pub fn stiffness(&self, teeth: &[Tooth; 2]) -> [Double; 2] {
+    pub(super) fn stiffness(&self, teeth: &[Tooth; 2]) -> [Double; 2] {
         let zones = self.zones();
         [zones.len() - 1, 0].map(|zone| {
             let (from, to, pairs) = zones[zone];
@@ -246,7 +246,7 @@ impl<'a> Mesh<'a> {
     }
 
     /// Mean and peak-to-peak over the cycle.
-    pub fn transmission_error(&self, teeth: &[Tooth; 2], rule: &Rule) -> [Double; 2] {
+    pub(super) fn transmission_error(&self, teeth: &[Tooth; 2], rule: &Rule) -> [Double; 2] {
         let mut integral = Double::ZERO;
         let (mut least, mut most) = (Double::from(f64::INFINITY), Double::from(f64::NEG_INFINITY));
         let points = rule.unit(self.inputs.load_dependent);

@@ -19,33 +19,50 @@ use crate::gear::geometry::Side;
 /// One gear as specified.
 #[derive(Clone, Debug)]
 pub struct GearInputs {
+    /// z.
     pub teeth: f64,
+    /// x \[modules\].
     pub shift: Double,
+    /// h_aP*.
     pub addendum: f64,
+    /// h_fP*.
     pub dedendum: f64,
+    /// ρ_fP*.
     pub round: f64,
     /// r_a where it was given.
     pub tip_radius: Option<Double>,
     /// Factor on the tip radius: 1, except to find out how much depends on its last digit.
     pub tip_scale: Double,
+    /// b \[m\].
     pub face_width: f64,
+    /// Radius of the bore, where the body is clamped \[m\].
     pub bore_radius: f64,
+    /// E \[Pa\].
     pub youngs_modulus: f64,
+    /// ν.
     pub poisson_ratio: f64,
     /// Linear tip relief: depth at the tip, and roll length from the tip.
     pub relief: Double,
+    /// That roll length \[m\].
     pub relief_length: Double,
+    /// C_β at the ends of the gear's own face \[m\].
     pub crowning: Double,
 }
 
 /// A pair under a torque.
 #[derive(Clone, Debug)]
 pub struct Inputs {
+    /// Pinion, gear.
     pub gears: [GearInputs; 2],
+    /// m \[m\].
     pub module: Double,
+    /// α \[rad\].
     pub pressure_angle: Double,
+    /// T on the pinion \[N m\].
     pub torque: Double,
+    /// By how much more a section shears than under a uniform stress, as in the energy method.
     pub shear_factor: f64,
+    /// Whether flanks flatten by the law of Weber and Banaschek instead of the linear one; not with crowning.
     pub load_dependent: bool,
 }
 

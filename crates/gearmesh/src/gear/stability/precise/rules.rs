@@ -125,23 +125,23 @@ fn legendre(count: usize) -> Vec<(Double, Double)> {
 }
 
 /// A function between two ends, known at Chebyshev nodes.
-pub struct Panel {
+pub(super) struct Panel {
     pub upper: Double,
     points: Vec<(Double, Double, Double)>,
 }
 
 impl Panel {
-    pub fn nodes(from: Double, to: Double, rule: &Rule) -> Vec<Double> {
+    pub(super) fn nodes(from: Double, to: Double, rule: &Rule) -> Vec<Double> {
         let (middle, half) = ((from + to).half(), (to - from).half());
         rule.chebyshev.iter().map(|(node, _)| middle + half * *node).collect()
     }
 
-    pub fn new(to: Double, nodes: Vec<Double>, values: Vec<Double>, rule: &Rule) -> Self {
+    pub(super) fn new(to: Double, nodes: Vec<Double>, values: Vec<Double>, rule: &Rule) -> Self {
         let points = nodes.into_iter().zip(values).zip(&rule.chebyshev);
         Self { upper: to, points: points.map(|((node, value), (_, weight))| (node, value, *weight)).collect() }
     }
 
-    pub fn value(&self, x: Double) -> Double {
+    pub(super) fn value(&self, x: Double) -> Double {
         let (mut above, mut below) = (Double::ZERO, Double::ZERO);
         for (node, value, weight) in &self.points {
             let distance = x - *node;

@@ -16,7 +16,7 @@ const ROOT_PANELS: usize = 6;
 type Moments = [Double; 4];
 
 /// One gear.
-pub struct Tooth {
+pub(super) struct Tooth {
     pub base_radius: Double,
     pub form_radius: Double,
     pub form_roll: Double,
@@ -59,7 +59,7 @@ fn involute(tangent: Double) -> Double {
 }
 
 /// The tangent of the angle whose involute function is `value`: Newton's method on u − atan u, whose rate is u²/(1 + u²).
-pub fn inverse_involute(value: Double, guess: f64) -> Double {
+pub(super) fn inverse_involute(value: Double, guess: f64) -> Double {
     let mut tangent = Double::from(guess);
     for _ in 0..60 {
         let square = tangent.square();
@@ -95,7 +95,7 @@ impl Root {
 }
 
 impl Tooth {
-    pub fn new(inputs: &Inputs, side: Side) -> Self {
+    pub(super) fn new(inputs: &Inputs, side: Side) -> Self {
         let gear = &inputs.gears[usize::from(side == Side::Gear)];
         let (sine, cosine) = inputs.pressure_angle.sine_cosine();
         let tangent = sine / cosine;
@@ -154,7 +154,7 @@ impl Tooth {
     }
 
     /// Tabulates the compliance from the form point to the tip; `shear_factor` as in the energy method.
-    pub fn tabulate(&mut self, rule: &Rule, shear_factor: f64) {
+    pub(super) fn tabulate(&mut self, rule: &Rule, shear_factor: f64) {
         let mut moments = self.root_moments(rule);
         let mut table = Vec::new();
         let mut from = self.form_roll;
@@ -177,14 +177,14 @@ impl Tooth {
     }
 
     /// Compliance without the contact \[m/N\].
-    pub fn value(&self, roll: Double) -> Double {
+    pub(super) fn value(&self, roll: Double) -> Double {
         let last = self.table.len() - 1;
         let panel = self.table[..last].iter().position(|panel| roll <= panel.upper).unwrap_or(last);
         self.table[panel].value(roll)
     }
 
     /// Distance from the flank to the centreline along the load line.
-    pub fn contact_depth(&self, roll: Double) -> Double {
+    pub(super) fn contact_depth(&self, roll: Double) -> Double {
         let (sine, cosine) = (roll - self.half_base_angle).sine_cosine();
         self.base_radius * (roll * cosine - sine) / cosine
     }
@@ -253,7 +253,7 @@ fn polynomials(theta: Double, h: Double) -> [Double; 4] {
 }
 
 /// Where `function` changes its sign.
-pub fn bisected(from: Double, to: Double, function: impl Fn(Double) -> Double) -> Double {
+pub(super) fn bisected(from: Double, to: Double, function: impl Fn(Double) -> Double) -> Double {
     let (mut low, mut high) = (from, to);
     let sign = function(low).high < 0.0;
     for _ in 0..110 {

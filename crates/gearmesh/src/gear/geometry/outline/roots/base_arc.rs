@@ -14,7 +14,9 @@ use crate::gear::geometry::error::{GeometryError, Millimetres, Plain, Problem};
 /// What the construction starts from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Base {
+    /// r_b \[m\].
     pub base_radius: f64,
+    /// r_f \[m\].
     pub root_radius: f64,
     /// θ = ψ_b \[rad\].
     pub angle: f64,
@@ -27,7 +29,9 @@ pub struct Base {
 /// A circle: X = (x_c, y_c, r_c) of equation 27 \[m\].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Circle {
+    /// (x_c, y_c) in the tooth's frame.
     pub centre: [f64; 2],
+    /// r_c.
     pub radius: f64,
 }
 
