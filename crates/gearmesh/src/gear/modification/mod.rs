@@ -283,11 +283,21 @@ impl Design {
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
         let edges = parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();
         let lead = looks(face, edges).map(|z| sum(&|part| part.lead(z))).fold(0.0, f64::max);
-        let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks()).copied();
+        let last = flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll);
+        let places = || {
+            let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks()).copied();
+            looks((flank.root_roll, last), breaks)
+        };
+        let depth = |roll: f64| sum(&|part| part.depth(roll)) + lead;
+        // Room falls with the roll angle, by r_b tan²(u − ψ_b): what fits where there is least need not be looked at closer.
+        let least = gear.depth_to_centreline(last);
+        if places().all(|roll| depth(roll) <= least) {
+            return Ok(());
+        }
         // The place with the least room; NaN counts as none.
         let mut tightest = (f64::INFINITY, flank.tip_roll, 0.0);
-        for roll in looks((flank.root_roll, flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll)), breaks) {
-            let depth = sum(&|part| part.depth(roll)) + lead;
+        for roll in places() {
+            let depth = depth(roll);
             let room = gear.depth_to_centreline(roll) - depth;
             if room.is_nan() || room < tightest.0 {
                 tightest = (room, roll, depth);

@@ -272,11 +272,14 @@ impl<'a> LoadCase<'a> {
 
     /// The pairs that can touch at all; with corner contact, only those that come near enough.
     fn within_reach(&self, position: f64, pairs: usize) -> WithinReach {
-        let springs = 0..self.cycle.springs(pairs);
-        let mut reach = WithinReach::of(springs.filter_map(|spring| {
+        let mut reach = WithinReach::none();
+        for spring in 0..self.cycle.springs(pairs) {
             let s = self.cycle.path_position(position, spring);
-            self.gap(s).map(|gap| (spring, s, gap))
-        }));
+            if let Some(gap) = self.gap(s) {
+                reach.push(spring, s, gap);
+            }
+        }
+        reach.count_gaps_from_the_smallest();
         if matches!(self.touching, Touching::Anywhere(_)) && self.force > 0.0 {
             reach.keep_nearer_than(self.alone(reach.nearest_position()));
         }

@@ -16,27 +16,34 @@ pub(super) struct WithinReach {
 }
 
 impl WithinReach {
-    /// From spring, path position and gap of each pair.
-    pub(super) fn of(pairs: impl Iterator<Item = (usize, f64, f64)>) -> Self {
-        let mut reach = Self {
+    pub(super) fn none() -> Self {
+        Self {
             count: 0,
             springs: [0; MOST_SPRINGS],
             positions: [0.0; MOST_SPRINGS],
             gaps: [0.0; MOST_SPRINGS],
             smallest: f64::INFINITY,
             nearest: 0,
-        };
-        for (index, (spring, position, gap)) in pairs.enumerate() {
-            (reach.springs[index], reach.positions[index], reach.gaps[index]) = (spring, position, gap);
-            reach.count += 1;
-            if gap < reach.smallest {
-                (reach.smallest, reach.nearest) = (gap, index);
-            }
         }
-        for gap in &mut reach.gaps[..reach.count] {
-            *gap -= reach.smallest;
+    }
+
+    /// Adds a pair; its gap counts from nothing until [`WithinReach::count_gaps_from_the_smallest`].
+    #[inline]
+    pub(super) fn push(&mut self, spring: usize, position: f64, gap: f64) {
+        let index = self.count;
+        (self.springs[index], self.positions[index], self.gaps[index]) = (spring, position, gap);
+        self.count += 1;
+        if gap < self.smallest {
+            (self.smallest, self.nearest) = (gap, index);
         }
-        reach
+    }
+
+    /// Every pair is there.
+    #[inline]
+    pub(super) fn count_gaps_from_the_smallest(&mut self) {
+        for gap in &mut self.gaps[..self.count] {
+            *gap -= self.smallest;
+        }
     }
 
     /// Leaves out the pairs whose gap is larger.

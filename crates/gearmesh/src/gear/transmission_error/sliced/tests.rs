@@ -14,6 +14,13 @@ use declare::record::Value::{Choice, Quantity};
 
 const TORQUE: f64 = 50.0;
 
+fn within_reach(pairs: impl Iterator<Item = (usize, f64, f64)>) -> WithinReach {
+    let mut reach = WithinReach::none();
+    pairs.for_each(|(spring, position, gap)| reach.push(spring, position, gap));
+    reach.count_gaps_from_the_smallest();
+    reach
+}
+
 fn settings(slices: usize) -> Settings {
     Settings { slices, slice_coupling: SliceCoupling::Plate, ..Settings::default() }
 }
@@ -180,7 +187,7 @@ fn loads_balance_and_slices_fulfil_complementarity() {
                 let sliced = loading.slices().unwrap();
                 let (springs, gaps) = ([0, 1, 2], [0.0, 2e-6, 1e-6]);
                 let positions = springs.map(|spring| cycle.path_position(1e-3, spring));
-                let reach = WithinReach::of((0..3).map(|pair| (springs[pair], positions[pair], gaps[pair])));
+                let reach = within_reach((0..3).map(|pair| (springs[pair], positions[pair], gaps[pair])));
                 let given = [loading.force, 10.0 * torque / TORQUE * 1e-5 + 1e-5];
                 let (found, smallest) = sliced.slices(&cycle, &reach, given);
                 let (matrix, _) = sliced.matrix(&cycle, &springs, &positions);
@@ -327,7 +334,7 @@ fn a_mirrored_lead_gives_the_mirrored_loads() {
         let [one, other] = loadings.each_ref().map(|loading| {
             let sliced = loading.slices().unwrap();
             let pair = |spring: usize| (spring, cycle.path_position(1e-3, spring), 1e-6 * spring as f64);
-            let reach = WithinReach::of((0..2).map(pair));
+            let reach = within_reach((0..2).map(pair));
             sliced.slices(&cycle, &reach, [loading.force, 4e-5]).0
         });
         for pair in 0..2 {
