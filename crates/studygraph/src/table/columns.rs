@@ -6,10 +6,13 @@ use super::data::{Cell, Data, Table, TableError};
 use super::schema::{Column, Schema};
 use declare::units::showing;
 
+/// What stands in a column in the row of a `T`.
+type Getter<T> = Box<dyn Fn(&T) -> Cell>;
+
 /// The columns of a table and how to get them from a `T`, one per row.
 pub struct Columns<T> {
     schema: Schema,
-    getters: Vec<Box<dyn Fn(&T) -> Cell>>,
+    getters: Vec<Getter<T>>,
 }
 
 impl<T> Columns<T> {
