@@ -10,8 +10,7 @@ mod meshing;
 mod valid;
 
 use crate::stage::designs;
-use crate::stage::pair::{self, gears_schema, pair_schema};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
@@ -223,8 +222,8 @@ impl Stage for Geometry {
 
     fn outputs(&self) -> Vec<Schema> {
         let paired = self.pair.is_some();
-        let mut schemas = vec![gears_schema()];
-        schemas.extend(paired.then(pair_schema));
+        let mut schemas = vec![pair::gears().schema()];
+        schemas.extend(paired.then(|| pair::pair().schema()));
         schemas.extend([drawn::outline_schema(), drawn::junctions_schema(), valid::schema(paired)]);
         schemas.extend(paired.then(meshing::schema));
         schemas.extend([article::schema(), construction::schema()]);
@@ -232,7 +231,7 @@ impl Stage for Geometry {
     }
 
     fn lacks(&self, table: &str) -> Option<&'static str> {
-        let of_a_pair = [pair_schema(), meshing::schema()].iter().any(|schema| schema.name == table);
+        let of_a_pair = [pair::pair().schema(), meshing::schema()].iter().any(|schema| schema.name == table);
         (of_a_pair && self.pair.is_none()).then_some("it has one gear, and this needs two: give it the mate as `gear`")
     }
 
@@ -281,9 +280,9 @@ impl Stage for Geometry {
     fn run(&self, context: &Context, _inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let failed = |error: TableError| Failure::new(error.to_string());
         let gears: Vec<_> = self.gears.iter().map(|drawn| (drawn.side, &drawn.gear)).collect();
-        let mut tables = vec![pair::write_gears(&gears).map_err(failed)?];
+        let mut tables = vec![pair::gears().table(&gears).map_err(failed)?];
         if let Some(pair) = &self.pair {
-            tables.push(pair::write_pair(pair).map_err(failed)?);
+            tables.push(pair::pair().table(&[pair]).map_err(failed)?);
         }
         let schemas =
             self.outputs().into_iter().filter(|schema| schema.on_demand && context.demand.table(&schema.name));
