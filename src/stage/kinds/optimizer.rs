@@ -365,13 +365,8 @@ impl Stage for Optimizer {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![
-            self.best_schema(),
-            self.history_schema(),
-            designs::designs_schema(),
-            designs::elements_schema(),
-            self.evaluations_schema(),
-        ]
+        let [designs, elements] = designs::schemas();
+        vec![self.best_schema(), self.history_schema(), designs, elements, self.evaluations_schema()]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {

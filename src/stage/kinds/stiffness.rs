@@ -16,7 +16,7 @@ use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE};
 use declare::work::Work;
-use gearmesh::gear::compliance::iso6336::{self, Iso6336};
+use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -229,16 +229,8 @@ impl Stage for Stiffness {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let mut schemas = vec![
-            codec::compliance_schema(),
-            codec::neighbours_schema(),
-            codec::model_schema(),
-            curve().schema(),
-            summary().schema(),
-            mesh().schema(),
-            cost().schema(),
-            iso().schema(),
-        ];
+        let mut schemas = Vec::from(codec::schemas());
+        schemas.extend([curve().schema(), summary().schema(), mesh().schema(), cost().schema(), iso().schema()]);
         if self.teeth.method.root_stresses().is_some() {
             schemas.push(root_stress().schema());
         }
