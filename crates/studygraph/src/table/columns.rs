@@ -71,6 +71,14 @@ impl<T> Columns<T> {
         self
     }
 
+    /// Only the columns that this schema has too.
+    #[must_use]
+    pub fn only(mut self, schema: &Schema) -> Self {
+        let all = std::mem::take(&mut self.schema.columns).into_iter().zip(self.getters);
+        (self.schema.columns, self.getters) = all.filter(|(column, _)| schema.column(&column.name).is_some()).unzip();
+        self
+    }
+
     #[must_use]
     pub fn schema(&self) -> Schema {
         self.schema.clone()
@@ -124,6 +132,15 @@ mod tests {
             (&[1, 2][..], &["left".to_owned(), "right".to_owned()][..])
         );
         assert!(table.floats("depth").iter().zip([-1.0, 3.0]).all(|(found, value)| (found - value).abs() < 1e-15));
+    }
+
+    #[test]
+    fn columns_that_nobody_wants_take_their_getters_with_them() {
+        let mut narrow = columns().schema();
+        narrow.columns.retain(|column| column.name != "depth");
+        let table = columns().only(&narrow).table(&[(2, 3e-6), (1, -1e-6)]).unwrap();
+        assert_eq!(*table.schema(), narrow);
+        assert_eq!(table.texts("side"), ["left", "right"]);
     }
 
     #[test]
