@@ -28,8 +28,8 @@ pub struct ArcPoint {
 
 #[must_use]
 pub fn columns() -> Columns<ArcPoint> {
-    let description = "How zhai2020 constructs the root arc: right half of a tooth, circles, points; no rows where there \
-                       is no such arc.";
+    let description = "How zhai2020 constructs the root arc: right half of a tooth, circles, points; no rows where \
+                       there is no such arc.";
     let step = "boundary: up to the tangent in A (Figure 12); arc: what follows from it (Figure 14).";
     of_gear(Columns::new("arc_drawing", description), |row: &ArcPoint| row.side)
         .text("curve", "What is drawn; A, B, C and θ are points.", |row| row.curve)

@@ -26,8 +26,8 @@ pub struct DrawnPoint {
 
 #[must_use]
 pub fn columns() -> Columns<DrawnPoint> {
-    let description = "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre is \
-                       the origin.";
+    let description = "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre \
+                       is the origin.";
     let run = "Counts lines that do not meet, such as the circles of the two gears.";
     Columns::new("mesh_drawing", description)
         .text("curve", "What is drawn: a gear, a line or circles.", |row: &DrawnPoint| row.curve)
