@@ -20,7 +20,7 @@ use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Candidate, Optimizer as Search, Reason};
 use gearmesh::optimize::{self, Method};
-use studygraph::table::columns::Columns;
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -111,12 +111,6 @@ struct BestRow<'a> {
     peak_to_peak: f64,
 }
 
-impl BestRow<'_> {
-    fn objective(&self) -> f64 {
-        if self.best.value.is_finite() { self.best.value } else { f64::NAN }
-    }
-}
-
 /// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
 const ROUNDS: usize = 4;
 
@@ -193,7 +187,7 @@ impl Optimizer {
         let columns = Columns::new("best", "The best design that was found.")
             .text("design", "Name of the design.", |row: &BestRow<'a>| row.name)
             .key()
-            .float("objective", self.objective_unit(), "What was made small.", BestRow::objective)
+            .float("objective", self.objective_unit(), "What was made small.", |row| finite(row.best.value))
             .but(|column| column.tolerance(1e-9, 1e-6))
             .float("peak_to_peak", "um", peak_to_peak, |row| row.peak_to_peak)
             .but(|column| column.tolerance(1e-9, 1e-6))

@@ -17,7 +17,7 @@ use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::search::{Candidate, Reason};
 use gearmesh::optimize::{self, Method};
-use studygraph::table::columns::Columns;
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
 
@@ -114,11 +114,6 @@ impl TriedRow<'_> {
     fn least_reserve(&self) -> f64 {
         self.worth.constraints.iter().copied().fold(f64::INFINITY, f64::min)
     }
-}
-
-/// NaN for what no root is worth.
-fn finite(value: f64) -> f64 {
-    if value.is_finite() { value } else { f64::NAN }
 }
 
 impl RootOptimizer {

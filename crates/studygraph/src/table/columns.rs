@@ -105,6 +105,12 @@ impl<T> Columns<T> {
     }
 }
 
+/// NaN, which a column can allow, for what is not finite, which none can.
+#[must_use]
+pub fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { f64::NAN }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -141,6 +147,14 @@ mod tests {
         let table = columns().only(&narrow).table(&[(2, 3e-6), (1, -1e-6)]).unwrap();
         assert_eq!(*table.schema(), narrow);
         assert_eq!(table.texts("side"), ["left", "right"]);
+    }
+
+    #[test]
+    fn what_is_not_finite_becomes_what_a_column_can_allow() {
+        let columns = || Columns::new("points", "").float("depth", "um", "", |depth: &f64| finite(*depth));
+        assert!(columns().table(&[f64::INFINITY]).is_err());
+        let table = columns().but(Column::allows_nan).table(&[f64::INFINITY, 0.0]).unwrap();
+        assert!(table.floats("depth")[0].is_nan() && table.floats("depth")[1] == 0.0);
     }
 
     #[test]

@@ -11,7 +11,7 @@ use gearmesh::gear::geometry::outline::curve::Local;
 use gearmesh::gear::geometry::outline::junction::{Junction, Place};
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
 use gearmesh::gear::geometry::{Gear, Side};
-use studygraph::table::columns::Columns;
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row};
 use studygraph::table::schema::{Column, Schema};
 
@@ -140,10 +140,6 @@ impl JunctionRow<'_> {
 fn turned(local: Local, sine: f64, cosine: f64) -> Local {
     let turn = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
     Local { position: turn(local.position), tangent: turn(local.tangent), ..local }
-}
-
-fn finite(curvature: f64) -> f64 {
-    if curvature.is_finite() { curvature } else { f64::NAN }
 }
 
 /// The outlines of gears, so many teeth of each; `begin` is told the share that is done, tooth by tooth, and may end it.

@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 
 use gearmesh::gear::stability::{DigitsLost, Finding, Report, Verdict};
-use studygraph::table::columns::Columns;
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -36,15 +36,15 @@ fn of_case<'a, T>(
 type CheckRow<'a> = (CaseOf<'a>, &'a Finding);
 
 fn checks<'a>() -> Columns<CheckRow<'a>> {
-    // All of it is the same bits on any processor but what faer factorised: compliances of finite elements move by 1e-9,
-    // and with them residuals by as many roundings, jumps and differences by 1e-12. Digits lost are of other methods, or
-    // of geometry alone.
+    // All of it is the same bits on any processor but what faer factorised: compliances of finite elements move by
+    // 1e-9, and with them residuals by as many roundings, jumps and differences by 1e-12. Digits lost are of other
+    // methods, or of geometry alone.
     let factorised = |column: Column| column.tolerance(1e-11, 1e-6).allows_nan();
     let columns = Columns::new("checks", "What was found of every invariant of every case.");
     of_case(columns, ("invariant", "What must hold."), |row: &CheckRow<'a>| (row.0, row.1.invariant))
-        .float("value", "", "How far it is from holding, as the limit counts it.", |row| number(row.1.value))
+        .float("value", "", "How far it is from holding, as the limit counts it.", |row| finite(row.1.value))
         .but(factorised)
-        .float("limit", "", "What the value may be; NaN where the case is refused.", |row| number(row.1.limit))
+        .float("limit", "", "What the value may be; NaN where the case is refused.", |row| finite(row.1.limit))
         .but(factorised)
         .text("verdict", "holds, broken or refused.", |row| row.1.verdict.word())
         .text("reason", "Why it is refused, or that the value is not a number.", |(_, finding)| {
@@ -64,12 +64,12 @@ fn digits<'a>() -> Columns<DigitsRow<'a>> {
     let columns = Columns::new("digits", description);
     of_case(columns, ("quantity", "What is compared."), |row: &DigitsRow<'a>| (row.0, row.2.quantity))
         .float("place", "", place, |row| row.1)
-        .float("value", "", "As the kernels compute it.", |row| number(row.2.value))
+        .float("value", "", "As the kernels compute it.", |row| finite(row.2.value))
         .but(Column::allows_nan)
-        .float("exact", "", "As the second evaluation computes it.", |row| number(row.2.exact))
+        .float("exact", "", "As the second evaluation computes it.", |row| finite(row.2.exact))
         .but(Column::allows_nan)
         .float("digits_lost", "", lost, |row| row.2.lost)
-        .float("condition", "", condition, |row| number(row.2.condition))
+        .float("condition", "", condition, |row| finite(row.2.condition))
         .but(Column::allows_nan)
 }
 
@@ -122,15 +122,11 @@ fn quantities<'a>() -> Columns<QuantityRow<'a>> {
         .float("median", "", "Digits lost in the median of the cases.", |row| row.1[row.1.len() / 2].0.lost)
         .float("worst", "", "Most digits lost.", move |row| last(row).0.lost)
         .text("case", "Where that is.", move |row| last(row).1)
-        .float("condition", "", "The condition number there.", move |row| number(last(row).0.condition))
+        .float("condition", "", "The condition number there.", move |row| finite(last(row).0.condition))
         .but(Column::allows_nan)
         .float("beyond_condition", "", "Most digits lost on top of what the condition takes.", move |row| {
             row.1.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max)
         })
-}
-
-fn number(value: f64) -> f64 {
-    if value.is_finite() { value } else { f64::NAN }
 }
 
 /// In the order of [`write`].
