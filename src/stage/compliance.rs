@@ -6,12 +6,12 @@
 use super::pair::si;
 use declare::declared::Words;
 use declare::error::Failure;
-use declare::units::in_unit;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use gearmesh::numeric::chebyshev::{Series, nodes};
 use gearmesh::numeric::surface::Surface;
-use studygraph::table::data::{Row, Table, TableError};
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::{Table, TableError};
+use studygraph::table::schema::Schema;
 
 type Getter = fn(&ToothCompliance) -> &Series;
 
@@ -29,55 +29,80 @@ const SERIES: &[(&str, &str, &str, Getter)] = &[
 /// Instead of a contact law, where the compliances of the teeth include the contact.
 const INCLUDED: &str = "included";
 
-#[must_use]
-pub fn compliance_schema() -> Schema {
-    let mut columns = vec![
-        Column::text("gear", "Which gear: pinion or gear.").key(),
-        Column::integer("node", "Chebyshev node, from 1 at the root side.").key(),
-        Column::float("roll_angle", "rad", "Roll angle of the loaded point."),
-        Column::float("radius", "mm", "Radius of the loaded point."),
-    ];
-    columns.extend(SERIES.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    Schema::new(
-        "compliance",
-        "Compliance of one tooth of each gear over its whole face width, along its active flank.",
-        columns,
-    )
+/// A tooth at one of its nodes.
+struct NodeRow<'a> {
+    gear: &'static str,
+    /// From 1.
+    node: usize,
+    roll: f64,
+    radius: f64,
+    tooth: &'a ToothCompliance,
 }
 
-#[must_use]
-pub fn neighbours_schema() -> Schema {
-    Schema::new(
-        "neighbours",
-        "Deflection of a tooth per load on a neighbour, through the gear body.",
-        vec![
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::integer("neighbour", "How many pitches apart the two teeth are.").key(),
-            Column::integer("node", "Chebyshev node of the first tooth, from 1.").key(),
-            Column::integer("further_node", "Chebyshev node of the further tooth, from 1.").key(),
-            Column::float("roll_angle", "rad", "Roll angle of the loaded point of the first tooth."),
-            Column::float("further_roll_angle", "rad", "Roll angle on the further tooth, where roll angles grow."),
-            Column::float(
-                "compliance",
-                "nm/N",
-                "Deflection along the load line of one per load on the other; symmetric.",
-            ),
-        ],
-    )
+fn teeth<'a>() -> Columns<NodeRow<'a>> {
+    let description = "Compliance of one tooth of each gear over its whole face width, along its active flank.";
+    let columns = Columns::new("compliance", description)
+        .text("gear", "Which gear: pinion or gear.", |row: &NodeRow| row.gear)
+        .key()
+        .integer("node", "Chebyshev node, from 1 at the root side.", |row| row.node)
+        .key()
+        .float("roll_angle", "rad", "Roll angle of the loaded point.", |row| row.roll)
+        .float("radius", "mm", "Radius of the loaded point.", |row| row.radius);
+    SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
+        columns.float(name, unit, description, move |row| series(row.tooth).value(row.roll))
+    })
 }
 
+/// Two nodes of two teeth of a gear, the first tooth's before the further one's.
+struct NeighbourRow {
+    gear: &'static str,
+    /// How many pitches they are apart.
+    neighbour: usize,
+    /// From 1.
+    nodes: [usize; 2],
+    rolls: [f64; 2],
+    compliance: f64,
+}
+
+fn neighbours() -> Columns<NeighbourRow> {
+    let further_roll = "Roll angle on the further tooth, where roll angles grow.";
+    let compliance = "Deflection along the load line of one per load on the other; symmetric.";
+    Columns::new("neighbours", "Deflection of a tooth per load on a neighbour, through the gear body.")
+        .text("gear", "Which gear: pinion or gear.", |row: &NeighbourRow| row.gear)
+        .key()
+        .integer("neighbour", "How many pitches apart the two teeth are.", |row| row.neighbour)
+        .key()
+        .integer("node", "Chebyshev node of the first tooth, from 1.", |row| row.nodes[0])
+        .key()
+        .integer("further_node", "Chebyshev node of the further tooth, from 1.", |row| row.nodes[1])
+        .key()
+        .float("roll_angle", "rad", "Roll angle of the loaded point of the first tooth.", |row| row.rolls[0])
+        .float("further_roll_angle", "rad", further_roll, |row| row.rolls[1])
+        .float("compliance", "nm/N", compliance, |row| row.compliance)
+}
+
+/// What compliances were made with.
+struct ModelRow<'a> {
+    compliance: &'a PairCompliance,
+    method: &'a str,
+    root: &'a str,
+}
+
+fn model<'a>() -> Columns<ModelRow<'a>> {
+    let contact = "Contact law: linear, load_dependent, or included in the teeth.";
+    Columns::new("model", "What the compliances were made with, and how contact is to be added.")
+        .text("method", "Method of the tooth compliance.", |row: &ModelRow<'a>| row.method)
+        .text("root", "Root curve of the teeth; none where the method asks for none.", |row| row.root)
+        .text("contact", contact, |row| row.compliance.contact.map_or(INCLUDED, ContactLaw::word))
+        .text("coupling", "Whether loaded neighbours share the gear body: none or body.", |row| {
+            if row.compliance.coupled { "body" } else { "none" }
+        })
+}
+
+/// Those of the tables that [`write`] makes.
 #[must_use]
-pub fn model_schema() -> Schema {
-    Schema::new(
-        "model",
-        "What the compliances were made with, and how contact is to be added.",
-        vec![
-            Column::text("method", "Method of the tooth compliance."),
-            Column::text("root", "Root curve of the teeth; none where the method asks for none."),
-            Column::text("contact", "Contact law: linear, load_dependent, or included in the teeth."),
-            Column::text("coupling", "Whether loaded neighbours share the gear body: none or body."),
-        ],
-    )
+pub fn schemas() -> [Schema; 3] {
+    [teeth().schema(), neighbours().schema(), model().schema()]
 }
 
 /// The three tables of a pair's compliances.
@@ -90,43 +115,29 @@ pub fn write(
     method: &str,
     root: &str,
 ) -> Result<[Table; 3], TableError> {
-    let mut rows: Vec<Row> = Vec::new();
-    let mut neighbours: Vec<Row> = Vec::new();
-    for ((name, tooth), base_radius) in
+    let mut of_teeth = Vec::new();
+    let mut of_neighbours = Vec::new();
+    for ((gear, tooth), base_radius) in
         [("pinion", &compliance.pinion), ("gear", &compliance.gear)].into_iter().zip(base_radii)
     {
-        for (node, roll) in common_nodes(tooth).into_iter().enumerate() {
+        let rolls = common_nodes(tooth).into_iter();
+        of_teeth.extend(rolls.zip(1..).map(|(roll, node)| {
             let radius = base_radius * (1.0 + roll * roll).sqrt();
-            let mut row: Row = vec![name.into(), (node + 1).into(), roll.into(), in_unit(radius, "mm").into()];
-            row.extend(SERIES.iter().map(|(_, unit, _, series)| in_unit(series(tooth).value(roll), unit).into()));
-            rows.push(row);
-        }
-        for (index, surface) in tooth.neighbours.iter().enumerate() {
+            NodeRow { gear, node, roll, radius, tooth }
+        }));
+        for (surface, neighbour) in tooth.neighbours.iter().zip(1..) {
             let [first, further] = surface_nodes(surface);
             let mut values = surface.node_values().into_iter();
-            for (node, &roll) in first.iter().enumerate() {
-                for ((other, &further), value) in further.iter().enumerate().zip(&mut values) {
-                    neighbours.push(vec![
-                        name.into(),
-                        (index + 1).into(),
-                        (node + 1).into(),
-                        (other + 1).into(),
-                        roll.into(),
-                        further.into(),
-                        in_unit(value, "nm/N").into(),
-                    ]);
+            for (&roll, node) in first.iter().zip(1..) {
+                for ((&further, other), compliance) in further.iter().zip(1..).zip(&mut values) {
+                    let (nodes, rolls) = ([node, other], [roll, further]);
+                    of_neighbours.push(NeighbourRow { gear, neighbour, nodes, rolls, compliance });
                 }
             }
         }
     }
-    let contact = compliance.contact.map_or(INCLUDED, ContactLaw::word);
-    let coupling = if compliance.coupled { "body" } else { "none" };
-    let model: Row = vec![method.into(), root.into(), contact.into(), coupling.into()];
-    Ok([
-        Table::from_rows(compliance_schema(), rows)?,
-        Table::from_rows(neighbours_schema(), neighbours)?,
-        Table::from_rows(model_schema(), vec![model])?,
-    ])
+    let of_model = ModelRow { compliance, method, root };
+    Ok([teeth().table(&of_teeth)?, neighbours().table(&of_neighbours)?, model().table(&[of_model])?])
 }
 
 /// Nodes that hold every series of a tooth: those of the longest one. All run over the same flank.

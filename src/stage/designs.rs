@@ -10,7 +10,8 @@ use declare::parameter::{Field, Member, Shape};
 use declare::record::{PlacedValue, Record, Value};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::{self, Design};
-use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 /// A design as a study writes it: a list of members of the modification families.
@@ -49,33 +50,44 @@ impl NamedDesign {
     }
 }
 
-#[must_use]
-pub fn designs_schema() -> Schema {
-    Schema::new(
-        "designs",
-        "The designs, in the order of the study.",
-        vec![
-            Column::text("design", "Name of the design.").key(),
-            Column::integer("order", "Place in the study, from 1."),
-            Column::integer("elements", "How many modifications it adds up."),
-        ],
-    )
+/// A design and its place in the study, from 1.
+type DesignRow<'a> = (usize, &'a NamedDesign);
+
+fn names<'a>() -> Columns<DesignRow<'a>> {
+    Columns::new("designs", "The designs, in the order of the study.")
+        .text("design", "Name of the design.", |row: &DesignRow<'a>| row.1.name.as_str())
+        .key()
+        .integer("order", "Place in the study, from 1.", |row| row.0)
+        .integer("elements", "How many modifications it adds up.", |row| row.1.elements.len())
 }
 
+/// A parameter of a modification.
+struct ParameterRow<'a> {
+    design: &'a str,
+    /// Place in the design, from 1.
+    element: usize,
+    family: &'static str,
+    parameter: Flat,
+}
+
+fn parameters<'a>() -> Columns<ParameterRow<'a>> {
+    Columns::new("elements", "The modifications of each design, one row per parameter.")
+        .text("design", "Name of the design.", |row: &ParameterRow<'a>| row.design)
+        .key()
+        .integer("element", "Place in the design, from 1.", |row| row.element)
+        .key()
+        .text("family", "Family of the modification.", |row| row.family)
+        .text("parameter", "Name of the parameter.", |row| row.parameter.0.clone())
+        .key()
+        .float("value", "", "Value in SI; NaN where the parameter is a word.", |row| row.parameter.1)
+        .but(Column::allows_nan)
+        .text("word", "The word, where the parameter is one.", |row| row.parameter.2.clone())
+}
+
+/// Those of the tables that [`write`] makes.
 #[must_use]
-pub fn elements_schema() -> Schema {
-    Schema::new(
-        "elements",
-        "The modifications of each design, one row per parameter.",
-        vec![
-            Column::text("design", "Name of the design.").key(),
-            Column::integer("element", "Place in the design, from 1.").key(),
-            Column::text("family", "Family of the modification."),
-            Column::text("parameter", "Name of the parameter.").key(),
-            Column::float("value", "", "Value in SI; NaN where the parameter is a word.").allows_nan(),
-            Column::text("word", "The word, where the parameter is one."),
-        ],
-    )
+pub fn schemas() -> [Schema; 2] {
+    [names().schema(), parameters().schema()]
 }
 
 /// The two tables of a list of designs.
@@ -83,30 +95,20 @@ pub fn elements_schema() -> Schema {
 /// # Errors
 /// When two designs have one name, or a parameter has a value that no row holds.
 pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
-    let mut names: Vec<Row> = Vec::new();
-    let mut rows: Vec<Row> = Vec::new();
-    for (order, design) in designs.iter().enumerate() {
-        names.push(vec![design.name.as_str().into(), (order + 1).into(), design.elements.len().into()]);
-        for (index, element) in design.elements.iter().enumerate() {
+    let mut rows = Vec::new();
+    for NamedDesign { name: design, elements } in designs {
+        for (element, Element { family, record }) in (1..).zip(elements) {
             let mut flat = Vec::new();
-            flatten("", &element.record, &mut flat).map_err(|problem| TableError::Column {
+            flatten("", record, &mut flat).map_err(|problem| TableError::Column {
                 table: "elements".to_owned(),
                 column: "value".to_owned(),
-                problem: format!("design `{}`, {}: {problem}", design.name, element.family),
+                problem: format!("design `{design}`, {family}: {problem}"),
             })?;
-            for (parameter, value, word) in flat {
-                rows.push(vec![
-                    design.name.as_str().into(),
-                    (index + 1).into(),
-                    element.family.into(),
-                    parameter.into(),
-                    value.into(),
-                    word.into(),
-                ]);
-            }
+            rows.extend(flat.into_iter().map(|parameter| ParameterRow { design, element, family, parameter }));
         }
     }
-    Ok([Table::from_rows(designs_schema(), names)?, Table::from_rows(elements_schema(), rows)?])
+    let designs: Vec<DesignRow> = (1..).zip(designs).collect();
+    Ok([names().table(&designs)?, parameters().table(&rows)?])
 }
 
 /// How many rows of the table of elements a modification takes, ranges among its parameters included.

@@ -4,91 +4,64 @@
 //! for readers. Must not know: which stage asks.
 
 use declare::error::Failure;
-use declare::units::{in_unit, parse_unit};
+use declare::units::parse_unit;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
-use studygraph::table::data::{Row, Table, TableError};
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::Table;
+
+/// Which gear, and what it is.
+pub type GearRow<'a> = (Side, &'a Gear);
 
 /// One row per gear.
 #[must_use]
-pub fn gears_schema() -> Schema {
-    let mut columns =
-        vec![Column::text("gear", "Which gear: pinion or gear.").key(), Column::integer("teeth", "Number of teeth z.")];
-    columns.extend(SPECIFIED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    columns.extend(DERIVED.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)));
-    Schema::new("gears", "Each gear: what was specified, and what follows from it.", columns)
+pub fn gears<'a>() -> Columns<GearRow<'a>> {
+    let form_radius = "Radius at which the root curve meets the involute.";
+    Columns::new("gears", "Each gear: what was specified, and what follows from it.")
+        .text("gear", "Which gear: pinion or gear.", |row: &GearRow| row.0.name())
+        .key()
+        .integer("teeth", "Number of teeth z.", |row| row.1.specification.teeth)
+        .float("module", "mm", "Module m.", |row| row.1.specification.module)
+        .float("pressure_angle", "deg", "Pressure angle α.", |row| row.1.specification.pressure_angle)
+        .float("profile_shift", "", "Profile shift coefficient x.", |row| row.1.specification.profile_shift)
+        .float("rack_addendum", "", "Addendum of the basic rack h_aP*, in modules.", |row| {
+            row.1.specification.rack.addendum
+        })
+        .float("rack_dedendum", "", "Dedendum of the basic rack h_fP*, in modules.", |row| {
+            row.1.specification.rack.dedendum
+        })
+        .float("rack_tip_radius", "", "Tip radius of the cutting rack ρ_fP*, in modules.", |row| {
+            row.1.specification.rack.tip_radius
+        })
+        .float("face_width", "mm", "Face width b.", |row| row.1.specification.face_width)
+        .float("bore_radius", "mm", "Radius of the bore, where the body is clamped.", |row| {
+            row.1.specification.bore_radius
+        })
+        .float("youngs_modulus", "GPa", "Young's modulus E.", |row| row.1.specification.material.youngs_modulus)
+        .float("poisson_ratio", "", "Poisson's ratio ν.", |row| row.1.specification.material.poisson_ratio)
+        .float("reference_radius", "mm", "Reference radius r.", |row| row.1.reference_radius)
+        .float("base_radius", "mm", "Base radius r_b.", |row| row.1.base_radius)
+        .float("tip_radius", "mm", "Tip radius r_a.", |row| row.1.tip_radius)
+        .float("root_radius", "mm", "Root radius r_f.", |row| row.1.root_radius)
+        .float("form_radius", "mm", form_radius, |row| row.1.form_radius)
+        .float("tip_thickness", "mm", "Arc thickness of the tooth at the tip.", |row| row.1.tip_thickness())
 }
 
 /// One row.
 #[must_use]
-pub fn pair_schema() -> Schema {
-    let columns = PAIR.iter().map(|(name, unit, description, _)| Column::float(name, unit, description)).collect();
-    Schema::new(
-        "pair",
-        "The pair on its centre distance. Path positions count from the pinion's tangent point T1.",
-        columns,
-    )
+pub fn pair<'a>() -> Columns<&'a GearPair> {
+    let description = "The pair on its centre distance. Path positions count from the pinion's tangent point T1.";
+    Columns::new("pair", description)
+        .float("centre_distance", "mm", "Centre distance a_w.", |pair: &&GearPair| pair.centre_distance)
+        .float("working_pressure_angle", "deg", "Working pressure angle α_w.", |pair| pair.working_pressure_angle)
+        .float("base_pitch", "mm", "Base pitch p_b.", |pair| pair.base_pitch)
+        .float("contact_ratio", "", "Transverse contact ratio ε_α.", |pair| pair.contact_ratio)
+        .float("tangent_length", "mm", "Length T1T2 of the common tangent, L.", |pair| pair.tangent_length)
+        .float("start_of_contact", "mm", "Path position of A, the start of contact.", |pair| pair.start_of_contact)
+        .float("end_of_contact", "mm", "Path position of E, the end of contact.", |pair| pair.end_of_contact)
 }
 
-type Getter<T> = fn(&T) -> f64;
-
-const SPECIFIED: &[(&str, &str, &str, Getter<Specification>)] = &[
-    ("module", "mm", "Module m.", |gear| gear.module),
-    ("pressure_angle", "deg", "Pressure angle α.", |gear| gear.pressure_angle),
-    ("profile_shift", "", "Profile shift coefficient x.", |gear| gear.profile_shift),
-    ("rack_addendum", "", "Addendum of the basic rack h_aP*, in modules.", |gear| gear.rack.addendum),
-    ("rack_dedendum", "", "Dedendum of the basic rack h_fP*, in modules.", |gear| gear.rack.dedendum),
-    ("rack_tip_radius", "", "Tip radius of the cutting rack ρ_fP*, in modules.", |gear| gear.rack.tip_radius),
-    ("face_width", "mm", "Face width b.", |gear| gear.face_width),
-    ("bore_radius", "mm", "Radius of the bore, where the body is clamped.", |gear| gear.bore_radius),
-    ("youngs_modulus", "GPa", "Young's modulus E.", |gear| gear.material.youngs_modulus),
-    ("poisson_ratio", "", "Poisson's ratio ν.", |gear| gear.material.poisson_ratio),
-];
-
-const DERIVED: &[(&str, &str, &str, Getter<Gear>)] = &[
-    ("reference_radius", "mm", "Reference radius r.", |gear| gear.reference_radius),
-    ("base_radius", "mm", "Base radius r_b.", |gear| gear.base_radius),
-    ("tip_radius", "mm", "Tip radius r_a.", |gear| gear.tip_radius),
-    ("root_radius", "mm", "Root radius r_f.", |gear| gear.root_radius),
-    ("form_radius", "mm", "Radius at which the root curve meets the involute.", |gear| gear.form_radius),
-    ("tip_thickness", "mm", "Arc thickness of the tooth at the tip.", Gear::tip_thickness),
-];
-
-const PAIR: &[(&str, &str, &str, Getter<GearPair>)] = &[
-    ("centre_distance", "mm", "Centre distance a_w.", |pair| pair.centre_distance),
-    ("working_pressure_angle", "deg", "Working pressure angle α_w.", |pair| pair.working_pressure_angle),
-    ("base_pitch", "mm", "Base pitch p_b.", |pair| pair.base_pitch),
-    ("contact_ratio", "", "Transverse contact ratio ε_α.", |pair| pair.contact_ratio),
-    ("tangent_length", "mm", "Length T1T2 of the common tangent, L.", |pair| pair.tangent_length),
-    ("start_of_contact", "mm", "Path position of A, the start of contact.", |pair| pair.start_of_contact),
-    ("end_of_contact", "mm", "Path position of E, the end of contact.", |pair| pair.end_of_contact),
-];
-
-/// The table of gears.
-///
-/// # Errors
-/// When a value is not finite, which a valid gear excludes.
-pub fn write_gears(gears: &[(Side, &Gear)]) -> Result<Table, TableError> {
-    let row = |(side, gear): &(Side, &Gear)| -> Row {
-        let mut row: Row = vec![side.name().into(), gear.specification.teeth.into()];
-        row.extend(SPECIFIED.iter().map(|(_, unit, _, get)| in_unit(get(&gear.specification), unit).into()));
-        row.extend(DERIVED.iter().map(|(_, unit, _, get)| in_unit(get(gear), unit).into()));
-        row
-    };
-    Table::from_rows(gears_schema(), gears.iter().map(row).collect())
-}
-
-/// The table of the pair.
-///
-/// # Errors
-/// When a value is not finite, which a valid pair excludes.
-pub fn write_pair(pair: &GearPair) -> Result<Table, TableError> {
-    let values: Row = PAIR.iter().map(|(_, unit, _, get)| in_unit(get(pair), unit).into()).collect();
-    Table::from_rows(pair_schema(), vec![values])
-}
-
-/// The pair that [`write_gears`] and [`write_pair`] wrote.
+/// The pair that the tables [`gears`] and [`pair`] hold.
 ///
 /// # Errors
 /// When the tables are not from a valid pair.

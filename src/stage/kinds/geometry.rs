@@ -10,8 +10,7 @@ mod meshing;
 mod valid;
 
 use crate::stage::designs;
-use crate::stage::pair::{self, gears_schema, pair_schema};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
@@ -28,7 +27,7 @@ use gearmesh::gear::material::Material;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::Template;
 use gearmesh::gear::work::OUTLINES;
-use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
@@ -223,16 +222,16 @@ impl Stage for Geometry {
 
     fn outputs(&self) -> Vec<Schema> {
         let paired = self.pair.is_some();
-        let mut schemas = vec![gears_schema()];
-        schemas.extend(paired.then(pair_schema));
-        schemas.extend([drawn::outline_schema(), drawn::junctions_schema(), valid::schema(paired)]);
-        schemas.extend(paired.then(meshing::schema));
-        schemas.extend([article::schema(), construction::schema()]);
+        let mut schemas = vec![pair::gears().schema()];
+        schemas.extend(paired.then(|| pair::pair().schema()));
+        schemas.extend([drawn::outline_schema(), drawn::junctions().schema(), valid::columns(paired).schema()]);
+        schemas.extend(paired.then(|| meshing::columns().schema()));
+        schemas.extend([article::columns().schema(), construction::columns().schema()]);
         schemas
     }
 
     fn lacks(&self, table: &str) -> Option<&'static str> {
-        let of_a_pair = [pair_schema(), meshing::schema()].iter().any(|schema| schema.name == table);
+        let of_a_pair = [pair::pair().schema(), meshing::columns().schema()].iter().any(|schema| schema.name == table);
         (of_a_pair && self.pair.is_none()).then_some("it has one gear, and this needs two: give it the mate as `gear`")
     }
 
@@ -281,14 +280,14 @@ impl Stage for Geometry {
     fn run(&self, context: &Context, _inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let failed = |error: TableError| Failure::new(error.to_string());
         let gears: Vec<_> = self.gears.iter().map(|drawn| (drawn.side, &drawn.gear)).collect();
-        let mut tables = vec![pair::write_gears(&gears).map_err(failed)?];
+        let mut tables = vec![pair::gears().table(&gears).map_err(failed)?];
         if let Some(pair) = &self.pair {
-            tables.push(pair::write_pair(pair).map_err(failed)?);
+            tables.push(pair::pair().table(&[pair]).map_err(failed)?);
         }
         let schemas =
             self.outputs().into_iter().filter(|schema| schema.on_demand && context.demand.table(&schema.name));
         let schemas: Vec<Schema> = schemas.collect();
-        let mated: Vec<(&Drawn, Option<(&GearPair, Mating)>)> = if schemas.is_empty() {
+        let mated: Vec<valid::Mated> = if schemas.is_empty() {
             Vec::new()
         } else {
             self.gears.iter().map(|drawn| (drawn, self.mating(drawn))).collect()
@@ -302,27 +301,36 @@ impl Stage for Geometry {
             if OF_OUTLINES.contains(&schema.name.as_str()) {
                 context.work.add(&Work::of(&OUTLINES, self.gears.len()));
             }
-            if schema.name == "outline" {
-                let columns = drawn::outline_columns(
-                    &self.gears,
-                    self.density,
-                    |drawn| self.teeth(drawn),
-                    |share| {
+            let table = match (schema.name.as_str(), &self.pair) {
+                ("outline", _) => {
+                    let begin = |share| {
                         (context.progress)(share);
                         context.check_stop()
-                    },
-                )?;
-                tables.push(Table::from_columns(schema, columns).map_err(failed)?);
-                continue;
-            }
-            let rows: Vec<Row> = match (schema.name.as_str(), &self.pair) {
-                ("junctions", _) => self.gears.iter().flat_map(Drawn::junction_rows).collect(),
-                ("validity", _) => mated.iter().map(|(drawn, mate)| valid::row(drawn, *mate)).collect(),
-                ("mesh_drawing", Some(pair)) => meshing::rows(pair, &self.gears, self.density),
-                ("root_arc", _) => self.gears.iter().filter_map(article::row).collect(),
-                _ => self.gears.iter().flat_map(|drawn| construction::rows(drawn, self.density)).collect(),
+                    };
+                    let columns = drawn::outline_columns(&self.gears, self.density, |drawn| self.teeth(drawn), begin)?;
+                    Table::from_columns(schema, columns)
+                }
+                ("junctions", _) => {
+                    let rows: Vec<_> = self.gears.iter().flat_map(Drawn::junction_rows).collect();
+                    drawn::junctions().table(&rows)
+                }
+                ("validity", paired) => {
+                    let rows: Vec<_> = mated.iter().map(valid::ValidRow::new).collect();
+                    valid::columns(paired.is_some()).table(&rows)
+                }
+                ("mesh_drawing", Some(pair)) => {
+                    meshing::columns().table(&meshing::rows(pair, &self.gears, self.density))
+                }
+                ("root_arc", _) => {
+                    let rows: Vec<_> = self.gears.iter().filter_map(article::row).collect();
+                    article::columns().table(&rows)
+                }
+                _ => {
+                    let rows = self.gears.iter().flat_map(|drawn| construction::rows(drawn, self.density));
+                    construction::columns().table(&rows.collect::<Vec<_>>())
+                }
             };
-            tables.push(Table::from_rows(schema, rows).map_err(failed)?);
+            tables.push(table.map_err(failed)?);
         }
         Ok(tables)
     }

@@ -8,11 +8,11 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCoun
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
 use declare::record::{PlacedValue, Record, Value};
-use declare::units::in_unit;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::Template;
-use studygraph::table::data::{Row, Table};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -78,65 +78,67 @@ const RESOLVED: &[(&str, &str, &str)] = &[
 /// The most parameters that a modification comes to.
 const MOST_RESOLVED: usize = 24;
 
-fn resolved_schema() -> Schema {
-    let mut columns = vec![
-        Column::text("design", "Name of the design.").key(),
-        Column::text("gear", "Which gear: pinion or gear.").key(),
-        Column::integer("element", "Counts the modifications of a gear, from 1.").key(),
-        Column::text("family", "Family of the modification."),
-    ];
+/// What a modification comes to on a gear.
+struct ResolvedRow<'a> {
+    design: &'a str,
+    side: Side,
+    /// From 1.
+    element: usize,
+    family: &'static str,
+    values: Vec<(&'static str, f64)>,
+}
+
+/// The columns that say which modification it is, the same in both tables; `get` finds it in a row.
+fn of_modification<'a, T>(
+    columns: Columns<T>,
+    get: impl for<'b> Fn(&'b T) -> &'b ResolvedRow<'a> + Copy + 'static,
+) -> Columns<T> {
     columns
-        .extend(RESOLVED.iter().map(|(name, unit, description)| Column::float(name, unit, description).allows_nan()));
-    Schema::new(
-        "resolved",
-        "What each modification comes to on the pair; NaN where a family has no such parameter.",
-        columns,
-    )
+        .text("design", "Name of the design.", move |row| get(row).design)
+        .key()
+        .text("gear", "Which gear: pinion or gear.", move |row| get(row).side.name())
+        .key()
+        .integer("element", "Counts the modifications of a gear, from 1.", move |row| get(row).element)
+        .key()
+        .text("family", "Family of the modification.", move |row| get(row).family)
 }
 
-fn parameters_schema() -> Schema {
-    Schema::new(
-        "parameters",
-        "Everything a modification was given and comes to on the pair, one row per parameter.",
-        vec![
-            Column::text("design", "Name of the design.").key(),
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::integer("element", "Counts the modifications of a gear, from 1.").key(),
-            Column::text("family", "Family of the modification."),
-            Column::text("parameter", "Name of the parameter.").key(),
-            Column::float("value", "", "Value in SI."),
-        ],
-    )
-    .on_demand()
+fn resolved<'a>() -> Columns<ResolvedRow<'a>> {
+    let description = "What each modification comes to on the pair; NaN where a family has no such parameter.";
+    let columns = of_modification(Columns::new("resolved", description), |row| row);
+    RESOLVED.iter().fold(columns, |columns, (parameter, unit, description)| {
+        let value = move |row: &ResolvedRow| {
+            let found = row.values.iter().find(|(given, _)| given == parameter);
+            found.map_or(f64::NAN, |(_, value)| *value)
+        };
+        columns.float(parameter, unit, description, value).but(Column::allows_nan)
+    })
 }
 
-fn parameter_rows(name: &str, design: &Design) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for side in [Side::Pinion, Side::Gear] {
-        for (index, part) in design.side(side).iter().enumerate() {
-            rows.extend(part.modification.resolved().into_iter().map(|(parameter, value)| -> Row {
-                let element: Row = vec![name.into(), side.name().into(), (index + 1).into(), part.family.into()];
-                [element, vec![parameter.into(), value.into()]].concat()
-            }));
-        }
-    }
-    rows
+/// A modification, and the name and value of one of its parameters.
+type ParameterRow<'a> = (&'a ResolvedRow<'a>, &'static str, f64);
+
+fn parameters<'a>() -> Columns<ParameterRow<'a>> {
+    let description = "Everything a modification was given and comes to on the pair, one row per parameter.";
+    of_modification(Columns::new("parameters", description), |row: &ParameterRow<'a>| row.0)
+        .text("parameter", "Name of the parameter.", |row| row.1)
+        .key()
+        .float("value", "", "Value in SI.", |row| row.2)
+        .on_demand()
 }
 
-fn resolved_rows(name: &str, design: &Design) -> Vec<Row> {
-    let mut rows = Vec::new();
-    for side in [Side::Pinion, Side::Gear] {
-        for (index, part) in design.side(side).iter().enumerate() {
+fn resolved_rows<'a>(design: &'a str, built: &Design) -> Vec<ResolvedRow<'a>> {
+    let of = |side: Side| {
+        (1..).zip(built.side(side)).map(move |(element, part)| {
             let values = part.modification.resolved();
-            let mut row: Row = vec![name.into(), side.name().into(), (index + 1).into(), part.family.into()];
-            row.extend(RESOLVED.iter().map(|(parameter, unit, _)| {
-                let found = values.iter().find(|(given, _)| given == parameter);
-                found.map_or(f64::NAN, |(_, value)| in_unit(*value, unit)).into()
-            }));
-            rows.push(row);
-        }
-    }
-    rows
+            ResolvedRow { design, side, element, family: part.family, values }
+        })
+    };
+    of(Side::Pinion).chain(of(Side::Gear)).collect()
+}
+
+fn parameter_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<ParameterRow<'a>> {
+    rows.iter().flat_map(|row| row.values.iter().map(move |(name, value)| (row, *name, *value))).collect()
 }
 
 impl Stage for Modification {
@@ -145,33 +147,33 @@ impl Stage for Modification {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![designs::designs_schema(), designs::elements_schema(), resolved_schema(), parameters_schema()]
+        let [designs, elements] = designs::schemas();
+        vec![designs, elements, resolved().schema(), parameters().schema()]
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let elements = || self.designs.iter().flat_map(|design| &design.elements);
         // A modification of both gears is one of each.
-        let resolved = 2 * elements().count();
+        let most = 2 * elements().count();
+        let [of_designs, of_elements] = designs::schemas();
         Estimate::new(false)
-            .rows(demand, designs::designs_schema(), RowCount::exact(self.designs.len()))
-            .rows(demand, designs::elements_schema(), RowCount::exact(elements().map(designs::rows_of).sum()))
-            .rows(demand, resolved_schema(), RowCount::at_most(resolved))
-            .rows(demand, parameters_schema(), RowCount::at_most(resolved * MOST_RESOLVED))
+            .rows(demand, of_designs, RowCount::exact(self.designs.len()))
+            .rows(demand, of_elements, RowCount::exact(elements().map(designs::rows_of).sum()))
+            .rows(demand, resolved().schema(), RowCount::at_most(most))
+            .rows(demand, parameters().schema(), RowCount::at_most(most * MOST_RESOLVED))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let (mut rows, mut parameters): (Vec<Row>, Vec<Row>) = Default::default();
+        let mut rows = Vec::new();
         for named in &self.designs {
-            let design = named.built(&pair)?;
-            rows.extend(resolved_rows(&named.name, &design));
-            parameters.extend(parameter_rows(&named.name, &design));
+            rows.extend(resolved_rows(&named.name, &named.built(&pair)?));
         }
-        let failed = |error: studygraph::table::data::TableError| Failure::new(error.to_string());
+        let failed = |error: TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
-        tables.push(Table::from_rows(resolved_schema(), rows).map_err(failed)?);
+        tables.push(resolved().table(&rows).map_err(failed)?);
         if context.demand.table("parameters") {
-            tables.push(Table::from_rows(parameters_schema(), parameters).map_err(failed)?);
+            tables.push(parameters().table(&parameter_rows(&rows)).map_err(failed)?);
         }
         Ok(tables)
     }

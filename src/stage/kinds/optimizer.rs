@@ -18,8 +18,9 @@ use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::search::{Optimizer as Search, Reason};
+use gearmesh::optimize::search::{Candidate, Optimizer as Search, Reason};
 use gearmesh::optimize::{self, Method};
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -102,6 +103,14 @@ struct Found {
     error: f64,
 }
 
+/// The best design: its point, and its largest peak-to-peak under any load.
+struct BestRow<'a> {
+    name: &'a str,
+    found: &'a Found,
+    best: &'a Candidate,
+    peak_to_peak: f64,
+}
+
 /// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
 const ROUNDS: usize = 4;
 
@@ -171,26 +180,31 @@ impl Optimizer {
         if self.objective == "variance" { "um^2" } else { "um" }
     }
 
-    fn best_schema(&self) -> Schema {
-        let mut columns = vec![
-            Column::text("design", "Name of the design.").key(),
-            Column::float("objective", self.objective_unit(), "What was made small.").tolerance(1e-9, 1e-6),
-            Column::float("peak_to_peak", "um", "Peak-to-peak of the transmission error, the largest of all loads.")
-                .tolerance(1e-9, 1e-6),
-            Column::integer("evaluations", "How often the objective was computed."),
-            Column::integer("generations", "How many batches the search took."),
-            Column::text("ended", "Why the search ended."),
-            Column::integer("positions", "Positions per base pitch that were used."),
-            Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
-            Column::float("error_estimate", "", "Estimated relative error of the objective from positions and slices.")
-                .tolerance(1e-9, 0.0),
-        ];
+    fn best<'a>(&self) -> Columns<BestRow<'a>> {
+        let peak_to_peak = "Peak-to-peak of the transmission error, the largest of all loads.";
+        let slices = "Slices that were used on each stretch of the face without a closed form.";
+        let error = "Estimated relative error of the objective from positions and slices.";
+        let columns = Columns::new("best", "The best design that was found.")
+            .text("design", "Name of the design.", |row: &BestRow<'a>| row.name)
+            .key()
+            .float("objective", self.objective_unit(), "What was made small.", |row| finite(row.best.value))
+            .but(|column| column.tolerance(1e-9, 1e-6))
+            .float("peak_to_peak", "um", peak_to_peak, |row| row.peak_to_peak)
+            .but(|column| column.tolerance(1e-9, 1e-6))
+            .integer("evaluations", "How often the objective was computed.", |row| row.found.search.evaluations())
+            .integer("generations", "How many batches the search took.", |row| row.found.search.history().len())
+            .text("ended", "Why the search ended.", |row| row.found.reason.to_string())
+            .integer("positions", "Positions per base pitch that were used.", |row| row.found.settings.positions)
+            .integer("slices", slices, |row| row.found.settings.slices)
+            .float("error_estimate", "", error, |row| row.found.error)
+            .but(|column| column.tolerance(1e-9, 0.0));
         // On a plateau many designs are as good: values of variables are compared loosely.
-        columns.extend(self.template.variables().iter().map(|variable| {
-            Column::float(&column(variable), unit(variable), "Value of the variable in the best design.")
-                .tolerance(0.0, 1e-3)
-        }));
-        Schema::new("best", "The best design that was found.", columns)
+        self.template.variables().iter().enumerate().fold(columns, |columns, (at, variable)| {
+            let description = "Value of the variable in the best design.";
+            columns
+                .float(&column(variable), unit(variable), description, move |row| row.best.point[at])
+                .but(|column| column.tolerance(0.0, 1e-3))
+        })
     }
 
     fn history_schema(&self) -> Schema {
@@ -311,7 +325,7 @@ impl Optimizer {
     }
 
     fn tables(&self, found: &Found, pair: &GearPair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
-        let Found { search, reason, settings, error, .. } = found;
+        let search = &found.search;
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
@@ -319,24 +333,7 @@ impl Optimizer {
             self.torques.iter().map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
         let unit_of_objective = self.objective_unit();
         let shown = |value: f64| if value.is_finite() { in_unit(value, unit_of_objective) } else { f64::NAN };
-        let mut row: Row = vec![
-            self.name.as_str().into(),
-            shown(best.value).into(),
-            in_unit(peak_to_peak, "um").into(),
-            search.evaluations().into(),
-            search.history().len().into(),
-            reason.to_string().into(),
-            settings.positions.into(),
-            settings.slices.into(),
-            (*error).into(),
-        ];
-        row.extend(
-            self.template
-                .variables()
-                .iter()
-                .zip(&best.point)
-                .map(|(variable, value)| in_unit(*value, unit(variable)).into()),
-        );
+        let row = BestRow { name: &self.name, found, best, peak_to_peak };
         let history = search.history().iter().enumerate().map(|(index, generation)| -> Row {
             let reciprocal = |value: f64| 1.0 / shown(value);
             vec![
@@ -349,12 +346,12 @@ impl Optimizer {
                 reciprocal(generation.best_so_far).into(),
             ]
         });
-        let found = NamedDesign { name: self.name.clone(), elements: self.best_elements(&best.point) };
+        let design = NamedDesign { name: self.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
-            Table::from_rows(self.best_schema(), vec![row]).map_err(failed)?,
+            self.best().table(&[row]).map_err(failed)?,
             Table::from_rows(self.history_schema(), history.collect()).map_err(failed)?,
         ];
-        tables.extend(designs::write(&[found]).map_err(failed)?);
+        tables.extend(designs::write(&[design]).map_err(failed)?);
         Ok(tables)
     }
 }
@@ -365,13 +362,8 @@ impl Stage for Optimizer {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![
-            self.best_schema(),
-            self.history_schema(),
-            designs::designs_schema(),
-            designs::elements_schema(),
-            self.evaluations_schema(),
-        ]
+        let [designs, elements] = designs::schemas();
+        vec![self.best().schema(), self.history_schema(), designs, elements, self.evaluations_schema()]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {

@@ -20,10 +20,11 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCoun
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape};
 use declare::record::Record;
-use entry::ReportEntry;
-use figure::Figure;
+use entry::{ReportEntry, verdicts};
+use figure::{Figure, figures, marks};
+use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::schema::Schema;
 use verdict::Verdict;
 
 const WITH: Shape = Shape::Map(&Shape::Text);
@@ -131,12 +132,10 @@ impl Stage for Report {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let [figures, published] = figure::schemas();
-        vec![verdicts(), verdict_counts(), figures, published]
+        vec![verdicts().schema(), verdict_counts().schema(), figures().schema(), marks().schema()]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
-        let [figures, published] = figure::schemas();
         let points: Vec<u64> = self.figures.iter().map(|figure| figure.points(ahead)).collect();
         let (all, most) = (points.iter().sum::<u64>(), points.iter().copied().max().unwrap_or(0));
         let drawn = points.iter().map(|points| points.min(&MOST_DRAWN)).sum::<u64>();
@@ -144,43 +143,33 @@ impl Stage for Report {
             .holding(most.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
             .taking(all as f64 * SECONDS_OF_POINT + drawn as f64 * SECONDS_OF_DRAWN)
             .holding(self.entries.len() as u64 * 1000)
-            .rows(demand, verdicts(), RowCount::exact(self.entries.len()))
-            .rows(demand, verdict_counts(), RowCount::exact(Verdict::ALL.len()))
-            .rows(demand, figures, RowCount::exact(self.figures.len()))
-            .rows(demand, published, RowCount::exact(self.figures.iter().map(Figure::marks).sum()))
+            .rows(demand, verdicts().schema(), RowCount::exact(self.entries.len()))
+            .rows(demand, verdict_counts().schema(), RowCount::exact(Verdict::ALL.len()))
+            .rows(demand, figures().schema(), RowCount::exact(self.figures.len()))
+            .rows(demand, marks().schema(), RowCount::exact(self.figures.iter().map(Figure::marks).sum()))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let (mut rows, mut found) = (Vec::new(), Vec::new());
+        let (mut found, mut marked) = (Vec::new(), Vec::new());
         for entry in &self.entries {
             context.check_stop()?;
-            let finding = entry.find(inputs).map_err(Failure::Failed)?;
-            rows.push(finding.row);
-            found.push(finding.verdict);
+            found.push(entry.find(inputs).map_err(Failure::Failed)?);
         }
-        let count = |verdict: Verdict| found.iter().filter(|&&other| other == verdict).count();
-        let counts = Verdict::ALL.iter().enumerate().map(|(index, &verdict)| {
-            let (word, meaning) = (verdict.word(), verdict.meaning());
-            vec![
-                (index + 1).into(),
-                word.into(),
-                count(verdict).into(),
-                verdict.needs_attention().into(),
-                meaning.into(),
-            ]
-        });
-        let (mut drawn, mut marks) = (Vec::new(), Vec::new());
+        let count = |verdict| found.iter().filter(|finding| finding.verdict == verdict).count();
+        let counts = (1..).zip(Verdict::ALL).map(|(order, verdict)| CountRow { order, verdict, count: count(verdict) });
+        let counts: Vec<_> = counts.collect();
         for figure in &self.figures {
-            let (row, published) = figure.rows(inputs).map_err(Failure::Failed)?;
-            drawn.push(row);
-            marks.extend(published);
+            marked.extend(figure.marked(inputs).map_err(Failure::Failed)?);
         }
-        let [figures, published] = figure::schemas();
-        [(verdicts(), rows), (verdict_counts(), counts.collect()), (figures, drawn), (published, marks)]
-            .into_iter()
-            .filter(|(schema, _)| context.demand.table(&schema.name))
-            .map(|(schema, rows)| Table::from_rows(schema, rows).map_err(|error| Failure::new(error.to_string())))
-            .collect()
+        let drawn: Vec<&Figure> = self.figures.iter().collect();
+        let table = |name: &str| match name {
+            "verdicts" => verdicts().table(&found),
+            "verdict_counts" => verdict_counts().table(&counts),
+            "figures" => figures().table(&drawn),
+            _ => marks().table(&marked),
+        };
+        let wanted = self.outputs().into_iter().filter(|schema| context.demand.table(&schema.name));
+        wanted.map(|schema| table(&schema.name).map_err(|error| Failure::new(error.to_string()))).collect()
     }
 }
 
@@ -199,56 +188,21 @@ fn want(ports: &mut Vec<Port>, stage: &str, table: &str, columns: Vec<&str>) {
     wants[at].columns = all.into_iter().collect();
 }
 
-fn verdicts() -> Schema {
-    Schema::new(
-        "verdicts",
-        "What the paper printed, what was computed, and what is to be said about it.",
-        vec![
-            Column::integer("number", "Number of the entry, in the order of the study.").key(),
-            Column::text("label", "What it is, in words."),
-            Column::text("where", "Where the paper says it."),
-            Column::text("cell", "The computed cell, formula or claim."),
-            Column::text("with", "What the names in a formula or claim stand for."),
-            Column::text("kind", "Value or claim."),
-            Column::text("published_text", "The published value as printed, with its unit."),
-            Column::float("published", "", "The published value in the row's unit; for a claim the number of rows."),
-            Column::float(
-                "computed",
-                "",
-                "The computed value in the row's unit; for a claim the rows in which it holds.",
-            ),
-            Column::text("found", "For a claim: in how many rows it holds."),
-            Column::text("unit", "Unit of published, computed, difference, tolerance and expected."),
-            Column::float("difference", "", "Computed − published.").tolerance(1e-12, 1e-6),
-            Column::float("relative_difference", "", "(computed − published)/|published|; NaN where that is 0.")
-                .tolerance(1e-9, 1e-6)
-                .allows_nan(),
-            Column::float("tolerance", "", "How far apart the two may be and still agree."),
-            Column::float("expected", "", "The value the study stands by.").allows_nan(),
-            Column::float("expected_tolerance", "", "How far the computed value may be from the expected one.")
-                .allows_nan(),
-            Column::text("verdict", "Unexplained, moved, outdated, explained, refuted, reproduced or holds."),
-            Column::text("because", "Why they differ."),
-            Column::text("note", "A remark that claims no difference."),
-            Column::text("numbers", "The formula's names with their values."),
-            Column::text("proof", "The arithmetic that proves the reason, with its numbers."),
-            Column::text("failing", "For a claim: the rows in which it does not hold."),
-        ],
-    )
+/// How often a verdict was given, and its place among all, from 1.
+struct CountRow {
+    order: usize,
+    verdict: Verdict,
+    count: usize,
 }
 
-fn verdict_counts() -> Schema {
-    Schema::new(
-        "verdict_counts",
-        "How often each verdict was given, and what it means.",
-        vec![
-            Column::integer("order", "What needs attention comes first.").key(),
-            Column::text("verdict", "The verdict's word."),
-            Column::integer("count", "Entries with this verdict."),
-            Column::flag("needs_attention", "Whether somebody has to look at it."),
-            Column::text("meaning", "What it means."),
-        ],
-    )
+fn verdict_counts() -> Columns<CountRow> {
+    Columns::new("verdict_counts", "How often each verdict was given, and what it means.")
+        .integer("order", "What needs attention comes first.", |row: &CountRow| row.order)
+        .key()
+        .text("verdict", "The verdict's word.", |row| row.verdict.word())
+        .integer("count", "Entries with this verdict.", |row| row.count)
+        .flag("needs_attention", "Whether somebody has to look at it.", |row| row.verdict.needs_attention())
+        .text("meaning", "What it means.", |row| row.verdict.meaning())
 }
 
 #[cfg(test)]

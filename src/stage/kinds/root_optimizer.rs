@@ -10,15 +10,16 @@ use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
 use declare::seed::Seed;
-use declare::units::{LENGTH, in_unit};
+use declare::units::LENGTH;
 use gearmesh::gear::geometry::{Gear, Side};
 use gearmesh::gear::problem::{self, Problem, Stated, Variable, Worth};
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::search::{Candidate, Reason};
 use gearmesh::optimize::{self, Method};
-use studygraph::table::data::{Row, Table, TableError};
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::{Columns, finite};
+use studygraph::table::data::{Table, TableError};
+use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
     name: "root_optimizer",
@@ -67,29 +68,52 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }))
 }
 
-fn constraints_schema() -> Schema {
-    Schema::new(
-        "constraints",
-        "What the root that was found leaves of each constraint.",
-        vec![
-            Column::text("constraint", "What is to be kept.").key(),
-            Column::float("reserve", "mm", "How much is left; negative where it is broken.").tolerance(1e-6, 1e-3),
-            Column::flag("kept", "Whether it is kept, to within 1e-7 modules."),
-        ],
-    )
+/// A constraint, what is left of it, and whether it is kept.
+type ConstraintRow<'a> = (&'a str, f64, bool);
+
+fn constraints<'a>() -> Columns<ConstraintRow<'a>> {
+    Columns::new("constraints", "What the root that was found leaves of each constraint.")
+        .text("constraint", "What is to be kept.", |row: &ConstraintRow<'a>| row.0)
+        .key()
+        .float("reserve", "mm", "How much is left; negative where it is broken.", |row| row.1)
+        .but(|column| column.tolerance(1e-6, 1e-3))
+        .flag("kept", "Whether it is kept, to within 1e-7 modules.", |row| row.2)
 }
 
-fn variables_schema() -> Schema {
-    Schema::new(
-        "variables",
-        "The root that was found.",
-        vec![
-            Column::text("variable", "What was free.").key(),
-            Column::float("value", "mm", "Its value.").tolerance(1e-6, 1e-3),
-            Column::float("least", "mm", "The least that was allowed."),
-            Column::float("most", "mm", "The most that was allowed."),
-        ],
-    )
+/// What was free, and its value.
+type VariableRow<'a> = (&'a Variable, f64);
+
+fn variables<'a>() -> Columns<VariableRow<'a>> {
+    Columns::new("variables", "The root that was found.")
+        .text("variable", "What was free.", |row: &VariableRow| row.0.name)
+        .key()
+        .float("value", "mm", "Its value.", |row| row.1)
+        .but(|column| column.tolerance(1e-6, 1e-3))
+        .float("least", "mm", "The least that was allowed.", |row| row.0.least)
+        .float("most", "mm", "The most that was allowed.", |row| row.0.most)
+}
+
+/// How a search ended.
+struct BestRow<'a> {
+    side: Side,
+    best: &'a Candidate,
+    evaluations: usize,
+    reason: Reason,
+}
+
+/// A free value of a root that was tried, and what that root is worth.
+struct TriedRow<'a> {
+    /// Of the root, from 1.
+    number: usize,
+    variable: &'static str,
+    value: f64,
+    worth: &'a Worth,
+}
+
+impl TriedRow<'_> {
+    fn least_reserve(&self) -> f64 {
+        self.worth.constraints.iter().copied().fold(f64::INFINITY, f64::min)
+    }
 }
 
 impl RootOptimizer {
@@ -97,46 +121,33 @@ impl RootOptimizer {
         if self.problem.dimension() == LENGTH { "mm" } else { "" }
     }
 
-    fn best_schema(&self) -> Schema {
-        Schema::new(
-            "best",
-            "How the search ended.",
-            vec![
-                Column::text("gear", "Whose root it is.").key(),
-                Column::float("objective", self.unit(), "What was made small.").tolerance(1e-6, 1e-3),
-                Column::float(
-                    "violation",
-                    "",
-                    "Sum of what is broken of the constraints, in modules; 0 where all are kept.",
-                )
-                .tolerance(1e-6, 1e-3),
-                Column::integer("evaluations", "How often the objective was computed."),
-                Column::text("ended", "Why the search ended."),
-            ],
-        )
+    fn best<'a>(&self) -> Columns<BestRow<'a>> {
+        let violation = "Sum of what is broken of the constraints, in modules; 0 where all are kept.";
+        Columns::new("best", "How the search ended.")
+            .text("gear", "Whose root it is.", |row: &BestRow| row.side.name())
+            .key()
+            .float("objective", self.unit(), "What was made small.", |row| row.best.value)
+            .but(|column| column.tolerance(1e-6, 1e-3))
+            .float("violation", "", violation, |row| row.best.violation)
+            .but(|column| column.tolerance(1e-6, 1e-3))
+            .integer("evaluations", "How often the objective was computed.", |row| row.evaluations)
+            .text("ended", "Why the search ended.", |row| row.reason.to_string())
     }
 
-    fn evaluations_schema(&self) -> Schema {
-        Schema::new(
-            "evaluations",
-            "Every root that was tried, in the order of the search.",
-            vec![
-                Column::integer("evaluation", "Number, from 1.").key(),
-                Column::text("variable", "What was free.").key(),
-                Column::float("value", "mm", "Its value."),
-                Column::float("objective", self.unit(), "What is made small; NaN where there is no such root.")
-                    .allows_nan()
-                    .tolerance(1e-9, 1e-6),
-                Column::float(
-                    "least_reserve",
-                    "mm",
-                    "The least that a constraint leaves; NaN where there is no such root.",
-                )
-                .allows_nan()
-                .tolerance(1e-9, 1e-6),
-            ],
-        )
-        .on_demand()
+    fn evaluations<'a>(&self) -> Columns<TriedRow<'a>> {
+        let objective = "What is made small; NaN where there is no such root.";
+        let reserve = "The least that a constraint leaves; NaN where there is no such root.";
+        Columns::new("evaluations", "Every root that was tried, in the order of the search.")
+            .integer("evaluation", "Number, from 1.", |row: &TriedRow| row.number)
+            .key()
+            .text("variable", "What was free.", |row| row.variable)
+            .key()
+            .float("value", "mm", "Its value.", |row| row.value)
+            .float("objective", self.unit(), objective, |row| finite(row.worth.objective))
+            .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
+            .float("least_reserve", "mm", reserve, |row| finite(row.least_reserve()))
+            .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
+            .on_demand()
     }
 
     fn tables(
@@ -147,53 +158,24 @@ impl RootOptimizer {
         tried: &[(Vec<f64>, Worth)],
         gear: &Gear,
     ) -> Result<Vec<Table>, TableError> {
-        let variables = problem.variables();
-        let shown = |value: f64| if self.unit().is_empty() { value } else { in_unit(value, self.unit()) };
+        let free = problem.variables();
         let worth = problem.worth(&best.point);
-        let summary: Row = vec![
-            self.side.name().into(),
-            shown(best.value).into(),
-            best.violation.into(),
-            tried.len().into(),
-            reason.to_string().into(),
-        ];
         let kept = |reserve: f64| reserve >= -KEPT * gear.specification.module;
-        let constraints = problem.constraints().iter().zip(&worth.constraints);
-        let constraints = constraints.map(|(name, reserve)| -> Row {
-            vec![(*name).into(), in_unit(*reserve, "mm").into(), kept(*reserve).into()]
-        });
-        let found = variables.iter().zip(&best.point).map(|(variable, value)| -> Row {
-            let lengths = [*value, variable.least, variable.most].map(|length| in_unit(length, "mm").into());
-            [variable.name.into()].into_iter().chain(lengths).collect()
-        });
+        let names = problem.constraints();
+        let reserves = names.iter().zip(&worth.constraints);
+        let reserves: Vec<_> = reserves.map(|(name, reserve)| (*name, *reserve, kept(*reserve))).collect();
+        let found: Vec<_> = free.iter().zip(best.point.iter().copied()).collect();
+        let mut roots = Vec::new();
+        for (number, (point, worth)) in (1..).zip(tried) {
+            let values = free.iter().zip(point);
+            roots.extend(values.map(|(variable, &value)| TriedRow { number, variable: variable.name, value, worth }));
+        }
         Ok(vec![
-            Table::from_rows(self.best_schema(), vec![summary])?,
-            Table::from_rows(variables_schema(), found.collect())?,
-            Table::from_rows(constraints_schema(), constraints.collect())?,
-            Table::from_rows(self.evaluations_schema(), self.tried_rows(&variables, tried))?,
+            self.best().table(&[BestRow { side: self.side, best, evaluations: tried.len(), reason }])?,
+            variables().table(&found)?,
+            constraints().table(&reserves)?,
+            self.evaluations().table(&roots)?,
         ])
-    }
-
-    fn tried_rows(&self, variables: &[Variable], tried: &[(Vec<f64>, Worth)]) -> Vec<Row> {
-        let shown = |value: f64, unit: &str| match unit {
-            _ if !value.is_finite() => f64::NAN,
-            "" => value,
-            unit => in_unit(value, unit),
-        };
-        let row = |index: usize, variable: &Variable, value: f64, worth: &Worth| -> Row {
-            let least = worth.constraints.iter().copied().fold(f64::INFINITY, f64::min);
-            vec![
-                (index + 1).into(),
-                variable.name.into(),
-                in_unit(value, "mm").into(),
-                shown(worth.objective, self.unit()).into(),
-                shown(least, "mm").into(),
-            ]
-        };
-        let of_one = |(index, (point, worth)): (usize, &(Vec<f64>, Worth))| {
-            variables.iter().zip(point).map(|(variable, value)| row(index, variable, *value, worth)).collect::<Vec<_>>()
-        };
-        tried.iter().enumerate().flat_map(of_one).collect()
     }
 
     fn search(&self, variables: &[Variable], seed: Seed) -> Result<optimize::search::Optimizer, Diagnostic> {
@@ -208,23 +190,23 @@ impl Stage for RootOptimizer {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![self.best_schema(), variables_schema(), constraints_schema(), self.evaluations_schema()]
+        vec![self.best().schema(), variables().schema(), constraints().schema(), self.evaluations().schema()]
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let [variables, constraints] = self.problem.most();
-        let Ok(foreseen) = self.method.foresee(variables) else {
+        let [free, kept] = self.problem.most();
+        let Ok(foreseen) = self.method.foresee(free) else {
             return Estimate::new(true);
         };
-        let kept = (foreseen.evaluations as u64).saturating_mul(120);
-        let tried = RowCount::at_most(foreseen.evaluations.saturating_mul(variables));
+        let held = (foreseen.evaluations as u64).saturating_mul(120);
+        let tried = RowCount::at_most(foreseen.evaluations.saturating_mul(free));
         Estimate::new(true)
             .taking(self.problem.seconds() * foreseen.evaluations as f64)
-            .holding((foreseen.memory as u64).saturating_add(kept))
-            .rows(demand, self.best_schema(), RowCount::exact(1))
-            .rows(demand, variables_schema(), RowCount::at_most(variables))
-            .rows(demand, constraints_schema(), RowCount::at_most(constraints))
-            .rows(demand, self.evaluations_schema(), tried)
+            .holding((foreseen.memory as u64).saturating_add(held))
+            .rows(demand, self.best().schema(), RowCount::exact(1))
+            .rows(demand, variables().schema(), RowCount::at_most(free))
+            .rows(demand, constraints().schema(), RowCount::at_most(kept))
+            .rows(demand, self.evaluations().schema(), tried)
     }
 
     fn uses_seed(&self) -> bool {

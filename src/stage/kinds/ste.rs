@@ -11,10 +11,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use self::tables::{
-    Keyed, cost_row, cost_schema, curve_columns, curve_schema, harmonics_columns, harmonics_schema, summary_row,
-    summary_schema,
-};
+use self::samples::Samples;
+use self::tables::{Keyed, cost, curve_columns, curve_schema, harmonics_columns, harmonics_schema, summary};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape, count, joined};
@@ -180,8 +178,14 @@ impl Stage for Ste {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let [samples, sample_summary] = samples::schemas();
-        vec![summary_schema(), curve_schema(), harmonics_schema(), cost_schema(), samples, sample_summary]
+        vec![
+            summary().schema(),
+            curve_schema(),
+            harmonics_schema(),
+            cost().schema(),
+            samples::samples_schema(),
+            samples::summary().schema(),
+        ]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -260,11 +264,7 @@ impl Stage for Ste {
             })
             .collect::<Result<_, Failure>>()?;
 
-        let (mut summaries, mut costs): (Vec<Row>, Vec<Row>) = Default::default();
         for (&(design, torque), answer) in answered.iter().zip(&answers) {
-            let key = || -> Row { vec![designs[design].1.as_str().into(), torque.into()] };
-            summaries.push([key(), summary_row(answer, summary_pressure)].concat());
-            costs.push([key(), cost_row(answer)].concat());
             let (largest, module) = (answer.summary.largest.value, pair.pinion.specification.module);
             if largest > LARGE_APPROACH * module {
                 (context.warn)(format!(
@@ -296,27 +296,30 @@ impl Stage for Ste {
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
         let mut tables = vec![
-            Table::from_rows(narrowed(summary_schema()), summaries).map_err(failed)?,
+            summary().only(&narrowed(summary().schema())).table(&keyed).map_err(failed)?,
             Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
             Table::from_columns(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
         ];
         if context.demand.table("cost") {
-            tables.push(Table::from_rows(cost_schema(), costs).map_err(failed)?);
+            tables.push(cost().table(&keyed).map_err(failed)?);
         }
-        if samples::schemas().iter().any(|schema| context.demand.table(&schema.name)) {
-            let (mut rows, mut row): (Vec<Row>, Vec<Row>) = Default::default();
+        let [each, of_each] = ["samples", "sample_summary"].map(|table| context.demand.table(table));
+        if each || of_each {
+            let (mut rows, mut sums): (Vec<Row>, Vec<Keyed<Samples>>) = Default::default();
             for &(design, torque) in &tasks {
                 context.check_stop()?;
-                let key: Row = vec![designs[design].1.as_str().into(), torque.into()];
-                let loading = LoadCase::new(&base, &designs[design].0, torque);
-                let (taken, summary) = samples::rows(&loading, self.first_sample, self.samples);
+                let (design, name) = (&designs[design].0, designs[design].1.as_str());
+                let loading = LoadCase::new(&base, design, torque);
+                let (taken, sum) = samples::rows(&loading, self.first_sample, self.samples);
+                let key: Row = vec![name.into(), torque.into()];
                 rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
-                row.push([key, summary].concat());
+                sums.push((name, torque, sum));
             }
-            for (schema, rows) in samples::schemas().into_iter().zip([rows, row]) {
-                if context.demand.table(&schema.name) {
-                    tables.push(Table::from_rows(schema, rows).map_err(failed)?);
-                }
+            if each {
+                tables.push(Table::from_rows(samples::samples_schema(), rows).map_err(failed)?);
+            }
+            if of_each {
+                tables.push(samples::summary().table(&sums).map_err(failed)?);
             }
         }
         context.work.add(&base.work());

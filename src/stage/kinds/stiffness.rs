@@ -229,16 +229,8 @@ impl Stage for Stiffness {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let mut schemas = vec![
-            codec::compliance_schema(),
-            codec::neighbours_schema(),
-            codec::model_schema(),
-            curve().schema(),
-            summary().schema(),
-            mesh().schema(),
-            cost().schema(),
-            iso().schema(),
-        ];
+        let mut schemas = Vec::from(codec::schemas());
+        schemas.extend([curve().schema(), summary().schema(), mesh().schema(), cost().schema(), iso().schema()]);
         if self.teeth.method.root_stresses().is_some() {
             schemas.push(root_stress().schema());
         }

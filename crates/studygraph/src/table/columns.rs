@@ -6,6 +6,7 @@ use super::data::{Cell, Data, Table, TableError};
 use super::schema::{Column, Schema};
 use declare::units::showing;
 
+/// What stands in a column in the row of a `T`.
 type Getter<T> = Box<dyn Fn(&T) -> Cell>;
 
 /// The columns of a table and how to get them from a `T`, one per row.
@@ -70,6 +71,14 @@ impl<T> Columns<T> {
         self
     }
 
+    /// Only the columns that this schema has too.
+    #[must_use]
+    pub fn only(mut self, schema: &Schema) -> Self {
+        let all = std::mem::take(&mut self.schema.columns).into_iter().zip(self.getters);
+        (self.schema.columns, self.getters) = all.filter(|(column, _)| schema.column(&column.name).is_some()).unzip();
+        self
+    }
+
     #[must_use]
     pub fn schema(&self) -> Schema {
         self.schema.clone()
@@ -94,6 +103,12 @@ impl<T> Columns<T> {
         }
         Table::from_columns(self.schema, data)
     }
+}
+
+/// NaN, which a column can allow, for what is not finite, which none can.
+#[must_use]
+pub fn finite(value: f64) -> f64 {
+    if value.is_finite() { value } else { f64::NAN }
 }
 
 #[cfg(test)]
@@ -123,6 +138,23 @@ mod tests {
             (&[1, 2][..], &["left".to_owned(), "right".to_owned()][..])
         );
         assert!(table.floats("depth").iter().zip([-1.0, 3.0]).all(|(found, value)| (found - value).abs() < 1e-15));
+    }
+
+    #[test]
+    fn columns_that_nobody_wants_take_their_getters_with_them() {
+        let mut narrow = columns().schema();
+        narrow.columns.retain(|column| column.name != "depth");
+        let table = columns().only(&narrow).table(&[(2, 3e-6), (1, -1e-6)]).unwrap();
+        assert_eq!(*table.schema(), narrow);
+        assert_eq!(table.texts("side"), ["left", "right"]);
+    }
+
+    #[test]
+    fn what_is_not_finite_becomes_what_a_column_can_allow() {
+        let columns = || Columns::new("points", "").float("depth", "um", "", |depth: &f64| finite(*depth));
+        assert!(columns().table(&[f64::INFINITY]).is_err());
+        let table = columns().but(Column::allows_nan).table(&[f64::INFINITY, 0.0]).unwrap();
+        assert!(table.floats("depth")[0].is_nan() && table.floats("depth")[1] == 0.0);
     }
 
     #[test]

@@ -2,11 +2,11 @@
 //!
 //! Must not know: which root is drawn.
 
-use super::drawn::Drawn;
-use declare::units::in_unit;
+use super::drawn::{Drawn, of_gear};
+use gearmesh::gear::geometry::Side;
 use gearmesh::gear::problem::root_arc::RootArc;
-use studygraph::table::data::Row;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
+use studygraph::table::schema::Column;
 
 const OBJECTIVE: &str = "objective";
 
@@ -51,32 +51,28 @@ const LENGTHS: &[(&str, &str, Get)] = &[
     ("gap_optimal", "How far that arc passes outside the root circle.", |arc| arc.base.gap(arc.optimum())),
 ];
 
+/// A gear and its arc.
+pub type ArcRow = (Side, RootArc);
+
 #[must_use]
-pub fn schema() -> Schema {
-    let mut columns = vec![
-        Column::text("gear", "Which gear: pinion or gear.").key(),
-        Column::float("theta", "deg", "θ, the angle of A from the tooth's centreline (16)."),
-        Column::float("theta_printed", "deg", "The same as equation 26 is printed."),
-    ];
-    columns.extend(LENGTHS.iter().map(|(name, description, _)| {
-        let column = Column::float(name, "mm", description).tolerance(1e-9, 1e-9);
-        // F has no value where the centre lies farther across than the root circle reaches.
-        if *name == OBJECTIVE { column.allows_nan() } else { column }
-    }));
-    Schema::new(
-        "root_arc",
-        "The root arc of zhai2020; no row for a gear whose root circle is not inside its base circle.",
-        columns,
-    )
-    .on_demand()
+pub fn columns() -> Columns<ArcRow> {
+    let description = "The root arc of zhai2020; no row for a gear whose root circle is not inside its base circle.";
+    let theta = "θ, the angle of A from the tooth's centreline (16).";
+    let columns = of_gear(Columns::new("root_arc", description), |row: &ArcRow| row.0)
+        .float("theta", "deg", theta, |row| row.1.base.angle)
+        .float("theta_printed", "deg", "The same as equation 26 is printed.", |row| row.1.printed_angle());
+    let length = |columns: Columns<ArcRow>, &(name, description, get): &(&str, &str, Get)| {
+        let change = |column: Column| {
+            let column = column.tolerance(1e-9, 1e-9);
+            // F has no value where the centre lies farther across than the root circle reaches.
+            if name == OBJECTIVE { column.allows_nan() } else { column }
+        };
+        columns.float(name, "mm", description, move |row| get(&row.1)).but(change)
+    };
+    LENGTHS.iter().fold(columns, length).on_demand()
 }
 
 #[must_use]
-pub fn row(drawn: &Drawn) -> Option<Row> {
-    let arc = RootArc::new(&drawn.gear).ok()?;
-    let angles = [arc.base.angle, arc.printed_angle()].map(|angle| in_unit(angle, "deg").into());
-    let mut row: Row = vec![drawn.side.name().into()];
-    row.extend(angles);
-    row.extend(LENGTHS.iter().map(|(_, _, get)| in_unit(get(&arc), "mm").into()));
-    Some(row)
+pub fn row(drawn: &Drawn) -> Option<ArcRow> {
+    Some((drawn.side, RootArc::new(&drawn.gear).ok()?))
 }

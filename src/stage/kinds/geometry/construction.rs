@@ -5,33 +5,44 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::drawn::{Drawn, gear_column};
-use declare::units::in_unit;
+use super::drawn::{Drawn, of_gear};
+use gearmesh::gear::geometry::Side;
 use gearmesh::gear::geometry::outline::curve::OutlinePart;
 use gearmesh::gear::geometry::outline::sample::Density;
 use gearmesh::gear::problem::root_arc::RootArc;
-use studygraph::table::data::Row;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
 
 /// Points of an arc.
 const ARC: u32 = 90;
 
+/// A point of a curve.
+pub struct ArcPoint {
+    side: Side,
+    curve: &'static str,
+    /// From 1, as the run.
+    point: usize,
+    run: usize,
+    step: &'static str,
+    at: [f64; 2],
+}
+
 #[must_use]
-pub fn schema() -> Schema {
-    Schema::new(
-        "arc_drawing",
-        "How zhai2020 constructs the root arc: right half of a tooth, circles, points; no rows where there is no such arc.",
-        vec![
-            gear_column(),
-            Column::text("curve", "What is drawn; A, B, C and θ are points.").key(),
-            Column::integer("point", "Number of the point on it.").key(),
-            Column::integer("run", "Counts lines of one name that do not meet."),
-            Column::text("step", "boundary: up to the tangent in A (Figure 12); arc: what follows from it (Figure 14)."),
-            Column::float("x", "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
-            Column::float("y", "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
-        ],
-    )
-    .on_demand()
+pub fn columns() -> Columns<ArcPoint> {
+    let description = "How zhai2020 constructs the root arc: right half of a tooth, circles, points; no rows where \
+                       there is no such arc.";
+    let step = "boundary: up to the tangent in A (Figure 12); arc: what follows from it (Figure 14).";
+    of_gear(Columns::new("arc_drawing", description), |row: &ArcPoint| row.side)
+        .text("curve", "What is drawn; A, B, C and θ are points.", |row| row.curve)
+        .key()
+        .integer("point", "Number of the point on it.", |row| row.point)
+        .key()
+        .integer("run", "Counts lines of one name that do not meet.", |row| row.run)
+        .text("step", step, |row| row.step)
+        .float("x", "mm", "Place across, in the gear's frame.", |row| row.at[0])
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("y", "mm", "Place upwards, in the gear's frame.", |row| row.at[1])
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .on_demand()
 }
 
 /// The most rows of a gear with so many points on half a tooth.
@@ -48,7 +59,7 @@ struct Line {
 }
 
 #[must_use]
-pub fn rows(drawn: &Drawn, density: Density) -> Vec<Row> {
+pub fn rows(drawn: &Drawn, density: Density) -> Vec<ArcPoint> {
     let Ok(arc) = RootArc::new(&drawn.gear) else { return Vec::new() };
     let (base, circle) = (arc.base, arc.article());
     let ([a, c], r) = ([base.a, circle.centre], circle.radius);
@@ -102,13 +113,9 @@ pub fn rows(drawn: &Drawn, density: Density) -> Vec<Row> {
     ];
     let mut rows = Vec::new();
     for Line { curve, step, runs } in lines {
-        let points = runs.iter().enumerate().flat_map(|(run, points)| points.iter().map(move |point| (run, point)));
-        rows.extend(points.enumerate().map(|(at, (run, [x, y]))| -> Row {
-            let mut row: Row =
-                vec![drawn.side.name().into(), curve.into(), (at + 1).into(), (run + 1).into(), step.into()];
-            row.extend([x, y].map(|length| in_unit(*length, "mm").into()));
-            row
-        }));
+        let points = (1..).zip(&runs).flat_map(|(run, points)| points.iter().map(move |&at| (run, at)));
+        let row = |(point, (run, at))| ArcPoint { side: drawn.side, curve, point, run, step, at };
+        rows.extend((1..).zip(points).map(row));
     }
     rows
 }

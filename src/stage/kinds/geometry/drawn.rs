@@ -8,9 +8,10 @@ use declare::error::Failure;
 use declare::units::in_unit;
 use gearmesh::gear::geometry::outline::Outline;
 use gearmesh::gear::geometry::outline::curve::Local;
-use gearmesh::gear::geometry::outline::junction::Place;
+use gearmesh::gear::geometry::outline::junction::{Junction, Place};
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
 use gearmesh::gear::geometry::{Gear, Side};
+use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row};
 use studygraph::table::schema::{Column, Schema};
 
@@ -22,8 +23,9 @@ pub struct Drawn {
     pub outline: Outline,
 }
 
-pub fn gear_column() -> Column {
-    Column::text("gear", "Which gear: pinion or gear.").key()
+/// The column that says which gear a row is of.
+pub fn of_gear<T>(columns: Columns<T>, side: impl Fn(&T) -> Side + 'static) -> Columns<T> {
+    columns.text("gear", "Which gear: pinion or gear.", move |row| side(row).name()).key()
 }
 
 #[must_use]
@@ -32,7 +34,7 @@ pub fn outline_schema() -> Schema {
         "outline",
         "Points on the profile, counterclockwise; tooth 1 is symmetric about the gear's y axis.",
         vec![
-            gear_column(),
+            Column::text("gear", "Which gear: pinion or gear.").key(),
             Column::integer("tooth", "Number of the tooth, counterclockwise.").key(),
             Column::integer("point", "Number of the point on the tooth, from the middle of the space to its right.")
                 .key(),
@@ -98,50 +100,46 @@ impl Drawn {
             in_unit(x, "mm"),
             in_unit(y, "mm"),
             in_unit(libm::atan2(local.tangent[1], local.tangent[0]), "deg"),
-            per_millimetre(local.curvature),
+            in_unit(finite(local.curvature), "1/mm"),
         ];
         row.extend(values.map(Into::into));
         row
     }
 
     #[must_use]
-    pub fn junction_rows(&self) -> Vec<Row> {
-        let name = |index: usize| {
-            let segment = &self.outline.segments[index];
-            format!("{} {}", segment.part.name(), segment.curve.name())
+    pub fn junction_rows(&self) -> Vec<JunctionRow<'_>> {
+        (1..)
+            .zip(self.outline.junctions())
+            .map(|(number, junction)| JunctionRow { drawn: self, number, junction })
+            .collect()
+    }
+}
+
+/// Where two curves of a gear meet.
+pub struct JunctionRow<'a> {
+    drawn: &'a Drawn,
+    /// From 1.
+    number: usize,
+    junction: Junction,
+}
+
+impl JunctionRow<'_> {
+    /// Part and curve of the segments that end and begin.
+    fn names(&self) -> [String; 2] {
+        let segments = &self.drawn.outline.segments;
+        let last = segments.len() - 1;
+        let meeting = match self.junction.place {
+            Place::Space => [0, 0],
+            Place::Behind(at) => [at, at + 1],
+            Place::Centreline => [last, last],
         };
-        let last = self.outline.segments.len() - 1;
-        let row = |(index, junction): (usize, gearmesh::gear::geometry::outline::junction::Junction)| -> Row {
-            let (before, after) = match junction.place {
-                Place::Space => (0, 0),
-                Place::Behind(at) => (at, at + 1),
-                Place::Centreline => (last, last),
-            };
-            let [x, y] = junction.after.position;
-            vec![
-                self.side.name().into(),
-                (index + 1).into(),
-                name(before).into(),
-                name(after).into(),
-                in_unit(libm::hypot(x, y), "mm").into(),
-                in_unit(libm::atan2(-x, y), "deg").into(),
-                in_unit(junction.position_jump(), "um").into(),
-                in_unit(junction.tangent_jump(), "deg").into(),
-                per_millimetre(junction.before.curvature).into(),
-                per_millimetre(junction.after.curvature).into(),
-            ]
-        };
-        self.outline.junctions().into_iter().enumerate().map(row).collect()
+        meeting.map(|at| format!("{} {}", segments[at].part.name(), segments[at].curve.name()))
     }
 }
 
 fn turned(local: Local, sine: f64, cosine: f64) -> Local {
     let turn = |[x, y]: [f64; 2]| [cosine * x - sine * y, sine * x + cosine * y];
     Local { position: turn(local.position), tangent: turn(local.tangent), ..local }
-}
-
-fn per_millimetre(curvature: f64) -> f64 {
-    if curvature.is_finite() { in_unit(curvature, "1/mm") } else { f64::NAN }
 }
 
 /// The outlines of gears, so many teeth of each; `begin` is told the share that is done, tooth by tooth, and may end it.
@@ -172,32 +170,44 @@ pub fn outline_columns(
 }
 
 #[must_use]
-pub fn junctions_schema() -> Schema {
-    Schema::new(
-        "junctions",
-        "Where the curves of the right half of a tooth meet, from the middle of the space to the tooth's centreline.",
-        vec![
-            gear_column(),
-            Column::integer(
-                "junction",
-                "Number, upwards; the first is in the middle of the space, the last on the tooth's centreline.",
-            )
-            .key(),
-            Column::text("before", "Part and curve that end."),
-            Column::text("after", "Part and curve that begin."),
-            Column::float("radius", "mm", "Distance from the gear's centre."),
-            Column::float("angle", "deg", "Polar angle from the tooth's centreline, counterclockwise.")
-                .tolerance(1e-9, 1e-9),
-            Column::float("position_jump", "um", "How far the two curves are apart.").tolerance(1e-9, 1e-6),
-            Column::float("tangent_jump", "deg", "By how much the direction turns there, to the left.")
-                .tolerance(1e-5, 1e-6),
-            Column::float("curvature_before", "1/mm", "Curvature below; NaN where it is infinite.")
-                .allows_nan()
-                .tolerance(1e-6, 1e-6),
-            Column::float("curvature_after", "1/mm", "Curvature above; NaN where it is infinite.")
-                .allows_nan()
-                .tolerance(1e-6, 1e-6),
-        ],
-    )
-    .on_demand()
+pub fn junctions<'a>() -> Columns<JunctionRow<'a>> {
+    let description =
+        "Where the curves of the right half of a tooth meet, from the middle of the space to the tooth's centreline.";
+    let number = "Number, upwards; the first is in the middle of the space, the last on the tooth's centreline.";
+    let angle = "Polar angle from the tooth's centreline, counterclockwise.";
+    let turn = "By how much the direction turns there, to the left.";
+    let curvature = |column: Column| column.allows_nan().tolerance(1e-6, 1e-6);
+    of_gear(Columns::new("junctions", description), |row: &JunctionRow| row.drawn.side)
+        .integer("junction", number, |row| row.number)
+        .key()
+        .text("before", "Part and curve that end.", |row| {
+            let [before, _] = row.names();
+            before
+        })
+        .text("after", "Part and curve that begin.", |row| {
+            let [_, after] = row.names();
+            after
+        })
+        .float("radius", "mm", "Distance from the gear's centre.", |row| {
+            let [x, y] = row.junction.after.position;
+            libm::hypot(x, y)
+        })
+        .float("angle", "deg", angle, |row| {
+            let [x, y] = row.junction.after.position;
+            libm::atan2(-x, y)
+        })
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("position_jump", "um", "How far the two curves are apart.", |row| row.junction.position_jump())
+        .but(|column| column.tolerance(1e-9, 1e-6))
+        .float("tangent_jump", "deg", turn, |row| row.junction.tangent_jump())
+        .but(|column| column.tolerance(1e-5, 1e-6))
+        .float("curvature_before", "1/mm", "Curvature below; NaN where it is infinite.", |row| {
+            finite(row.junction.before.curvature)
+        })
+        .but(curvature)
+        .float("curvature_after", "1/mm", "Curvature above; NaN where it is infinite.", |row| {
+            finite(row.junction.after.curvature)
+        })
+        .but(curvature)
+        .on_demand()
 }

@@ -6,38 +6,48 @@
 use std::f64::consts::PI;
 
 use super::drawn::Drawn;
-use declare::units::in_unit;
 use gearmesh::gear::geometry::outline::sample::Density;
 use gearmesh::gear::geometry::{GearPair, Side};
-use studygraph::table::data::Row;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
 
 /// Half the angle of the circles that are drawn, in pitches.
 const REACH: f64 = 1.6;
 /// Points of an arc of a circle.
 const ARC: usize = 60;
 
+/// A point of a curve.
+pub struct DrawnPoint {
+    curve: &'static str,
+    /// From 1, as the point.
+    run: usize,
+    point: usize,
+    at: [f64; 2],
+}
+
 #[must_use]
-pub fn schema() -> Schema {
-    Schema::new(
-        "mesh_drawing",
-        "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre is the origin.",
-        vec![
-            Column::text("curve", "What is drawn: a gear, a line or circles.").key(),
-            Column::integer("run", "Counts lines that do not meet, such as the circles of the two gears.").key(),
-            Column::integer("point", "Number of the point on it.").key(),
-            Column::float("x", "mm", "Across the line of centres.").tolerance(1e-9, 1e-9),
-            Column::float("y", "mm", "Along the line of centres, from the pinion to the gear.").tolerance(1e-9, 1e-9),
-        ],
-    )
-    .on_demand()
+pub fn columns() -> Columns<DrawnPoint> {
+    let description = "The pair in mesh: teeth near the pitch point, path of contact, and circles. The pinion's centre \
+                       is the origin.";
+    let run = "Counts lines that do not meet, such as the circles of the two gears.";
+    Columns::new("mesh_drawing", description)
+        .text("curve", "What is drawn: a gear, a line or circles.", |row: &DrawnPoint| row.curve)
+        .key()
+        .integer("run", run, |row| row.run)
+        .key()
+        .integer("point", "Number of the point on it.", |row| row.point)
+        .key()
+        .float("x", "mm", "Across the line of centres.", |row| row.at[0])
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("y", "mm", "Along the line of centres, from the pinion to the gear.", |row| row.at[1])
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .on_demand()
 }
 
 /// The rows of a pair with its two profiles, the pinion's and the gear's.
 #[must_use]
-pub fn rows(pair: &GearPair, gears: &[Drawn], density: Density) -> Vec<Row> {
+pub fn rows(pair: &GearPair, gears: &[Drawn], density: Density) -> Vec<DrawnPoint> {
     let [pinion, gear] = gears else { return Vec::new() };
-    let mut lines: Vec<(&str, Vec<[f64; 2]>)> = Vec::new();
+    let mut lines: Vec<(&'static str, Vec<[f64; 2]>)> = Vec::new();
     let half_gear_pitch = PI / f64::from(pair.gear.specification.teeth);
     lines.push(("pinion", teeth(pinion, density, -1..=1, 0.0)));
     let upside_down = teeth(gear, density, -2..=1, half_gear_pitch);
@@ -69,9 +79,7 @@ pub fn rows(pair: &GearPair, gears: &[Drawn], density: Density) -> Vec<Row> {
     let mut rows = Vec::new();
     for (at, (name, points)) in lines.iter().enumerate() {
         let run = 1 + lines[..at].iter().filter(|(other, _)| other == name).count();
-        rows.extend(points.iter().enumerate().map(|(index, [x, y])| -> Row {
-            vec![(*name).into(), run.into(), (index + 1).into(), in_unit(*x, "mm").into(), in_unit(*y, "mm").into()]
-        }));
+        rows.extend((1..).zip(points).map(|(point, &at)| DrawnPoint { curve: name, run, point, at }));
     }
     rows
 }

@@ -2,94 +2,96 @@
 //!
 //! Must not know: how any of it is computed.
 
-use super::drawn::{Drawn, gear_column};
+use super::drawn::{Drawn, of_gear};
 use declare::units::in_unit;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::validity::{Mating, Validity};
-use studygraph::table::data::Row;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::columns::Columns;
+
+/// A gear, and how it meets its mate if it has one.
+pub type Mated<'a> = (&'a Drawn, Option<(&'a GearPair, Mating)>);
+
+/// A gear with what is known of it alone.
+pub struct ValidRow<'a> {
+    drawn: &'a Drawn,
+    alone: Validity,
+    mate: Option<(&'a GearPair, Mating)>,
+}
+
+impl<'a> ValidRow<'a> {
+    #[must_use]
+    pub fn new((drawn, mate): &Mated<'a>) -> Self {
+        Self { drawn, alone: Validity::new(&drawn.gear, &drawn.outline), mate: *mate }
+    }
+
+    fn module(&self) -> f64 {
+        self.drawn.gear.specification.module
+    }
+
+    /// NaN without a mate, whose columns are not there then.
+    fn mating(&self, get: impl Fn(&Mating) -> f64) -> f64 {
+        self.mate.as_ref().map_or(f64::NAN, |(_, mating)| get(mating))
+    }
+
+    fn fails(&self, test: impl Fn(&Mating) -> bool) -> bool {
+        self.mate.as_ref().is_some_and(|(_, mating)| test(mating))
+    }
+}
 
 /// With the columns of a pair, or of a gear alone.
 #[must_use]
-pub fn schema(paired: bool) -> Schema {
-    let mut columns = vec![
-        gear_column(),
-        Column::integer("teeth", "Number of teeth z."),
-        Column::float("profile_shift", "", "Profile shift coefficient x."),
-        Column::float(
-            "least_shift_sharp",
-            "",
-            "x_min = h_a*(z_min − z)/z_min of a sharp rack whose straight flank is h_a* deep, z_min = 2 h_a*/sin² α (zhai2020, 23).",
-        )
-        .tolerance(1e-12, 1e-9),
-        Column::float("least_shift", "", "x_min of this rack: below it the rack undercuts.").tolerance(1e-12, 1e-9),
-        Column::flag("undercut", "Whether the rack cuts into the involute, whatever root is drawn."),
-        Column::float("form_radius", "mm", "Where the flank begins in the profile as drawn."),
-        Column::float("root_gap", "mm", "How far the bottom of the space as drawn lies above the root circle.")
-            .tolerance(1e-9, 1e-9),
-        Column::float("tip_thickness", "mm", "Arc thickness of the unmodified tooth at the tip."),
-        Column::float("tip_thickness_in_modules", "", "The same, in modules; 0.2 to 0.4 are usual least values."),
-        Column::float("apex_radius", "mm", "Where the flanks would meet in a point."),
-    ];
-    if paired {
-        columns.extend([
-            Column::float("active_radius", "mm", "Where the mate's tip reaches."),
-            Column::float("contact_reserve", "deg", "Roll angle from the form radius to the active radius.")
-                .tolerance(1e-9, 1e-9),
-            Column::flag("interference", "Whether the mate's tip reaches below the flank."),
-            Column::float(
-                "root_distance",
-                "um",
-                "Least distance of the mate's tip, broken as drawn, from the root as drawn, on its whole way past it; negative where it cuts in.",
-            )
-            .tolerance(1e-6, 1e-9),
-            Column::flag("root_interference", "Whether the mate's tip cuts into the root."),
-            Column::float("clearance", "mm", "Between the root circle and the mate's tip."),
-            Column::float(
-                "missing_tip_shortening",
-                "",
-                "By how many modules the mate's tip is to be lower for the rack's own clearance; negative where there is more.",
-            )
-            .tolerance(1e-12, 1e-9),
-            Column::float("contact_ratio", "", "Transverse contact ratio ε_α."),
-        ]);
-    }
-    let description = "How far each gear is from what it must not be.";
-    Schema::new("validity", description, columns).on_demand()
+pub fn columns<'a>(paired: bool) -> Columns<ValidRow<'a>> {
+    let sharp = "x_min = h_a*(z_min − z)/z_min of a sharp rack whose straight flank is h_a* deep, z_min = 2 h_a*/sin² \
+                 α (zhai2020, 23).";
+    let undercut = "Whether the rack cuts into the involute, whatever root is drawn.";
+    let gap = "How far the bottom of the space as drawn lies above the root circle.";
+    let in_modules = "The same, in modules; 0.2 to 0.4 are usual least values.";
+    let columns =
+        of_gear(Columns::new("validity", "How far each gear is from what it must not be."), |row: &ValidRow| {
+            row.drawn.side
+        })
+        .integer("teeth", "Number of teeth z.", |row| row.drawn.gear.specification.teeth)
+        .float("profile_shift", "", "Profile shift coefficient x.", |row| row.drawn.gear.specification.profile_shift)
+        .float("least_shift_sharp", "", sharp, |row| row.alone.least_shift_sharp)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("least_shift", "", "x_min of this rack: below it the rack undercuts.", |row| row.alone.least_shift)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .flag("undercut", undercut, |row| row.drawn.gear.undercut)
+        .float("form_radius", "mm", "Where the flank begins in the profile as drawn.", |row| row.alone.form_radius)
+        .float("root_gap", "mm", gap, |row| row.alone.root_gap)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("tip_thickness", "mm", "Arc thickness of the unmodified tooth at the tip.", |row| {
+            row.alone.tip_thickness
+        })
+        .float("tip_thickness_in_modules", "", in_modules, |row| row.alone.tip_thickness / row.module())
+        .float("apex_radius", "mm", "Where the flanks would meet in a point.", |row| row.alone.apex_radius)
+        .on_demand();
+    if paired { of_mate(columns) } else { columns }
 }
 
-/// The row of a gear, with its mate if it has one.
-#[must_use]
-pub fn row(drawn: &Drawn, mate: Option<(&GearPair, Mating)>) -> Row {
-    let gear = &drawn.gear;
-    let module = gear.specification.module;
-    let alone = Validity::new(gear, &drawn.outline);
-    let mut row: Row = vec![
-        drawn.side.name().into(),
-        gear.specification.teeth.into(),
-        gear.specification.profile_shift.into(),
-        alone.least_shift_sharp.into(),
-        alone.least_shift.into(),
-        gear.undercut.into(),
-        in_unit(alone.form_radius, "mm").into(),
-        in_unit(alone.root_gap, "mm").into(),
-        in_unit(alone.tip_thickness, "mm").into(),
-        (alone.tip_thickness / module).into(),
-        in_unit(alone.apex_radius, "mm").into(),
-    ];
-    if let Some((pair, mating)) = mate {
-        row.extend([
-            in_unit(mating.active_radius, "mm").into(),
-            in_unit(mating.contact_reserve, "deg").into(),
-            mating.interferes().into(),
-            in_unit(mating.root_distance, "um").into(),
-            mating.cuts_root(module).into(),
-            in_unit(mating.clearance, "mm").into(),
-            mating.missing_tip_shortening.into(),
-            pair.contact_ratio.into(),
-        ]);
-    }
-    row
+fn of_mate(columns: Columns<ValidRow>) -> Columns<ValidRow> {
+    let distance = "Least distance of the mate's tip, broken as drawn, from the root as drawn, on its whole way past \
+                    it; negative where it cuts in.";
+    let shortening = "By how many modules the mate's tip is to be lower for the rack's own clearance; negative where \
+                      there is more.";
+    let reserve = "Roll angle from the form radius to the active radius.";
+    let clearance = "Between the root circle and the mate's tip.";
+    columns
+        .float("active_radius", "mm", "Where the mate's tip reaches.", |row| row.mating(|mating| mating.active_radius))
+        .float("contact_reserve", "deg", reserve, |row| row.mating(|mating| mating.contact_reserve))
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .flag("interference", "Whether the mate's tip reaches below the flank.", |row| row.fails(Mating::interferes))
+        .float("root_distance", "um", distance, |row| row.mating(|mating| mating.root_distance))
+        .but(|column| column.tolerance(1e-6, 1e-9))
+        .flag("root_interference", "Whether the mate's tip cuts into the root.", |row| {
+            row.fails(|mating| mating.cuts_root(row.module()))
+        })
+        .float("clearance", "mm", clearance, |row| row.mating(|mating| mating.clearance))
+        .float("missing_tip_shortening", "", shortening, |row| row.mating(|mating| mating.missing_tip_shortening))
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("contact_ratio", "", "Transverse contact ratio ε_α.", |row| {
+            row.mate.map_or(f64::NAN, |(pair, _)| pair.contact_ratio)
+        })
 }
 
 /// What is to be said of a root that the mate does not pass.

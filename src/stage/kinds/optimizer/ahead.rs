@@ -3,7 +3,7 @@
 //! Must not know: how any method searches.
 
 use super::Optimizer;
-use crate::stage::designs::{designs_schema, elements_schema, rows_of};
+use crate::stage::designs::{self, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
 use gearmesh::gear::work::CONTACT_SOLVES;
@@ -27,13 +27,14 @@ impl Optimizer {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (foreseen.evaluations as f64 * self.torques.len() as f64 * each) as usize;
         let kept = if demand.table("evaluations") { foreseen.evaluations as u64 } else { 0 };
+        let [designs, elements] = designs::schemas();
         Estimate::new(true)
             .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))
             .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
-            .rows(demand, self.best_schema(), RowCount::exact(1))
+            .rows(demand, self.best().schema(), RowCount::exact(1))
             .rows(demand, self.history_schema(), as_many(foreseen.batches))
-            .rows(demand, designs_schema(), RowCount::exact(1))
-            .rows(demand, elements_schema(), RowCount::exact(self.elements.iter().map(rows_of).sum()))
+            .rows(demand, designs, RowCount::exact(1))
+            .rows(demand, elements, RowCount::exact(self.elements.iter().map(rows_of).sum()))
             .columns(demand, self.evaluations_schema(), as_many(foreseen.evaluations))
     }
 }

@@ -12,7 +12,8 @@ use crate::stage::Inputs;
 use declare::error::{Diagnostic, Place};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
-use studygraph::table::data::Row;
+use studygraph::table::columns::Columns;
+use studygraph::table::schema::Column;
 
 /// Names that a proof may use without giving them.
 const GIVEN: [&str; 2] = ["published", "computed"];
@@ -48,10 +49,77 @@ pub struct ReportEntry {
 }
 
 /// What came of an entry.
-pub struct Finding {
+pub struct Finding<'a> {
+    entry: &'a ReportEntry,
+    comparison: Comparison,
     pub verdict: Verdict,
-    /// A row of the table of verdicts.
-    pub row: Row,
+    /// In how many rows a claim holds, in words.
+    found: String,
+    /// The formula's names with their values.
+    numbers: String,
+    proof: String,
+    /// The rows in which a claim does not hold.
+    failing: String,
+}
+
+impl Finding<'_> {
+    fn difference(&self) -> f64 {
+        self.comparison.computed - self.comparison.published
+    }
+
+    fn relative_difference(&self) -> f64 {
+        let published = self.comparison.published;
+        if published == 0.0 { f64::NAN } else { self.difference() / published.abs() }
+    }
+
+    /// The value the study stands by, and its tolerance.
+    fn expected(&self) -> (f64, f64) {
+        self.comparison.expected.unwrap_or((f64::NAN, f64::NAN))
+    }
+}
+
+/// Values in the row's unit, as printed.
+pub fn verdicts<'a>() -> Columns<Finding<'a>> {
+    let description = "What the paper printed, what was computed, and what is to be said about it.";
+    let with = "What the names in a formula or claim stand for.";
+    let published = "The published value in the row's unit; for a claim the number of rows.";
+    let computed = "The computed value in the row's unit; for a claim the rows in which it holds.";
+    let unit = "Unit of published, computed, difference, tolerance and expected.";
+    let relative = "(computed − published)/|published|; NaN where that is 0.";
+    let tolerance = "How far apart the two may be and still agree.";
+    let expected_tolerance = "How far the computed value may be from the expected one.";
+    let verdict = "Unexplained, moved, outdated, explained, refuted, reproduced or holds.";
+    let proof = "The arithmetic that proves the reason, with its numbers.";
+    Columns::new("verdicts", description)
+        .integer("number", "Number of the entry, in the order of the study.", |row: &Finding<'a>| row.entry.number)
+        .key()
+        .text("label", "What it is, in words.", |row| row.entry.label.as_str())
+        .text("where", "Where the paper says it.", |row| row.entry.location.as_str())
+        .text("cell", "The computed cell, formula or claim.", |row| row.entry.subject.text())
+        .text("with", with, |row| row.entry.subject.with())
+        .text("kind", "Value or claim.", |row| if row.comparison.is_claim { "claim" } else { "value" })
+        .text("published_text", "The published value as printed, with its unit.", |row| {
+            row.entry.published.as_ref().map_or("holds", |target| target.stated.text.as_str())
+        })
+        .float("published", "", published, |row| row.comparison.published)
+        .float("computed", "", computed, |row| row.comparison.computed)
+        .text("found", "For a claim: in how many rows it holds.", |row| row.found.clone())
+        .text("unit", unit, |row| row.entry.unit())
+        .float("difference", "", "Computed − published.", Finding::difference)
+        .but(|column| column.tolerance(1e-12, 1e-6))
+        .float("relative_difference", "", relative, Finding::relative_difference)
+        .but(|column| column.tolerance(1e-9, 1e-6).allows_nan())
+        .float("tolerance", "", tolerance, |row| row.comparison.tolerance)
+        .float("expected", "", "The value the study stands by.", |row| row.expected().0)
+        .but(Column::allows_nan)
+        .float("expected_tolerance", "", expected_tolerance, |row| row.expected().1)
+        .but(Column::allows_nan)
+        .text("verdict", verdict, |row| row.verdict.word())
+        .text("because", "Why they differ.", |row| row.entry.because.as_str())
+        .text("note", "A remark that claims no difference.", |row| row.entry.note.as_str())
+        .text("numbers", "The formula's names with their values.", |row| row.numbers.clone())
+        .text("proof", proof, |row| row.proof.clone())
+        .text("failing", "For a claim: the rows in which it does not hold.", |row| row.failing.clone())
 }
 
 impl ReportEntry {
@@ -140,16 +208,16 @@ impl ReportEntry {
     ///
     /// # Errors
     /// A sentence that names the entry.
-    pub fn find(&self, inputs: &Inputs) -> Result<Finding, String> {
+    pub fn find(&self, inputs: &Inputs) -> Result<Finding<'_>, String> {
         self.compare(inputs).map_err(|problem| {
             let location = if self.location.is_empty() { String::new() } else { format!(", {}", self.location) };
             format!("`published` entry {} (line {}{location}): {problem}", self.number, self.place.line)
         })
     }
 
-    fn compare(&self, inputs: &Inputs) -> Result<Finding, String> {
-        let unit = self.published.as_ref().map_or("", |target| target.stated.unit.as_str());
-        let (computed, total, numbers, remark) = match &self.subject {
+    fn compare(&self, inputs: &Inputs) -> Result<Finding<'_>, String> {
+        let unit = self.unit();
+        let (computed, total, numbers, failing) = match &self.subject {
             Subject::Cell(operand) => {
                 let values = operand.resolve(inputs)?;
                 (self.in_published_unit(values.single(&operand.text)?)?, 0.0, String::new(), String::new())
@@ -188,41 +256,19 @@ impl ReportEntry {
         };
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
-        let verdict =
-            Comparison { published, computed, tolerance, expected, has_reason, proof_holds, is_claim }.judge()?;
-        let (cell, with) = self.subject.written();
-        let stated = self.published.as_ref().map_or_else(|| "holds".to_owned(), |target| target.stated.text.clone());
+        let comparison = Comparison { published, computed, tolerance, expected, has_reason, proof_holds, is_claim };
+        let verdict = comparison.judge()?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),
             (true, true) => format!("holds in {computed} of {total}"),
             (true, false) => (if computed > 0.0 { "holds" } else { "does not hold" }).to_owned(),
         };
-        let difference = computed - published;
-        let row = vec![
-            self.number.into(),
-            self.label.as_str().into(),
-            self.location.as_str().into(),
-            cell.into(),
-            with.into(),
-            (if is_claim { "claim" } else { "value" }).into(),
-            stated.into(),
-            published.into(),
-            computed.into(),
-            found.into(),
-            unit.into(),
-            difference.into(),
-            (if published == 0.0 { f64::NAN } else { difference / published.abs() }).into(),
-            tolerance.into(),
-            expected.map_or(f64::NAN, |(value, _)| value).into(),
-            expected.map_or(f64::NAN, |(_, tolerance)| tolerance).into(),
-            verdict.word().into(),
-            self.because.as_str().into(),
-            self.note.as_str().into(),
-            numbers.into(),
-            proof.into(),
-            remark.into(),
-        ];
-        Ok(Finding { verdict, row })
+        Ok(Finding { entry: self, comparison, verdict, found, numbers, proof, failing })
+    }
+
+    /// Of the published value; none for a claim.
+    fn unit(&self) -> &str {
+        self.published.as_ref().map_or("", |target| target.stated.unit.as_str())
     }
 
     fn in_published_unit(&self, number: Number) -> Result<f64, String> {
@@ -236,7 +282,7 @@ impl ReportEntry {
         let Some(Proof { claim, with }) = &self.proof else { return Ok(None) };
         let rows = OperandRows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
         rows.single(claim).map_err(|problem| format!("proof: {problem}"))?;
-        let unit = self.published.as_ref().map_or("", |target| target.stated.unit.as_str());
+        let unit = self.unit();
         // A value that is not known yet is NaN, which no formula lets pass.
         let number = |value: f64| if value.is_nan() { Ok(Number::plain(value)) } else { in_si(value, unit) };
         let given = (number(published)?, number(computed)?);
@@ -253,14 +299,22 @@ impl ReportEntry {
 }
 
 impl Subject {
-    /// The cell, formula or claim as written, and what its names stand for.
-    fn written(&self) -> (String, String) {
+    /// The cell, formula or claim as written.
+    fn text(&self) -> &str {
         match self {
-            Self::Cell(operand) => (operand.text.clone(), String::new()),
-            Self::Formula(formula, with) | Self::Claim(formula, with) => {
+            Self::Cell(operand) => &operand.text,
+            Self::Formula(formula, _) | Self::Claim(formula, _) => &formula.text,
+        }
+    }
+
+    /// What its names stand for.
+    fn with(&self) -> String {
+        match self {
+            Self::Cell(_) => String::new(),
+            Self::Formula(_, with) | Self::Claim(_, with) => {
                 let with: Vec<String> =
                     with.iter().map(|(name, operand)| format!("{name} = {}", operand.text)).collect();
-                (formula.text.clone(), with.join("; "))
+                with.join("; ")
             }
         }
     }

@@ -11,8 +11,9 @@ use declare::parameter::{Choice, Field, Shape};
 use declare::record::{Record, Value};
 use declare::text::is_device;
 use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
-use studygraph::table::data::{Data, Row, Table};
-use studygraph::table::schema::{Column, Schema, Type};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::{Data, Table};
+use studygraph::table::schema::{Column, Type};
 use studygraph::table::select::{rows_where, unknown_column};
 
 const KINDS: &[Choice] = &[
@@ -184,15 +185,15 @@ impl Figure {
         self.published.len()
     }
 
-    /// The rows of the tables `figures` and `figure_published`.
+    /// Checks it against the tables; gives its rows of the table `figure_published`.
     ///
     /// # Errors
     /// When a column is missing, holds no numbers, or no row meets the conditions.
-    pub fn rows(&self, inputs: &Inputs) -> Result<(Row, Vec<Row>), String> {
+    pub fn marked(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, String> {
         self.resolve(inputs).map_err(|problem| format!("figure `{}` (line {}): {problem}", self.name, self.line))
     }
 
-    fn resolve(&self, inputs: &Inputs) -> Result<(Row, Vec<Row>), String> {
+    fn resolve(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, String> {
         let mut units: Option<(String, String)> = None;
         for (stage, name) in &self.tables {
             let table = table(stage, name, inputs)?;
@@ -212,40 +213,18 @@ impl Figure {
             y_unit.clear();
         }
         let mut marks = Vec::new();
-        for (index, mark) in self.published.iter().enumerate() {
+        for (number, mark) in (1..).zip(&self.published) {
             let along =
                 |place: &Option<Place>, unit: &str| place.as_ref().map_or(Ok(f64::NAN), |place| place.along(unit));
-            let row: Row = vec![
-                self.number.into(),
-                (index + 1).into(),
-                mark.label.as_str().into(),
-                along(&mark.x, &x_unit)?.into(),
-                along(&mark.y, &y_unit)?.into(),
-            ];
-            marks.push(row);
+            let (x, y) = (along(&mark.x, &x_unit)?, along(&mark.y, &y_unit)?);
+            marks.push(MarkRow { figure: self.number, number, label: &mark.label, x, y });
         }
-        let tables: Vec<String> = self.tables.iter().map(|(stage, table)| format!("{stage}.{table}")).collect();
-        let conditions: Vec<String> =
-            self.conditions.iter().map(|(column, value)| format!("{column}={value}")).collect();
-        let mut row: Row = vec![self.number.into()];
-        let texts = [
-            self.name.as_str(),
-            &self.title,
-            self.kind,
-            &tables.join(", "),
-            &self.x,
-            &self.y.join(", "),
-            &self.series,
-            &self.segments,
-            &self.reference.as_ref().map(|(stage, table)| format!("{stage}.{table}")).unwrap_or_default(),
-            &conditions.join(", "),
-            &self.x_label,
-            &self.y_label,
-            self.log,
-            &self.note,
-        ];
-        row.extend(texts.map(Into::into));
-        Ok((row, marks))
+        Ok(marks)
+    }
+
+    fn conditions(&self) -> String {
+        let conditions = self.conditions.iter().map(|(column, value)| format!("{column}={value}"));
+        conditions.collect::<Vec<_>>().join(", ")
     }
 
     /// Whether the reference has one value for each column of the y axis, in its unit, by which can be divided.
@@ -380,39 +359,52 @@ pub fn check_names(figures: &[Figure], records: &[&Record]) -> Result<(), Diagno
     Ok(())
 }
 
+fn dotted<'a>(tables: impl IntoIterator<Item = &'a (String, String)>) -> String {
+    let tables = tables.into_iter().map(|(stage, table)| format!("{stage}.{table}"));
+    tables.collect::<Vec<_>>().join(", ")
+}
+
 #[must_use]
-pub fn schemas() -> [Schema; 2] {
-    let figures = Schema::new(
-        "figures",
-        "Figures of the report: what is drawn from which table.",
-        vec![
-            Column::integer("figure", "Number of the figure, in the order of the study.").key(),
-            Column::text("name", "Name of the file in `figures/`."),
-            Column::text("title", "What is shown."),
-            Column::text("kind", "Line, points, bar or drawing."),
-            Column::text("tables", "The tables it is drawn from, `stage.table`, separated by commas."),
-            Column::text("x", "Column of the x axis."),
-            Column::text("y", "Columns of the y axis, separated by commas."),
-            Column::text("series", "Column whose values are drawn apart."),
-            Column::text("segments", "Column at whose changes a line is interrupted."),
-            Column::text("reference", "The table from whose values the relative distance is drawn."),
-            Column::text("conditions", "The rows that are drawn, `column=value`, separated by commas."),
-            Column::text("x_label", "Name of the x axis, if not that of the column."),
-            Column::text("y_label", "Name of the y axis, if not that of the column."),
-            Column::text("log", "Axes with a logarithmic scale: none, x, y, both."),
-            Column::text("note", "What to see in it."),
-        ],
-    );
-    let published = Schema::new(
-        "figure_published",
-        "Published points and lines drawn into the figures.",
-        vec![
-            Column::integer("figure", "Number of the figure.").key(),
-            Column::integer("number", "Number of the point in the figure.").key(),
-            Column::text("label", "Name in the legend."),
-            Column::float("x", "", "Place on the x axis in the axis' unit; NaN for a line across.").allows_nan(),
-            Column::float("y", "", "Place on the y axis in the axis' unit; NaN for an upright line.").allows_nan(),
-        ],
-    );
-    [figures, published]
+pub fn figures<'a>() -> Columns<&'a Figure> {
+    let conditions = "The rows that are drawn, `column=value`, separated by commas.";
+    Columns::new("figures", "Figures of the report: what is drawn from which table.")
+        .integer("figure", "Number of the figure, in the order of the study.", |row: &&'a Figure| row.number)
+        .key()
+        .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
+        .text("title", "What is shown.", |row| row.title.as_str())
+        .text("kind", "Line, points, bar or drawing.", |row| row.kind)
+        .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
+        .text("x", "Column of the x axis.", |row| row.x.as_str())
+        .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
+        .text("series", "Column whose values are drawn apart.", |row| row.series.as_str())
+        .text("segments", "Column at whose changes a line is interrupted.", |row| row.segments.as_str())
+        .text("reference", "The table from whose values the relative distance is drawn.", |row| dotted(&row.reference))
+        .text("conditions", conditions, |row| row.conditions())
+        .text("x_label", "Name of the x axis, if not that of the column.", |row| row.x_label.as_str())
+        .text("y_label", "Name of the y axis, if not that of the column.", |row| row.y_label.as_str())
+        .text("log", "Axes with a logarithmic scale: none, x, y, both.", |row| row.log)
+        .text("note", "What to see in it.", |row| row.note.as_str())
+}
+
+/// A published point or line in the units of its figure's axes.
+pub struct MarkRow<'a> {
+    figure: usize,
+    number: usize,
+    label: &'a str,
+    x: f64,
+    y: f64,
+}
+
+#[must_use]
+pub fn marks<'a>() -> Columns<MarkRow<'a>> {
+    Columns::new("figure_published", "Published points and lines drawn into the figures.")
+        .integer("figure", "Number of the figure.", |row: &MarkRow<'a>| row.figure)
+        .key()
+        .integer("number", "Number of the point in the figure.", |row| row.number)
+        .key()
+        .text("label", "Name in the legend.", |row| row.label)
+        .float("x", "", "Place on the x axis in the axis' unit; NaN for a line across.", |row| row.x)
+        .but(Column::allows_nan)
+        .float("y", "", "Place on the y axis in the axis' unit; NaN for an upright line.", |row| row.y)
+        .but(Column::allows_nan)
 }

@@ -9,6 +9,7 @@ use declare::record::{PlacedValue as Item, Value};
 use declare::seed::Seed;
 use declare::work::Tally;
 use studygraph::table::data::Cell;
+use studygraph::table::schema::Column;
 
 type Fields<'a> = &'a [(&'static str, Value)];
 

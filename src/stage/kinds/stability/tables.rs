@@ -4,143 +4,155 @@
 
 use std::collections::BTreeMap;
 
-use gearmesh::gear::stability::{DigitsLost, Report, Verdict};
-use studygraph::table::data::{Row, Table, TableError};
+use gearmesh::gear::stability::{DigitsLost, Finding, Report, Verdict};
+use studygraph::table::columns::{Columns, finite};
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
+
+/// The case a row is of, and the axis that lies on.
+#[derive(Clone, Copy)]
+struct CaseOf<'a> {
+    name: &'a str,
+    axis: &'static str,
+}
+
+/// The case, the column that tells its rows apart, and its axis: how the tables begin that have rows of every case.
+fn of_case<'a, T>(
+    columns: Columns<T>,
+    (name, description): (&str, &str),
+    get: impl Fn(&T) -> (CaseOf<'a>, &'static str) + Copy + 'static,
+) -> Columns<T> {
+    let case = "Name of the case: an axis with its value, a trap, or a sample.";
+    let axis = "The axis the case lies on; `trap` and `sample` for those that lie on none.";
+    columns
+        .text("case", case, move |row| get(row).0.name)
+        .key()
+        .text(name, description, move |row| get(row).1)
+        .key()
+        .text("axis", axis, move |row| get(row).0.axis)
+}
+
+/// What was found of an invariant of a case.
+type CheckRow<'a> = (CaseOf<'a>, &'a Finding);
+
+fn checks<'a>() -> Columns<CheckRow<'a>> {
+    // All of it is the same bits on any processor but what faer factorised: compliances of finite elements move by
+    // 1e-9, and with them residuals by as many roundings, jumps and differences by 1e-12. Digits lost are of other
+    // methods, or of geometry alone.
+    let factorised = |column: Column| column.tolerance(1e-11, 1e-6).allows_nan();
+    let columns = Columns::new("checks", "What was found of every invariant of every case.");
+    of_case(columns, ("invariant", "What must hold."), |row: &CheckRow<'a>| (row.0, row.1.invariant))
+        .float("value", "", "How far it is from holding, as the limit counts it.", |row| finite(row.1.value))
+        .but(factorised)
+        .float("limit", "", "What the value may be; NaN where the case is refused.", |row| finite(row.1.limit))
+        .but(factorised)
+        .text("verdict", "holds, broken or refused.", |row| row.1.verdict.word())
+        .text("reason", "Why it is refused, or that the value is not a number.", |(_, finding)| {
+            let strange = finding.verdict != Verdict::Refused && !finding.value.is_finite();
+            if strange { format!("the value is {}", finding.value) } else { finding.reason.clone() }
+        })
+}
+
+/// A case, its place on its axis, and what was found of one of its quantities.
+type DigitsRow<'a> = (CaseOf<'a>, f64, &'a DigitsLost);
+
+fn digits<'a>() -> Columns<DigitsRow<'a>> {
+    let description = "The kernels' numbers against a second evaluation in twice the precision. SI.";
+    let place = "Where the case lies on its axis: 0 at the first value, 1 at the last.";
+    let lost = "15.95 + log10 of the relative difference, 0 at least.";
+    let condition = "Relative change per relative change of the inputs.";
+    let columns = Columns::new("digits", description);
+    of_case(columns, ("quantity", "What is compared."), |row: &DigitsRow<'a>| (row.0, row.2.quantity))
+        .float("place", "", place, |row| row.1)
+        .float("value", "", "As the kernels compute it.", |row| finite(row.2.value))
+        .but(Column::allows_nan)
+        .float("exact", "", "As the second evaluation computes it.", |row| finite(row.2.exact))
+        .but(Column::allows_nan)
+        .float("digits_lost", "", lost, |row| row.2.lost)
+        .float("condition", "", condition, |row| finite(row.2.condition))
+        .but(Column::allows_nan)
+}
+
+/// What came of the cases of an axis.
+#[derive(Default)]
+struct Counts {
+    cases: usize,
+    computed: usize,
+    holds: usize,
+    broken: usize,
+    refused: usize,
+}
+
+impl Counts {
+    fn add(&mut self, report: &Report) {
+        self.cases += 1;
+        self.computed += usize::from(report.findings.iter().any(|finding| finding.verdict != Verdict::Refused));
+        for finding in &report.findings {
+            *match finding.verdict {
+                Verdict::Holds => &mut self.holds,
+                Verdict::Broken => &mut self.broken,
+                Verdict::Refused => &mut self.refused,
+            } += 1;
+        }
+    }
+}
+
+fn summary() -> Columns<(&'static str, Counts)> {
+    let axis = "The axis; `trap` and `sample` for those that lie on none.";
+    Columns::new("summary", "How many rows of `checks` hold, by axis.")
+        .text("axis", axis, |row: &(&'static str, Counts)| row.0)
+        .key()
+        .integer("cases", "Cases that lie on it.", |row| row.1.cases)
+        .integer("computed", "Cases that could be computed at all.", |row| row.1.computed)
+        .integer("holds", "Rows that hold.", |row| row.1.holds)
+        .integer("broken", "Rows that do not.", |row| row.1.broken)
+        .integer("refused", "Rows that physics or the model excludes.", |row| row.1.refused)
+}
+
+/// A quantity in all its cases: from the fewest to the most digits lost, each with the name of its case.
+type QuantityRow<'a> = (&'static str, Vec<(&'a DigitsLost, &'a str)>);
+
+fn quantities<'a>() -> Columns<QuantityRow<'a>> {
+    let last = |row: &QuantityRow<'a>| row.1[row.1.len() - 1];
+    let beyond = |(found, _): &(&DigitsLost, &str)| found.lost - libm::log10(found.condition.max(1.0));
+    Columns::new("quantities", "The most digits lost of each quantity.")
+        .text("quantity", "What is compared.", |row: &QuantityRow<'a>| row.0)
+        .key()
+        .integer("cases", "Cases in which it is compared.", |row| row.1.len())
+        .float("median", "", "Digits lost in the median of the cases.", |row| row.1[row.1.len() / 2].0.lost)
+        .float("worst", "", "Most digits lost.", move |row| last(row).0.lost)
+        .text("case", "Where that is.", move |row| last(row).1)
+        .float("condition", "", "The condition number there.", move |row| finite(last(row).0.condition))
+        .but(Column::allows_nan)
+        .float("beyond_condition", "", "Most digits lost on top of what the condition takes.", move |row| {
+            row.1.iter().map(beyond).fold(f64::NEG_INFINITY, f64::max)
+        })
+}
 
 /// In the order of [`write`].
 pub fn schemas() -> Vec<Schema> {
-    let case = || Column::text("case", "Name of the case: an axis with its value, a trap, or a sample.").key();
-    let axis = || Column::text("axis", "The axis the case lies on; `trap` and `sample` for those that lie on none.");
-    // All of it is the same bits on any processor but what faer factorised: compliances of finite elements move by 1e-9,
-    // and with them residuals by as many roundings, jumps and differences by 1e-12. Digits lost are of other methods, or of
-    // geometry alone.
-    let factorised = |column: Column| column.tolerance(1e-11, 1e-6);
-    vec![
-        Schema::new(
-            "checks",
-            "What was found of every invariant of every case.",
-            vec![
-                case(),
-                Column::text("invariant", "What must hold.").key(),
-                axis(),
-                factorised(
-                    Column::float("value", "", "How far it is from holding, as the limit counts it.").allows_nan(),
-                ),
-                factorised(
-                    Column::float("limit", "", "What the value may be; NaN where the case is refused.").allows_nan(),
-                ),
-                Column::text("verdict", "holds, broken or refused."),
-                Column::text("reason", "Why it is refused, or that the value is not a number."),
-            ],
-        ),
-        Schema::new(
-            "digits",
-            "The kernels' numbers against a second evaluation in twice the precision. SI.",
-            vec![
-                case(),
-                Column::text("quantity", "What is compared.").key(),
-                axis(),
-                Column::float("place", "", "Where the case lies on its axis: 0 at the first value, 1 at the last."),
-                Column::float("value", "", "As the kernels compute it.").allows_nan(),
-                Column::float("exact", "", "As the second evaluation computes it.").allows_nan(),
-                Column::float("digits_lost", "", "15.95 + log10 of the relative difference, 0 at least."),
-                Column::float("condition", "", "Relative change per relative change of the inputs.").allows_nan(),
-            ],
-        ),
-        Schema::new(
-            "summary",
-            "How many rows of `checks` hold, by axis.",
-            vec![
-                Column::text("axis", "The axis; `trap` and `sample` for those that lie on none.").key(),
-                Column::integer("cases", "Cases that lie on it."),
-                Column::integer("computed", "Cases that could be computed at all."),
-                Column::integer("holds", "Rows that hold."),
-                Column::integer("broken", "Rows that do not."),
-                Column::integer("refused", "Rows that physics or the model excludes."),
-            ],
-        ),
-        Schema::new(
-            "quantities",
-            "The most digits lost of each quantity.",
-            vec![
-                Column::text("quantity", "What is compared.").key(),
-                Column::integer("cases", "Cases in which it is compared."),
-                Column::float("median", "", "Digits lost in the median of the cases."),
-                Column::float("worst", "", "Most digits lost."),
-                Column::text("case", "Where that is."),
-                Column::float("condition", "", "The condition number there.").allows_nan(),
-                Column::float("beyond_condition", "", "Most digits lost on top of what the condition takes."),
-            ],
-        ),
-    ]
+    vec![checks().schema(), digits().schema(), summary().schema(), quantities().schema()]
 }
 
 /// Name, axis, place on it, and what was found.
 type Checked = (String, &'static str, f64, Report);
 
-fn beyond(found: &DigitsLost) -> f64 {
-    found.lost - libm::log10(found.condition.max(1.0))
-}
-
 pub fn write(checked: &[Checked]) -> Result<Vec<Table>, TableError> {
-    let (mut checks, mut digits): (Vec<Row>, Vec<Row>) = Default::default();
-    let mut axes: BTreeMap<&str, [usize; 5]> = BTreeMap::new();
-    let mut quantities: BTreeMap<&str, Vec<(&DigitsLost, &str)>> = BTreeMap::new();
-    let number = |value: f64| if value.is_finite() { value } else { f64::NAN };
+    let (mut found, mut lost): (Vec<CheckRow>, Vec<DigitsRow>) = Default::default();
+    let mut axes: BTreeMap<&str, Counts> = BTreeMap::new();
+    let mut compared: BTreeMap<&str, Vec<(&DigitsLost, &str)>> = BTreeMap::new();
     for (name, axis, place, report) in checked {
-        let counts = axes.entry(*axis).or_default();
-        counts[0] += 1;
-        counts[1] += usize::from(report.findings.iter().any(|finding| finding.verdict != Verdict::Refused));
-        for finding in &report.findings {
-            counts[match finding.verdict {
-                Verdict::Holds => 2,
-                Verdict::Broken => 3,
-                Verdict::Refused => 4,
-            }] += 1;
-            let strange = finding.verdict != Verdict::Refused && !finding.value.is_finite();
-            let reason = if strange { format!("the value is {}", finding.value) } else { finding.reason.clone() };
-            checks.push(vec![
-                name.as_str().into(),
-                finding.invariant.into(),
-                (*axis).into(),
-                number(finding.value).into(),
-                number(finding.limit).into(),
-                finding.verdict.word().into(),
-                reason.as_str().into(),
-            ]);
-        }
-        for found in &report.digits {
-            quantities.entry(found.quantity).or_default().push((found, name));
-            digits.push(vec![
-                name.as_str().into(),
-                found.quantity.into(),
-                (*axis).into(),
-                (*place).into(),
-                number(found.value).into(),
-                number(found.exact).into(),
-                found.lost.into(),
-                number(found.condition).into(),
-            ]);
+        let case = CaseOf { name, axis };
+        axes.entry(*axis).or_default().add(report);
+        found.extend(report.findings.iter().map(|finding| (case, finding)));
+        for digits in &report.digits {
+            compared.entry(digits.quantity).or_default().push((digits, name));
+            lost.push((case, *place, digits));
         }
     }
-    let summary = axes
-        .into_iter()
-        .map(|(axis, counts)| -> Row { std::iter::once(axis.into()).chain(counts.map(Into::into)).collect() });
-    let quantities = quantities.into_iter().map(|(quantity, mut found)| -> Row {
-        found.sort_by(|one, two| one.0.lost.total_cmp(&two.0.lost));
-        let (worst, case) = found[found.len() - 1];
-        let most = found.iter().map(|(found, _)| beyond(found)).fold(f64::NEG_INFINITY, f64::max);
-        vec![
-            quantity.into(),
-            found.len().into(),
-            found[found.len() / 2].0.lost.into(),
-            worst.lost.into(),
-            case.into(),
-            number(worst.condition).into(),
-            most.into(),
-        ]
-    });
-    let rows = [checks, digits, summary.collect(), quantities.collect()];
-    schemas().into_iter().zip(rows).map(|(schema, rows)| Table::from_rows(schema, rows)).collect()
+    for cases in compared.values_mut() {
+        cases.sort_by(|one, two| one.0.lost.total_cmp(&two.0.lost));
+    }
+    let (axes, compared): (Vec<_>, Vec<_>) = (axes.into_iter().collect(), compared.into_iter().collect());
+    Ok(vec![checks().table(&found)?, digits().table(&lost)?, summary().table(&axes)?, quantities().table(&compared)?])
 }

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::tables::{cost_schema, curve_schema, harmonics_schema, summary_schema};
+use super::tables::{cost, curve_schema, harmonics_schema, summary};
 use super::{OF_CURVES, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
@@ -30,16 +30,15 @@ impl Ste {
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
         let work = Work::of(&CONTACT_SOLVES, solves.saturating_add(sampled))
             .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 });
-        let [sample_rows, sample_summary] = samples::schemas();
         Estimate::new(true)
             .work(&work, common::solve_times(self.settings))
             // The points of all curves are there before the table is; their room is as large again.
             .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
-            .rows(demand, summary_schema(), curves)
+            .rows(demand, summary().schema(), curves)
             .columns(demand, curve_schema(), rows)
             .rows(demand, harmonics_schema(), curves.times(RowCount::exact(self.harmonics)))
-            .rows(demand, cost_schema(), curves)
-            .rows(demand, sample_rows, curves.times(RowCount::exact(self.samples)))
-            .rows(demand, sample_summary, curves)
+            .rows(demand, cost().schema(), curves)
+            .rows(demand, samples::samples_schema(), curves.times(RowCount::exact(self.samples)))
+            .rows(demand, samples::summary().schema(), curves)
     }
 }

@@ -3,9 +3,10 @@
 //! A mean, a variance or an extreme of a few samples is not that of the curve; these are here to be put beside printed
 //! ones. Must not know: how a position is solved.
 
-use super::tables::keys;
+use super::tables::{Keyed, keyed, keys};
 use declare::units::in_unit;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use studygraph::table::columns::Columns;
 use studygraph::table::data::Row;
 use studygraph::table::schema::{Column, Schema};
 
@@ -13,34 +14,48 @@ use studygraph::table::schema::{Column, Schema};
 /// rounding made of it.
 const BORDER: f64 = 1e-12;
 
-/// Both tables, in the order of [`rows`].
-pub fn schemas() -> [Schema; 2] {
-    let mut samples = keys();
-    samples.extend([
+/// Row by row: an angle is in degrees from the start.
+pub fn samples_schema() -> Schema {
+    let mut columns = keys();
+    columns.extend([
         Column::integer("sample", "Counts the positions, from 1.").key(),
         Column::float("rotation_angle", "deg", "Rotation of the pinion from the first sample."),
         Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
             .tolerance(1e-9, 1e-9),
         Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
     ]);
-    let mut summary = keys();
-    summary.extend([
-        Column::float("mean", "um", "Mean of the samples."),
-        Column::float("peak_to_peak", "um", "Largest less smallest sample.").tolerance(1e-12, 1e-9),
-        Column::float("variance", "um^2", "Mean squared deviation from the mean.").tolerance(1e-15, 1e-9),
-        Column::float("fitness", "1/um^2", "f = n/Σ(TE − mean)² (mei2016, equation 16); NaN where nothing varies.")
-            .allows_nan()
-            .tolerance(0.0, 1e-8),
-    ]);
-    [
-        Schema::new("samples", "Transmission error at equidistant positions of the mesh cycle.", samples).on_demand(),
-        Schema::new("sample_summary", "What the samples of each curve amount to.", summary).on_demand(),
-    ]
+    Schema::new("samples", "Transmission error at equidistant positions of the mesh cycle.", columns).on_demand()
 }
 
-/// The rows of `samples` and the row of `sample_summary`, without their keys; `first` is the pinion's rotation from where
+/// What the samples of a curve amount to.
+pub struct Samples {
+    mean: f64,
+    peak_to_peak: f64,
+    variance: f64,
+}
+
+impl Samples {
+    fn fitness(&self) -> f64 {
+        if self.variance > 0.0 { 1.0 / self.variance } else { f64::NAN }
+    }
+}
+
+pub fn summary<'a>() -> Columns<Keyed<'a, Samples>> {
+    let fitness = "f = n/Σ(TE − mean)² (mei2016, equation 16); NaN where nothing varies.";
+    keyed("sample_summary", "What the samples of each curve amount to.")
+        .float("mean", "um", "Mean of the samples.", |row: &Keyed<Samples>| row.2.mean)
+        .float("peak_to_peak", "um", "Largest less smallest sample.", |row| row.2.peak_to_peak)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("variance", "um^2", "Mean squared deviation from the mean.", |row| row.2.variance)
+        .but(|column| column.tolerance(1e-15, 1e-9))
+        .float("fitness", "1/um^2", fitness, |row| row.2.fitness())
+        .but(|column| column.allows_nan().tolerance(0.0, 1e-8))
+        .on_demand()
+}
+
+/// The rows of `samples`, without their keys, and what they amount to; `first` is the pinion's rotation from where
 /// a pair starts contact \[rad\].
-pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Row) {
+pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Samples) {
     let cycle = loading.cycle;
     let teeth = f64::from(cycle.pair.pinion.specification.teeth);
     let sample = |index: usize| {
@@ -56,13 +71,11 @@ pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Row) {
     let mean = errors().sum::<f64>() / count as f64;
     let variance = errors().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count as f64;
     let [most, least] = [errors().fold(f64::NEG_INFINITY, f64::max), errors().fold(f64::INFINITY, f64::min)];
-    let fitness = if variance > 0.0 { in_unit(1.0 / variance, "1/um^2") } else { f64::NAN };
     let row = |(index, (position, error)): (usize, &(f64, f64))| -> Row {
         // In degrees from the start, so that a twelfth of a thirtieth of a turn is 1.
         let angle = 360.0 * index as f64 / (count as f64 * teeth);
         vec![(index + 1).into(), angle.into(), in_unit(*position, "mm").into(), in_unit(*error, "um").into()]
     };
-    let summary =
-        [in_unit(mean, "um"), in_unit(most - least, "um"), in_unit(variance, "um^2"), fitness].map(Into::into);
-    (samples.iter().enumerate().map(row).collect(), summary.into())
+    let summary = Samples { mean, peak_to_peak: most - least, variance };
+    (samples.iter().enumerate().map(row).collect(), summary)
 }

@@ -3,58 +3,75 @@
 //! Must not know: how a curve is found.
 
 use super::Answer;
-use declare::units::{in_unit, showing};
+use declare::units::showing;
 use gearmesh::gear::transmission_error::curve::Point;
-use gearmesh::gear::transmission_error::cycle::Settings;
-use studygraph::table::data::{Data, Row};
+use studygraph::table::columns::Columns;
+use studygraph::table::data::Data;
 use studygraph::table::schema::{Column, Schema};
 
-pub fn keys() -> Vec<Column> {
-    vec![
-        Column::text("design", "Name of the design.").key(),
-        Column::float("torque", "N m", "Torque on the pinion.").key(),
-    ]
+/// Design, torque, and what they gave.
+pub type Keyed<'a, T = &'a Answer> = (&'a str, f64, T);
+
+/// The columns that say which curve a row is of.
+pub fn keyed<'a, T>(name: &str, description: &str) -> Columns<Keyed<'a, T>> {
+    Columns::new(name, description)
+        .text("design", "Name of the design.", |row: &Keyed<'a, T>| row.0)
+        .key()
+        .float("torque", "N m", "Torque on the pinion.", |row| row.1)
+        .key()
 }
 
-pub fn summary_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::float("mean", "um", "Integral mean of the transmission error over the mesh cycle."),
-        Column::float("peak_to_peak", "um", "Largest less smallest transmission error.").tolerance(1e-12, 1e-9),
-        Column::float("maximum", "um", "Largest transmission error."),
-        Column::float("minimum", "um", "Smallest transmission error."),
-        Column::float("variance", "um^2", "Integral mean of the squared deviation from the mean.")
-            .tolerance(1e-15, 1e-9),
-        Column::float(
-            "reciprocal_variance",
-            "1/um^2",
-            "f = 1/variance (mei2016, equation 16); NaN where nothing varies.",
-        )
-        .allows_nan()
-        .tolerance(0.0, 1e-8),
-        Column::float("unloaded_peak_to_peak", "um", "The same without load.").tolerance(1e-12, 1e-9),
-        Column::float("loaded_contact_ratio", "", "Mean number of pairs that carry load."),
-        Column::float("largest_load_share", "", "Largest share of the load on one pair."),
-        Column::float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.").on_demand(),
-        Column::integer("positions", "Positions per base pitch that were used."),
-        Column::integer("slices", "Slices that were used on each stretch of the face without a closed form."),
-        Column::float("error_estimate", "", "Estimated relative error of the peak-to-peak from positions and slices.")
-            .tolerance(1e-9, 0.0),
-    ]);
-    Schema::new("summary", "What each curve of the transmission error amounts to.", columns)
+/// The same where a table is put together in another way.
+pub fn keys() -> Vec<Column> {
+    keyed::<()>("", "").schema().columns
+}
+
+pub fn summary<'a>() -> Columns<Keyed<'a>> {
+    let mean = "Integral mean of the transmission error over the mesh cycle.";
+    let variance = "Integral mean of the squared deviation from the mean.";
+    let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
+    let slices = "Slices that were used on each stretch of the face without a closed form.";
+    let error = "Estimated relative error of the peak-to-peak from positions and slices.";
+    keyed("summary", "What each curve of the transmission error amounts to.")
+        .float("mean", "um", mean, |row: &Keyed| row.2.summary.mean)
+        .float("peak_to_peak", "um", "Largest less smallest transmission error.", |row| row.2.summary.peak_to_peak)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("maximum", "um", "Largest transmission error.", |row| row.2.summary.largest.value)
+        .float("minimum", "um", "Smallest transmission error.", |row| row.2.summary.smallest.value)
+        .float("variance", "um^2", variance, |row| row.2.summary.variance)
+        .but(|column| column.tolerance(1e-15, 1e-9))
+        .float("reciprocal_variance", "1/um^2", reciprocal, |row| row.2.summary.reciprocal_variance.unwrap_or(f64::NAN))
+        .but(|column| column.allows_nan().tolerance(0.0, 1e-8))
+        .float("unloaded_peak_to_peak", "um", "The same without load.", |row| row.2.summary.unloaded_peak_to_peak)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("loaded_contact_ratio", "", "Mean number of pairs that carry load.", |row| {
+            row.2.summary.loaded_contact_ratio
+        })
+        .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
+            row.2.summary.largest_load_share
+        })
+        .float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.", |row| {
+            row.2.summary.largest_pressure.map_or(f64::NAN, |largest| largest.value)
+        })
+        .but(Column::on_demand)
+        .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
+        .integer("slices", slices, |row| row.2.settings.slices)
+        .float("error_estimate", "", error, |row| row.2.error)
+        .but(|column| column.tolerance(1e-9, 0.0))
 }
 
 /// By itself, since a table with measured times differs from run to run.
-pub fn cost_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::float("peak_to_peak", "um", "As in the table `summary`.").tolerance(1e-12, 1e-9),
-        Column::integer("positions", "As in the table `summary`."),
-        Column::integer("slices", "As in the table `summary`."),
-        Column::float("error_estimate", "", "As in the table `summary`.").tolerance(1e-9, 0.0),
-        Column::float("seconds", "s", "Time for this row.").volatile(),
-    ]);
-    Schema::new("cost", "Error of each curve against the time it took.", columns).on_demand()
+pub fn cost<'a>() -> Columns<Keyed<'a>> {
+    keyed("cost", "Error of each curve against the time it took.")
+        .float("peak_to_peak", "um", "As in the table `summary`.", |row: &Keyed| row.2.summary.peak_to_peak)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .integer("positions", "As in the table `summary`.", |row| row.2.settings.positions)
+        .integer("slices", "As in the table `summary`.", |row| row.2.settings.slices)
+        .float("error_estimate", "", "As in the table `summary`.", |row| row.2.error)
+        .but(|column| column.tolerance(1e-9, 0.0))
+        .float("seconds", "s", "Time for this row.", |row| row.2.seconds)
+        .but(Column::volatile)
+        .on_demand()
 }
 
 pub fn curve_schema() -> Schema {
@@ -98,43 +115,6 @@ pub fn harmonics_schema() -> Schema {
     ]);
     Schema::new("harmonics", "Harmonics of the transmission error.", columns)
 }
-
-pub fn summary_row(answer: &Answer, pressure: bool) -> Row {
-    let summary = &answer.summary;
-    let mut row: Row = [
-        in_unit(summary.mean, "um"),
-        in_unit(summary.peak_to_peak, "um"),
-        in_unit(summary.largest.value, "um"),
-        in_unit(summary.smallest.value, "um"),
-        in_unit(summary.variance, "um^2"),
-        summary.reciprocal_variance.map_or(f64::NAN, |value| in_unit(value, "1/um^2")),
-        in_unit(summary.unloaded_peak_to_peak, "um"),
-        summary.loaded_contact_ratio,
-        summary.largest_load_share,
-    ]
-    .map(Into::into)
-    .into();
-    if pressure {
-        row.push(in_unit(summary.largest_pressure.map_or(f64::NAN, |largest| largest.value), "MPa").into());
-    }
-    let Settings { positions, slices, .. } = answer.settings;
-    row.extend([positions.into(), slices.into(), answer.error.into()]);
-    row
-}
-
-pub fn cost_row(answer: &Answer) -> Row {
-    let Settings { positions, slices, .. } = answer.settings;
-    vec![
-        in_unit(answer.summary.peak_to_peak, "um").into(),
-        positions.into(),
-        slices.into(),
-        answer.error.into(),
-        answer.seconds.into(),
-    ]
-}
-
-/// Design, torque, and what they gave.
-pub type Keyed<'a> = (&'a str, f64, &'a Answer);
 
 /// By columns, not rows: curves are by far the longest tables. In the order of the keys, or the table sorts every row.
 pub fn curve_columns(answers: &[Keyed], pressure: bool) -> Vec<Data> {
