@@ -36,7 +36,10 @@ const CRATES: &[(&str, Layers)] = &[
         "crates/declare-derive/src/",
         &[("doc", &[]), ("fields", &["doc"]), ("joint", &["words"]), ("words", &["fields"])],
     ),
-    ("crates/gearmesh/src/", &[("gear", &["numeric"]), ("optimize", &["numeric"]), ("numeric", &[])]),
+    (
+        "crates/gearmesh/src/",
+        &[("prelude", &["gear", "optimize"]), ("gear", &["numeric"]), ("optimize", &["numeric"]), ("numeric", &[])],
+    ),
     (
         "crates/studygraph/src/",
         &[
