@@ -18,6 +18,7 @@ use contour::{Contour, contours};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape};
 use declare::record::{Record, Value};
+use studygraph::table::columns::Columns;
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
@@ -87,24 +88,26 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     Ok(Box::new(Export { pair: record.reference("pair").to_owned(), gears, formats }))
 }
 
-fn contours_schema() -> Schema {
-    Schema::new(
-        "contours",
-        "What was drawn of each gear.",
-        vec![
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::flag("closed", "Whether it is the whole gear; else one tooth, from space to space."),
-            Column::integer("lines", "Number of straight lines."),
-            Column::integer("arcs", "Number of arcs."),
-            Column::integer("polylines", "Number of curves drawn as chords between points."),
-            Column::integer("points", "Number of points on these curves."),
-            Column::float("chord_error", "um", "No chord is farther than this from its curve.").tolerance(1e-9, 1e-6),
-            Column::float("gap", "mm", "Largest distance from the end of a curve to the start of the next.")
-                .tolerance(1e-9, 0.0),
-            Column::float("area", "mm^2", "Area inside the closed contour as drawn, less the bore; NaN for one tooth.")
-                .allows_nan(),
-        ],
-    )
+fn drawn<'a>() -> Columns<&'a Contour> {
+    let gap = "Largest distance from the end of a curve to the start of the next.";
+    let area = "Area inside the closed contour as drawn, less the bore; NaN for one tooth.";
+    // Files are in mm, and so is what was drawn.
+    Columns::new("contours", "What was drawn of each gear.")
+        .text("gear", "Which gear: pinion or gear.", |contour: &&Contour| contour.gear.as_str())
+        .key()
+        .flag("closed", "Whether it is the whole gear; else one tooth, from space to space.", |contour| contour.closed)
+        .integer("lines", "Number of straight lines.", |contour| contour.counts()[0])
+        .integer("arcs", "Number of arcs.", |contour| contour.counts()[1])
+        .integer("polylines", "Number of curves drawn as chords between points.", |contour| contour.counts()[2])
+        .integer("points", "Number of points on these curves.", |contour| contour.points.len())
+        .shown("chord_error", "um", "No chord is farther than this from its curve.", |contour| {
+            1e3 * contour.chord_error()
+        })
+        .but(|column| column.tolerance(1e-9, 1e-6))
+        .shown("gap", "mm", gap, |contour| contour.gap())
+        .but(|column| column.tolerance(1e-9, 0.0))
+        .shown("area", "mm^2", area, |contour| contour.area())
+        .but(Column::allows_nan)
 }
 
 impl Export {
@@ -115,28 +118,13 @@ impl Export {
     }
 }
 
-fn contour_row(contour: &Contour) -> Row {
-    let [lines, arcs, polylines] = contour.counts();
-    vec![
-        contour.gear.as_str().into(),
-        contour.closed.into(),
-        lines.into(),
-        arcs.into(),
-        polylines.into(),
-        contour.points.len().into(),
-        (1e3 * contour.chord_error()).into(),
-        contour.gap().into(),
-        contour.area().into(),
-    ]
-}
-
 impl Stage for Export {
     fn inputs(&self) -> Vec<Port> {
         vec![Port::tables("pair", &self.pair, &["gears", "outline"])]
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![contours_schema(), self.files_schema()]
+        vec![drawn().schema(), self.files_schema()]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -146,7 +134,7 @@ impl Stage for Export {
         let lines = points.saturating_mul(per_point).saturating_add(HEAD * self.gears.len() * self.formats.len());
         Estimate::new(false)
             .holding((points as u64).saturating_mul(CONTOUR_POINT).saturating_add(lines as u64 * LINE))
-            .rows(demand, contours_schema(), RowCount::exact(self.gears.len()))
+            .rows(demand, drawn().schema(), RowCount::exact(self.gears.len()))
             .rows(demand, self.files_schema(), RowCount::about(lines))
     }
 
@@ -174,10 +162,6 @@ impl Stage for Export {
             }
         }
         let failed = |error: TableError| Failure::new(error.to_string());
-        let rows_of_contours = wanted.iter().map(|contour| contour_row(contour)).collect();
-        Ok(vec![
-            Table::from_rows(contours_schema(), rows_of_contours).map_err(failed)?,
-            Table::from_rows(self.files_schema(), rows).map_err(failed)?,
-        ])
+        Ok(vec![drawn().table(&wanted).map_err(failed)?, Table::from_rows(self.files_schema(), rows).map_err(failed)?])
     }
 }

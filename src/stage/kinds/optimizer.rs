@@ -12,16 +12,16 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Por
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Choice, Field, Shape, count, joined};
 use declare::record::{Record, Value};
-use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, in_unit};
+use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::search::{Candidate, Optimizer as Search, Reason};
+use gearmesh::optimize::search::{Candidate, Generation, Optimizer as Search, Reason};
 use gearmesh::optimize::{self, Method};
 use studygraph::table::columns::{Columns, finite};
-use studygraph::table::data::{Data, Row, Table, TableError};
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -167,6 +167,18 @@ fn column(variable: &Variable) -> String {
     variable.name.replace('.', "_")
 }
 
+/// A design that was tried: which one, from 1, its point and its objective.
+type Tried<'a> = (usize, &'a [f64], f64);
+
+/// What makes the reciprocal of an objective in a unit; NaN where that is none.
+fn fitness_in(unit: &str) -> impl Fn(f64) -> f64 + use<> {
+    let shown = showing(unit);
+    move |value| {
+        let shown = shown(finite(value));
+        if shown > 0.0 { 1.0 / shown } else { f64::NAN }
+    }
+}
+
 impl Optimizer {
     fn bounds(&self) -> Result<Bounds, Diagnostic> {
         Bounds::new(self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect())
@@ -207,57 +219,45 @@ impl Optimizer {
         })
     }
 
-    fn history_schema(&self) -> Schema {
+    fn history(&self) -> Columns<(usize, Generation)> {
         let unit = self.objective_unit();
-        let reciprocal = format!("1/{unit}");
-        Schema::new(
-            "history",
-            "The search, batch by batch (generation by generation).",
-            vec![
-                Column::integer("generation", "Counts the batches, from 1.").key(),
-                Column::integer("evaluations", "Evaluations so far."),
-                Column::float("best", unit, "Lowest objective in the batch.").allows_nan(),
-                Column::float("best_so_far", unit, "Lowest objective so far.").allows_nan(),
-                Column::float("mean", unit, "Mean objective of the batch.").allows_nan(),
-                Column::float("best_fitness", &reciprocal, "1/best: fitness of the best of the batch.").allows_nan(),
-                Column::float("best_fitness_so_far", &reciprocal, "1/best so far.").allows_nan(),
-            ],
-        )
+        let (fitness, so_far, reciprocal) = (fitness_in(unit), fitness_in(unit), format!("1/{unit}"));
+        Columns::new("history", "The search, batch by batch (generation by generation).")
+            .integer("generation", "Counts the batches, from 1.", |row: &(usize, Generation)| row.0)
+            .key()
+            .integer("evaluations", "Evaluations so far.", |row| row.1.evaluations)
+            .float("best", unit, "Lowest objective in the batch.", |row| finite(row.1.best))
+            .but(Column::allows_nan)
+            .float("best_so_far", unit, "Lowest objective so far.", |row| finite(row.1.best_so_far))
+            .but(Column::allows_nan)
+            .float("mean", unit, "Mean objective of the batch.", |row| finite(row.1.mean))
+            .but(Column::allows_nan)
+            .shown("best_fitness", &reciprocal, "1/best: fitness of the best of the batch.", move |row| {
+                fitness(row.1.best)
+            })
+            .but(Column::allows_nan)
+            .shown("best_fitness_so_far", &reciprocal, "1/best so far.", move |row| so_far(row.1.best_so_far))
+            .but(Column::allows_nan)
     }
 
-    fn evaluations_schema(&self) -> Schema {
+    fn evaluations<'a>(&self) -> Columns<Tried<'a>> {
         let unit_of_objective = self.objective_unit();
-        let mut columns =
-            vec![Column::integer("evaluation", "Counts the designs in the order of the search, from 1.").key()];
-        columns.extend(
-            self.template
-                .variables()
-                .iter()
-                .map(|variable| Column::float(&column(variable), unit(variable), "Value of the variable.")),
-        );
-        columns.extend([
-            Column::float("objective", unit_of_objective, "What is made small; NaN where no design can be built.")
-                .allows_nan()
-                .tolerance(1e-9, 1e-6),
-            Column::float("fitness", &format!("1/{unit_of_objective}"), "1/objective.")
-                .allows_nan()
-                .tolerance(0.0, 1e-6),
-        ]);
-        Schema::new("evaluations", "Every design that was tried.", columns).on_demand()
-    }
-
-    /// By columns, not rows: a sample may have millions of designs.
-    fn evaluation_columns(&self, tried: &[(Vec<f64>, f64)]) -> Vec<Data> {
-        let counted = (1..).take(tried.len()).collect();
-        let mut columns = vec![Data::Integer(counted)];
-        columns.extend(self.template.variables().iter().enumerate().map(|(at, variable)| {
-            Data::Float(tried.iter().map(|(point, _)| in_unit(point[at], unit(variable))).collect())
-        }));
-        let shown = |value: f64| if value.is_finite() { in_unit(value, self.objective_unit()) } else { f64::NAN };
-        let fitness = |value: f64| if value > 0.0 { 1.0 / value } else { f64::NAN };
-        columns.push(Data::Float(tried.iter().map(|(_, value)| shown(*value)).collect()));
-        columns.push(Data::Float(tried.iter().map(|(_, value)| fitness(shown(*value))).collect()));
+        let fitness = fitness_in(unit_of_objective);
+        let counts = "Counts the designs in the order of the search, from 1.";
+        let columns = Columns::new("evaluations", "Every design that was tried.")
+            .integer("evaluation", counts, |row: &Tried| row.0)
+            .key();
+        let columns = self.template.variables().iter().enumerate().fold(columns, |columns, (at, variable)| {
+            columns.float(&column(variable), unit(variable), "Value of the variable.", move |row: &Tried| row.1[at])
+        });
         columns
+            .float("objective", unit_of_objective, "What is made small; NaN where no design can be built.", |row| {
+                finite(row.2)
+            })
+            .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
+            .shown("fitness", &format!("1/{unit_of_objective}"), "1/objective.", move |row| fitness(row.2))
+            .but(|column| column.allows_nan().tolerance(0.0, 1e-6))
+            .on_demand()
     }
 
     /// The objective \[m or m²\]; infinite where the design cannot be built.
@@ -331,25 +331,11 @@ impl Optimizer {
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
         let peak_to_peak =
             self.torques.iter().map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
-        let unit_of_objective = self.objective_unit();
-        let shown = |value: f64| if value.is_finite() { in_unit(value, unit_of_objective) } else { f64::NAN };
         let row = BestRow { name: &self.name, found, best, peak_to_peak };
-        let history = search.history().iter().enumerate().map(|(index, generation)| -> Row {
-            let reciprocal = |value: f64| 1.0 / shown(value);
-            vec![
-                (index + 1).into(),
-                generation.evaluations.into(),
-                shown(generation.best).into(),
-                shown(generation.best_so_far).into(),
-                shown(generation.mean).into(),
-                reciprocal(generation.best).into(),
-                reciprocal(generation.best_so_far).into(),
-            ]
-        });
         let design = NamedDesign { name: self.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
-            Table::from_rows(self.history_schema(), history.collect()).map_err(failed)?,
+            self.history().table_of(&(1..).zip(search.history().iter().copied())).map_err(failed)?,
         ];
         tables.extend(designs::write(&[design]).map_err(failed)?);
         Ok(tables)
@@ -363,7 +349,7 @@ impl Stage for Optimizer {
 
     fn outputs(&self) -> Vec<Schema> {
         let [designs, elements] = designs::schemas();
-        vec![self.best().schema(), self.history_schema(), designs, elements, self.evaluations_schema()]
+        vec![self.best().schema(), self.history().schema(), designs, elements, self.evaluations().schema()]
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -401,9 +387,10 @@ impl Stage for Optimizer {
         }
         let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
         if context.demand.table("evaluations") {
-            let columns = self.evaluation_columns(&found.tried);
-            let table = Table::from_columns(self.evaluations_schema(), columns);
-            tables.push(table.map_err(|error: TableError| Failure::new(error.to_string()))?);
+            let tried = (1..).zip(&found.tried).map(|(index, (point, value))| (index, point.as_slice(), *value));
+            tables.push(
+                self.evaluations().table_of(&tried).map_err(|error: TableError| Failure::new(error.to_string()))?,
+            );
         }
         context.work.add(&base.work());
         Ok(tables)

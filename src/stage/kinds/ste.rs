@@ -11,8 +11,8 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
-use self::samples::Samples;
-use self::tables::{Keyed, cost, curve_columns, curve_schema, harmonics_columns, harmonics_schema, summary};
+use self::samples::{Sample, Samples};
+use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::{Field, Shape, count, joined};
@@ -26,7 +26,7 @@ use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
 use studygraph::stage::steps::Steps;
-use studygraph::table::data::{Row, Table, TableError};
+use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
@@ -180,10 +180,10 @@ impl Stage for Ste {
     fn outputs(&self) -> Vec<Schema> {
         vec![
             summary().schema(),
-            curve_schema(),
-            harmonics_schema(),
+            curve().schema(),
+            harmonics().schema(),
             cost().schema(),
-            samples::samples_schema(),
+            samples::samples().schema(),
             samples::summary().schema(),
         ]
     }
@@ -292,31 +292,33 @@ impl Stage for Ste {
             .map(|(&(design, torque), answer)| (designs[design].1.as_str(), torque, answer))
             .collect();
         keyed.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
-        let (curves, harmonics) = rayon::join(|| curve_columns(&keyed, curve_pressure), || harmonics_columns(&keyed));
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
+        let (curves, harmonics) = rayon::join(
+            || curve().only(&narrowed(curve().schema())).table_of(&points(&keyed)),
+            || harmonics().only(&narrowed(harmonics().schema())).table_of(&amplitudes(&keyed)),
+        );
         let mut tables = vec![
             summary().only(&narrowed(summary().schema())).table(&keyed).map_err(failed)?,
-            Table::from_columns(narrowed(curve_schema()), curves).map_err(failed)?,
-            Table::from_columns(narrowed(harmonics_schema()), harmonics).map_err(failed)?,
+            curves.map_err(failed)?,
+            harmonics.map_err(failed)?,
         ];
         if context.demand.table("cost") {
             tables.push(cost().table(&keyed).map_err(failed)?);
         }
         let [each, of_each] = ["samples", "sample_summary"].map(|table| context.demand.table(table));
         if each || of_each {
-            let (mut rows, mut sums): (Vec<Row>, Vec<Keyed<Samples>>) = Default::default();
+            let (mut rows, mut sums): (Vec<Keyed<Sample>>, Vec<Keyed<Samples>>) = Default::default();
             for &(design, torque) in &tasks {
                 context.check_stop()?;
                 let (design, name) = (&designs[design].0, designs[design].1.as_str());
                 let loading = LoadCase::new(&base, design, torque);
-                let (taken, sum) = samples::rows(&loading, self.first_sample, self.samples);
-                let key: Row = vec![name.into(), torque.into()];
-                rows.extend(taken.into_iter().map(|sample| [key.clone(), sample].concat()));
+                let (taken, sum) = samples::taken(&loading, self.first_sample, self.samples);
+                rows.extend(taken.into_iter().map(|sample| (name, torque, sample)));
                 sums.push((name, torque, sum));
             }
             if each {
-                tables.push(Table::from_rows(samples::samples_schema(), rows).map_err(failed)?);
+                tables.push(samples::samples().table(&rows).map_err(failed)?);
             }
             if of_each {
                 tables.push(samples::summary().table(&sums).map_err(failed)?);

@@ -2,12 +2,35 @@
 //!
 //! Schema and rows come from one list, so they cannot disagree. Must not know: what any row is.
 
-use super::data::{Cell, Data, Table, TableError};
+use std::borrow::Borrow;
+
+use super::data::{Data, Table, TableError};
 use super::schema::{Column, Schema};
 use declare::units::showing;
 
-/// What stands in a column in the row of a `T`.
-type Getter<T> = Box<dyn Fn(&T) -> Cell>;
+/// Where the values of a column come from: what stands in it in the row of a `T`.
+enum Getter<T> {
+    Float(Box<dyn Fn(&T) -> f64>),
+    Integer(Box<dyn Fn(&T) -> i64>),
+    Text(Box<dyn Fn(&T) -> String>),
+    Flag(Box<dyn Fn(&T) -> bool>),
+}
+
+impl<T> Getter<T> {
+    fn values<B: Borrow<T>>(&self, rows: impl Iterator<Item = B>, count: usize) -> Data {
+        fn all<V>(values: impl Iterator<Item = V>, count: usize) -> Vec<V> {
+            let mut all = Vec::with_capacity(count);
+            all.extend(values);
+            all
+        }
+        match self {
+            Self::Float(get) => Data::Float(all(rows.map(|row| get(row.borrow())), count)),
+            Self::Integer(get) => Data::Integer(all(rows.map(|row| get(row.borrow())), count)),
+            Self::Text(get) => Data::Text(all(rows.map(|row| get(row.borrow())), count)),
+            Self::Flag(get) => Data::Flag(all(rows.map(|row| get(row.borrow())), count)),
+        }
+    }
+}
 
 /// The columns of a table and how to get them from a `T`, one per row.
 pub struct Columns<T> {
@@ -25,27 +48,35 @@ impl<T> Columns<T> {
     #[must_use]
     pub fn float(self, name: &str, unit: &str, description: &str, get: impl Fn(&T) -> f64 + 'static) -> Self {
         let shown = showing(unit);
-        self.with(Column::float(name, unit, description), move |row| shown(get(row)))
+        self.shown(name, unit, description, move |row| shown(get(row)))
+    }
+
+    /// A number, which `get` gives in the unit of the column: for what SI would round once more.
+    #[must_use]
+    pub fn shown(self, name: &str, unit: &str, description: &str, get: impl Fn(&T) -> f64 + 'static) -> Self {
+        self.with(Column::float(name, unit, description), Getter::Float(Box::new(get)))
+    }
+
+    /// A whole number; what no column holds is the largest that one does.
+    #[must_use]
+    pub fn integer<N: TryInto<i64>>(self, name: &str, description: &str, get: impl Fn(&T) -> N + 'static) -> Self {
+        let whole = move |row: &T| get(row).try_into().unwrap_or(i64::MAX);
+        self.with(Column::integer(name, description), Getter::Integer(Box::new(whole)))
     }
 
     #[must_use]
-    pub fn integer<N: Into<Cell>>(self, name: &str, description: &str, get: impl Fn(&T) -> N + 'static) -> Self {
-        self.with(Column::integer(name, description), get)
-    }
-
-    #[must_use]
-    pub fn text<S: Into<Cell>>(self, name: &str, description: &str, get: impl Fn(&T) -> S + 'static) -> Self {
-        self.with(Column::text(name, description), get)
+    pub fn text<S: Into<String>>(self, name: &str, description: &str, get: impl Fn(&T) -> S + 'static) -> Self {
+        self.with(Column::text(name, description), Getter::Text(Box::new(move |row| get(row).into())))
     }
 
     #[must_use]
     pub fn flag(self, name: &str, description: &str, get: impl Fn(&T) -> bool + 'static) -> Self {
-        self.with(Column::flag(name, description), get)
+        self.with(Column::flag(name, description), Getter::Flag(Box::new(get)))
     }
 
-    fn with<C: Into<Cell>>(mut self, column: Column, get: impl Fn(&T) -> C + 'static) -> Self {
+    fn with(mut self, column: Column, getter: Getter<T>) -> Self {
         self.schema.columns.push(column);
-        self.getters.push(Box::new(move |row| get(row).into()));
+        self.getters.push(getter);
         self
     }
 
@@ -87,20 +118,22 @@ impl<T> Columns<T> {
     /// The table of these rows.
     ///
     /// # Errors
-    /// As [`Table::from_columns`]; where a getter gives another type than its column has.
+    /// As [`Table::from_columns`].
     pub fn table(self, rows: &[T]) -> Result<Table, TableError> {
-        let mut data = Vec::with_capacity(self.getters.len());
-        for (column, get) in self.schema.columns.iter().zip(&self.getters) {
-            let mut values = Data::with_room(column.kind, rows.len());
-            for row in rows {
-                values.push(get(row)).map_err(|cell| TableError::Column {
-                    table: self.schema.name.clone(),
-                    column: column.name.clone(),
-                    problem: format!("`{cell}` is no {}", column.kind.name()),
-                })?;
-            }
-            data.push(values);
-        }
+        self.filled(&rows.iter())
+    }
+
+    /// The same for rows that are too many to be held: they are made anew for every column.
+    ///
+    /// # Errors
+    /// As [`Table::from_columns`].
+    pub fn table_of(self, rows: &(impl Iterator<Item = T> + Clone)) -> Result<Table, TableError> {
+        self.filled(rows)
+    }
+
+    fn filled<B: Borrow<T>>(self, rows: &(impl Iterator<Item = B> + Clone)) -> Result<Table, TableError> {
+        let count = rows.clone().count();
+        let data = self.getters.iter().map(|getter| getter.values(rows.clone(), count)).collect();
         Table::from_columns(self.schema, data)
     }
 }
@@ -155,12 +188,5 @@ mod tests {
         assert!(columns().table(&[f64::INFINITY]).is_err());
         let table = columns().but(Column::allows_nan).table(&[f64::INFINITY, 0.0]).unwrap();
         assert!(table.floats("depth")[0].is_nan() && table.floats("depth")[1] == 0.0);
-    }
-
-    #[test]
-    fn a_getter_of_another_type_is_told() {
-        let wrong = Columns::new("points", "").integer("point", "", |_: &u32| "one");
-        let error = wrong.table(&[1]).unwrap_err().to_string();
-        assert_eq!(error, "table `points`, column `point`: `one` is no integer");
     }
 }

@@ -32,9 +32,9 @@ impl Optimizer {
             .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))
             .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
             .rows(demand, self.best().schema(), RowCount::exact(1))
-            .rows(demand, self.history_schema(), as_many(foreseen.batches))
+            .rows(demand, self.history().schema(), as_many(foreseen.batches))
             .rows(demand, designs, RowCount::exact(1))
             .rows(demand, elements, RowCount::exact(self.elements.iter().map(rows_of).sum()))
-            .columns(demand, self.evaluations_schema(), as_many(foreseen.evaluations))
+            .columns(demand, self.evaluations().schema(), as_many(foreseen.evaluations))
     }
 }

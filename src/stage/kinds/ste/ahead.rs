@@ -2,7 +2,7 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::tables::{cost, curve_schema, harmonics_schema, summary};
+use super::tables::{cost, curve, harmonics, summary};
 use super::{OF_CURVES, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
@@ -35,10 +35,10 @@ impl Ste {
             // The points of all curves are there before the table is; their room is as large again.
             .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
             .rows(demand, summary().schema(), curves)
-            .columns(demand, curve_schema(), rows)
-            .rows(demand, harmonics_schema(), curves.times(RowCount::exact(self.harmonics)))
+            .columns(demand, curve().schema(), rows)
+            .rows(demand, harmonics().schema(), curves.times(RowCount::exact(self.harmonics)))
             .rows(demand, cost().schema(), curves)
-            .rows(demand, samples::samples_schema(), curves.times(RowCount::exact(self.samples)))
+            .rows(demand, samples::samples().schema(), curves.times(RowCount::exact(self.samples)))
             .rows(demand, samples::summary().schema(), curves)
     }
 }

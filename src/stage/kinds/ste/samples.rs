@@ -3,31 +3,39 @@
 //! A mean, a variance or an extreme of a few samples is not that of the curve; these are here to be put beside printed
 //! ones. Must not know: how a position is solved.
 
-use super::tables::{Keyed, keyed, keys};
-use declare::units::in_unit;
+use super::tables::{Keyed, keyed};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::table::columns::Columns;
-use studygraph::table::data::Row;
-use studygraph::table::schema::{Column, Schema};
 
 /// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
 /// rounding made of it.
 const BORDER: f64 = 1e-12;
 
-/// Row by row: an angle is in degrees from the start.
-pub fn samples_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::integer("sample", "Counts the positions, from 1.").key(),
-        Column::float("rotation_angle", "deg", "Rotation of the pinion from the first sample."),
-        Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
-            .tolerance(1e-9, 1e-9),
-        Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
-    ]);
-    Schema::new("samples", "Transmission error at equidistant positions of the mesh cycle.", columns).on_demand()
+/// One of the equidistant positions.
+#[derive(Clone, Copy)]
+pub struct Sample {
+    /// From 1.
+    number: usize,
+    /// From the first sample \[deg\]: in degrees from the start, so that a twelfth of a thirtieth of a turn is 1.
+    angle: f64,
+    position: f64,
+    error: f64,
+}
+
+pub fn samples<'a>() -> Columns<Keyed<'a, Sample>> {
+    let position = "Distance from where a pair starts contact, along the line of action.";
+    keyed("samples", "Transmission error at equidistant positions of the mesh cycle.")
+        .integer("sample", "Counts the positions, from 1.", |row: &Keyed<Sample>| row.2.number)
+        .key()
+        .shown("rotation_angle", "deg", "Rotation of the pinion from the first sample.", |row| row.2.angle)
+        .float("cycle_position", "mm", position, |row| row.2.position)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("transmission_error", "um", "Approach of the gears along the line of action.", |row| row.2.error)
+        .on_demand()
 }
 
 /// What the samples of a curve amount to.
+#[derive(Clone, Copy)]
 pub struct Samples {
     mean: f64,
     peak_to_peak: f64,
@@ -53,9 +61,9 @@ pub fn summary<'a>() -> Columns<Keyed<'a, Samples>> {
         .on_demand()
 }
 
-/// The rows of `samples`, without their keys, and what they amount to; `first` is the pinion's rotation from where
+/// The samples of a curve, and what they amount to; `first` is the pinion's rotation from where
 /// a pair starts contact \[rad\].
-pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Samples) {
+pub fn taken(loading: &LoadCase, first: f64, count: usize) -> (Vec<Sample>, Samples) {
     let cycle = loading.cycle;
     let teeth = f64::from(cycle.pair.pinion.specification.teeth);
     let sample = |index: usize| {
@@ -64,18 +72,13 @@ pub fn rows(loading: &LoadCase, first: f64, count: usize) -> (Vec<Row>, Samples)
         let border = BORDER * cycle.period();
         let zone = cycle.zones.iter().find(|zone| position < zone.end - border).or(cycle.zones.last());
         let error = loading.state(position, zone.map_or(1, |zone| zone.pairs)).transmission_error();
-        (position, error)
+        Sample { number: index + 1, angle: 360.0 * index as f64 / (count as f64 * teeth), position, error }
     };
     let samples: Vec<_> = (0..count).map(sample).collect();
-    let errors = || samples.iter().map(|sample| sample.1);
+    let errors = || samples.iter().map(|sample| sample.error);
     let mean = errors().sum::<f64>() / count as f64;
     let variance = errors().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count as f64;
     let [most, least] = [errors().fold(f64::NEG_INFINITY, f64::max), errors().fold(f64::INFINITY, f64::min)];
-    let row = |(index, (position, error)): (usize, &(f64, f64))| -> Row {
-        // In degrees from the start, so that a twelfth of a thirtieth of a turn is 1.
-        let angle = 360.0 * index as f64 / (count as f64 * teeth);
-        vec![(index + 1).into(), angle.into(), in_unit(*position, "mm").into(), in_unit(*error, "um").into()]
-    };
     let summary = Samples { mean, peak_to_peak: most - least, variance };
-    (samples.iter().enumerate().map(row).collect(), summary)
+    (samples, summary)
 }

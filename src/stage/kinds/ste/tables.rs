@@ -3,11 +3,9 @@
 //! Must not know: how a curve is found.
 
 use super::Answer;
-use declare::units::showing;
 use gearmesh::gear::transmission_error::curve::Point;
 use studygraph::table::columns::Columns;
-use studygraph::table::data::Data;
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::schema::Column;
 
 /// Design, torque, and what they gave.
 pub type Keyed<'a, T = &'a Answer> = (&'a str, f64, T);
@@ -19,11 +17,6 @@ pub fn keyed<'a, T>(name: &str, description: &str) -> Columns<Keyed<'a, T>> {
         .key()
         .float("torque", "N m", "Torque on the pinion.", |row| row.1)
         .key()
-}
-
-/// The same where a table is put together in another way.
-pub fn keys() -> Vec<Column> {
-    keyed::<()>("", "").schema().columns
 }
 
 pub fn summary<'a>() -> Columns<Keyed<'a>> {
@@ -74,108 +67,74 @@ pub fn cost<'a>() -> Columns<Keyed<'a>> {
         .on_demand()
 }
 
-pub fn curve_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::integer("point", "Counts the positions, from 1; those of the extrema are among them.").key(),
-        Column::float("cycle_position", "mm", "Distance from where a pair starts contact, along the line of action.")
-            .tolerance(1e-9, 1e-9),
-        Column::float("roll_angle", "deg", "The pinion's roll angle at the newest pair."),
-        Column::integer("pairs", "Pairs inside the path of contact."),
-        Column::integer("loaded_pairs", "Pairs that carry load."),
-        Column::float("transmission_error", "um", "Approach of the gears along the line of action."),
-        Column::float("unloaded_transmission_error", "um", "The same without load.").tolerance(1e-12, 1e-9),
-        Column::float("newest_load_share", "", "Share of the load on the pair that came into contact last.")
-            .tolerance(1e-12, 1e-9),
-        Column::float(
-            "secant_stiffness",
-            "N/m",
-            "Load over loaded less unloaded transmission error; NaN without load.",
-        )
-        .allows_nan(),
-        Column::float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.")
-            // Where a corner begins to touch, the slope goes with the square root of how far it is in.
-            .tolerance(0.0, 1e-5)
-            .allows_nan(),
-        Column::float("pressure", "MPa", "Largest Hertzian pressure of any pair.").on_demand(),
-    ]);
-    Schema::new(
-        "curve",
-        "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are two rows, one \
-         for each side.",
-        columns,
-    )
-}
+/// A point of a curve, and which it is, from 1.
+pub type PointRow<'a> = Keyed<'a, (usize, &'a Point)>;
 
-pub fn harmonics_schema() -> Schema {
-    let mut columns = keys();
-    columns.extend([
-        Column::integer("order", "Multiple of the mesh frequency.").key(),
-        Column::float("amplitude", "um", "Amplitude of the transmission error.").tolerance(1e-12, 1e-9),
-    ]);
-    Schema::new("harmonics", "Harmonics of the transmission error.", columns)
-}
-
-/// By columns, not rows: curves are by far the longest tables. In the order of the keys, or the table sorts every row.
-pub fn curve_columns(answers: &[Keyed], pressure: bool) -> Vec<Data> {
-    let points = || answers.iter().flat_map(|(.., answer)| &answer.points);
-    let rows = answers.iter().map(|(.., answer)| answer.points.len()).sum();
-    let shown = |unit: &str, value: fn(&Point) -> f64| {
-        let show = showing(unit);
-        let mut values = Vec::with_capacity(rows);
-        values.extend(points().map(|point| show(value(point))));
-        Data::Float(values)
-    };
-    let counted = |value: fn(usize, &Point) -> usize| {
-        let counts = answers.iter().flat_map(|(.., answer)| answer.points.iter().enumerate());
-        let mut values = Vec::with_capacity(rows);
-        values.extend(counts.map(|(index, point)| i64::try_from(value(index, point)).unwrap_or(i64::MAX)));
-        Data::Integer(values)
-    };
-    let [designs, torques] = key_columns(answers, |answer| answer.points.len());
-    let mut columns = vec![
-        designs,
-        torques,
-        counted(|index, _| index + 1),
-        shown("mm", |point| point.cycle_position),
-        shown("deg", |point| point.roll_angle),
-        counted(|_, point| point.pairs),
-        counted(|_, point| point.loaded_pairs),
-        shown("um", |point| point.transmission_error),
-        shown("um", |point| point.unloaded_transmission_error),
-        shown("", |point| {
+/// By far the longest tables.
+pub fn curve<'a>() -> Columns<PointRow<'a>> {
+    let description = "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are \
+                       two rows, one for each side.";
+    let position = "Distance from where a pair starts contact, along the line of action.";
+    let share = "Share of the load on the pair that came into contact last.";
+    let secant = "Load over loaded less unloaded transmission error; NaN without load.";
+    let counts = "Counts the positions, from 1; those of the extrema are among them.";
+    keyed("curve", description)
+        .integer("point", counts, |(.., (point, _)): &PointRow| *point)
+        .key()
+        .float("cycle_position", "mm", position, |(.., (_, point))| point.cycle_position)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("roll_angle", "deg", "The pinion's roll angle at the newest pair.", |(.., (_, point))| point.roll_angle)
+        .integer("pairs", "Pairs inside the path of contact.", |(.., (_, point))| point.pairs)
+        .integer("loaded_pairs", "Pairs that carry load.", |(.., (_, point))| point.loaded_pairs)
+        .float("transmission_error", "um", "Approach of the gears along the line of action.", |(.., (_, point))| {
+            point.transmission_error
+        })
+        .float("unloaded_transmission_error", "um", "The same without load.", |(.., (_, point))| {
+            point.unloaded_transmission_error
+        })
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("newest_load_share", "", share, |(.., (_, point))| {
             let load = point.load();
             if load > 0.0 { point.newest_load / load } else { 0.0 }
-        }),
-        shown("N/m", |point| point.secant_stiffness),
-        shown("N/m", |point| point.tangent_stiffness),
-    ];
-    if pressure {
-        columns.push(shown("MPa", |point| point.pressure.unwrap_or(f64::NAN)));
-    }
-    columns
+        })
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("secant_stiffness", "N/m", secant, |(.., (_, point))| point.secant_stiffness)
+        .but(Column::allows_nan)
+        .float(
+            "tangent_stiffness",
+            "N/m",
+            "Slope of load over transmission error; NaN without load.",
+            |(.., (_, point))| point.tangent_stiffness,
+        )
+        // Where a corner begins to touch, the slope goes with the square root of how far it is in.
+        .but(|column| column.tolerance(0.0, 1e-5).allows_nan())
+        .float("pressure", "MPa", "Largest Hertzian pressure of any pair.", |(.., (_, point))| {
+            point.pressure.unwrap_or(f64::NAN)
+        })
+        .but(Column::on_demand)
 }
 
-/// By columns, as the curves.
-pub fn harmonics_columns(answers: &[Keyed]) -> Vec<Data> {
-    let [designs, torques] = key_columns(answers, |answer| answer.summary.harmonics.len());
-    let harmonics = || answers.iter().flat_map(|(.., answer)| answer.summary.harmonics.iter().zip(1..));
-    let show = showing("um");
-    vec![
-        designs,
-        torques,
-        Data::Integer(harmonics().map(|(_, order)| order).collect()),
-        Data::Float(harmonics().map(|(amplitude, _)| show(*amplitude)).collect()),
-    ]
+/// The points of curves, in the order of the keys, or the table sorts every row.
+pub fn points<'a>(answers: &'a [Keyed<'a>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
+    answers.iter().flat_map(|(design, torque, answer)| {
+        (1..).zip(&answer.points).map(move |(index, point)| (*design, *torque, (index, point)))
+    })
 }
 
-/// Design and torque of every row, where each answer has so many.
-fn key_columns(answers: &[Keyed], rows: fn(&Answer) -> usize) -> [Data; 2] {
-    let room = answers.iter().map(|(.., answer)| rows(answer)).sum();
-    let (mut designs, mut torques) = (Vec::with_capacity(room), Vec::with_capacity(room));
-    for (design, torque, answer) in answers {
-        designs.extend(std::iter::repeat_n(*design, rows(answer)).map(str::to_owned));
-        torques.extend(std::iter::repeat_n(*torque, rows(answer)));
-    }
-    [Data::Text(designs), Data::Float(torques)]
+/// A harmonic: its order and its amplitude.
+pub type HarmonicRow<'a> = Keyed<'a, (usize, f64)>;
+
+pub fn harmonics<'a>() -> Columns<HarmonicRow<'a>> {
+    keyed("harmonics", "Harmonics of the transmission error.")
+        .integer("order", "Multiple of the mesh frequency.", |(.., (order, _)): &HarmonicRow| *order)
+        .key()
+        .float("amplitude", "um", "Amplitude of the transmission error.", |(.., (_, amplitude))| *amplitude)
+        .but(|column| column.tolerance(1e-12, 1e-9))
+}
+
+/// The harmonics of curves, in the order of the keys.
+pub fn amplitudes<'a>(answers: &'a [Keyed<'a>]) -> impl Iterator<Item = HarmonicRow<'a>> + Clone {
+    answers.iter().flat_map(|(design, torque, answer)| {
+        (1..).zip(&answer.summary.harmonics).map(move |(order, amplitude)| (*design, *torque, (order, *amplitude)))
+    })
 }
