@@ -99,7 +99,7 @@ fn model<'a>() -> Columns<ModelRow<'a>> {
         })
 }
 
-/// Those of the tables that [`write`] makes.
+/// Those of the tables that [`write()`] makes.
 #[must_use]
 pub fn schemas() -> [Schema; 3] {
     [teeth().schema(), neighbours().schema(), model().schema()]
@@ -150,10 +150,10 @@ fn surface_nodes(surface: &Surface) -> [Vec<f64>; 2] {
     std::array::from_fn(|axis| nodes(surface.lower()[axis], surface.upper()[axis], surface.counts()[axis]))
 }
 
-/// The compliances that [`write`] wrote.
+/// The compliances that [`write()`] wrote.
 ///
 /// # Errors
-/// When a table is not one that [`write`] made.
+/// When a table is not one that [`write()`] made.
 pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<PairCompliance, Failure> {
     let contact = match model.texts("contact").first().map_or("", String::as_str) {
         INCLUDED => None,

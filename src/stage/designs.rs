@@ -84,7 +84,7 @@ fn parameters<'a>() -> Columns<ParameterRow<'a>> {
         .text("word", "The word, where the parameter is one.", |row| row.parameter.2.clone())
 }
 
-/// Those of the tables that [`write`] makes.
+/// Those of the tables that [`write()`] makes.
 #[must_use]
 pub fn schemas() -> [Schema; 2] {
     [names().schema(), parameters().schema()]
@@ -164,7 +164,7 @@ fn flatten_value(name: String, value: &Value, flat: &mut Vec<Flat>) -> Result<()
 /// The rows of a table of elements by design and place in the design.
 type Index<'a> = BTreeMap<(&'a str, i64), Vec<usize>>;
 
-/// The designs that [`write`] wrote, in their order; `families` says what the parameters are.
+/// The designs that [`write()`] wrote, in their order; `families` says what the parameters are.
 ///
 /// # Errors
 /// When a family or a word is not known any more.

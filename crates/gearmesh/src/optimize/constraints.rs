@@ -9,7 +9,7 @@
 //! local searches: they go along a constraint only where the function is smooth across it. Under feasible-first or an
 //! exact penalty it has a cliff or a kink there, on which line searches along fixed directions stop, far from the
 //! minimum. Here rounds of the search minimise f + μ/2 Σ [max(0, λ/μ − g)² − (λ/μ)²] under g ≥ 0, each with better multipliers λ; its
-//! minimum is that of the constrained problem at a finite μ. A kink of f itself is left to [`super::restarts`].
+//! minimum is that of the constrained problem at a finite μ. A kink of f itself is left to `restarts.rs`.
 //!
 //! Must not know: which method runs.
 

@@ -8,7 +8,7 @@ use declare::Words;
 use declare::error::Diagnostic;
 use declare::seed::Seed;
 
-/// A search from one point until it has converged by its own measure; what then becomes of it, [`super::restarts`] says.
+/// A search from one point until it has converged by its own measure; what then becomes of it, `restarts.rs` says.
 pub(super) trait Search: Send {
     /// As [`super::Strategy::batch`].
     fn batch(&self) -> &[Vec<f64>];

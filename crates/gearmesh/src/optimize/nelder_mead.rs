@@ -2,7 +2,7 @@
 //!
 //! Sources: Nelder and Mead, Computer Journal 7 (1965) 308; coefficients ρ = 1, χ = 1 + 2/n, ψ = 3/4 − 1/(2n),
 //! σ = 1 − 1/n of Gao and Han, Comput. Optim. Appl. 51 (2012) 259, section 4 (for n = 1 those of n = 2, since σ would be
-//! 0). A simplex may be pressed flat against a bound, or stall: what becomes of one that has converged, [`super::restarts`]
+//! 0). A simplex may be pressed flat against a bound, or stall: what becomes of one that has converged, `restarts.rs`
 //! says. Sure for up to five variables; where from six on several lie on a bound at once it may use up its evaluations,
 //! and differential evolution is the better choice. Lengths are shares of each variable's range.
 //!

@@ -4,7 +4,7 @@
 //! Source: Powell, Computer Journal 7 (1964) 155, sections 2 and 3 (the test that keeps the directions independent is its
 //! step 6). A line ends where its last variable has met a bound; a variable that has met one stays there while the others
 //! go on, so a minimum on a face, an edge or in a corner is met exactly and the directions can still follow the face. Once
-//! a cycle moves by less than the tolerance, the search has converged; what then, [`super::restarts`] says. Lengths are
+//! a cycle moves by less than the tolerance, the search has converged; what then, `restarts.rs` says. Lengths are
 //! shares of each variable's range. Must not know: randomness, but for a random start.
 
 use super::line::Line;

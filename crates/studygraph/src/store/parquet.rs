@@ -79,7 +79,7 @@ fn encode(table: &Table) -> Result<Vec<u8>, String> {
 }
 
 /// # Errors
-/// A sentence, when the bytes are no table written by [`write`].
+/// A sentence, when the bytes are no table written by [`write()`].
 pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
     guarded(|| decode(bytes))
 }

@@ -3,7 +3,7 @@
 //! Seen from the gear, a point of the mate moves on an extended epicycloid, whose normal always passes through the pitch
 //! point. So the foot of a root's point on that path is where the root's point, the corner and the pitch point are on one
 //! line. This is one equation for β, the corner's angle from the line of centres, solved by Newton's method in three to
-//! five steps. Along the root the distance is searched on each curve from [`LOOKS`] intervals. A rounding is a circle that
+//! five steps. Along the root the distance is searched on each curve from `LOOKS` intervals. A rounding is a circle that
 //! moves with its centre; it lies inside the tooth, and whether the flank beside it reaches too low is another question.
 //! Between two corners of a tip the mate is farther away, since roots are concave, and the tip circle is nearest in the
 //! middle of the space. The flanks are assumed to touch on the side of the root, unmodified.
