@@ -156,13 +156,13 @@ fn most_memory(study: &str) -> u64 {
     command.arg("run").arg(study_path(study)).arg("--results").arg(folder.path().join("results"));
     command.arg("--cache").arg(folder.path().join("cache"));
     let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().expect("the program was built");
-    let mut most = 0;
+    let mut maximum = 0;
     while child.try_wait().expect("it is our child").is_none() {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
         let size = line.and_then(|line| line.trim().trim_end_matches(" kB").parse().ok());
-        most = most.max(size.unwrap_or(0));
+        maximum = maximum.max(size.unwrap_or(0));
         std::thread::sleep(Duration::from_millis(5));
     }
-    most
+    maximum
 }

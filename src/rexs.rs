@@ -111,9 +111,12 @@ fn read(document: &Document, stage: Option<&str>) -> Result<String, Refusal> {
     let version = root.attribute("version").unwrap_or("");
     let known = version.parse::<f64>().is_ok_and(|version| (VERSIONS.0..=VERSIONS.1).contains(&version));
     if !known {
-        let (least, most) = VERSIONS;
+        let (minimum, maximum) = VERSIONS;
         let shown: String = version.escape_debug().take(16).collect();
-        return refuse(root, format!("its version is `{shown}`; versions {least:.1} to {most:.1} of REXS can be read"));
+        return refuse(
+            root,
+            format!("its version is `{shown}`; versions {minimum:.1} to {maximum:.1} of REXS can be read"),
+        );
     }
     let model = Model::new(root)?;
     let relation = model.stage(stage)?;

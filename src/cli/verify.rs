@@ -150,7 +150,7 @@ fn sentence(diff: &TableDiff) -> String {
 fn worst(diff: &TableDiff) -> Option<(&ColumnDiff, &Extreme)> {
     let all = diff.columns.iter().filter_map(|column| Some((column, column.largest_over.as_ref()?)));
     // The first of equals.
-    all.reduce(|most, other| if other.1.difference > most.1.difference { other } else { most })
+    all.reduce(|maximum, other| if other.1.difference > maximum.1.difference { other } else { maximum })
 }
 
 /// By how much of the larger of the two values, where both are numbers.

@@ -19,9 +19,9 @@ const PAUSE: Duration = Duration::from_millis(5);
 /// What `work` gives; nothing, when it panics.
 ///
 /// # Errors
-/// One sentence, when it takes more memory than `most` or no thread can be started. The thread goes on: the program
+/// One sentence, when it takes more memory than `maximum` or no thread can be started. The thread goes on: the program
 /// should end soon.
-pub(super) fn within<T: Send + 'static>(most: u64, work: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {
+pub(super) fn within<T: Send + 'static>(maximum: u64, work: impl FnOnce() -> T + Send + 'static) -> Result<T, String> {
     let before = held();
     let (sender, receiver) = mpsc::channel();
     let asked = thread::Builder::new().stack_size(STACK).spawn(move || {
@@ -35,9 +35,9 @@ pub(super) fn within<T: Send + 'static>(most: u64, work: impl FnOnce() -> T + Se
             Err(RecvTimeoutError::Disconnected) => return Err("the query cannot be answered".to_owned()),
             Err(RecvTimeoutError::Timeout) => {
                 if let (Some(before), Some(now)) = (before, held())
-                    && now > before.saturating_add(most)
+                    && now > before.saturating_add(maximum)
                 {
-                    let size = most >> 20;
+                    let size = maximum >> 20;
                     return Err(format!(
                         "the query takes more than {size} MiB of memory: join on more columns, or choose fewer rows with \
                          WHERE"

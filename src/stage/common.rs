@@ -61,10 +61,10 @@ pub fn teeth(record: &Record) -> Result<Teeth, Diagnostic> {
 
 pub const STIFFNESS: Field = Field::reference("stiffness", &["stiffness"], "The pair's compliances.");
 
-/// At most `most`.
-pub const fn positions(most: i64) -> Field {
+/// At most `maximum`.
+pub const fn positions(maximum: i64) -> Field {
     let summary = "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.";
-    Field::integer("positions", 8, most, summary).default("64")
+    Field::integer("positions", 8, maximum, summary).default("64")
 }
 
 pub const SLICES: Field = Field::integer(

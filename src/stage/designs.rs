@@ -286,7 +286,7 @@ mod tests {
 
     const POINT: &[Field] = &[Field::number("x", 0.0, 9.0, ""), Field::integer("y", 0, 9, "").optional()];
     const LISTS: &[Field] = &[
-        Field::new("depths", Shape::List(&Shape::Quantity { dimension: LENGTH, least: 0.0, most: 1.0 }), ""),
+        Field::new("depths", Shape::List(&Shape::Quantity { dimension: LENGTH, minimum: 0.0, maximum: 1.0 }), ""),
         Field::new("points", Shape::List(&Shape::Group(POINT)), "").optional(),
     ];
 

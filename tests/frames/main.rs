@@ -258,14 +258,14 @@ fn queries_reach_studies_and_commits() {
     // Across commits: what `diff` says of them.
     let across = "SELECT MAX(ABS(new.mean - old.mean)) AS most FROM \"main:quick.ste.summary\" AS new \
                   JOIN \"HEAD~1:quick.ste.summary\" AS old ON new.design = old.design AND new.torque = old.torque";
-    let most = json(&desk, &["query", across, "--format", "json"])[0]["most"].as_f64().unwrap();
+    let maximum = json(&desk, &["query", across, "--format", "json"])[0]["most"].as_f64().unwrap();
     let diff: Value = serde_json::from_str(&desk.run(&["diff", "HEAD~1", "HEAD", "--format", "json"], 4).0).unwrap();
     let stages = diff["studies"][0]["stages"].as_array().unwrap();
     let tables = stages.iter().flat_map(|stage| stage["tables"].as_array().unwrap());
     let summary = tables.clone().find(|table| table["name"] == "ste.summary").unwrap();
     let column = summary["columns"].as_array().unwrap().iter().find(|column| column["name"] == "mean").unwrap();
     let told = column["largest_absolute"]["difference"].as_f64().unwrap().abs();
-    assert!(most > 0.0 && most.to_bits() == told.to_bits());
+    assert!(maximum > 0.0 && maximum.to_bits() == told.to_bits());
     let count = |words: &[&str]| json(&desk, &[&["query", "--format", "json"], words].concat())[0]["n"].clone();
     let bore = "SELECT bore_radius AS n FROM pair.gears WHERE gear = 'pinion'";
     assert_eq!((count(&[bore]), count(&[bore, "--at", "HEAD~1"])), (17.0.into(), 18.0.into()));

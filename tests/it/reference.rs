@@ -107,10 +107,10 @@ fn summaries_agree_with_their_curves() {
         assert!(points.len() >= 64, "{design}");
         let value = |column: &str| summary.floats(column)[row];
         let along = |column: &str| points.iter().map(|at| curve.floats(column)[*at]).collect::<Vec<f64>>();
-        let (least, most) = (f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
+        let (minimum, maximum) = (f64::min as fn(f64, f64) -> f64, f64::max as fn(f64, f64) -> f64);
         let error = along("transmission_error");
         let [lowest, highest] =
-            [(f64::INFINITY, least), (0.0, most)].map(|(from, pick)| error.iter().copied().fold(from, pick));
+            [(f64::INFINITY, minimum), (0.0, maximum)].map(|(from, pick)| error.iter().copied().fold(from, pick));
         // The extrema are among the rows.
         let (minimum, maximum) = (value("minimum"), value("maximum"));
         assert!((minimum - lowest).abs() < 1e-12, "{design} {torque}: {minimum} {lowest}");
@@ -121,7 +121,7 @@ fn summaries_agree_with_their_curves() {
         assert!(value("variance") <= 0.25 * value("peak_to_peak").powi(2) * (1.0 + 1e-12));
         assert!((value("variance") * value("reciprocal_variance") - 1.0).abs() < 1e-14);
         let share =
-            along("newest_load_share").into_iter().fold(0.0, |most: f64, share| most.max(share).max(1.0 - share));
+            along("newest_load_share").into_iter().fold(0.0, |maximum: f64, share| maximum.max(share).max(1.0 - share));
         assert!(share <= value("largest_load_share") + 1e-12, "{design} {torque}");
         let pressure = along("pressure").into_iter().fold(0.0, f64::max);
         assert!((pressure / value("largest_pressure") - 1.0).abs() < 1e-3, "{design} {torque}: {pressure}");

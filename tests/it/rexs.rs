@@ -218,8 +218,8 @@ fn no_part_of_a_file_takes_more_than_its_share() {
     let text =
         text.replacen("  <components>", &format!("{values}<![CDATA[<a {values}>]]><?p <a {values} ?><components>"), 1);
     assert!(rexs::geometry(&text, None).is_ok(), "{}", refused(&text));
-    let most = (0..97).map(|at| format!(" a{at} = '1'")).collect::<Vec<_>>().concat();
-    let text = |more: &str| file().replacen("<component id=\"2\"", &format!("<component{most}{more} id=\"2\""), 1);
+    let maximum = (0..97).map(|at| format!(" a{at} = '1'")).collect::<Vec<_>>().concat();
+    let text = |more: &str| file().replacen("<component id=\"2\"", &format!("<component{maximum}{more} id=\"2\""), 1);
     assert!(rexs::geometry(&text(""), None).is_ok() && refused(&text(" b='1'")).ends_with(says));
 
     let spaces = (0..500_000).map(|at| format!("<a xmlns:n{at}='u'/>")).collect::<Vec<_>>().concat();

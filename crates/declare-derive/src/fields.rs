@@ -14,8 +14,8 @@ use crate::doc::sentence;
 /// What stands on a field.
 #[derive(Default)]
 pub struct Marks {
-    least: Option<Expr>,
-    most: Option<Expr>,
+    minimum: Option<Expr>,
+    maximum: Option<Expr>,
     dimension: Option<Expr>,
     pub default: Option<LitStr>,
     axis: Option<Expr>,
@@ -33,8 +33,8 @@ impl Marks {
             attribute.parse_nested_meta(|meta| {
                 let name = meta.path.get_ident().map(Ident::to_string).unwrap_or_default();
                 match name.as_str() {
-                    "least" => marks.least = Some(meta.value()?.parse()?),
-                    "most" => marks.most = Some(meta.value()?.parse()?),
+                    "minimum" => marks.minimum = Some(meta.value()?.parse()?),
+                    "maximum" => marks.maximum = Some(meta.value()?.parse()?),
                     "dimension" => marks.dimension = Some(meta.value()?.parse()?),
                     "default" => marks.default = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
@@ -44,7 +44,7 @@ impl Marks {
                     "flatten" => marks.flatten = true,
                     _ => {
                         return Err(meta.error(
-                            "it is `least`, `most`, `multiple`, `dimension`, `default`, `axis`, `range`, `name` or \
+                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, `name` or \
                              `flatten`",
                         ));
                     }
@@ -57,9 +57,9 @@ impl Marks {
 
     /// The range of a number.
     fn bounds(&self, owner: &Ident) -> Result<(&Expr, &Expr), Error> {
-        match (&self.least, &self.most) {
-            (Some(least), Some(most)) => Ok((least, most)),
-            _ => Err(Error::new(owner.span(), "a number has a range: `least` and `most`")),
+        match (&self.minimum, &self.maximum) {
+            (Some(minimum), Some(maximum)) => Ok((minimum, maximum)),
+            _ => Err(Error::new(owner.span(), "a number has a range: `minimum` and `maximum`")),
         }
     }
 }
@@ -276,18 +276,18 @@ fn kind(ty: &Type, marks: &Marks, owner: &Ident) -> Result<Kind, Error> {
     };
     Ok(match word.as_str() {
         "f64" => {
-            let (least, most) = marks.bounds(owner)?;
+            let (minimum, maximum) = marks.bounds(owner)?;
             match &marks.dimension {
                 Some(dimension) => Kind {
                     shape: quote!(::declare::parameter::Shape::Quantity {
-                        dimension: #dimension, least: #least, most: #most
+                        dimension: #dimension, minimum: #minimum, maximum: #maximum
                     }),
                     read: quote!(::declare::declared::quantity(value)),
                     write: quote!(::declare::record::Value::Quantity(*value)),
                     proof: TokenStream::new(),
                 },
                 None => Kind {
-                    shape: quote!(::declare::parameter::Shape::Number { least: #least, most: #most }),
+                    shape: quote!(::declare::parameter::Shape::Number { minimum: #minimum, maximum: #maximum }),
                     read: quote!(::declare::declared::number(value)),
                     write: quote!(::declare::record::Value::Number(*value)),
                     proof: TokenStream::new(),
@@ -295,18 +295,18 @@ fn kind(ty: &Type, marks: &Marks, owner: &Ident) -> Result<Kind, Error> {
             }
         }
         "u8" | "u16" | "u32" | "u64" | "usize" | "i8" | "i16" | "i32" | "i64" => {
-            let (least, most) = marks.bounds(owner)?;
+            let (minimum, maximum) = marks.bounds(owner)?;
             let fits = format!("every value of `{owner}` fits its type");
             let multiple = marks.multiple.as_ref().map_or_else(|| quote!(1), |multiple| quote!(#multiple));
             Kind {
                 shape: quote!(::declare::parameter::Shape::Integer {
-                    least: #least, most: #most, multiple: #multiple
+                    minimum: #minimum, maximum: #maximum, multiple: #multiple
                 }),
                 read: quote!(::declare::declared::integer::<#ty>(value)),
                 write: quote!(::declare::declared::of_integer(*value)),
                 proof: quote!(
                     const _: () = assert!(
-                        #least as i128 >= <#ty>::MIN as i128 && #most as i128 <= <#ty>::MAX as i128, #fits
+                        #minimum as i128 >= <#ty>::MIN as i128 && #maximum as i128 <= <#ty>::MAX as i128, #fits
                     );
                 ),
             }

@@ -14,10 +14,11 @@ use syn::{DeriveInput, Error, parse_macro_input};
 
 /// Implements `declare::Declared` for a struct with named fields.
 ///
-/// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `least`, `most` (numbers, in
-/// SI), `multiple` (of integers), `dimension` (of `declare::units`, for quantities), `default` (as in a study), `range` (an
-/// optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (what is `Joint`). The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of
-/// these, words, and structs that are declared themselves. Where every field has a default, `Default` is implemented too.
+/// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `minimum`, `maximum`
+/// (numbers, in SI), `multiple` (of integers), `dimension` (of `declare::units`, for quantities), `default` (as in a
+/// study), `range` (an optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (what is `Joint`).
+/// The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of these, words, and structs
+/// that are declared themselves. Where every field has a default, `Default` is implemented too.
 #[proc_macro_derive(Declared, attributes(declared))]
 pub fn declared(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);

@@ -111,10 +111,10 @@ impl Record {
     pub fn without_ranges(&self, fields: &[Field]) -> Self {
         let mut fixed = self.clone();
         for (name, entry) in &mut fixed.fields {
-            let Value::Range(least, _) = entry.value else { continue };
+            let Value::Range(minimum, _) = entry.value else { continue };
             let shape = fields.iter().find(|field| field.name == *name).map(|field| field.shape);
             let plain = matches!(shape, Some(Shape::Number { .. }));
-            entry.value = if plain { Value::Number(least) } else { Value::Quantity(least) };
+            entry.value = if plain { Value::Number(minimum) } else { Value::Quantity(minimum) };
         }
         fixed
     }
@@ -156,18 +156,18 @@ fn check(record: &Record, fields: &[Field]) -> Result<(), Diagnostic> {
 }
 
 fn check_value(value: &Value, shape: &Shape, name: &str) -> Result<(), Diagnostic> {
-    let outside = |value: String, least: String, most: String| {
-        Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be {least} to {most}")))
+    let outside = |value: String, minimum: String, maximum: String| {
+        Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be {minimum} to {maximum}")))
     };
     match (value, shape) {
-        (Value::Quantity(value), Shape::Quantity { least, most, .. })
-        | (Value::Number(value), Shape::Number { least, most })
-            if !(*least..=*most).contains(value) =>
+        (Value::Quantity(value), Shape::Quantity { minimum, maximum, .. })
+        | (Value::Number(value), Shape::Number { minimum, maximum })
+            if !(*minimum..=*maximum).contains(value) =>
         {
-            outside(value.to_string(), least.to_string(), most.to_string())
+            outside(value.to_string(), minimum.to_string(), maximum.to_string())
         }
-        (Value::Integer(value), Shape::Integer { least, most, .. }) if !(*least..=*most).contains(value) => {
-            outside(value.to_string(), least.to_string(), most.to_string())
+        (Value::Integer(value), Shape::Integer { minimum, maximum, .. }) if !(*minimum..=*maximum).contains(value) => {
+            outside(value.to_string(), minimum.to_string(), maximum.to_string())
         }
         (Value::Integer(value), Shape::Integer { multiple, .. }) if value % multiple != 0 => {
             Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be multiples of {multiple}")))

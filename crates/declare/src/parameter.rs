@@ -9,22 +9,22 @@ use super::units::Dimension;
 /// What a field may hold.
 #[derive(Clone, Copy)]
 pub enum Shape {
-    /// A number with a unit, inside `least..=most` (SI).
+    /// A number with a unit, inside `minimum..=maximum` (SI).
     Quantity {
         dimension: Dimension,
-        least: f64,
-        most: f64,
+        minimum: f64,
+        maximum: f64,
     },
     /// A number with any unit, or none: a published value.
     AnyQuantity,
     /// A plain number.
     Number {
-        least: f64,
-        most: f64,
+        minimum: f64,
+        maximum: f64,
     },
     Integer {
-        least: i64,
-        most: i64,
+        minimum: i64,
+        maximum: i64,
         /// Only multiples of this, 1 for all: two numbers that mean the same would be two keys of one result.
         multiple: i64,
     },
@@ -130,34 +130,34 @@ impl Field {
         Self { name, shape, presence: Presence::Required, span: Span::Single, chooses: false, summary }
     }
 
-    /// A quantity inside `least..=most` (SI).
+    /// A quantity inside `minimum..=maximum` (SI).
     #[must_use]
     pub const fn quantity(
         name: &'static str,
         dimension: Dimension,
-        least: f64,
-        most: f64,
+        minimum: f64,
+        maximum: f64,
         summary: &'static str,
     ) -> Self {
-        Self::new(name, Shape::Quantity { dimension, least, most }, summary)
+        Self::new(name, Shape::Quantity { dimension, minimum, maximum }, summary)
     }
 
     #[must_use]
-    pub const fn number(name: &'static str, least: f64, most: f64, summary: &'static str) -> Self {
-        Self::new(name, Shape::Number { least, most }, summary)
+    pub const fn number(name: &'static str, minimum: f64, maximum: f64, summary: &'static str) -> Self {
+        Self::new(name, Shape::Number { minimum, maximum }, summary)
     }
 
     #[must_use]
-    pub const fn integer(name: &'static str, least: i64, most: i64, summary: &'static str) -> Self {
-        Self::new(name, Shape::Integer { least, most, multiple: 1 }, summary)
+    pub const fn integer(name: &'static str, minimum: i64, maximum: i64, summary: &'static str) -> Self {
+        Self::new(name, Shape::Integer { minimum, maximum, multiple: 1 }, summary)
     }
 
     /// An integer of which only the multiples of `of` are taken; both its bounds are among them.
     #[must_use]
     pub const fn multiple_of(mut self, of: i64) -> Self {
-        let Shape::Integer { least, most, .. } = self.shape else { panic!("only an integer has multiples") };
-        assert!(least % of == 0 && most % of == 0, "the bounds are multiples");
-        self.shape = Shape::Integer { least, most, multiple: of };
+        let Shape::Integer { minimum, maximum, .. } = self.shape else { panic!("only an integer has multiples") };
+        assert!(minimum % of == 0 && maximum % of == 0, "the bounds are multiples");
+        self.shape = Shape::Integer { minimum, maximum, multiple: of };
         self
     }
 

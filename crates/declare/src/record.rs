@@ -174,7 +174,7 @@ impl Value {
                 writer.float(*value)
             }
             Self::Axis(values) => writer.text("axis").floats(values),
-            Self::Range(least, most) => writer.text("range").float(*least).float(*most),
+            Self::Range(minimum, maximum) => writer.text("range").float(*minimum).float(*maximum),
             Self::Number(value) => writer.text("number").float(*value),
             Self::Integer(value) => writer.integer(*value),
             Self::Flag(value) => writer.flag(*value),

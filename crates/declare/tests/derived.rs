@@ -34,19 +34,19 @@ struct Ends {
 #[declared(name = "toy")]
 struct Toy {
     /// individuals
-    #[declared(least = 2, most = 100, multiple = 2, default = "10")]
+    #[declared(minimum = 2, maximum = 100, multiple = 2, default = "10")]
     pub population: u32,
     /// first step
-    #[declared(least = 0.0, most = 1e-3, dimension = LENGTH, default = "30 um", range)]
+    #[declared(minimum = 0.0, maximum = 1e-3, dimension = LENGTH, default = "30 um", range)]
     pub step: f64,
     /// where it starts
     #[declared(default = "centre")]
     pub start: Start,
     /// patience
-    #[declared(least = 1, most = 9)]
+    #[declared(minimum = 1, maximum = 9)]
     pub patience: Option<usize>,
     /// levels
-    #[declared(least = 2, most = 50, default = "11")]
+    #[declared(minimum = 2, maximum = 50, default = "11")]
     pub levels: Vec<usize>,
     /// the ends
     #[declared(default = "{}")]
@@ -74,10 +74,10 @@ fn a_struct_declares_what_a_table_of_fields_would() {
         assert_eq!((derived.name, derived.summary), (by_hand.name, by_hand.summary));
         assert!(derived.presence == by_hand.presence && derived.span == by_hand.span && !derived.chooses);
     }
-    assert!(matches!(member.fields[0].shape, Shape::Integer { least: 2, most: 100, multiple: 2 }));
-    assert!(matches!(member.fields[1].shape, Shape::Quantity { dimension: LENGTH, least: 0.0, most: 1e-3 }));
+    assert!(matches!(member.fields[0].shape, Shape::Integer { minimum: 2, maximum: 100, multiple: 2 }));
+    assert!(matches!(member.fields[1].shape, Shape::Quantity { dimension: LENGTH, minimum: 0.0, maximum: 1e-3 }));
     assert!(matches!(member.fields[3].presence, Presence::Optional) && member.fields[3].span == Span::Single);
-    assert!(matches!(member.fields[4].shape, Shape::List(Shape::Integer { least: 2, most: 50, multiple: 1 })));
+    assert!(matches!(member.fields[4].shape, Shape::List(Shape::Integer { minimum: 2, maximum: 50, multiple: 1 })));
     assert!(matches!(member.fields[5].shape, Shape::Group(fields) if fields[0].name == "both"));
     let Shape::Choice(choices) = member.fields[2].shape else { panic!("words") };
     let choices: Vec<_> = choices.iter().map(|choice| (choice.name, choice.summary)).collect();
@@ -128,10 +128,10 @@ fn a_number_outside_its_range_is_refused() {
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 enum Reach {
     /// L.
-    #[declared(least = 0.0, most = 1.0, dimension = LENGTH, range)]
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, range)]
     Length(f64),
     /// As a share.
-    #[declared(name = "length_share", least = 0.0, most = 2.0)]
+    #[declared(name = "length_share", minimum = 0.0, maximum = 2.0)]
     Share(f64),
 }
 
@@ -144,7 +144,7 @@ enum Growth {
     /// t^n
     Power {
         /// n
-        #[declared(least = 1.0, most = 9.0)]
+        #[declared(minimum = 1.0, maximum = 9.0)]
         exponent: f64,
     },
 }

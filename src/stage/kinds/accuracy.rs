@@ -60,7 +60,7 @@ const FIELDS: &[Field] = &[
     Field::integer("seeds", 1, 1000, "With how many seeds a stage that draws random numbers is run.").default("1"),
     Field::new(
         "wanted",
-        Shape::List(&Shape::Quantity { dimension: RATIO, least: 1e-15, most: 10.0 }),
+        Shape::List(&Shape::Quantity { dimension: RATIO, minimum: 1e-15, maximum: 10.0 }),
         "Relative accuracies for which the cheapest setting is looked for.",
     )
     .default("[1 %, 0.1 %, 0.01 %]"),
@@ -159,11 +159,11 @@ impl Stage for Accuracy {
         let steps = variants.len() - 1;
         let compared = RowCount::exact(steps * self.quantities.len());
         let mut all = Estimate::new(true);
-        let mut most = 0;
+        let mut maximum = 0;
         for (index, variant) in variants.iter().enumerate() {
             let runs = if index == 0 { 1 } else { self.plan.runs(variant.stage.as_ref()) };
             let one = variant.stage.estimate(&demand, &variant::ahead(&ports, index, ahead));
-            most = most.max(one.memory);
+            maximum = maximum.max(one.memory);
             all.seconds += runs as f64 * one.seconds;
         }
         for schema in tables::schemas() {
@@ -175,7 +175,7 @@ impl Stage for Accuracy {
             };
             all = all.rows(asked, schema, rows);
         }
-        all.holding(most)
+        all.holding(maximum)
     }
 
     fn uses_seed(&self) -> bool {

@@ -259,7 +259,7 @@ impl Stage for Geometry {
                     _ => 0,
                 }),
                 "root_arc" => RowCount::at_most(self.gears.len()),
-                "arc_drawing" => RowCount::at_most(halves().map(construction::most).sum()),
+                "arc_drawing" => RowCount::at_most(halves().map(construction::maximum).sum()),
                 "pair" => RowCount::exact(1),
                 _ => RowCount::exact(self.gears.len()),
             };

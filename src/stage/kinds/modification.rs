@@ -154,13 +154,13 @@ impl Stage for Modification {
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let elements = || self.designs.iter().flat_map(|design| &design.elements);
         // A modification of both gears is one of each.
-        let most = 2 * elements().count();
+        let maximum = 2 * elements().count();
         let [of_designs, of_elements] = designs::schemas();
         Estimate::new(false)
             .rows(demand, of_designs, RowCount::exact(self.designs.len()))
             .rows(demand, of_elements, RowCount::exact(elements().map(designs::rows_of).sum()))
-            .rows(demand, resolved().schema(), RowCount::at_most(most))
-            .rows(demand, parameters().schema(), RowCount::at_most(most * MOST_RESOLVED))
+            .rows(demand, resolved().schema(), RowCount::at_most(maximum))
+            .rows(demand, parameters().schema(), RowCount::at_most(maximum * MOST_RESOLVED))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {

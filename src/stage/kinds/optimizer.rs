@@ -181,7 +181,7 @@ fn fitness_in(unit: &str) -> impl Fn(f64) -> f64 + use<> {
 
 impl Optimizer {
     fn bounds(&self) -> Result<Bounds, Diagnostic> {
-        Bounds::new(self.template.variables().iter().map(|variable| (variable.least, variable.most)).collect())
+        Bounds::new(self.template.variables().iter().map(|variable| (variable.minimum, variable.maximum)).collect())
     }
 
     fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
@@ -301,7 +301,7 @@ impl Optimizer {
     /// Why a search found no design at all, by the one in the middle of the box.
     fn nothing_built(&self, pair: &GearPair) -> Failure {
         let variables = self.template.variables();
-        let middle: Vec<f64> = variables.iter().map(|variable| 0.5 * (variable.least + variable.most)).collect();
+        let middle: Vec<f64> = variables.iter().map(|variable| 0.5 * (variable.minimum + variable.maximum)).collect();
         let reason =
             self.template.design(pair, &middle).err().map(|error| format!("; in the middle: {}", error.message));
         Failure::new(format!(

@@ -137,10 +137,10 @@ impl Stage for Report {
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let points: Vec<u64> = self.figures.iter().map(|figure| figure.points(ahead)).collect();
-        let (all, most) = (points.iter().sum::<u64>(), points.iter().copied().max().unwrap_or(0));
+        let (all, maximum) = (points.iter().sum::<u64>(), points.iter().copied().max().unwrap_or(0));
         let drawn = points.iter().map(|points| points.min(&MOST_DRAWN)).sum::<u64>();
         Estimate::new(false)
-            .holding(most.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
+            .holding(maximum.saturating_mul(BYTES_OF_POINT).saturating_add(drawn * BYTES_OF_DRAWN))
             .taking(all as f64 * SECONDS_OF_POINT + drawn as f64 * SECONDS_OF_DRAWN)
             .holding(self.entries.len() as u64 * 1000)
             .rows(demand, verdicts().schema(), RowCount::exact(self.entries.len()))

@@ -89,8 +89,8 @@ fn variables<'a>() -> Columns<VariableRow<'a>> {
         .key()
         .float("value", "mm", "Its value.", |row| row.1)
         .but(|column| column.tolerance(1e-6, 1e-3))
-        .float("least", "mm", "The least that was allowed.", |row| row.0.least)
-        .float("most", "mm", "The most that was allowed.", |row| row.0.most)
+        .float("least", "mm", "The least that was allowed.", |row| row.0.minimum)
+        .float("most", "mm", "The most that was allowed.", |row| row.0.maximum)
 }
 
 /// How a search ended.
@@ -179,7 +179,7 @@ impl RootOptimizer {
     }
 
     fn search(&self, variables: &[Variable], seed: Seed) -> Result<optimize::search::Optimizer, Diagnostic> {
-        let bounds = variables.iter().map(|variable| (variable.least, variable.most)).collect();
+        let bounds = variables.iter().map(|variable| (variable.minimum, variable.maximum)).collect();
         optimize::search(&*self.method, Bounds::new(bounds)?, seed).map_err(|wrong| self.how.locate(wrong))
     }
 }
@@ -194,7 +194,7 @@ impl Stage for RootOptimizer {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let [free, kept] = self.problem.most();
+        let [free, kept] = self.problem.maximum();
         let Ok(foreseen) = self.method.foresee(free) else {
             return Estimate::new(true);
         };

@@ -153,10 +153,10 @@ impl Ste {
         let loading = LoadCase::new(&cycle, design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
         if !loading.holds(summary.largest.value) {
-            let (found, most) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
+            let (found, maximum) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
             return Err(Failure::new(format!(
                 "design `{name}` at {torque} N m: the gears approach by {found:.6} mm, but `corner_contact: exact` holds \
-                 up to {most:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
+                 up to {maximum:.6} mm only; beyond that a tip passes the other one, or a pair farther out would touch"
             )));
         }
         if self.accuracy.is_none() {

@@ -131,9 +131,9 @@ struct SummaryRow {
 impl SummaryRow {
     /// Least and largest stiffness with so many pairs in contact.
     fn zone(&self, pairs: usize) -> [f64; 2] {
-        let zones = [Some(self.summary.fewest), self.summary.most];
+        let zones = [Some(self.summary.fewest_pairs), self.summary.most_pairs];
         let found = zones.into_iter().flatten().find(|zone| zone.pairs == pairs);
-        found.map_or([f64::NAN; 2], |zone| [zone.least, zone.most])
+        found.map_or([f64::NAN; 2], |zone| [zone.minimum, zone.maximum])
     }
 }
 
@@ -149,7 +149,7 @@ fn summary() -> Columns<SummaryRow> {
     let columns = extreme(columns, "double_min", "Smallest stiffness with two pairs in contact.", 2, 0);
     extreme(columns, "double_max", "Largest stiffness with two pairs in contact.", 2, 1)
         .float("mean", "N/m", "Integral mean over the mesh cycle.", |row| row.summary.mean)
-        .integer("fewest_pairs", "Pairs in contact where they are fewest.", |row| row.summary.fewest.pairs)
+        .integer("fewest_pairs", "Pairs in contact where they are fewest.", |row| row.summary.fewest_pairs.pairs)
         .float("error_estimate", "%", error, |row| row.error_estimate)
         .but(|column| column.tolerance(1e-9, 1e-2))
 }

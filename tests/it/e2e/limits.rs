@@ -111,7 +111,7 @@ fn memory_is_foreseen_from_above() {
     let plan: Value = serde_json::from_str(&plan).unwrap();
     let stages = plan[0]["stages"].as_array().unwrap();
     desk.run(&["run", "large.yaml", "--want", "pair.outline"], 0);
-    for (stage, least) in [("pair", 0.2), ("stiffness", 0.1), ("ste", 0.05)] {
+    for (stage, minimum) in [("pair", 0.2), ("stiffness", 0.1), ("ste", 0.05)] {
         let expected =
             stages.iter().find(|planned| planned["name"] == stage).unwrap()["expected"]["memory_bytes"].clone();
         let table = format!("of_{stage}.reference");
@@ -119,6 +119,6 @@ fn memory_is_foreseen_from_above() {
         let measured: Value = serde_json::from_str(&measured).unwrap();
         let measured = 1e6 * measured[0]["megabytes"].as_f64().unwrap();
         let share = measured / expected.as_f64().unwrap();
-        assert!((least..=1.0).contains(&share), "{stage}: {measured} of {expected} foreseen bytes");
+        assert!((minimum..=1.0).contains(&share), "{stage}: {measured} of {expected} foreseen bytes");
     }
 }

@@ -82,14 +82,14 @@ fn case(number: u64) -> Case {
         point.teeth = [20.0 + (coordinates[4] * 300.0).floor(), 30.0 + (coordinates[5] * 400.0).floor()];
     }
     let mut case = point.case(format!("case {number}"), "sample", 0.0, &model);
-    let (least, most) = ([1e-12, 0.0, 0.0, 0.0], [1e9, 5e-3, 1.0, 5e-3]);
+    let (minimum, maximum) = ([1e-12, 0.0, 0.0, 0.0], [1e9, 5e-3, 1.0, 5e-3]);
     for (index, value) in
         [&mut case.torque, &mut case.relief, &mut case.relief_length, &mut case.crowning].into_iter().enumerate()
     {
         match generator.next_u64() % 12 {
-            0 => *value = least[index],
-            1 => *value = most[index],
-            2 => *value = 1e-300_f64.max(least[index]),
+            0 => *value = minimum[index],
+            1 => *value = maximum[index],
+            2 => *value = 1e-300_f64.max(minimum[index]),
             _ => {}
         }
     }

@@ -85,8 +85,8 @@ fn texts() -> Vec<String> {
     texts
 }
 
-fn below(generator: &mut impl Rng, most: usize) -> usize {
-    if most == 0 { 0 } else { (generator.next_u64() % most as u64) as usize }
+fn below(generator: &mut impl Rng, maximum: usize) -> usize {
+    if maximum == 0 { 0 } else { (generator.next_u64() % maximum as u64) as usize }
 }
 
 fn changed(text: &str, number: u64) -> String {

@@ -92,12 +92,12 @@ proptest! {
         corners in prop::collection::vec((-1e6..1e6_f64, 1e-6..1e6_f64), 1..5),
         scale in 1e-9..1e9_f64,
     ) {
-        let bounds: Vec<_> = corners.iter().map(|(least, span)| (*least, least + span)).collect();
+        let bounds: Vec<_> = corners.iter().map(|(minimum, span)| (*minimum, minimum + span)).collect();
         for (method, given) in variants() {
             let (met, done) = points(search(method, &given, &bounds, seed), |point| noise(point) * scale);
             for point in &met {
                 prop_assert_eq!(point.len(), bounds.len());
-                prop_assert!(point.iter().zip(&bounds).all(|(x, (least, most))| least <= x && x <= most), "{} {:?}", method, point);
+                prop_assert!(point.iter().zip(&bounds).all(|(x, (minimum, maximum))| minimum <= x && x <= maximum), "{} {:?}", method, point);
             }
             prop_assert_eq!(met.len(), done.evaluations());
             prop_assert!(done.evaluations() <= done.budget(), "{}: {} of {}", method, done.evaluations(), done.budget());

@@ -117,11 +117,11 @@ fn restarts_free_a_simplex_stuck_in_a_sharp_valley() {
 fn conjugate_directions_save_evaluations() {
     let narrow: Function = |x| (x[0] + x[1] - 1.1).powi(2) + 1e3 * (x[0] - x[1] - 0.2).powi(2);
     let cases: [(Function, _, _); 2] = [(rosenbrock, [(-2.0, 2.0); 2], 300), (narrow, [(0.0, 1.0); 2], 60)];
-    for (function, bounds, most) in cases {
+    for (function, bounds, maximum) in cases {
         let found = run(search("powell", &[("restarts", integer(0))], &bounds, 1), function);
         assert_eq!(found.finished(), Some(Reason::Converged));
         assert!(found.best().unwrap().value < 1e-15, "{:?}", found.best());
-        assert!(found.evaluations() < most, "{} evaluations", found.evaluations());
+        assert!(found.evaluations() < maximum, "{} evaluations", found.evaluations());
     }
 }
 

@@ -15,7 +15,7 @@ struct Kinked {
     minimum: f64,
 }
 
-fn most(values: &[f64]) -> f64 {
+fn maximum(values: &[f64]) -> f64 {
     values.iter().copied().fold(f64::NEG_INFINITY, f64::max)
 }
 
@@ -25,14 +25,14 @@ fn rosen_suzuki(x: &[f64]) -> f64 {
     let second = a * a + b * b + c * c + d * d + a - b + c - d - 8.0;
     let third = a * a + 2.0 * b * b + c * c + 2.0 * d * d - a - d - 10.0;
     let fourth = a * a + b * b + c * c + 2.0 * a - b - d - 5.0;
-    most(&[first, first + 10.0 * second, first + 10.0 * third, first + 10.0 * fourth])
+    maximum(&[first, first + 10.0 * second, first + 10.0 * third, first + 10.0 * fourth])
 }
 
 const FUNCTIONS: &[Kinked] = &[
     Kinked {
         name: "CB2",
         function: |x| {
-            most(&[
+            maximum(&[
                 x[0] * x[0] + x[1].powi(4),
                 (2.0 - x[0]).powi(2) + (2.0 - x[1]).powi(2),
                 2.0 * libm::exp(x[1] - x[0]),
@@ -44,7 +44,7 @@ const FUNCTIONS: &[Kinked] = &[
     Kinked {
         name: "CB3",
         function: |x| {
-            most(&[
+            maximum(&[
                 x[0].powi(4) + x[1] * x[1],
                 (2.0 - x[0]).powi(2) + (2.0 - x[1]).powi(2),
                 2.0 * libm::exp(x[1] - x[0]),
@@ -55,7 +55,7 @@ const FUNCTIONS: &[Kinked] = &[
     },
     Kinked {
         name: "DEM",
-        function: |x| most(&[5.0 * x[0] + x[1], -5.0 * x[0] + x[1], x[0] * x[0] + x[1] * x[1] + 4.0 * x[1]]),
+        function: |x| maximum(&[5.0 * x[0] + x[1], -5.0 * x[0] + x[1], x[0] * x[0] + x[1] * x[1] + 4.0 * x[1]]),
         bounds: &[(-4.0, 3.0); 2],
         minimum: -3.0,
     },
@@ -64,20 +64,20 @@ const FUNCTIONS: &[Kinked] = &[
         function: |x| {
             let square = x[0] * x[0] + x[1] * x[1];
             let second = square + 10.0 * (-4.0 * x[0] - x[1] + 4.0);
-            most(&[square, second, square + 10.0 * (-x[0] - 2.0 * x[1] + 6.0)])
+            maximum(&[square, second, square + 10.0 * (-x[0] - 2.0 * x[1] + 6.0)])
         },
         bounds: &[(-3.0, 6.0); 2],
         minimum: 7.2,
     },
     Kinked {
         name: "LQ",
-        function: |x| most(&[-x[0] - x[1], -x[0] - x[1] + x[0] * x[0] + x[1] * x[1] - 1.0]),
+        function: |x| maximum(&[-x[0] - x[1], -x[0] - x[1] + x[0] * x[0] + x[1] * x[1] - 1.0]),
         bounds: &[(-1.0, 1.5); 2],
         minimum: -std::f64::consts::SQRT_2,
     },
     Kinked {
         name: "Mifflin 1",
-        function: |x| -x[0] + 20.0 * most(&[x[0] * x[0] + x[1] * x[1] - 1.0, 0.0]),
+        function: |x| -x[0] + 20.0 * maximum(&[x[0] * x[0] + x[1] * x[1] - 1.0, 0.0]),
         bounds: &[(-0.5, 1.5), (-1.0, 1.3)],
         minimum: -1.0,
     },

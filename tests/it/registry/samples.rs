@@ -86,9 +86,9 @@ fn a_grid_of_625_designs_is_a_table_with_exact_levels() {
         }
         assert!((all.floats("objective")[row] * all.floats("fitness")[row] - 1.0).abs() < 1e-15);
     }
-    let least = (0..625).min_by(|a, b| all.floats("objective")[*a].total_cmp(&all.floats("objective")[*b])).unwrap();
-    assert_eq!(all.floats("objective")[least], table("best").floats("objective")[0]);
+    let minimum = (0..625).min_by(|a, b| all.floats("objective")[*a].total_cmp(&all.floats("objective")[*b])).unwrap();
+    assert_eq!(all.floats("objective")[minimum], table("best").floats("objective")[0]);
     for name in variables {
-        assert_eq!(all.floats(name)[least], table("best").floats(name)[0]);
+        assert_eq!(all.floats(name)[minimum], table("best").floats(name)[0]);
     }
 }

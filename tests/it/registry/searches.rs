@@ -37,10 +37,10 @@ fn a_kink_of_the_peak_to_peak_does_not_stop_a_local_search() {
         let table = ran[stage].tables.iter().find(|table| table.name() == "best").unwrap();
         (table.floats("objective")[0], table.texts("ended")[0].clone())
     };
-    let least = best("global").0;
+    let minimum = best("global").0;
     for stage in ["centre", "random", "simplex"] {
-        assert!((best(stage).0 / least - 1.0).abs() < 1e-6, "{stage}: {:?}, not {least}", best(stage));
+        assert!((best(stage).0 / minimum - 1.0).abs() < 1e-6, "{stage}: {:?}, not {minimum}", best(stage));
     }
-    assert!(best("alone").0 > 1.5 * least, "{:?}", best("alone"));
+    assert!(best("alone").0 > 1.5 * minimum, "{:?}", best("alone"));
     assert_eq!(best("short").1, "evaluations used up");
 }

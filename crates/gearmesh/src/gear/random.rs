@@ -23,13 +23,13 @@ impl Random {
         (self.0.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    pub(crate) fn between(&mut self, least: f64, most: f64) -> f64 {
-        least + (most - least) * self.share()
+    pub(crate) fn between(&mut self, minimum: f64, maximum: f64) -> f64 {
+        minimum + (maximum - minimum) * self.share()
     }
 
     /// Evenly over the orders of magnitude.
-    pub(crate) fn scaled(&mut self, least: f64, most: f64) -> f64 {
-        libm::exp(self.between(libm::log(least), libm::log(most)))
+    pub(crate) fn scaled(&mut self, minimum: f64, maximum: f64) -> f64 {
+        libm::exp(self.between(libm::log(minimum), libm::log(maximum)))
     }
 
     pub(crate) fn of<T: Copy>(&mut self, choices: &[T]) -> T {

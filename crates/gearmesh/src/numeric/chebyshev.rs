@@ -158,7 +158,7 @@ impl Series {
 }
 
 fn largest(coefficients: &[f64]) -> f64 {
-    coefficients.iter().fold(0.0, |most: f64, c| most.max(c.abs()))
+    coefficients.iter().fold(0.0, |maximum: f64, c| maximum.max(c.abs()))
 }
 
 #[cfg(test)]

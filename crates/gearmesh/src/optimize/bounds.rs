@@ -16,16 +16,16 @@ impl Bounds {
             return Err(Diagnostic::new("there is nothing to optimise: no variable has a range")
                 .help("give at least one design variable as `[least, most]`"));
         }
-        for (at, &(least, most)) in pairs.iter().enumerate() {
+        for (at, &(minimum, maximum)) in pairs.iter().enumerate() {
             let variable = at + 1;
-            if !(least.is_finite() && most.is_finite()) {
+            if !(minimum.is_finite() && maximum.is_finite()) {
                 return Err(Diagnostic::new(format!(
-                    "the bounds {least} and {most} of variable {variable} are not finite"
+                    "the bounds {minimum} and {maximum} of variable {variable} are not finite"
                 )));
             }
-            if least >= most {
+            if minimum >= maximum {
                 return Err(Diagnostic::new(format!(
-                    "the range of variable {variable} is empty: its least value {least} must be below its most {most}"
+                    "the range of variable {variable} is empty: its least value {minimum} must be below its most {maximum}"
                 ))
                 .help("give a single value for what is not to be varied"));
             }
@@ -51,8 +51,8 @@ impl Bounds {
         self.0
             .iter()
             .zip(unit)
-            // The weighted mean, not least + t·(most − least): that can miss `most` and overflow.
-            .map(|(&(least, most), t)| (least * (1.0 - t) + most * t).clamp(least, most))
+            // The weighted mean, not minimum + t·(maximum − minimum): that can miss `maximum` and overflow.
+            .map(|(&(minimum, maximum), t)| (minimum * (1.0 - t) + maximum * t).clamp(minimum, maximum))
             .collect()
     }
 }
@@ -77,9 +77,9 @@ mod tests {
 
     #[test]
     fn the_upper_bound_is_met_where_the_usual_map_misses_it() {
-        let (least, most) = (0.4_f64, 1.7);
-        assert!(least + (most - least) < most);
-        assert_eq!(Bounds::new(vec![(least, most)]).unwrap().point(&[1.0])[0].to_bits(), most.to_bits());
+        let (minimum, maximum) = (0.4_f64, 1.7);
+        assert!(minimum + (maximum - minimum) < maximum);
+        assert_eq!(Bounds::new(vec![(minimum, maximum)]).unwrap().point(&[1.0])[0].to_bits(), maximum.to_bits());
     }
 
     #[test]

@@ -20,28 +20,28 @@ use declare::{Declared, Words};
 #[declared(name = "differential_evolution")]
 pub struct DifferentialEvolution {
     /// individuals per generation; ten per variable is usual
-    #[declared(least = 4, most = 100_000, default = "60")]
+    #[declared(minimum = 4, maximum = 100_000, default = "60")]
     pub population: usize,
     /// most generations, the first one included
-    #[declared(least = 1, most = 1_000_000, default = "200")]
+    #[declared(minimum = 1, maximum = 1_000_000, default = "200")]
     pub generations: usize,
     /// how a mutant is made
     #[declared(default = "rand")]
     pub mutant: Mutant,
     /// F, the weight of a difference
-    #[declared(least = 0.0, most = 2.0, default = "0.7")]
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.7")]
     pub weight: f64,
     /// CR, the probability that a variable is taken from the mutant
-    #[declared(least = 0.0, most = 1.0, default = "0.9")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "0.9")]
     pub crossover: f64,
     /// spread of the values, as a share of the best, at which it has converged
-    #[declared(least = 0.0, most = 1.0, default = "1e-8")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "1e-8")]
     pub tolerance: f64,
     /// local search from the best individual
     #[declared(default = "none")]
     pub polish: Polish,
     /// most evaluations of the local search
-    #[declared(least = 10, most = 10_000_000, default = "2000")]
+    #[declared(minimum = 10, maximum = 10_000_000, default = "2000")]
     pub polish_evaluations: usize,
 }
 

@@ -24,13 +24,13 @@ use declare::{Declared, Words};
 #[declared(name = "genetic")]
 pub struct Genetic {
     /// individuals per generation
-    #[declared(least = 2, most = 100_000, default = "100")]
+    #[declared(minimum = 2, maximum = 100_000, default = "100")]
     pub population: usize,
     /// generations, the first random one included
-    #[declared(least = 1, most = 1_000_000, default = "100")]
+    #[declared(minimum = 1, maximum = 1_000_000, default = "100")]
     pub generations: usize,
     /// bits per variable: its range in 2^bits values, bounds included
-    #[declared(least = 1, most = 32, default = "10")]
+    #[declared(minimum = 1, maximum = 32, default = "10")]
     pub bits: usize,
     /// how bits stand for a number
     #[declared(default = "binary")]
@@ -39,22 +39,22 @@ pub struct Genetic {
     #[declared(default = "roulette")]
     pub selection: Selection,
     /// probability that two parents exchange what follows a random cut
-    #[declared(least = 0.0, most = 1.0, default = "0.5")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "0.5")]
     pub crossover: f64,
     /// probability of a mutation
-    #[declared(least = 0.0, most = 1.0, default = "0.5")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "0.5")]
     pub mutation: f64,
     /// what the probability of a mutation is of
     #[declared(default = "offspring")]
     pub mutation_of: MutationOf,
     /// best individuals that live on unchanged
-    #[declared(least = 0, most = 100_000, default = "0")]
+    #[declared(minimum = 0, maximum = 100_000, default = "0")]
     pub elite: usize,
     /// ends after this many generations without improvement
-    #[declared(least = 1, most = 1_000_000)]
+    #[declared(minimum = 1, maximum = 1_000_000)]
     pub converged_after: Option<usize>,
     /// share of the best value below which a gain is no improvement
-    #[declared(least = 0.0, most = 1.0, default = "0")]
+    #[declared(minimum = 0.0, maximum = 1.0, default = "0")]
     pub least_improvement: f64,
 }
 
@@ -228,7 +228,7 @@ fn mutate(child: &mut Chromosome, probability: f64, of: MutationOf, generator: &
 /// Each variable's bits, most significant first, as a share of the largest number: all zeros is 0, and all ones (in Gray
 /// code: a one and zeros) is 1.
 fn decode(chromosome: &[bool], bits: usize, coding: Coding) -> Vec<f64> {
-    let most = (1_u64 << bits) - 1;
+    let maximum = (1_u64 << bits) - 1;
     chromosome
         .chunks_exact(bits)
         .map(|gene| {
@@ -239,7 +239,7 @@ fn decode(chromosome: &[bool], bits: usize, coding: Coding) -> Vec<f64> {
                 };
                 (number << 1 | u64::from(digit), digit)
             });
-            number as f64 / most as f64
+            number as f64 / maximum as f64
         })
         .collect()
 }

@@ -13,7 +13,7 @@ use declare::seed::Seed;
 #[declared(name = "grid")]
 pub struct Grid {
     /// number of levels: one for all variables, or one for each
-    #[declared(least = 2, most = 100_000, default = "11")]
+    #[declared(minimum = 2, maximum = 100_000, default = "11")]
     pub levels: Vec<usize>,
 }
 

@@ -16,7 +16,7 @@ use declare::seed::Seed;
 #[declared(name = "latin_hypercube")]
 pub struct LatinHypercube {
     /// number of points
-    #[declared(least = 1, most = MOST_POINTS, default = "256")]
+    #[declared(minimum = 1, maximum = MOST_POINTS, default = "256")]
     pub points: usize,
 }
 

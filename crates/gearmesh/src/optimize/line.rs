@@ -45,8 +45,8 @@ struct Bracket {
 
 /// A search along one line that has begun at its place 0.
 pub(super) struct Line {
-    least: f64,
-    most: f64,
+    minimum: f64,
+    maximum: f64,
     tolerance: f64,
     step: f64,
     best: Met,
@@ -55,13 +55,13 @@ pub(super) struct Line {
 }
 
 impl Line {
-    /// From 0, where the value is `value`, within `least..=most` (which holds 0), first by `step` > 0; the place of the
+    /// From 0, where the value is `value`, within `minimum..=maximum` (which holds 0), first by `step` > 0; the place of the
     /// minimum is found to `tolerance` > 0.
-    pub(super) fn new(value: f64, (least, most): (f64, f64), step: f64, tolerance: f64) -> Self {
+    pub(super) fn new(value: f64, (minimum, maximum): (f64, f64), step: f64, tolerance: f64) -> Self {
         let best = (0.0, value);
-        let mut line = Self { least, most, tolerance, step, best, stage: Stage::Done, asked: 0.0 };
-        if most > tolerance {
-            line.ask(Stage::Forward, step.min(most));
+        let mut line = Self { minimum, maximum, tolerance, step, best, stage: Stage::Done, asked: 0.0 };
+        if maximum > tolerance {
+            line.ask(Stage::Forward, step.min(maximum));
         } else {
             line.backward(None);
         }
@@ -83,8 +83,8 @@ impl Line {
     }
 
     fn backward(&mut self, ahead: Option<Met>) {
-        if self.least < -self.tolerance {
-            let place = (-self.step).max(self.least);
+        if self.minimum < -self.tolerance {
+            let place = (-self.step).max(self.minimum);
             self.ask(Stage::Backward { ahead }, place);
         } else if let Some(ahead) = ahead {
             // No room behind: what is not lower at once lies between 0 and there.
@@ -114,13 +114,13 @@ impl Line {
     fn fall(&mut self, met: Met) {
         let previous = std::mem::replace(&mut self.best, met);
         let (last, step) = (met.0 - previous.0, self.tolerance.copysign(previous.0 - met.0));
-        if met.0 <= self.least || met.0 >= self.most {
+        if met.0 <= self.minimum || met.0 >= self.maximum {
             if last.abs() > step.abs() {
                 self.ask(Stage::End { previous }, met.0 + step);
             }
             return;
         }
-        let place = (met.0 + GROWTH * last).clamp(self.least, self.most);
+        let place = (met.0 + GROWTH * last).clamp(self.minimum, self.maximum);
         self.ask(Stage::Falling { previous }, place);
     }
 

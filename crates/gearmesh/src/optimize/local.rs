@@ -58,18 +58,18 @@ pub(super) struct Limits {
     pub evaluations: usize,
 }
 
-/// What a local search will ask for; `least` evaluations are needed for `what`.
+/// What a local search will ask for; `minimum` evaluations are needed for `what`.
 ///
 /// # Errors
 /// With too few evaluations to begin.
 pub(super) fn foresee(
     evaluations: usize,
     dimension: usize,
-    (least, what): (usize, &str),
+    (minimum, what): (usize, &str),
 ) -> Result<Foreseen, Diagnostic> {
-    if evaluations < least {
+    if evaluations < minimum {
         let message = format!("{evaluations} evaluations are too few for {what} {dimension} variables");
-        return Err(Diagnostic::new(message).help(format!("give at least {least}")));
+        return Err(Diagnostic::new(message).help(format!("give at least {minimum}")));
     }
     // Simplex or directions, and the gradients of all looks at a kink.
     let memory = points_held(MOST_HELD * (dimension + 1), dimension);
@@ -86,15 +86,15 @@ pub(super) fn clip(coordinate: f64) -> f64 {
 
 /// The stretch of a line on which at least one variable is off its bounds.
 pub(super) fn ends(at: &[f64], along: &[f64]) -> (f64, f64) {
-    let (mut least, mut most) = (0.0_f64, 0.0_f64);
+    let (mut minimum, mut maximum) = (0.0_f64, 0.0_f64);
     for (at, along) in at.iter().zip(along) {
         if *along != 0.0 {
             let (zero, one) = (-at / along, (1.0 - at) / along);
-            least = least.min(zero.min(one));
-            most = most.max(zero.max(one));
+            minimum = minimum.min(zero.min(one));
+            maximum = maximum.max(zero.max(one));
         }
     }
-    (least, most)
+    (minimum, maximum)
 }
 
 /// A variable that has met a bound stays there while the others go on.

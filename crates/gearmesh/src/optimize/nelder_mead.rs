@@ -23,16 +23,16 @@ pub struct NelderMead {
     #[declared(default = "centre")]
     pub start: Start,
     /// edge of the first simplex, as a share of each range
-    #[declared(least = 1e-6, most = 1.0, default = "0.1")]
+    #[declared(minimum = 1e-6, maximum = 1.0, default = "0.1")]
     pub edge: f64,
     /// the simplex's extent, as a share of each range, at which it has converged
-    #[declared(least = 1e-14, most = 0.1, default = "1e-8")]
+    #[declared(minimum = 1e-14, maximum = 0.1, default = "1e-8")]
     pub tolerance: f64,
     /// most restarts around the best point, or along a kink; with 0 it is not checked
-    #[declared(least = 0, most = 1000, default = "30")]
+    #[declared(minimum = 0, maximum = 1000, default = "30")]
     pub restarts: usize,
     /// most evaluations
-    #[declared(least = 10, most = 10_000_000, default = "5000")]
+    #[declared(minimum = 10, maximum = 10_000_000, default = "5000")]
     pub evaluations: usize,
 }
 

@@ -23,16 +23,16 @@ pub struct Powell {
     #[declared(default = "centre")]
     pub start: Start,
     /// first step along each axis, as a share of each range
-    #[declared(least = 1e-6, most = 1.0, default = "0.1")]
+    #[declared(minimum = 1e-6, maximum = 1.0, default = "0.1")]
     pub step: f64,
     /// a cycle's way, as a share of each range, at which it has converged
-    #[declared(least = 1e-12, most = 0.1, default = "1e-8")]
+    #[declared(minimum = 1e-12, maximum = 0.1, default = "1e-8")]
     pub tolerance: f64,
     /// most restarts around the best point, along the axes or a kink; with 0 it is not checked
-    #[declared(least = 0, most = 1000, default = "30")]
+    #[declared(minimum = 0, maximum = 1000, default = "30")]
     pub restarts: usize,
     /// most evaluations
-    #[declared(least = 10, most = 10_000_000, default = "5000")]
+    #[declared(minimum = 10, maximum = 10_000_000, default = "5000")]
     pub evaluations: usize,
 }
 
@@ -323,9 +323,9 @@ mod tests {
     #[test]
     fn a_line_goes_on_along_the_face_it_has_met() {
         let (at, along) = ([0.9, 0.2], [1.0, 0.5]);
-        let (least, most) = ends(&at, &along);
-        assert_eq!(moved(&at, &along, most), [1.0, 1.0]);
-        assert_eq!(moved(&at, &along, least), [0.0, 0.0]);
-        assert!((least + 0.9).abs() < 1e-15 && (most - 1.6).abs() < 1e-15);
+        let (minimum, maximum) = ends(&at, &along);
+        assert_eq!(moved(&at, &along, maximum), [1.0, 1.0]);
+        assert_eq!(moved(&at, &along, minimum), [0.0, 0.0]);
+        assert!((minimum + 0.9).abs() < 1e-15 && (maximum - 1.6).abs() < 1e-15);
     }
 }

@@ -14,7 +14,7 @@ use declare::seed::Seed;
 #[declared(name = "sobol")]
 pub struct Sobol {
     /// number of points
-    #[declared(least = 1, most = MOST_POINTS, default = "256")]
+    #[declared(minimum = 1, maximum = MOST_POINTS, default = "256")]
     pub points: usize,
 }
 
@@ -42,10 +42,10 @@ const DIRECTIONS: &[(u32, &[u32])] = &[
 
 impl Method for Sobol {
     fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
-        let most = DIRECTIONS.len() + 1;
-        if dimension > most {
+        let maximum = DIRECTIONS.len() + 1;
+        if dimension > maximum {
             return Err(Diagnostic::new(format!(
-                "Sobol points are tabulated for at most {most} variables, not {dimension}"
+                "Sobol points are tabulated for at most {maximum} variables, not {dimension}"
             ))
             .help("use `latin_hypercube`"));
         }

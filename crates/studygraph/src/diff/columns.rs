@@ -91,10 +91,10 @@ fn numbers(values: impl Iterator<Item = (f64, f64)>, tolerance: Tolerance, slack
             keep(&mut found.worst, f64::INFINITY, place);
             continue;
         }
-        if found.largest_absolute.is_none_or(|(most, _)| size > most.abs()) {
+        if found.largest_absolute.is_none_or(|(maximum, _)| size > maximum.abs()) {
             found.largest_absolute = Some((difference, place));
         }
-        if found.largest_relative.is_none_or(|(most, _)| size / largest > most) {
+        if found.largest_relative.is_none_or(|(maximum, _)| size / largest > maximum) {
             found.largest_relative = Some((size / largest, place));
         }
         let allowed = tolerance.absolute + tolerance.relative * largest;
@@ -112,14 +112,14 @@ fn numbers(values: impl Iterator<Item = (f64, f64)>, tolerance: Tolerance, slack
 
 /// Keeps the place that is over its tolerance by most, the first of equals.
 fn over(found: &mut Differences, share: f64, place: usize) {
-    if found.largest_over.is_none_or(|(most, _)| share > most) {
+    if found.largest_over.is_none_or(|(maximum, _)| share > maximum) {
         found.largest_over = Some((share, place));
     }
 }
 
 /// Keeps the furthest apart, the first of equals.
 fn keep(worst: &mut Vec<(f64, usize)>, size: f64, place: usize) {
-    if worst.len() == KEPT && worst.last().is_some_and(|(least, _)| size <= *least) {
+    if worst.len() == KEPT && worst.last().is_some_and(|(minimum, _)| size <= *minimum) {
         return;
     }
     let at = worst.partition_point(|(kept, _)| *kept >= size);

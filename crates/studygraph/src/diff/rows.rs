@@ -31,7 +31,7 @@ pub struct KeyColumn<'a> {
 impl<'a> KeyColumn<'a> {
     pub fn new(before: Cow<'a, Data>, after: &'a Data) -> Self {
         let largest = |data: &Data| match data {
-            Data::Float(values) => values.iter().fold(0.0, |most: f64, value| most.max(value.abs())),
+            Data::Float(values) => values.iter().fold(0.0, |maximum: f64, value| maximum.max(value.abs())),
             _ => 0.0,
         };
         let noise = NOISE * largest(&before).max(largest(after));

@@ -82,10 +82,10 @@ impl Side {
         }
     }
 
-    fn read(&self, path: &Path, most: u64) -> Result<Option<Vec<u8>>, String> {
+    fn read(&self, path: &Path, maximum: u64) -> Result<Option<Vec<u8>>, String> {
         match &self.source {
             Source::Commit(files) => files.read(path),
-            Source::Folder(folder) => match file::read(&folder.join(path), most) {
+            Source::Folder(folder) => match file::read(&folder.join(path), maximum) {
                 Ok(bytes) => Ok(Some(bytes)),
                 Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(None),
                 Err(error) => Err(format!("cannot be read: {error}")),

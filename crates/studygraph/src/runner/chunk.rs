@@ -32,10 +32,10 @@ pub fn chunks(kind: &Kind, record: &Record) -> Option<Chunks> {
     Some(Chunks { field, values: cut(values, size(values.len(), chunk)) })
 }
 
-/// How many values a chunk holds on average, of `count` in all: `least`, or as many times that as a power of two says.
-fn size(count: usize, least: usize) -> usize {
-    let times = count.div_ceil(least).div_ceil(MOST_CHUNKS).max(1);
-    least.saturating_mul(times.next_power_of_two())
+/// How many values a chunk holds on average, of `count` in all: `minimum`, or as many times that as a power of two says.
+fn size(count: usize, minimum: usize) -> usize {
+    let times = count.div_ceil(minimum).div_ceil(MOST_CHUNKS).max(1);
+    minimum.saturating_mul(times.next_power_of_two())
 }
 
 fn cut(values: &[f64], chunk: usize) -> Vec<Vec<f64>> {

@@ -49,14 +49,14 @@ fn machine() -> u64 {
         let line = text.lines().find_map(|line| line.strip_prefix("MemTotal:")).map(str::to_owned)?;
         Some(line.trim().trim_end_matches("kB").trim().parse::<u64>().ok()? << 10)
     });
-    let mut least = installed.unwrap_or(USUAL_MACHINE);
+    let mut minimum = installed.unwrap_or(USUAL_MACHINE);
     let group = read(Path::new("/proc/self/cgroup")).unwrap_or_default();
     let group = group.lines().find_map(|line| line.strip_prefix("0::/")).unwrap_or_default();
     for folder in Path::new("/sys/fs/cgroup").join(group).ancestors().take_while(|path| path.starts_with("/sys/fs")) {
         let allowed = read(&folder.join("memory.max")).and_then(|text| text.trim().parse::<u64>().ok());
-        least = least.min(allowed.unwrap_or(u64::MAX));
+        minimum = minimum.min(allowed.unwrap_or(u64::MAX));
     }
-    least
+    minimum
 }
 
 /// One of the two, with what it counts.
@@ -96,9 +96,9 @@ pub fn refusal(board: &Board, foresight: &Foresight, limits: &Limits, threads: u
     let memory = limits.bytes();
     let beyond = [(Limited::Rows, limits.rows), (Limited::Memory, memory)];
     let (limited, limit) = beyond.into_iter().find(|(limited, limit)| limited.of(&foresight.total) > *limit)?;
-    let most = |node: &usize| foresight.stages[*node].as_ref().map_or(0, |stage| limited.of(stage));
+    let maximum = |node: &usize| foresight.stages[*node].as_ref().map_or(0, |stage| limited.of(stage));
     // Of several alike the first one: what reads from it follows it.
-    let node = board.graph.order.iter().copied().rev().max_by_key(most)?;
+    let node = board.graph.order.iter().copied().rev().max_by_key(maximum)?;
     let of_study = &board.study.nodes[node];
     let table =
         foresight.stages[node].as_ref().and_then(|stage| stage.tables.iter().max_by_key(|(_, rows)| rows.count));
@@ -115,7 +115,7 @@ pub fn refusal(board: &Board, foresight: &Foresight, limits: &Limits, threads: u
         limited.shown(total),
         limited.shown(limit),
         of_study.name,
-        limited.shown(most(&node)),
+        limited.shown(maximum(&node)),
     );
     let remedied = above(board, node).into_iter().find_map(|near| {
         let fits = |record: &Record| limited.of(&foresee(board, threads, Some((near, record))).total) <= limit;
@@ -177,15 +177,15 @@ fn gather(fields: &'static [Field], record: &Record, path: &mut Vec<&'static str
         let Some(field) = fields.iter().find(|field| field.name == *name) else { continue };
         path.push(name);
         match (&field.shape, &entry.value) {
-            (Shape::Integer { least, multiple, .. }, Value::Integer(value)) => visit(path, entry.place, &|fits| {
-                let found = largest(*least, *value, &|value| fits(Value::Integer(value)))?;
-                Some(format!(": {}", rounded(found, *least) / multiple * multiple))
+            (Shape::Integer { minimum, multiple, .. }, Value::Integer(value)) => visit(path, entry.place, &|fits| {
+                let found = largest(*minimum, *value, &|value| fits(Value::Integer(value)))?;
+                Some(format!(": {}", rounded(found, *minimum) / multiple * multiple))
             }),
             (_, Value::Axis(values)) => visit(path, entry.place, &|fits| {
-                let most = i64::try_from(values.len()).ok()?;
+                let maximum = i64::try_from(values.len()).ok()?;
                 let first = |count: i64| values[..usize::try_from(count).unwrap_or(0)].to_vec();
-                let count = largest(1, most, &|count| fits(Value::Axis(first(count))))?;
-                Some(format!("` of {count} value{} instead of `{most}", if count == 1 { "" } else { "s" }))
+                let count = largest(1, maximum, &|count| fits(Value::Axis(first(count))))?;
+                Some(format!("` of {count} value{} instead of `{maximum}", if count == 1 { "" } else { "s" }))
             }),
             (Shape::Choice(choices), Value::Choice(chosen)) => visit(path, entry.place, &|fits| {
                 let others = choices.iter().filter(|choice| choice.name != *chosen);
@@ -205,12 +205,12 @@ fn gather(fields: &'static [Field], record: &Record, path: &mut Vec<&'static str
     }
 }
 
-/// The largest number below `most`, which does not fit, that does.
-fn largest(least: i64, most: i64, fits: &dyn Fn(i64) -> bool) -> Option<i64> {
-    if least >= most || !fits(least) {
+/// The largest number below `maximum`, which does not fit, that does.
+fn largest(minimum: i64, maximum: i64, fits: &dyn Fn(i64) -> bool) -> Option<i64> {
+    if minimum >= maximum || !fits(minimum) {
         return None;
     }
-    let (mut good, mut bad) = (least, most);
+    let (mut good, mut bad) = (minimum, maximum);
     while bad - good > 1 {
         let middle = good + (bad - good) / 2;
         if fits(middle) {
@@ -223,12 +223,12 @@ fn largest(least: i64, most: i64, fits: &dyn Fn(i64) -> bool) -> Option<i64> {
 }
 
 /// Down to two digits, which nobody takes for more than an estimate.
-fn rounded(value: i64, least: i64) -> i64 {
+fn rounded(value: i64, minimum: i64) -> i64 {
     let mut unit = 1;
     while value / unit >= 100 {
         unit *= 10;
     }
-    (value / unit * unit).max(least)
+    (value / unit * unit).max(minimum)
 }
 
 /// The record with another value at a path.

@@ -62,7 +62,7 @@ impl Drop for Company {
 const fn axis(chunk: usize) -> Field {
     Field {
         name: "torque",
-        shape: Shape::Number { least: 0.0, most: 1e9 },
+        shape: Shape::Number { minimum: 0.0, maximum: 1e9 },
         presence: Presence::Required,
         span: Span::Axis { chunk },
         chooses: false,

@@ -66,9 +66,9 @@ pub fn most_during<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
     let counting = Counting;
     let result = work();
     drop(counting);
-    let most = usize::try_from(MOST.load(Ordering::Relaxed)).ok();
+    let maximum = usize::try_from(MOST.load(Ordering::Relaxed)).ok();
     // Nothing that is worth measuring does without memory: no allocator counted.
-    (result, most.filter(|most| *most > 0))
+    (result, maximum.filter(|maximum| *maximum > 0))
 }
 
 #[cfg(test)]
@@ -82,7 +82,7 @@ mod tests {
         let take = |size| unsafe { Allocator.alloc(block(size)) };
         let give = |pointer, size| unsafe { Allocator.dealloc(pointer, block(size)) };
         let old = take(5000);
-        let ((), most) = most_during(|| {
+        let ((), maximum) = most_during(|| {
             let one = take(1000);
             let two = unsafe { Allocator.realloc(one, block(1000), 3000) };
             give(two, 3000);
@@ -92,7 +92,7 @@ mod tests {
             give(old, 5000);
             give(take(4000), 4000);
         });
-        assert_eq!(most, Some(3000));
+        assert_eq!(maximum, Some(3000));
         give(take(9000), 9000);
         assert_eq!(most_during(|| ()).1, None, "nothing was counted");
     }

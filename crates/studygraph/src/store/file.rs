@@ -65,25 +65,25 @@ pub const MOST_MANIFEST: u64 = 64 << 20;
 /// Bytes of a table, a page, a figure.
 pub const MOST_TABLE: u64 = 4 << 30;
 
-/// Reads a whole file of at most `most` bytes.
+/// Reads a whole file of at most `maximum` bytes.
 ///
 /// A pipe nobody writes to would be waited for and a device has no end, so what is no file is not opened.
 ///
 /// # Errors
 /// What the system says; that it is no regular file; that it is larger.
-pub fn read(path: &Path, most: u64) -> io::Result<Vec<u8>> {
+pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
     let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidData, problem));
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() {
         return wrong("it is no regular file".to_owned());
     }
-    if metadata.len() > most {
-        return wrong(format!("it has {} bytes, more than {} MiB", metadata.len(), most >> 20));
+    if metadata.len() > maximum {
+        return wrong(format!("it has {} bytes, more than {} MiB", metadata.len(), maximum >> 20));
     }
     let mut bytes = Vec::new();
     // A file of the system may say that it has no bytes, and another may grow meanwhile.
-    File::open(path)?.take(most + 1).read_to_end(&mut bytes)?;
-    if bytes.len() as u64 > most { wrong(format!("it has more than {} MiB", most >> 20)) } else { Ok(bytes) }
+    File::open(path)?.take(maximum + 1).read_to_end(&mut bytes)?;
+    if bytes.len() as u64 > maximum { wrong(format!("it has more than {} MiB", maximum >> 20)) } else { Ok(bytes) }
 }
 
 /// Removes what killed runs left in a folder that nobody else writes to now.
@@ -133,7 +133,7 @@ mod tests {
     #[test]
     fn only_regular_files_of_a_sensible_size_are_read() {
         let folder = tempfile::tempdir().unwrap();
-        let said = |path: &Path, most| read(path, most).unwrap_err().to_string();
+        let said = |path: &Path, maximum| read(path, maximum).unwrap_err().to_string();
         let pipe = folder.path().join("pipe");
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         for path in [&pipe, Path::new("/dev/zero"), folder.path()] {

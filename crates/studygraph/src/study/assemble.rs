@@ -23,7 +23,7 @@ pub const LONGEST_NAME: usize = 64;
 /// What names of studies and stages look like, as a regular expression.
 pub const NAME_PATTERN: &str = "^[a-z0-9][a-z0-9_-]{0,63}$";
 
-static NUMBERS: Shape = Shape::Integer { least: 0, most: 9999, multiple: 1 };
+static NUMBERS: Shape = Shape::Integer { minimum: 0, maximum: 9999, multiple: 1 };
 
 static SOURCE: &[Field] = &[
     Field::new("paper", Shape::Text, "The paper, by the name under which the project keeps it."),

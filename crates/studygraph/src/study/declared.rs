@@ -58,11 +58,11 @@ fn fault(field: &'static Field) -> Option<String> {
     if field.summary.len() < 4 {
         return Some("it says nothing of itself".to_owned());
     }
-    if let Shape::Quantity { dimension, least, most } = field.shape {
-        if least >= most {
-            return Some(format!("{least} is not below {most}"));
+    if let Shape::Quantity { dimension, minimum, maximum } = field.shape {
+        if minimum >= maximum {
+            return Some(format!("{minimum} is not below {maximum}"));
         }
-        if dimension != RATIO && example(dimension, least, most).is_none() {
+        if dimension != RATIO && example(dimension, minimum, maximum).is_none() {
             return Some("it has no example".to_owned());
         }
     }

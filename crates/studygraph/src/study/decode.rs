@@ -118,17 +118,17 @@ impl<'a> Decoder<'a> {
             return Err(Diagnostic::new(message).at(node.place).help(help));
         }
         let value = match shape {
-            Shape::Quantity { dimension, least, most } => {
-                let measure = Measure { name, dimension: Some(*dimension), least: *least, most: *most };
+            Shape::Quantity { dimension, minimum, maximum } => {
+                let measure = Measure { name, dimension: Some(*dimension), minimum: *minimum, maximum: *maximum };
                 measure.value(node, field.span, self.ranges())?
             }
-            Shape::Number { least, most } => {
-                let measure = Measure { name, dimension: None, least: *least, most: *most };
+            Shape::Number { minimum, maximum } => {
+                let measure = Measure { name, dimension: None, minimum: *minimum, maximum: *maximum };
                 measure.value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
-            Shape::Integer { least, most, multiple } => {
-                Value::Integer(integer(name, node, shape, (*least, *most), *multiple)?)
+            Shape::Integer { minimum, maximum, multiple } => {
+                Value::Integer(integer(name, node, shape, (*minimum, *maximum), *multiple)?)
             }
             Shape::Flag => match plain(node) {
                 Some("true" | "True" | "TRUE") => Value::Flag(true),
@@ -299,7 +299,7 @@ fn integer(
     name: &str,
     node: &Node,
     shape: &Shape,
-    (least, most): (i64, i64),
+    (minimum, maximum): (i64, i64),
     multiple: i64,
 ) -> Result<i64, Diagnostic> {
     let text = scalar(name, node, shape)?;
@@ -329,22 +329,22 @@ fn integer(
     }
     let read = text.parse::<i64>();
     if let Ok(value) = read
-        && (least..=most).contains(&value)
+        && (minimum..=maximum).contains(&value)
         && value % multiple == 0
     {
         return Ok(value);
     }
     // A number that no computer word holds needs both bounds said, even where they are those of the word.
-    let admissible = words::integer_range(least, most).filter(|_| read.is_ok());
-    let admissible = admissible.unwrap_or_else(|| format!("between {least} and {most}"));
+    let admissible = words::integer_range(minimum, maximum).filter(|_| read.is_ok());
+    let admissible = admissible.unwrap_or_else(|| format!("between {minimum} and {maximum}"));
     if multiple == 1 {
         return Err(Diagnostic::new(format!("{} must be {admissible}, not {shown}", quote(name))).at(node.place));
     }
     let message = format!("{} must be {} {admissible}, not {shown}", quote(name), words::integer(multiple));
     let wrong = Diagnostic::new(message).at(node.place);
     let Ok(value) = read else { return Err(wrong) };
-    let below = value.clamp(least, most).div_euclid(multiple) * multiple;
-    let nearest = if below < value && below < most { vec![below, below + multiple] } else { vec![below] };
+    let below = value.clamp(minimum, maximum).div_euclid(multiple) * multiple;
+    let nearest = if below < value && below < maximum { vec![below, below + multiple] } else { vec![below] };
     let nearest: Vec<String> = nearest.iter().map(i64::to_string).collect();
     Err(wrong.help(format!("write {}", alternatives(nearest.iter().map(String::as_str)))))
 }

@@ -85,8 +85,8 @@ fn holds(shape: &Shape) -> String {
         None => what.to_owned(),
     };
     match shape {
-        Shape::Quantity { dimension, least, most } => {
-            let range = words::range(*least, *most, |value| words::quantity(value, *dimension));
+        Shape::Quantity { dimension, minimum, maximum } => {
+            let range = words::range(*minimum, *maximum, |value| words::quantity(value, *dimension));
             let (name, units) = dimension.describe();
             if *dimension == RATIO || units.is_empty() {
                 return with_range(name, range);
@@ -94,9 +94,11 @@ fn holds(shape: &Shape) -> String {
             with_range(&format!("{name} in {}", units.join(", ")), range)
         }
         Shape::AnyQuantity => "a number, with or without a unit".to_owned(),
-        Shape::Number { least, most } => with_range("a plain number", words::range(*least, *most, words::number)),
-        Shape::Integer { least, most, multiple } => {
-            with_range(&words::integer(*multiple), words::integer_range(*least, *most))
+        Shape::Number { minimum, maximum } => {
+            with_range("a plain number", words::range(*minimum, *maximum, words::number))
+        }
+        Shape::Integer { minimum, maximum, multiple } => {
+            with_range(&words::integer(*multiple), words::integer_range(*minimum, *maximum))
         }
         Shape::Flag => "true or false".to_owned(),
         Shape::Text => "text".to_owned(),

@@ -21,8 +21,8 @@ pub struct Measure<'a> {
     pub name: &'a str,
     /// `None` for a plain number.
     pub dimension: Option<Dimension>,
-    pub least: f64,
-    pub most: f64,
+    pub minimum: f64,
+    pub maximum: f64,
 }
 
 impl Measure<'_> {
@@ -76,7 +76,7 @@ impl Measure<'_> {
                 return Err(Diagnostic::new(message).help(format!("write `{}`", split_quantity(text).0)));
             }
             Some(dimension) if dimension != RATIO && !read.has_unit => {
-                let example = words::example_like(split_quantity(text).0, dimension, self.least, self.most);
+                let example = words::example_like(split_quantity(text).0, dimension, self.minimum, self.maximum);
                 let example = example.map_or(String::new(), |example| format!(", for example `{example}`"));
                 let message = format!("{shown} has no unit; {} is expected{example}", dimension.describe().0);
                 return Err(Diagnostic::new(message));
@@ -89,7 +89,7 @@ impl Measure<'_> {
             _ => {}
         }
         // Adding zero turns a negative zero, the same value with other bits, into zero.
-        if (self.least..=self.most).contains(&read.value) { Ok(read.value + 0.0) } else { Err(self.outside(text)) }
+        if (self.minimum..=self.maximum).contains(&read.value) { Ok(read.value + 0.0) } else { Err(self.outside(text)) }
     }
 
     fn unreadable(&self, text: &str, error: UnitError) -> Diagnostic {
@@ -136,14 +136,14 @@ impl Measure<'_> {
     }
 
     fn range(&self) -> Option<String> {
-        words::range(self.least, self.most, |value| match self.dimension {
+        words::range(self.minimum, self.maximum, |value| match self.dimension {
             Some(dimension) => words::quantity(value, dimension),
             None => words::number(value),
         })
     }
 
     fn expected(&self) -> String {
-        words::measure(self.dimension, self.least, self.most)
+        words::measure(self.dimension, self.minimum, self.maximum)
     }
 
     /// `[a, b, …]` in any order, without repeats.
@@ -215,13 +215,14 @@ impl Measure<'_> {
 
     /// `[least, most]`.
     fn bounds(&self, node: &Node, items: &[Node]) -> Result<Value, Diagnostic> {
-        let [least, most] = items else {
+        let [minimum, maximum] = items else {
             let message = format!("{} takes a range `[least, most]`, not a list of {}", quote(self.name), items.len());
             return Err(Diagnostic::new(message).at(node.place));
         };
-        let (low, high) = (self.single(least)?, self.single(most)?);
+        let (low, high) = (self.single(minimum)?, self.single(maximum)?);
         if low >= high {
-            let message = format!("a range is `[least, most]`; {} is not below {}", least.describe(), most.describe());
+            let message =
+                format!("a range is `[least, most]`; {} is not below {}", minimum.describe(), maximum.describe());
             return Err(Diagnostic::new(message)
                 .at(node.place)
                 .help("a value that is fixed is written without brackets"));

@@ -138,16 +138,18 @@ impl Families {
 
     fn shape(&mut self, shape: &'static Shape, field: &Field, chooses: bool) -> Value {
         match shape {
-            Shape::Quantity { dimension, least, most } => spread(&quantity(*dimension, *least, *most), field, chooses),
-            Shape::Number { least, most } => spread(&bounded("number", *least, *most), field, chooses),
+            Shape::Quantity { dimension, minimum, maximum } => {
+                spread(&quantity(*dimension, *minimum, *maximum), field, chooses)
+            }
+            Shape::Number { minimum, maximum } => spread(&bounded("number", *minimum, *maximum), field, chooses),
             Shape::AnyQuantity => json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") }),
-            Shape::Integer { least, most, multiple } => {
+            Shape::Integer { minimum, maximum, multiple } => {
                 let mut integer = json!({ "type": "integer" });
-                if *least != i64::MIN {
-                    integer["minimum"] = json!(least);
+                if *minimum != i64::MIN {
+                    integer["minimum"] = json!(minimum);
                 }
-                if *most != i64::MAX {
-                    integer["maximum"] = json!(most);
+                if *maximum != i64::MAX {
+                    integer["maximum"] = json!(maximum);
                 }
                 if *multiple != 1 {
                     integer["multipleOf"] = json!(multiple);
@@ -215,8 +217,8 @@ impl Families {
 /// The summary, and what the schema cannot say.
 fn description(field: &Field) -> String {
     let range = match field.shape {
-        Shape::Quantity { dimension, least, most } => {
-            words::range(least, most, |value| words::quantity(value, dimension))
+        Shape::Quantity { dimension, minimum, maximum } => {
+            words::range(minimum, maximum, |value| words::quantity(value, dimension))
         }
         Shape::Reference(kinds) => Some(words::stage_of(kinds)),
         _ => None,
@@ -244,21 +246,21 @@ fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
     }
 }
 
-fn bounded(kind: &str, least: f64, most: f64) -> Value {
+fn bounded(kind: &str, minimum: f64, maximum: f64) -> Value {
     let mut schema = json!({ "type": kind });
-    if least.is_finite() {
-        schema["minimum"] = json!(least);
+    if minimum.is_finite() {
+        schema["minimum"] = json!(minimum);
     }
-    if most.is_finite() {
-        schema["maximum"] = json!(most);
+    if maximum.is_finite() {
+        schema["maximum"] = json!(maximum);
     }
     schema
 }
 
-fn quantity(dimension: Dimension, least: f64, most: f64) -> Value {
+fn quantity(dimension: Dimension, minimum: f64, maximum: f64) -> Value {
     if dimension == RATIO {
         let percent = json!({ "type": "string", "pattern": format!("^{NUMBER} *%$") });
-        return json!({ "anyOf": [bounded("number", least, most), percent] });
+        return json!({ "anyOf": [bounded("number", minimum, maximum), percent] });
     }
     // Simple dimensions have their few units; in others units are put together, and only the reader knows them all.
     let units = if [LENGTH, ANGLE, FORCE, TIME].contains(&dimension) {
@@ -268,7 +270,7 @@ fn quantity(dimension: Dimension, least: f64, most: f64) -> Value {
         "[A-Za-zµμ1].*".to_owned()
     };
     let mut schema = json!({ "type": "string", "pattern": format!("^{NUMBER} *({units})$") });
-    if let Some(example) = words::example(dimension, least, most) {
+    if let Some(example) = words::example(dimension, minimum, maximum) {
         schema["examples"] = json!([example]);
     }
     schema

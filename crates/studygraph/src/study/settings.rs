@@ -21,7 +21,7 @@ fn value(shape: &Shape, value: &Value) -> Json {
         Value::Quantity(si) | Value::Number(si) => number(shape, *si),
         Value::AnyQuantity { .. } => json!(any_quantity(value)),
         Value::Axis(values) => values.iter().map(|si| number(shape, *si)).collect(),
-        Value::Range(least, most) => json!({ "least": number(shape, *least), "most": number(shape, *most) }),
+        Value::Range(minimum, maximum) => json!({ "least": number(shape, *minimum), "most": number(shape, *maximum) }),
         Value::Integer(value) => json!(value),
         Value::Flag(value) => json!(value),
         Value::Text(text) | Value::Reference(text) => json!(text),

@@ -71,21 +71,21 @@ pub fn quantity(si: f64, dimension: Dimension) -> String {
 }
 
 /// `between 0.01 mm and 1 m`, `at least 0`; `None` when everything finite is allowed.
-pub fn range(least: f64, most: f64, show: impl Fn(f64) -> String) -> Option<String> {
-    match (least.is_finite(), most.is_finite()) {
-        (true, true) => Some(format!("between {} and {}", show(least), show(most))),
-        (true, false) => Some(format!("at least {}", show(least))),
-        (false, true) => Some(format!("at most {}", show(most))),
+pub fn range(minimum: f64, maximum: f64, show: impl Fn(f64) -> String) -> Option<String> {
+    match (minimum.is_finite(), maximum.is_finite()) {
+        (true, true) => Some(format!("between {} and {}", show(minimum), show(maximum))),
+        (true, false) => Some(format!("at least {}", show(minimum))),
+        (false, true) => Some(format!("at most {}", show(maximum))),
         (false, false) => None,
     }
 }
 
 /// The same for whole numbers, where the widest values mean that there is no bound.
-pub fn integer_range(least: i64, most: i64) -> Option<String> {
-    match (least != i64::MIN, most != i64::MAX) {
-        (true, true) => Some(format!("between {least} and {most}")),
-        (true, false) => Some(format!("at least {least}")),
-        (false, true) => Some(format!("at most {most}")),
+pub fn integer_range(minimum: i64, maximum: i64) -> Option<String> {
+    match (minimum != i64::MIN, maximum != i64::MAX) {
+        (true, true) => Some(format!("between {minimum} and {maximum}")),
+        (true, false) => Some(format!("at least {minimum}")),
+        (false, true) => Some(format!("at most {maximum}")),
         (false, false) => None,
     }
 }
@@ -100,24 +100,24 @@ pub fn integer(multiple: i64) -> String {
 }
 
 /// A quantity that would be accepted.
-pub fn example(dimension: Dimension, least: f64, most: f64) -> Option<String> {
+pub fn example(dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
     let (_, units) = dimension.describe();
     units.iter().find_map(|unit| {
-        let fits = |amount: &&str| with_unit(amount, unit, dimension, least, most).is_some();
+        let fits = |amount: &&str| with_unit(amount, unit, dimension, minimum, maximum).is_some();
         ["3", "20", "200", "1", "0.5", "0.1", "0"].into_iter().find(fits).map(|amount| format!("{amount} {unit}"))
     })
 }
 
 /// The user's own number with the first unit that makes it acceptable, or any acceptable quantity.
-pub fn example_like(amount: &str, dimension: Dimension, least: f64, most: f64) -> Option<String> {
-    let own = dimension.describe().1.iter().find_map(|unit| with_unit(amount, unit, dimension, least, most));
-    own.or_else(|| example(dimension, least, most))
+pub fn example_like(amount: &str, dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
+    let own = dimension.describe().1.iter().find_map(|unit| with_unit(amount, unit, dimension, minimum, maximum));
+    own.or_else(|| example(dimension, minimum, maximum))
 }
 
-fn with_unit(amount: &str, unit: &str, dimension: Dimension, least: f64, most: f64) -> Option<String> {
+fn with_unit(amount: &str, unit: &str, dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
     let text = format!("{amount} {unit}");
     let read = declare::units::parse_quantity(&text).ok()?;
-    (read.dimension == dimension && (least..=most).contains(&read.value) && amount.len() < 20).then_some(text)
+    (read.dimension == dimension && (minimum..=maximum).contains(&read.value) && amount.len() < 20).then_some(text)
 }
 
 /// What to write instead of a quantity whose unit cannot be read.
@@ -148,12 +148,12 @@ pub fn unit_readings(text: &str, readings: &[String; 2], wanted: Option<Dimensio
 }
 
 /// What a number must be: `` a length (for example `3 mm`) ``; no dimension means a plain number.
-pub fn measure(dimension: Option<Dimension>, least: f64, most: f64) -> String {
+pub fn measure(dimension: Option<Dimension>, minimum: f64, maximum: f64) -> String {
     match dimension {
         None => "a plain number".to_owned(),
         Some(RATIO) => "a ratio (a plain number or one with `%`)".to_owned(),
         Some(dimension) => {
-            let example = example(dimension, least, most);
+            let example = example(dimension, minimum, maximum);
             let example = example.map_or(String::new(), |text| format!(" (for example `{text}`)"));
             format!("{}{example}", dimension.describe().0)
         }
@@ -163,9 +163,9 @@ pub fn measure(dimension: Option<Dimension>, least: f64, most: f64) -> String {
 /// What a shape holds, as the subject of "is expected".
 pub fn expected(shape: &Shape) -> String {
     match shape {
-        Shape::Quantity { dimension, least, most } => measure(Some(*dimension), *least, *most),
+        Shape::Quantity { dimension, minimum, maximum } => measure(Some(*dimension), *minimum, *maximum),
         Shape::AnyQuantity => "a number, with its unit if it has one,".to_owned(),
-        Shape::Number { least, most } => measure(None, *least, *most),
+        Shape::Number { minimum, maximum } => measure(None, *minimum, *maximum),
         Shape::Integer { multiple, .. } => integer(*multiple),
         Shape::Flag => "`true` or `false`".to_owned(),
         Shape::Text => "text".to_owned(),

@@ -21,14 +21,14 @@ pub fn lines(contour: &Contour) -> Vec<String> {
     };
     // A whole gear reaches as far as its farthest point in every direction; on the axes lies none by necessity.
     let radius = corners.clone().map(|[x, y]| libm::hypot(x, y)).fold(0.0, f64::max);
-    let (least, most) = if contour.closed {
+    let (minimum, maximum) = if contour.closed {
         ([-radius; 2], [radius; 2])
     } else {
         (fold(f64::min, f64::INFINITY), fold(f64::max, f64::NEG_INFINITY))
     };
-    let margin = MARGIN * (most[0] - least[0]).max(most[1] - least[1]) + WIDTH;
-    let [width, height] = [0, 1].map(|axis| most[axis] - least[axis] + 2.0 * margin);
-    let (left, top) = (least[0] - margin, -most[1] - margin);
+    let margin = MARGIN * (maximum[0] - minimum[0]).max(maximum[1] - minimum[1]) + WIDTH;
+    let [width, height] = [0, 1].map(|axis| maximum[axis] - minimum[axis] + 2.0 * margin);
+    let (left, top) = (minimum[0] - margin, -maximum[1] - margin);
     let mut lines = vec![
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}mm\" height=\"{height}mm\" viewBox=\"{left} {top} \

@@ -47,7 +47,7 @@ pub fn columns() -> Columns<ArcPoint> {
 
 /// The most rows of a gear with so many points on half a tooth.
 #[must_use]
-pub fn most(half: usize) -> usize {
+pub fn maximum(half: usize) -> usize {
     // Eight arcs or less, and a few points.
     half + 8 * (ARC as usize + 1)
 }

@@ -18,7 +18,7 @@ impl Optimizer {
         let Some(accuracy) = self.accuracy else { return self.settings };
         let variables = self.template.variables();
         let at = |share: &f64| -> Vec<f64> {
-            variables.iter().map(|variable| variable.least + share * (variable.most - variable.least)).collect()
+            variables.iter().map(|variable| variable.minimum + share * (variable.maximum - variable.minimum)).collect()
         };
         let chosen = PROBES.iter().map(at).map(|point| self.settings_for(base, pair, &point, accuracy));
         chosen.reduce(finer).unwrap_or(self.settings)

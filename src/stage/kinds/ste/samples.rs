@@ -78,7 +78,7 @@ pub fn taken(loading: &LoadCase, first: f64, count: usize) -> (Vec<Sample>, Samp
     let errors = || samples.iter().map(|sample| sample.error);
     let mean = errors().sum::<f64>() / count as f64;
     let variance = errors().map(|error| (error - mean) * (error - mean)).sum::<f64>() / count as f64;
-    let [most, least] = [errors().fold(f64::NEG_INFINITY, f64::max), errors().fold(f64::INFINITY, f64::min)];
-    let summary = Samples { mean, peak_to_peak: most - least, variance };
+    let [maximum, minimum] = [errors().fold(f64::NEG_INFINITY, f64::max), errors().fold(f64::INFINITY, f64::min)];
+    let summary = Samples { mean, peak_to_peak: maximum - minimum, variance };
     (samples, summary)
 }

@@ -44,13 +44,13 @@ pub enum GearBody {
 #[declared(name = "energy")]
 pub struct Energy {
     /// how much more a section shears than under a uniform shear stress
-    #[declared(least = 1.0, most = 2.0, default = "1.2")]
+    #[declared(minimum = 1.0, maximum = 2.0, default = "1.2")]
     pub shear_factor: f64,
     /// what the gear body under the tooth is taken from
     #[declared(default = "sainsot")]
     pub body: GearBody,
     /// harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes
-    #[declared(least = LEAST_HARMONICS, most = MOST_HARMONICS, default = "100")]
+    #[declared(minimum = LEAST_HARMONICS, maximum = MOST_HARMONICS, default = "100")]
     pub harmonics: u32,
 }
 
@@ -61,9 +61,11 @@ impl Method for Energy {
     fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
         let mut warnings = Vec::new();
         let uses_ring = assumptions.coupled || self.body == GearBody::Ring;
-        let [least, most] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
+        let [minimum, maximum] = [LEAST_HARMONICS as f64, MOST_HARMONICS as f64];
         let harmonics = match assumptions.accuracy {
-            Some(accuracy) => ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, least, most),
+            Some(accuracy) => {
+                ring::harmonics((accuracy - ROUNDING).max(ROUNDING), assumptions.coupled, minimum, maximum)
+            }
             None => f64::from(self.harmonics),
         };
         let (mut error_estimate, mut evaluations) = (ROUNDING, 0);
@@ -217,8 +219,8 @@ fn tabulate_side(
             return Err(ComplianceError::BoreOfFormula { side, bore_ratio, range: BORE_RATIOS });
         }
         if root.half_angle < LEAST_HALF_ANGLE {
-            let (half_angle, least) = (root.half_angle, LEAST_HALF_ANGLE);
-            return Err(ComplianceError::ManyTeeth { side, half_angle, least });
+            let (half_angle, minimum) = (root.half_angle, LEAST_HALF_ANGLE);
+            return Err(ComplianceError::ManyTeeth { side, half_angle, minimum });
         }
         let name = if side == Side::Pinion { "pinion" } else { "gear" };
         (Foundation::Formula(body), body.range_warning().map(|warning| format!("{name}: {warning}")))

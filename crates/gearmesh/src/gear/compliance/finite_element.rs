@@ -43,7 +43,7 @@ pub struct FiniteElement {
     pub plane: Plane,
     /// elements across a tooth, an even number; all other sizes follow from it; where an accuracy is wanted, from how many
     /// on
-    #[declared(least = 6, most = 64, multiple = 2, default = "16")]
+    #[declared(minimum = 6, maximum = 64, multiple = 2, default = "16")]
     pub elements_across: u32,
 }
 
@@ -141,7 +141,7 @@ impl<'a> Task<'a> {
         let plane = method.plane;
         let poisson_ratio = gear.specification.material.poisson_ratio;
         if plane == Plane::Strain && poisson_ratio > MOST_POISSON {
-            return Err(ComplianceError::Incompressible { side, poisson_ratio, most: MOST_POISSON });
+            return Err(ComplianceError::Incompressible { side, poisson_ratio, maximum: MOST_POISSON });
         }
         let rolls = nodes(root.form_roll, gear.tip_roll(), ROLLS);
         Ok(Self {

@@ -22,10 +22,10 @@ use declare::work::Work;
 #[declared(name = "iso6336")]
 pub struct Iso6336 {
     /// C_M: measured over theoretical stiffness
-    #[declared(least = 0.1, most = 2.0, default = "0.8")]
+    #[declared(minimum = 0.1, maximum = 2.0, default = "0.8")]
     pub correction_factor: f64,
     /// C_R: gear blank factor, 1 for solid discs, less for rims on webs
-    #[declared(least = 0.1, most = 2.0, default = "1.0")]
+    #[declared(minimum = 0.1, maximum = 2.0, default = "1.0")]
     pub blank_factor: f64,
 }
 
@@ -273,8 +273,8 @@ mod tests {
                 let (_, summary) = mesh_stiffness(&cycle, torque);
                 let near = |value: f64, exact: f64| (value / (exact * 18e-3) - 1.0).abs() < 1e-9;
                 assert!(near(summary.mean, expected.mesh), "{} for {expected:?}", summary.mean);
-                let single = summary.fewest.pairs == 1;
-                assert!(!single || near(summary.fewest.most, expected.single), "{summary:?} for {expected:?}");
+                let single = summary.fewest_pairs.pairs == 1;
+                assert!(!single || near(summary.fewest_pairs.maximum, expected.single), "{summary:?} for {expected:?}");
             }
             // The ends of the path, by the formula as printed in the head of the file.
             let share = expected.mesh / (expected.single * pair.contact_ratio);

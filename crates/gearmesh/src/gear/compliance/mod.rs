@@ -210,14 +210,14 @@ pub enum ComplianceError {
         range: [f64; 2],
     },
     /// θ_f is below what the formula of the gear body can be used for: there are too many teeth.
-    #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.least))]
+    #[error("{}: the half root angle is {} rad, but must be at least {} rad for the gear body formula; the body `ring` takes any number of teeth", .side.name(), Plain(*.half_angle), Plain(*.minimum))]
     ManyTeeth {
         /// The gear with these teeth.
         side: Side,
         /// θ_f \[rad\].
         half_angle: f64,
         /// The least θ_f \[rad\].
-        least: f64,
+        minimum: f64,
     },
     /// The formula of the gear body gives a compliance that is not positive at some roll angle of the flank.
     #[error("{}: the gear body formula gives a negative compliance ({} m/N) at a half root angle of {} rad (fitted for 0.01 to 0.12) and a root-to-bore ratio of {} (fitted for 1.4 to 7); the body `ring` takes any", .side.name(), Plain(*.compliance), Plain(*.half_angle), Plain(*.bore_ratio))]
@@ -248,14 +248,14 @@ pub enum ComplianceError {
         error: MeshError,
     },
     /// ν is above what the elements take in plane strain.
-    #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.most))]
+    #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.maximum))]
     Incompressible {
         /// The gear of that material.
         side: Side,
         /// ν.
         poisson_ratio: f64,
         /// The largest ν that they take in plane strain.
-        most: f64,
+        maximum: f64,
     },
 }
 
@@ -322,8 +322,8 @@ pub fn neighbours(pair: &GearPair, side: Side) -> u32 {
     let teeth = pair.side(side).specification.teeth;
     // The contact ratio of what can be built is far below 2^32.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let [pairs, most] = [pair.contact_ratio.ceil() as u32 + 1, MOST_SPRINGS as u32 - 1];
-    pairs.min(most).min(teeth - 1)
+    let [pairs, maximum] = [pair.contact_ratio.ceil() as u32 + 1, MOST_SPRINGS as u32 - 1];
+    pairs.min(maximum).min(teeth - 1)
 }
 
 /// How two flanks flatten against each other.

@@ -235,10 +235,10 @@ pub fn error(by_angle: f64, neighbours: bool) -> f64 {
     CUT_OFF[usize::from(neighbours)] / (by_angle * by_angle * by_angle)
 }
 
-/// The least number, from `least` to `most`, with which they are off by no more than `error`.
+/// The least number, from `minimum` to `maximum`, with which they are off by no more than `error`.
 #[must_use]
-pub fn harmonics(error: f64, neighbours: bool, least: f64, most: f64) -> f64 {
-    libm::ceil(libm::cbrt(CUT_OFF[usize::from(neighbours)] / error)).clamp(least, most)
+pub fn harmonics(error: f64, neighbours: bool, minimum: f64, maximum: f64) -> f64 {
+    libm::ceil(libm::cbrt(CUT_OFF[usize::from(neighbours)] / error)).clamp(minimum, maximum)
 }
 
 /// Gaussian elimination with partial pivoting, two right-hand sides beside the matrix.

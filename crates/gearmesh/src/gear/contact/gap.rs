@@ -76,7 +76,7 @@ struct Outline<'a> {
     /// By piece.
     shapes: Vec<Convexity>,
     /// Positions, ascending, and the least depth that was sampled from there on.
-    least: Vec<(f64, f64)>,
+    minimum: Vec<(f64, f64)>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -91,7 +91,7 @@ struct Search<'a, 'b> {
     way: &'b Way<'a>,
     nominal: f64,
     pieces: [usize; 2],
-    least: (f64, Spot),
+    minimum: (f64, Spot),
 }
 
 impl<'a> Gaps<'a> {
@@ -134,14 +134,14 @@ impl<'a> Gaps<'a> {
         if !self.modified {
             return (0.0, Spot::OnLineOfAction);
         }
-        let mut least = (self.ways[0].depth(s, s), Spot::OnLineOfAction);
+        let mut minimum = (self.ways[0].depth(s, s), Spot::OnLineOfAction);
         for (way, nominal) in self.ways.iter().zip(positions) {
             // The first check of the search, before anything is computed.
-            if way.least_from(nominal, nominal) < least.0 {
-                least = way.search(nominal, 0.0, way.facing.touch(nominal, 0.0), least);
+            if way.least_from(nominal, nominal) < minimum.0 {
+                minimum = way.search(nominal, 0.0, way.facing.touch(nominal, 0.0), minimum);
             }
         }
-        least
+        minimum
     }
 
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks
@@ -200,10 +200,10 @@ impl Way<'_> {
         self.point.least_from(point) + self.flank.least_from(flank)
     }
 
-    /// The least of `least` and of what lies farther than `before` from the nominal point.
-    fn search(&self, nominal: f64, before: f64, touch: Touch, least: (f64, Spot)) -> (f64, Spot) {
+    /// The least of `minimum` and of what lies farther than `before` from the nominal point.
+    fn search(&self, nominal: f64, before: f64, touch: Touch, minimum: (f64, Spot)) -> (f64, Spot) {
         let pieces = [self.point.piece(nominal + before), self.flank.piece(touch.curvature)];
-        Search { way: self, nominal, pieces, least }.run(before, touch)
+        Search { way: self, nominal, pieces, minimum }.run(before, touch)
     }
 }
 
@@ -211,7 +211,7 @@ impl Search<'_, '_> {
     fn run(mut self, mut before: f64, mut touch: Touch) -> (f64, Spot) {
         let way = self.way;
         // The separation only grows: no farther than it alone would be too large.
-        while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.least.0 {
+        while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.minimum.0 {
             let [point, flank] = self.pieces;
             let (next, at_next, ended) = self.piece_end(before, &touch);
             let shapes = [way.point.shapes[point], way.flank.shapes[flank]];
@@ -226,7 +226,7 @@ impl Search<'_, '_> {
                 break;
             }
         }
-        self.least
+        self.minimum
     }
 
     fn touch(&self, before: f64) -> Touch {
@@ -235,8 +235,8 @@ impl Search<'_, '_> {
 
     fn offer(&mut self, before: f64, touch: &Touch, place: PieceLocation) {
         let gap = touch.separation + self.way.depth(self.nominal + before, touch.curvature);
-        if gap < self.least.0 {
-            self.least = (gap, Spot::Beside { side: self.way.side, pieces: self.pieces, place });
+        if gap < self.minimum.0 {
+            self.minimum = (gap, Spot::Beside { side: self.way.side, pieces: self.pieces, place });
         }
     }
 
@@ -331,7 +331,7 @@ impl<'a> Outline<'a> {
             is_point,
             cuts: vec![facing.start, facing.end],
             shapes: Vec::new(),
-            least: Vec::new(),
+            minimum: Vec::new(),
         };
         for roll in parts.iter().flat_map(|part| part.profile_breaks()).copied() {
             let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
@@ -350,7 +350,7 @@ impl<'a> Outline<'a> {
         for ends in outline.cuts.windows(2) {
             let place = |index: usize| ends[0] + (ends[1] - ends[0]) * index as f64 / SAMPLES as f64;
             let depths: Vec<f64> = (0..=SAMPLES).map(|index| outline.depth(place(index))).collect();
-            let largest = depths.iter().fold(0.0_f64, |most, depth| most.max(depth.abs()));
+            let largest = depths.iter().fold(0.0_f64, |maximum, depth| maximum.max(depth.abs()));
             let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -1e-12 * largest);
             outline.shapes.push(match (largest > 0.0, bends_back) {
                 (false, _) => Convexity::Zero,
@@ -368,12 +368,12 @@ impl<'a> Outline<'a> {
             }
         }
         samples.sort_by(|one, two| one.0.total_cmp(&two.0));
-        let mut least = f64::INFINITY;
+        let mut minimum = f64::INFINITY;
         for sample in samples.iter_mut().rev() {
-            least = least.min(sample.1);
-            sample.1 = least;
+            minimum = minimum.min(sample.1);
+            sample.1 = minimum;
         }
-        outline.least = samples;
+        outline.minimum = samples;
         outline
     }
 
@@ -386,8 +386,8 @@ impl<'a> Outline<'a> {
         if self.parts.is_empty() {
             return 0.0;
         }
-        let next = self.least.partition_point(|sample| sample.0 < position);
-        self.depth(position).min(self.least.get(next).map_or(f64::INFINITY, |sample| sample.1))
+        let next = self.minimum.partition_point(|sample| sample.0 < position);
+        self.depth(position).min(self.minimum.get(next).map_or(f64::INFINITY, |sample| sample.1))
     }
 
     fn piece(&self, position: f64) -> usize {

@@ -137,14 +137,14 @@ impl Facing {
     }
 
     /// How far before its own position the tip corner can meet the other flank, which ends at its own tip; at most
-    /// `most`.
+    /// `maximum`.
     #[must_use]
-    pub fn reach(&self, most: f64) -> f64 {
+    pub fn reach(&self, maximum: f64) -> f64 {
         let room = |before: f64| self.end - self.corner(before).curvature;
-        if room(most) >= 0.0 {
-            return most;
+        if room(maximum) >= 0.0 {
+            return maximum;
         }
-        crate::numeric::crossing::bracketed(0.0, most, room).unwrap_or(0.0)
+        crate::numeric::crossing::bracketed(0.0, maximum, room).unwrap_or(0.0)
     }
 }
 

@@ -48,9 +48,9 @@ impl<'a> GearModel<'a> {
     pub fn new(gear: &'a Gear, root: &Root, plane: Plane, sizing: &Sizing) -> Result<Self, MeshError> {
         let outline = Outline::new(gear, root)?;
         let (teeth, ratio) = (f64::from(gear.specification.teeth), gear.root_radius / gear.specification.bore_radius);
-        let most = (MOST_ROUNDING / ROUNDING).sqrt() / teeth;
-        if ratio > most {
-            return Err(MeshError::Rounding { ratio: Plain(ratio), most: Plain(most) });
+        let maximum = (MOST_ROUNDING / ROUNDING).sqrt() / teeth;
+        if ratio > maximum {
+            return Err(MeshError::Rounding { ratio: Plain(ratio), maximum: Plain(maximum) });
         }
         let mesh = Mesh::new(&outline, sizing)?;
         let elasticity = elasticity(plane, gear.specification.material.poisson_ratio);

@@ -46,13 +46,13 @@ pub enum MeshError {
     },
     /// The body is so deep for its width that rounding may change the compliances by more than 1 %.
     #[error(
-        "too many digits are lost in a body that is so deep for its width: the root radius is {ratio} times the bore radius, but must be below {most} times it for so many teeth"
+        "too many digits are lost in a body that is so deep for its width: the root radius is {ratio} times the bore radius, but must be below {maximum} times it for so many teeth"
     )]
     Rounding {
         /// r_f over the radius of the bore.
         ratio: Plain,
         /// The largest ratio for this number of teeth.
-        most: Plain,
+        maximum: Plain,
     },
     /// A stiffness matrix is not positive definite to rounding, so that it has no Cholesky factors.
     #[error("the stiffness is singular to rounding")]

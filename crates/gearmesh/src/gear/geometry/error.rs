@@ -63,7 +63,7 @@ pub enum Problem {
     },
     /// The form radius is not below the tip radius: undercut has cut the involute off, or the tip circle is too small.
     #[error(
-        "no involute is left: the root curve reaches up to {form}, the tip circle is at {tip}; {teeth} teeth need a profile shift of at least {least} modules not to be undercut"
+        "no involute is left: the root curve reaches up to {form}, the tip circle is at {tip}; {teeth} teeth need a profile shift of at least {minimum} modules not to be undercut"
     )]
     NoFlank {
         /// Form radius, where root curve and involute meet \[m\].
@@ -73,7 +73,7 @@ pub enum Problem {
         /// z.
         teeth: u32,
         /// x_min: the least profile shift without undercut \[modules\].
-        least: Plain,
+        minimum: Plain,
     },
     /// The thickness s_a at the tip circle is not positive.
     #[error(
@@ -88,12 +88,12 @@ pub enum Problem {
         tip_is_given: bool,
     },
     /// The bore is so small that the body could turn about it without limit, or it reaches the root circle.
-    #[error("the bore radius is {bore}, but must be at least {least} and below the root radius {root}")]
+    #[error("the bore radius is {bore}, but must be at least {minimum} and below the root radius {root}")]
     Bore {
         /// Radius of the bore \[m\].
         bore: Millimetres,
         /// The least radius: r_f/1000 \[m\].
-        least: Millimetres,
+        minimum: Millimetres,
         /// r_f \[m\].
         root: Millimetres,
     },
@@ -108,22 +108,22 @@ pub enum Problem {
         gear: String,
     },
     /// a_w is more than a thousandth of a module below the one without backlash, or not finite.
-    #[error("the centre distance is {found}, but must be at least {least} for the teeth to fit into each other")]
+    #[error("the centre distance is {found}, but must be at least {minimum} for the teeth to fit into each other")]
     CentreDistance {
         /// a_w \[m\].
         found: Millimetres,
         /// a_w without backlash \[m\].
-        least: Millimetres,
+        minimum: Millimetres,
     },
     /// inv α_w = inv α + 2 tan α (x1 + x2)/(z1 + z2) is not positive, so there is no α_w.
     #[error(
-        "profile shifts that add up to {sum} modules leave no working pressure angle; their sum must be above {least}"
+        "profile shifts that add up to {sum} modules leave no working pressure angle; their sum must be above {minimum}"
     )]
     ProfileShiftSum {
         /// x1 + x2 \[modules\].
         sum: Plain,
         /// x1 + x2 at which inv α_w vanishes \[modules\].
-        least: Plain,
+        minimum: Plain,
     },
     /// A tip circle overlaps the root circle of the mate.
     #[error(
@@ -179,7 +179,7 @@ pub enum Problem {
     },
     /// An arc from base circle to root circle is asked for, but the root circle is not inside the base circle.
     #[error(
-        "{construction} begins on the base circle and ends on the root circle, so the root radius {root} must be below the base radius {base}; with this rack that is so below {most} teeth, and there are {teeth}"
+        "{construction} begins on the base circle and ends on the root circle, so the root radius {root} must be below the base radius {base}; with this rack that is so below {maximum} teeth, and there are {teeth}"
     )]
     NothingBelowBase {
         /// What asks for it, as the subject of the message.
@@ -191,21 +191,21 @@ pub enum Problem {
         /// z.
         teeth: u32,
         /// The number of teeth at which r_f = r_b with this rack and profile shift; a real number.
-        most: Plain,
+        maximum: Plain,
     },
     /// On the base circle the tooth is at least as wide as the pitch, so no arc can lie beside it.
     #[error(
-        "no centre of an arc lies between tooth and space: on the base circle the tooth takes up {angle} deg on either side of its centreline, but must take up less than {most} deg"
+        "no centre of an arc lies between tooth and space: on the base circle the tooth takes up {angle} deg on either side of its centreline, but must take up less than {maximum} deg"
     )]
     NoSpace {
         /// ψ_b \[deg\].
         angle: Plain,
         /// Half the angle of the pitch, π/z \[deg\].
-        most: Plain,
+        maximum: Plain,
     },
     /// Undercut is so deep that no thickness is left at the tooth's neck.
     #[error(
-        "the root curve cuts the tooth off at a radius of {height}; {teeth} teeth need a profile shift of at least {least} modules not to be undercut"
+        "the root curve cuts the tooth off at a radius of {height}; {teeth} teeth need a profile shift of at least {minimum} modules not to be undercut"
     )]
     CutOff {
         /// Height of the neck above the gear's centre \[m\].
@@ -213,7 +213,7 @@ pub enum Problem {
         /// z.
         teeth: u32,
         /// x_min: the least profile shift without undercut \[modules\].
-        least: Plain,
+        minimum: Plain,
     },
     /// A chamfer or rounding of the tip does not fit the tooth.
     #[error(

@@ -41,11 +41,11 @@ impl Gear {
         let half_base_angle =
             (FRAC_PI_2 + 2.0 * profile_shift * libm::tan(pressure_angle)) / f64::from(teeth) + involute(pressure_angle);
         if half_base_angle <= 0.0 {
-            let least = -FRAC_PI_4 / libm::tan(pressure_angle);
+            let minimum = -FRAC_PI_4 / libm::tan(pressure_angle);
             return Err(out_of_range(
                 Parameter::ProfileShift,
                 &Plain(profile_shift),
-                format!("above {} modules, where the tooth vanishes", Plain(least)),
+                format!("above {} modules, where the tooth vanishes", Plain(minimum)),
             ));
         }
         let (_, joint) = Trochoid::generate(specification, base_radius);
@@ -73,7 +73,7 @@ impl Gear {
                 form: Millimetres(self.form_radius),
                 tip: Millimetres(self.tip_radius),
                 teeth,
-                least: Plain(self.least_shift_without_undercut()),
+                minimum: Plain(self.least_shift_without_undercut()),
             }
             .into());
         }
@@ -86,11 +86,11 @@ impl Gear {
             }
             .into());
         }
-        let least = LEAST_BORE * self.root_radius;
+        let minimum = LEAST_BORE * self.root_radius;
         // The bound as a message shows it must pass: it is rounded.
-        if !(bore_radius >= least * (1.0 - 1e-9) && bore_radius < self.root_radius) {
-            let [bore, least, root] = [bore_radius, least, self.root_radius].map(Millimetres);
-            return Err(Problem::Bore { bore, least, root }.into());
+        if !(bore_radius >= minimum * (1.0 - 1e-9) && bore_radius < self.root_radius) {
+            let [bore, minimum, root] = [bore_radius, minimum, self.root_radius].map(Millimetres);
+            return Err(Problem::Bore { bore, minimum, root }.into());
         }
         Ok(())
     }

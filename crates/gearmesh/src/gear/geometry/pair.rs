@@ -42,10 +42,10 @@ impl GearPair {
         let base_sum = pinion.base_radius + gear.base_radius;
         let nearest = base_sum / libm::cos(without_backlash);
         let centre_distance = centre_distance.unwrap_or(nearest);
-        let least = nearest - OVERLAP * pinion.specification.module;
-        if !(centre_distance >= least && centre_distance.is_finite()) {
-            let (found, least) = (Millimetres(centre_distance), Millimetres(nearest));
-            return Err(Problem::CentreDistance { found, least }.into());
+        let minimum = nearest - OVERLAP * pinion.specification.module;
+        if !(centre_distance >= minimum && centre_distance.is_finite()) {
+            let (found, minimum) = (Millimetres(centre_distance), Millimetres(nearest));
+            return Err(Problem::CentreDistance { found, minimum }.into());
         }
         let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
         let base_pitch =
@@ -163,8 +163,8 @@ fn angle_without_backlash(pinion: &Gear, gear: &Gear) -> Result<f64, GeometryErr
     let sum = pinion.specification.profile_shift + gear.specification.profile_shift;
     let value = involute(angle) + 2.0 * libm::tan(angle) * sum / teeth;
     if value <= 0.0 {
-        let least = Plain(-0.5 * involute(angle) * teeth / libm::tan(angle));
-        return Err(Problem::ProfileShiftSum { sum: Plain(sum), least }.into());
+        let minimum = Plain(-0.5 * involute(angle) * teeth / libm::tan(angle));
+        return Err(Problem::ProfileShiftSum { sum: Plain(sum), minimum }.into());
     }
     Ok(inverse_involute(value, angle))
 }

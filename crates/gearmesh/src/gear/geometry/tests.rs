@@ -92,9 +92,9 @@ fn the_root_curve_of_seventeen_teeth() {
 #[test]
 fn thresholds_of_the_rack() {
     assert!(gear(17, 3.0, 0.0).undercut && !gear(18, 3.0, 0.0).undercut);
-    let least = gear(17, 3.0, 0.0).least_shift_without_undercut();
-    assert_near(least, 0.5 * (17.0967 - 17.0) * (20.0 * DEGREE).sin().powi(2), 1e-5, "least shift");
-    assert!(gear(17, 3.0, least - 1e-9).undercut && !gear(17, 3.0, least + 1e-9).undercut);
+    let minimum = gear(17, 3.0, 0.0).least_shift_without_undercut();
+    assert_near(minimum, 0.5 * (17.0967 - 17.0) * (20.0 * DEGREE).sin().powi(2), 1e-5, "least shift");
+    assert!(gear(17, 3.0, minimum - 1e-9).undercut && !gear(17, 3.0, minimum + 1e-9).undercut);
     // The two formulas of the form radius meet at the threshold.
     let (below, above) =
         (gear(12, 3.0, 0.25), gear(12, 3.0, gear(12, 3.0, 0.25).least_shift_without_undercut() + 1e-6));
@@ -372,8 +372,8 @@ fn the_circular_fillet_is_tangent() {
             };
             (x - px).hypot(y - py)
         };
-        let least = (0..=20_000).map(distance).fold(f64::INFINITY, f64::min);
-        assert_near(least * 1e3, radius * 1e3, 1e-6, &format!("distance to the flank of z {teeth}"));
+        let minimum = (0..=20_000).map(distance).fold(f64::INFINITY, f64::min);
+        assert_near(minimum * 1e3, radius * 1e3, 1e-6, &format!("distance to the flank of z {teeth}"));
         assert_eq!(root.pieces.len(), if teeth == 19 { 2 } else { 1 });
     }
     // Four teeth are too near for this arc.

@@ -290,8 +290,8 @@ impl Design {
         };
         let depth = |roll: f64| sum(&|part| part.depth(roll)) + lead;
         // Room falls with the roll angle, by r_b tan²(u − ψ_b): what fits where there is least need not be looked at closer.
-        let least = gear.depth_to_centreline(last);
-        if places().all(|roll| depth(roll) <= least) {
+        let minimum = gear.depth_to_centreline(last);
+        if places().all(|roll| depth(roll) <= minimum) {
             return Ok(());
         }
         // The place with the least room; NaN counts as none.
@@ -307,11 +307,11 @@ impl Design {
         if room >= 0.0 {
             return Ok(());
         }
-        let [diameter, depth, most] =
+        let [diameter, depth, maximum] =
             [flank.diameter(roll.min(flank.tip_roll)), depth, gear.depth_to_centreline(roll)].map(|m| m * 1e3);
         Err(Diagnostic::new(format!(
             "the {}'s flank would lose {depth:.6} mm, normal to it, at a diameter of {diameter:.6} mm; all its \
-             modifications together may take 0 to {most:.6} mm there, which is half of the tooth",
+             modifications together may take 0 to {maximum:.6} mm there, which is half of the tooth",
             side.name()
         )))
     }

@@ -15,7 +15,7 @@ use declare::{Alternatives, Declared, Words};
 #[derive(Clone, Debug, PartialEq, Alternatives)]
 pub enum Amount {
     /// Depth at the end of the relief, normal to the flank.
-    #[declared(name = "amount", dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    #[declared(name = "amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
     Depth(f64),
     /// Instead of `amount`: Δ_max = K_A F_t / (b ε_α c_γ).
     #[declared(name = "iso_amount")]
@@ -26,19 +26,19 @@ pub enum Amount {
 #[derive(Clone, Debug, PartialEq, Declared)]
 pub struct IsoAmount {
     /// K_A.
-    #[declared(least = 0.1, most = 10.0, default = "1")]
+    #[declared(minimum = 0.1, maximum = 10.0, default = "1")]
     pub application_factor: f64,
     /// F_t: nominal tangential load.
-    #[declared(dimension = FORCE, least = 0.0, most = 1e9)]
+    #[declared(dimension = FORCE, minimum = 0.0, maximum = 1e9)]
     pub tangential_load: f64,
     /// b; the narrower gear's when left out.
-    #[declared(dimension = LENGTH, least = 1e-4, most = 10.0)]
+    #[declared(dimension = LENGTH, minimum = 1e-4, maximum = 10.0)]
     pub face_width: Option<f64>,
     /// ε_α; the pair's when left out.
-    #[declared(least = 1.0, most = 6.0)]
+    #[declared(minimum = 1.0, maximum = 6.0)]
     pub contact_ratio: Option<f64>,
     /// c_γ: mesh stiffness per face width.
-    #[declared(dimension = SPECIFIC_STIFFNESS, least = 1e6, most = 1e13)]
+    #[declared(dimension = SPECIFIC_STIFFNESS, minimum = 1e6, maximum = 1e13)]
     pub mesh_stiffness: f64,
 }
 
@@ -46,16 +46,16 @@ pub struct IsoAmount {
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum Start {
     /// L: roll length of the relief along the line of action; a relief of no length removes nothing.
-    #[declared(dimension = LENGTH, least = 0.0, most = 1.0, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, range)]
     Length(f64),
     /// Instead of `length`: length over p_b(ε_α − 1); 1 is long relief, 0.5 short relief.
-    #[declared(least = 0.0, most = 10.0, range)]
+    #[declared(minimum = 0.0, maximum = 10.0, range)]
     Fraction(f64),
     /// Instead of `length`: roll angle where the relief starts.
-    #[declared(name = "start_roll_angle", dimension = ANGLE, least = 0.0, most = 10.0, range)]
+    #[declared(name = "start_roll_angle", dimension = ANGLE, minimum = 0.0, maximum = 10.0, range)]
     RollAngle(f64),
     /// Instead of `length`: diameter at which the relief starts.
-    #[declared(name = "start_diameter", dimension = LENGTH, least = 1e-4, most = 100.0, range)]
+    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range)]
     Diameter(f64),
 }
 

@@ -18,9 +18,9 @@ pub struct Variable {
     /// What kind of quantity the field is, and so its unit.
     pub dimension: Dimension,
     /// SI.
-    pub least: f64,
+    pub minimum: f64,
     /// SI.
-    pub most: f64,
+    pub maximum: f64,
 }
 
 /// Modifications as the study states them.
@@ -54,7 +54,7 @@ impl Template {
 
     fn open(&mut self, family: &'static Family, record: &Record) {
         for (slot, (field, entry)) in record.fields.iter().enumerate() {
-            let Value::Range(least, most) = entry.value else { continue };
+            let Value::Range(minimum, maximum) = entry.value else { continue };
             let shape = family.member.fields.iter().find(|declared| declared.name == *field).map(|found| found.shape);
             let dimension = if let Some(Shape::Quantity { dimension, .. }) = shape { dimension } else { RATIO };
             let gears = Where::read(record).gear;
@@ -63,7 +63,7 @@ impl Template {
             let taken = |name: &str| self.variables.iter().any(|variable| variable.name == name);
             let numbered = (2..).map(|number| format!("{plain}_{number}"));
             let name = std::iter::once(plain.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(plain);
-            self.variables.push(Variable { name, dimension, least, most });
+            self.variables.push(Variable { name, dimension, minimum, maximum });
             self.slots.push((self.parts.len(), slot));
         }
     }

@@ -247,7 +247,7 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
             ("helix_slope", tip, &[]),
             ("end_relief", tip, &[length.clone(), ends]),
         ];
-        for (family, most, others) in cases {
+        for (family, maximum, others) in cases {
             let taken = |amount: f64| {
                 let values = [&[("amount", Quantity(amount))], others].concat();
                 design(&pair, &[(family, name, &values)])
@@ -257,13 +257,13 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
             let roll = if family == "root_relief" { flank.root_roll } else { last };
             let deepest =
                 one.depth(side, roll) + one.lead(-0.5 * flank.face_width).max(one.lead(0.5 * flank.face_width));
-            let limit = most * 1e-6 / deepest;
+            let limit = maximum * 1e-6 / deepest;
             for amount in [0.0, 1e-300, limit * (1.0 - 1e-9)] {
                 assert!(taken(amount).is_ok(), "{family} of {amount:e}");
             }
             let message = taken(limit * (1.0 + 1e-9)).unwrap_err().message;
             let diameter = flank.diameter(if family == "root_relief" { flank.root_roll } else { flank.tip_roll });
-            let range = format!("0 to {:.6} mm there", most * 1e3);
+            let range = format!("0 to {:.6} mm there", maximum * 1e3);
             assert!(message.contains(&range) && message.contains(&format!("{:.6} mm;", diameter * 1e3)), "{message}");
         }
         // Two that fit alone: along the profile and along the face, each half.
@@ -344,7 +344,7 @@ fn a_template_opens_the_ranges_and_closes_them_with_values() {
     let names: Vec<&str> = template.variables().iter().map(|variable| variable.name.as_str()).collect();
     let crowning = "pinion.lead_crowning.amount";
     assert_eq!(names, ["tip_relief.amount", "tip_relief.length", crowning, "pinion.lead_crowning.amount_2"]);
-    assert_eq!((template.variables()[1].least, template.variables()[1].most), (0.0, 6e-3));
+    assert_eq!((template.variables()[1].minimum, template.variables()[1].maximum), (0.0, 6e-3));
     let built = template.design(&pair, &[6.93e-6, 3.41e-3, 5e-6, 0.67e-6]).unwrap();
     let fixed = [("amount", Quantity(6.93e-6)), ("length", Quantity(3.41e-3)), ("curve", Choice("parabolic"))];
     let by_hand: Design = design(

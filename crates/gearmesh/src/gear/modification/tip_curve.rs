@@ -17,10 +17,10 @@ use declare::{Alternatives, Declared, Words};
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum TipPoint {
     /// How far A is moved from the corner inwards along the tip circle, as a share of the tip thickness s_a.
-    #[declared(name = "tip_share", least = 0.0, most = 0.5, range)]
+    #[declared(name = "tip_share", minimum = 0.0, maximum = 0.5, range)]
     Share(f64),
     /// Instead of `tip_share`: the same as a length along the tip circle.
-    #[declared(name = "tip_amount", dimension = LENGTH, least = 0.0, most = MOST_AMOUNT, range)]
+    #[declared(name = "tip_amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
     Amount(f64),
 }
 
@@ -28,10 +28,10 @@ pub enum TipPoint {
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum FlankPoint {
     /// How far B is from the tip, as a share of the arc length of the whole involute, from the form circle to the tip.
-    #[declared(name = "length_share", least = 0.0, most = 1.0, range)]
+    #[declared(name = "length_share", minimum = 0.0, maximum = 1.0, range)]
     Share(f64),
     /// Instead of `length_share`: diameter at which B lies.
-    #[declared(name = "start_diameter", dimension = LENGTH, least = 1e-4, most = 100.0, range)]
+    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range)]
     Diameter(f64),
 }
 
@@ -230,15 +230,17 @@ impl TipCurve {
         let Some(fault) = curve(given).fault() else { return Ok(curve(given)) };
         let fits = |share: f64, start: f64| curve(ends(share, start)).fault().is_none();
         let roll = |length: f64| roll_at_length(gear, length);
-        let (name, remedy) = if let Some((least, most)) = range(0.5, |share| fits(share, start)) {
-            let [shortest, longest] = [least, most].map(|share| share * gear.tip_thickness() * 1e3);
-            let (least, most) = (least * 1e2, most * 1e2);
-            let room = format!("{least:.4} to {most:.4} % of the tip thickness ({shortest:.6} to {longest:.6} mm)");
+        let (name, remedy) = if let Some((minimum, maximum)) = range(0.5, |share| fits(share, start)) {
+            let [shortest, longest] = [minimum, maximum].map(|share| share * gear.tip_thickness() * 1e3);
+            let (minimum, maximum) = (minimum * 1e2, maximum * 1e2);
+            let room =
+                format!("{minimum:.4} to {maximum:.4} % of the tip thickness ({shortest:.6} to {longest:.6} mm)");
             (tip_name, format!("with this B, A may be moved by {room}"))
-        } else if let Some((least, most)) = range(1.0, |length| fits(share, roll(length))) {
-            let [highest, lowest] = [least, most].map(|length| gear.radius_at(roll(length)) * 2e3);
-            let (least, most) = (least * 1e2, most * 1e2);
-            let room = format!("{least:.4} to {most:.4} % of the involute (diameters {lowest:.6} to {highest:.6} mm)");
+        } else if let Some((minimum, maximum)) = range(1.0, |length| fits(share, roll(length))) {
+            let [highest, lowest] = [minimum, maximum].map(|length| gear.radius_at(roll(length)) * 2e3);
+            let (minimum, maximum) = (minimum * 1e2, maximum * 1e2);
+            let room =
+                format!("{minimum:.4} to {maximum:.4} % of the involute (diameters {lowest:.6} to {highest:.6} mm)");
             (start_name, format!("with this A, B may lie below the tip by {room}"))
         } else {
             (tip_name, "with this A no B will do".to_owned())
@@ -299,9 +301,9 @@ impl TipCurve {
     }
 }
 
-/// The least and the largest value from 0 to `most` that fits, when any of fifty does.
-fn range(most: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
-    let places: Vec<f64> = (0..=50).map(|place| most * f64::from(place) / 50.0).collect();
+/// The least and the largest value from 0 to `maximum` that fits, when any of fifty does.
+fn range(maximum: f64, fits: impl Fn(f64) -> bool) -> Option<(f64, f64)> {
+    let places: Vec<f64> = (0..=50).map(|place| maximum * f64::from(place) / 50.0).collect();
     let (first, last) = (places.iter().position(|&place| fits(place))?, places.iter().rposition(|&place| fits(place))?);
     let edge = |inside: usize, outside: Option<usize>| {
         let (mut good, Some(mut bad)) = (places[inside], outside.map(|outside| places[outside])) else {
@@ -325,9 +327,10 @@ impl TipPoint {
         };
         let thickness = gear.tip_thickness();
         if amount > 0.5 * thickness {
-            let (given, most) = (amount * 1e3, thickness * 0.5e3);
-            let message =
-                format!("A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {most:.6} mm");
+            let (given, maximum) = (amount * 1e3, thickness * 0.5e3);
+            let message = format!(
+                "A is moved by {given:.6} mm along the tip circle; half of the tip leaves 0 to {maximum:.6} mm"
+            );
             return Err(Diagnostic::new(message).of(self.field()));
         }
         Ok(amount / thickness)
@@ -342,9 +345,9 @@ impl FlankPoint {
             Self::Diameter(diameter) => 0.5 * diameter,
         };
         if !(radius >= gear.form_radius && radius <= gear.tip_radius) {
-            let [given, least, most] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
+            let [given, minimum, maximum] = [radius, gear.form_radius, gear.tip_radius].map(|radius| radius * 2e3);
             let message = format!(
-                "the start diameter is {given:.6} mm; the involute has diameters of {least:.6} to {most:.6} mm"
+                "the start diameter is {given:.6} mm; the involute has diameters of {minimum:.6} to {maximum:.6} mm"
             );
             return Err(Diagnostic::new(message).of(self.field()));
         }

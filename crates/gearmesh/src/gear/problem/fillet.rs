@@ -68,7 +68,7 @@ pub struct FilletProblem {
     #[declared(default = "strain")]
     pub plane: Plane,
     /// elements across a tooth, an even number
-    #[declared(least = 6, most = 64, multiple = 2, default = "12")]
+    #[declared(minimum = 6, maximum = 64, multiple = 2, default = "12")]
     pub elements_across: u32,
 }
 
@@ -77,7 +77,7 @@ impl Stated for FilletProblem {
         RATIO
     }
 
-    fn most(&self) -> [usize; 2] {
+    fn maximum(&self) -> [usize; 2] {
         [1, 2]
     }
 
@@ -159,8 +159,12 @@ impl Problem for Fillet {
     fn variables(&self) -> Vec<Variable> {
         let given = self.gear.specification;
         let largest = if self.arc() { self.gear.largest_fillet() } else { given.module * trochoid::full_round(&given) };
-        let most = largest * (1.0 - 1e-9);
-        vec![Variable { name: if self.arc() { "radius" } else { "rack_tip_radius" }, least: LEAST_SHARE * most, most }]
+        let maximum = largest * (1.0 - 1e-9);
+        vec![Variable {
+            name: if self.arc() { "radius" } else { "rack_tip_radius" },
+            minimum: LEAST_SHARE * maximum,
+            maximum,
+        }]
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -209,7 +213,7 @@ mod tests {
             let problem = problem(&pair, side, FreeRoot::Rack, Objective::Compliance);
             let [variable] = problem.variables()[..] else { panic!("one variable") };
             for share in [0.1, 0.5, 0.9] {
-                let radius = variable.least + share * (variable.most - variable.least);
+                let radius = variable.minimum + share * (variable.maximum - variable.minimum);
                 let worth = problem.worth(&[radius]);
                 assert!(worth.constraints.iter().all(|value| *value > 0.0), "{side:?} {share}: {worth:?}");
             }
@@ -224,8 +228,8 @@ mod tests {
             for root in [FreeRoot::Rack, FreeRoot::Arc] {
                 let problem = problem(&pair, Side::Pinion, root, minimize);
                 let [variable] = problem.variables()[..] else { panic!("one variable") };
-                let [small, large] =
-                    [0.2, 0.9].map(|share| problem.worth(&[variable.least + share * (variable.most - variable.least)]));
+                let [small, large] = [0.2, 0.9]
+                    .map(|share| problem.worth(&[variable.minimum + share * (variable.maximum - variable.minimum)]));
                 assert!(large.objective < small.objective, "{root:?} {minimize:?}: {small:?} {large:?}");
                 assert!(large.constraints.iter().zip(&small.constraints).all(|(a, b)| a < b), "{root:?}: {large:?}");
             }

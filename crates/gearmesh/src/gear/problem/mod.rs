@@ -18,9 +18,9 @@ pub struct Variable {
     /// Its symbol in the source, such as `r_c`.
     pub name: &'static str,
     /// \[m\].
-    pub least: f64,
+    pub minimum: f64,
     /// \[m\].
-    pub most: f64,
+    pub maximum: f64,
 }
 
 /// What a point of the box is worth.
@@ -50,7 +50,7 @@ pub trait Stated: Debug + Send + Sync {
     fn dimension(&self) -> Dimension;
 
     /// The most variables that are free, and the most constraints.
-    fn most(&self) -> [usize; 2];
+    fn maximum(&self) -> [usize; 2];
 
     /// About how many seconds a point of the box takes.
     fn seconds(&self) -> f64;

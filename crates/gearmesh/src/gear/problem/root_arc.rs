@@ -42,7 +42,7 @@ impl Stated for RootArcProblem {
         LENGTH
     }
 
-    fn most(&self) -> [usize; 2] {
+    fn maximum(&self) -> [usize; 2] {
         [2, 3]
     }
 
@@ -140,7 +140,7 @@ struct Printed(RootArc);
 
 impl Problem for Printed {
     fn variables(&self) -> Vec<Variable> {
-        let variable = |name, most| Variable { name, least: 0.0, most };
+        let variable = |name, maximum| Variable { name, minimum: 0.0, maximum };
         // The tooth and its space; two dedenda.
         let width = self.0.base.base_radius * libm::sin((2.0 * self.0.base.half_pitch).min(0.5 * PI));
         vec![variable("x_c", width), variable("r_c", 2.0 * self.0.dedendum)]
@@ -161,8 +161,8 @@ struct Corrected(RootArc);
 impl Problem for Corrected {
     fn variables(&self) -> Vec<Variable> {
         let base = &self.0.base;
-        let most = 2.0 * base.touching_radius().max(base.middle_radius());
-        vec![Variable { name: "r_c", least: 0.0, most }]
+        let maximum = 2.0 * base.touching_radius().max(base.middle_radius());
+        vec![Variable { name: "r_c", minimum: 0.0, maximum }]
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -235,7 +235,7 @@ mod tests {
             let [x, radius] = problem.variables()[..] else { panic!("two variables") };
             for i in 0..=200 {
                 for k in 0..=50 {
-                    let point = [x.most * f64::from(i) / 200.0, radius.most * f64::from(k) / 50.0];
+                    let point = [x.maximum * f64::from(i) / 200.0, radius.maximum * f64::from(k) / 50.0];
                     assert!(admissible(&problem.worth(&point)).is_infinite(), "{teeth}: {point:?}");
                 }
             }
@@ -248,13 +248,13 @@ mod tests {
         for (teeth, touches) in [(17, false), (23, true), (30, true), (41, true)] {
             let problem = problem(teeth, Formulas::Derived);
             let [radius] = problem.variables()[..] else { panic!("one variable") };
-            let point = |k: u32| radius.most * f64::from(k) / 200_000.0;
+            let point = |k: u32| radius.maximum * f64::from(k) / 200_000.0;
             let worth = |k: &u32| admissible(&problem.worth(&[point(*k)]));
             let best = (0..=200_000).min_by(|a, b| worth(a).total_cmp(&worth(b))).unwrap();
             let arc = RootArc::new(&gear(teeth)).unwrap();
             let optimum = arc.optimum();
             assert!(
-                (point(best) - optimum.radius).abs() <= radius.most / 200_000.0,
+                (point(best) - optimum.radius).abs() <= radius.maximum / 200_000.0,
                 "{teeth}: {} {}",
                 point(best),
                 optimum.radius

@@ -51,9 +51,9 @@ pub struct Axis {
     /// Unit in which its values are shown.
     pub unit: &'static str,
     /// SI.
-    pub least: f64,
+    pub minimum: f64,
     /// SI.
-    pub most: f64,
+    pub maximum: f64,
     /// Whether a sample is spread evenly over the logarithm of the value instead of the value.
     pub logarithmic: bool,
     /// The part of the unit interval in which a sample leaves the base pair's value.
@@ -65,14 +65,19 @@ pub struct Axis {
 const fn logarithmic(
     name: &'static str,
     unit: &'static str,
-    [least, most]: [f64; 2],
+    [minimum, maximum]: [f64; 2],
     set: fn(&mut Point, f64),
 ) -> Axis {
-    Axis { name, unit, least, most, logarithmic: true, absent: 0.0, set }
+    Axis { name, unit, minimum, maximum, logarithmic: true, absent: 0.0, set }
 }
 
-const fn linear(name: &'static str, unit: &'static str, [least, most]: [f64; 2], set: fn(&mut Point, f64)) -> Axis {
-    Axis { name, unit, least, most, logarithmic: false, absent: 0.0, set }
+const fn linear(
+    name: &'static str,
+    unit: &'static str,
+    [minimum, maximum]: [f64; 2],
+    set: fn(&mut Point, f64),
+) -> Axis {
+    Axis { name, unit, minimum, maximum, logarithmic: false, absent: 0.0, set }
 }
 
 const DEGREE: f64 = PI / 180.0;
@@ -120,9 +125,9 @@ pub fn sample(base: &Point, coordinates: &[f64]) -> Point {
         if *coordinate >= axis.absent {
             let share = (coordinate - axis.absent) / (1.0 - axis.absent);
             let value = if axis.logarithmic {
-                axis.least * libm::pow(axis.most / axis.least, share)
+                axis.minimum * libm::pow(axis.maximum / axis.minimum, share)
             } else {
-                axis.least + (axis.most - axis.least) * share
+                axis.minimum + (axis.maximum - axis.minimum) * share
             };
             (axis.set)(&mut point, value);
         }
@@ -165,11 +170,11 @@ impl Point {
     fn set_stiffness_ratio(&mut self, ratio: f64) {
         let mean = (self.material[0].youngs_modulus * self.material[1].youngs_modulus).sqrt();
         let moduli = [mean * ratio.sqrt(), mean / ratio.sqrt()];
-        let (least, most) = (moduli[0].min(moduli[1]), moduli[0].max(moduli[1]));
-        let factor = if most > 1e15 {
-            1e15 / most
-        } else if least < 1.0 {
-            1.0 / least
+        let (minimum, maximum) = (moduli[0].min(moduli[1]), moduli[0].max(moduli[1]));
+        let factor = if maximum > 1e15 {
+            1e15 / maximum
+        } else if minimum < 1.0 {
+            1.0 / minimum
         } else {
             1.0
         };

@@ -96,10 +96,10 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
     let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
     let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true });
-    let most = loading.largest_approach();
+    let maximum = loading.largest_approach();
     if !loading.holds(summary.largest.value) {
         return Err(format!(
-            "the gears approach by {:e} m, corner contact is modelled up to {most:e} m",
+            "the gears approach by {:e} m, corner contact is modelled up to {maximum:e} m",
             summary.largest.value
         ));
     }
@@ -271,8 +271,8 @@ impl Pairs {
             }
         }
         let values = (0..n).map(|k| matrix[k][k]);
-        let (least, most) =
-            values.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
-        if least > 0.0 { most / least } else { f64::INFINITY }
+        let (minimum, maximum) =
+            values.fold((f64::INFINITY, 0.0_f64), |(minimum, maximum), value| (minimum.min(value), maximum.max(value)));
+        if minimum > 0.0 { maximum / minimum } else { f64::INFINITY }
     }
 }

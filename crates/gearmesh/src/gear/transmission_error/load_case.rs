@@ -165,12 +165,12 @@ impl<'a> LoadCase<'a> {
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let most = inside.fold(0.0, |most: f64, s| most.max(self.alone(s) + gaps.at(s).unwrap_or(0.0)));
+        let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s) + gaps.at(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..8 {
                 let middle = 0.5 * (near + far);
-                if gaps.at(middle).is_some_and(|gap| gap <= most) { near = middle } else { far = middle }
+                if gaps.at(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
             }
             far
         };

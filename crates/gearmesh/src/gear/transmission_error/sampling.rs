@@ -161,8 +161,8 @@ fn most_slices(settings: Settings) -> usize {
     if settings.slice_coupling == SliceCoupling::Plate { MOST_COUPLED_SLICES } else { MOST_SLICES }
 }
 
-/// Half of the count, a quarter …, rounded up, as long as they are `least`.
-fn halves(count: usize, most: usize, least: usize) -> impl Iterator<Item = usize> {
+/// Half of the count, a quarter …, rounded up, as long as they are `minimum`.
+fn halves(count: usize, maximum: usize, minimum: usize) -> impl Iterator<Item = usize> {
     let halve = |count: &usize| Some(count.div_ceil(2));
-    std::iter::successors(Some(count), halve).skip(1).take(most).take_while(move |count| *count >= least)
+    std::iter::successors(Some(count), halve).skip(1).take(maximum).take_while(move |count| *count >= minimum)
 }

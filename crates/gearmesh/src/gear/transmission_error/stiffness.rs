@@ -15,18 +15,18 @@ pub struct ZoneStiffness {
     /// That number of pairs.
     pub pairs: usize,
     /// The smallest stiffness \[N/m\].
-    pub least: f64,
+    pub minimum: f64,
     /// The largest stiffness \[N/m\].
-    pub most: f64,
+    pub maximum: f64,
 }
 
 /// Extremes by zone and the mean over the cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StiffnessSummary {
     /// Where the fewest pairs are in contact: the single-contact zone for 1 < ε_α < 2.
-    pub fewest: ZoneStiffness,
+    pub fewest_pairs: ZoneStiffness,
     /// Where one more is; none when the contact ratio is whole.
-    pub most: Option<ZoneStiffness>,
+    pub most_pairs: Option<ZoneStiffness>,
     /// Integral mean over the cycle.
     pub mean: f64,
 }
@@ -44,12 +44,12 @@ pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummar
     });
     let of = |pairs: usize| {
         let zone = Trace { spans: trace.spans.iter().filter(|(span, _)| span.pairs == pairs).copied().collect() };
-        let (least, most) = (zone.smallest(&cycle.rows, secant).value, zone.largest(&cycle.rows, secant).value);
-        ZoneStiffness { pairs, least, most }
+        let (minimum, maximum) = (zone.smallest(&cycle.rows, secant).value, zone.largest(&cycle.rows, secant).value);
+        ZoneStiffness { pairs, minimum, maximum }
     };
     let fewest = cycle.zones.iter().map(|zone| zone.pairs).min().unwrap_or(1);
     let nodes = trace.nodes(&cycle.rows);
     let mean = nodes.iter().map(|node| node.weight * node.value).sum::<f64>() / cycle.period();
-    let most = (cycle.zones.len() > 1).then(|| of(fewest + 1));
-    (loading.curve(Wanted::default()), StiffnessSummary { fewest: of(fewest), most, mean })
+    let most_pairs = (cycle.zones.len() > 1).then(|| of(fewest + 1));
+    (loading.curve(Wanted::default()), StiffnessSummary { fewest_pairs: of(fewest), most_pairs, mean })
 }

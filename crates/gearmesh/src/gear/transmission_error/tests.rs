@@ -109,9 +109,9 @@ fn every_contact_ratio_gives_its_levels() {
         let exact = force / STIFFNESS * (1.0 / fewest - 1.0 / most);
         assert!((summary.peak_to_peak - exact).abs() < 1e-12 * force / STIFFNESS, "{ratio}");
         let (_, stiffness) = stiffness(&cycle, 10.0);
-        close(stiffness.fewest.least, fewest * STIFFNESS, 1e-12);
-        assert_eq!(stiffness.most.is_some(), fewest < most);
-        close(stiffness.most.map_or(most * STIFFNESS, |zone| zone.most), most * STIFFNESS, 1e-12);
+        close(stiffness.fewest_pairs.minimum, fewest * STIFFNESS, 1e-12);
+        assert_eq!(stiffness.most_pairs.is_some(), fewest < most);
+        close(stiffness.most_pairs.map_or(most * STIFFNESS, |zone| zone.maximum), most * STIFFNESS, 1e-12);
         close(stiffness.mean, ratio * STIFFNESS, 1e-9);
     }
     for ratio in [0.999, 6.001, f64::NAN] {
@@ -145,11 +145,11 @@ fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
     let doubles: Vec<f64> = grid(a, a + shared).map(|s| single(s) + single(s + BASE_PITCH)).collect();
     let largest = |values: &[f64]| values.iter().copied().fold(0.0, f64::max);
     let smallest = |values: &[f64]| values.iter().copied().fold(f64::INFINITY, f64::min);
-    let double = summary.most.unwrap();
-    close(summary.fewest.most, largest(&singles), 1e-8);
-    close(summary.fewest.least, smallest(&singles), 1e-8);
-    close(double.most, largest(&doubles), 1e-8);
-    close(double.least, smallest(&doubles), 1e-8);
+    let double = summary.most_pairs.unwrap();
+    close(summary.fewest_pairs.maximum, largest(&singles), 1e-8);
+    close(summary.fewest_pairs.minimum, smallest(&singles), 1e-8);
+    close(double.maximum, largest(&doubles), 1e-8);
+    close(double.minimum, smallest(&doubles), 1e-8);
 }
 
 #[test]

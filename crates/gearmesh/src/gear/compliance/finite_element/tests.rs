@@ -147,7 +147,7 @@ fn what_cannot_be_solved_is_refused() {
     assert!(error.to_string().starts_with("pinion: Poisson's ratio is 0.5, but must be 0 to 0.49"), "{error}");
     assert!(method(Plane::Stress, 8).tabulate(&with(0.5), COUPLED).is_ok());
     // Up to there 12 elements across are within 0.3 %; beyond they lock.
-    for (poisson_ratio, least, most) in [(0.3, 0.0, 5e-4), (0.49, 0.0, 3e-3), (0.499, 5e-3, 1.0)] {
+    for (poisson_ratio, minimum, maximum) in [(0.3, 0.0, 5e-4), (0.49, 0.0, 3e-3), (0.499, 5e-3, 1.0)] {
         let pair = with(poisson_ratio);
         let at = |across: usize| {
             let root = pair.gear.root(RootShape::Trochoid).unwrap();
@@ -157,7 +157,7 @@ fn what_cannot_be_solved_is_refused() {
         };
         let (coarse, fine) = (at(12), at(24));
         let worst = coarse.iter().zip(&fine).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
-        assert!(least < worst && worst < most, "{poisson_ratio}: {worst}");
+        assert!(minimum < worst && worst < maximum, "{poisson_ratio}: {worst}");
     }
     let sharp = finite_element(&with(0.3), 8, Assumptions { root: RootShape::BaseCircle, ..COUPLED }).unwrap_err();
     assert_eq!(sharp.field(), "root");

@@ -39,12 +39,12 @@ fn error(found: &Tabulated, truth: &Tabulated) -> f64 {
 
 /// Holds in 99 of 100, and is no more than 30 times the error in the median.
 #[track_caller]
-fn check(what: &str, mut ratios: Vec<f64>, least: usize) {
+fn check(what: &str, mut ratios: Vec<f64>, minimum: usize) {
     ratios.sort_by(f64::total_cmp);
     let (count, holds) = (ratios.len(), ratios.iter().filter(|ratio| **ratio >= 1.0).count());
     let median = ratios[count / 2];
     println!("{what}: {holds} of {count} hold, median {median:.1}");
-    assert!(count >= least, "{what}: only {count}");
+    assert!(count >= minimum, "{what}: only {count}");
     assert!(holds * 100 >= count * 99, "{what}: holds in {holds} of {count}; the least {}", ratios[0]);
     assert!(median <= 30.0, "{what}: {median} times the error in the median");
 }

@@ -98,7 +98,7 @@ fn tables_equal_the_printed_formulas_integrated_by_simpson() {
 /// crosses the centreline below their joint: what continuing costs on the active flank, at most.
 #[test]
 fn continuing_the_involute_costs_little() {
-    let mut most: f64 = 0.0;
+    let mut maximum: f64 = 0.0;
     for teeth in [[19, 48], [19, 100], [60, 100]] {
         let pair = pair(teeth, 3e-3, 1.75);
         let (gear, table) = (&pair.gear, tabulated(&pair, RootShape::Trochoid, false).compliance.gear);
@@ -120,10 +120,10 @@ fn continuing_the_involute_costs_little() {
             });
             let front = gamma.cos().powi(2) * 0.91 / 206e9;
             let exact = front * (12.0 * bending + (2.4 / 0.7 + gamma.tan().powi(2)) * area) + table.body.value(roll);
-            most = most.max((table.total(roll) / exact - 1.0).abs());
+            maximum = maximum.max((table.total(roll) / exact - 1.0).abs());
         }
     }
-    assert!((2.2e-3..2.4e-3).contains(&most), "{most}");
+    assert!((2.2e-3..2.4e-3).contains(&maximum), "{maximum}");
 }
 
 /// Tier: closed form; a rack's tooth is a trapezoid, and a gear of z teeth comes near to it as 1/z.

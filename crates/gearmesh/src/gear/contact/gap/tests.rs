@@ -53,7 +53,7 @@ fn positions(pair: &GearPair, count: u32) -> impl Iterator<Item = f64> {
 /// separation by polar coordinates, depths added as the model says or moved along the normal as they are.
 fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
     let length = pair.tangent_length;
-    let mut least = f64::INFINITY;
+    let mut minimum = f64::INFINITY;
     for (point, flank) in [(Side::Gear, Side::Pinion), (Side::Pinion, Side::Gear)] {
         let (own, other) = (pair.side(point), pair.side(flank));
         let (nominal, start, end) = match point {
@@ -80,10 +80,10 @@ fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
             }
             let coordinate = other.base_radius * (x.atan2(y) - touched.atan() + touched);
             let lost = if true_points { 0.0 } else { depth };
-            least = least.min(coordinate - nominal + lost + design.depth(flank, touched));
+            minimum = minimum.min(coordinate - nominal + lost + design.depth(flank, touched));
         }
     }
-    least
+    minimum
 }
 
 #[test]

@@ -8,8 +8,8 @@ use crate::gear::geometry::root::RootShape;
 /// Largest difference over the largest value.
 fn movement(a: &[f64], b: &[f64]) -> f64 {
     assert_eq!(a.len(), b.len());
-    let largest = a.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
-    a.iter().zip(b).fold(0.0_f64, |most, (a, b)| most.max((a - b).abs())) / largest
+    let largest = a.iter().fold(0.0_f64, |maximum, value| maximum.max(value.abs()));
+    a.iter().zip(b).fold(0.0_f64, |maximum, (a, b)| maximum.max((a - b).abs())) / largest
 }
 
 /// Tier: second method; column by column without dense blocks, and in another order of elimination: the same stiffness and

@@ -31,7 +31,7 @@ pub struct Land {}
 #[declared(name = "chamfer")]
 pub struct Chamfer {
     /// How far it begins below the tip circle.
-    #[declared(dimension = LENGTH, least = 0.0, most = 1.0)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0)]
     pub size: f64,
 }
 
@@ -40,7 +40,7 @@ pub struct Chamfer {
 #[declared(name = "rounding")]
 pub struct Rounding {
     /// Radius of the arc.
-    #[declared(dimension = LENGTH, least = 0.0, most = 1.0)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0)]
     pub radius: f64,
 }
 

@@ -49,7 +49,7 @@ fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 
             }));
         }
     }
-    let mut least = f64::INFINITY;
+    let mut minimum = f64::INFINITY;
     for point in tip {
         // At its lowest the path runs to the left, so what lies to the left of its direction is outside.
         let path: Vec<_> = (-800..=1600).map(|step| seen(pair, side, point, f64::from(step) * 5e-4)).collect();
@@ -64,10 +64,10 @@ fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 
             };
             let (distance, sign) =
                 (0..path.len() - 1).map(near).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap();
-            least = least.min(sign * distance);
+            minimum = minimum.min(sign * distance);
         }
     }
-    least
+    minimum
 }
 
 fn with_tip(gear: &Gear, family: &str, tip: Tip) -> Outline {

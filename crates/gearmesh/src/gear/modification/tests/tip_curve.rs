@@ -172,13 +172,13 @@ fn what_adds_material_or_turns_back_is_refused_with_the_range() {
         // The range it names is the range: just inside is taken, just outside is not.
         let number =
             |word: &str| message.split(word).nth(1).unwrap().split_whitespace().next().unwrap().parse::<f64>().unwrap();
-        let (least, most) = (number("moved by ") * 1e-2, number(" to ") * 1e-2);
-        assert!(0.0 < least && least < 0.02 && most > 0.1 && most <= 0.5, "{message}");
-        assert!(built(family, "pinion", &shares(least + 1e-5, 0.25)).is_ok());
-        assert!(built(family, "pinion", &shares(least - 1e-5, 0.25)).is_err());
-        if most < 0.5 {
-            assert!(built(family, "pinion", &shares(most - 1e-5, 0.25)).is_ok());
-            assert!(built(family, "pinion", &shares(most + 1e-5, 0.25)).is_err());
+        let (minimum, maximum) = (number("moved by ") * 1e-2, number(" to ") * 1e-2);
+        assert!(0.0 < minimum && minimum < 0.02 && maximum > 0.1 && maximum <= 0.5, "{message}");
+        assert!(built(family, "pinion", &shares(minimum + 1e-5, 0.25)).is_ok());
+        assert!(built(family, "pinion", &shares(minimum - 1e-5, 0.25)).is_err());
+        if maximum < 0.5 {
+            assert!(built(family, "pinion", &shares(maximum - 1e-5, 0.25)).is_ok());
+            assert!(built(family, "pinion", &shares(maximum + 1e-5, 0.25)).is_err());
         }
         // The whole involute: no place on the tip circle makes up for the bend.
         let message = refused(family, 0.06, 1.0);

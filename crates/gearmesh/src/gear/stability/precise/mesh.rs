@@ -193,7 +193,7 @@ impl<'a> Mesh<'a> {
             (0..pairs).map(|index| self.start + position + self.base_pitch * index as f64).collect();
         let springs: Vec<Spring> = places.iter().map(|s| self.spring(teeth, *s)).collect();
         let gaps: Vec<Double> = places.iter().map(|s| self.gap(*s)).collect();
-        let nearest = (0..pairs).fold(0, |least, index| if gaps[index] < gaps[least] { index } else { least });
+        let nearest = (0..pairs).fold(0, |minimum, index| if gaps[index] < gaps[minimum] { index } else { minimum });
         let open: Vec<Double> = gaps.iter().map(|gap| *gap - gaps[nearest]).collect();
         let mut approach = springs[nearest].above(self.force, self.crown);
         for _ in 0..300 {
@@ -248,7 +248,7 @@ impl<'a> Mesh<'a> {
     /// Mean and peak-to-peak over the cycle.
     pub(super) fn transmission_error(&self, teeth: &[Tooth; 2], rule: &Rule) -> [Double; 2] {
         let mut integral = Double::ZERO;
-        let (mut least, mut most) = (Double::from(f64::INFINITY), Double::from(f64::NEG_INFINITY));
+        let (mut minimum, mut maximum) = (Double::from(f64::INFINITY), Double::from(f64::NEG_INFINITY));
         let points = rule.unit(self.inputs.load_dependent);
         for (from, to, pairs) in self.zones() {
             for (from, to) in self.spans(teeth, from, to, pairs) {
@@ -258,11 +258,11 @@ impl<'a> Mesh<'a> {
                 }
                 for sign in [1.0, -1.0] {
                     let value = self.largest(teeth, (from, to), pairs, sign) * sign;
-                    (least, most) = (least.min(value), most.max(value));
+                    (minimum, maximum) = (minimum.min(value), maximum.max(value));
                 }
             }
         }
-        [integral / self.base_pitch, most - least]
+        [integral / self.base_pitch, maximum - minimum]
     }
 
     /// The smooth parts of a zone.

@@ -155,10 +155,10 @@ fn the_matrix_is_symmetric_and_positive_definite() {
             }
         }
         // Gauss: all pivots are positive, and none is lost in rounding.
-        let (mut rest, mut least, mut most) = (matrix.clone(), f64::INFINITY, 0.0_f64);
+        let (mut rest, mut minimum, mut maximum) = (matrix.clone(), f64::INFINITY, 0.0_f64);
         for pivot in 0..size {
             let value = rest[pivot * size + pivot];
-            (least, most) = (least.min(value), most.max(value));
+            (minimum, maximum) = (minimum.min(value), maximum.max(value));
             for row in pivot + 1..size {
                 let factor = rest[row * size + pivot] / value;
                 for column in pivot..size {
@@ -166,7 +166,7 @@ fn the_matrix_is_symmetric_and_positive_definite() {
                 }
             }
         }
-        assert!(least > 1e-9 * most, "{factor}: {least:e} of {most:e}");
+        assert!(minimum > 1e-9 * maximum, "{factor}: {minimum:e} of {maximum:e}");
     }
 }
 
@@ -318,8 +318,8 @@ fn results_converge_with_the_slices() {
             let order = libm::log2(errors[0] / errors[3]) / 3.0;
             println!("{contact:?} {crown:e} {slope:e}: {errors:?}, order {order:.2}");
             // Errors of the load-dependent law are small and of both signs.
-            let least = if contact == ContactLaw::Linear { 1.4 } else { 1.1 };
-            assert!(order > least && errors[3] < 5e-4, "{errors:?}");
+            let minimum = if contact == ContactLaw::Linear { 1.4 } else { 1.1 };
+            assert!(order > minimum && errors[3] < 5e-4, "{errors:?}");
         }
     }
 }

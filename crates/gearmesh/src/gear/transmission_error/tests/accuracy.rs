@@ -65,16 +65,16 @@ impl Ratios {
         self.0.push(estimate / error.clamp(FLOOR, 1.0));
     }
 
-    /// Holds in every case, and is no more than `most` times the error in the median.
+    /// Holds in every case, and is no more than `maximum` times the error in the median.
     #[track_caller]
-    fn check(&mut self, what: &str, least: usize, most: f64) {
+    fn check(&mut self, what: &str, minimum: usize, maximum: f64) {
         self.0.sort_by(f64::total_cmp);
         let (count, holds) = (self.0.len(), self.0.iter().filter(|ratio| **ratio >= 1.0).count());
         let median = self.0[count / 2];
         println!("{what}: {holds} of {count} hold, median {median:.1}");
-        assert!(count >= least, "{what}: only {count}");
+        assert!(count >= minimum, "{what}: only {count}");
         assert!(holds == count, "{what}: holds in {holds} of {count}, by {} of the error", self.0[0]);
-        assert!(median <= most, "{what}: {median} times the error in the median");
+        assert!(median <= maximum, "{what}: {median} times the error in the median");
     }
 }
 

@@ -91,8 +91,8 @@ fn coupling_of_nothing_is_no_coupling_and_coupling_softens_double_contact() {
     close(zero.variance, summed.variance, 1e-10);
     let (_, summed) = stiffness(&cycle(&pair, &varying()), 50.0);
     let (_, softer) = stiffness(&cycle(&pair, &coupled()), 50.0);
-    close(softer.fewest.most, summed.fewest.most, 1e-12);
-    assert!(softer.most.unwrap().most < 0.95 * summed.most.unwrap().most);
+    close(softer.fewest_pairs.maximum, summed.fewest_pairs.maximum, 1e-12);
+    assert!(softer.most_pairs.unwrap().maximum < 0.95 * summed.most_pairs.unwrap().maximum);
 }
 
 /// The law's own closed form: one pair of constant stiffness under crowning C obeys F/k = w t − C t³/3.

@@ -123,9 +123,9 @@ fn the_gap_is_that_of_turned_outlines() {
             {
                 let found = gaps.at(s).unwrap();
                 let exact = turn(&pair, [&outlines[0], &outlines[1]], s, moving);
-                let most = if beyond < 0.4e-3 { near } else { far };
+                let maximum = if beyond < 0.4e-3 { near } else { far };
                 let off = found - exact;
-                assert!(off > -1e-9 && off < most * exact + 1e-9, "{index}, {beyond}: {found:e} {exact:e}");
+                assert!(off > -1e-9 && off < maximum * exact + 1e-9, "{index}, {beyond}: {found:e} {exact:e}");
             }
         }
     }

@@ -48,7 +48,7 @@ impl Base {
                 root: Millimetres(root_radius),
                 base: Millimetres(base_radius),
                 teeth: gear.specification.teeth,
-                most: Plain(teeth),
+                maximum: Plain(teeth),
             }
             .into());
         }

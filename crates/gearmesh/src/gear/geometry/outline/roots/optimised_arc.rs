@@ -26,8 +26,8 @@ pub struct OptimisedArc {}
 pub fn radius(base: &Base) -> Result<f64, GeometryError> {
     let middle = base.middle_radius();
     if middle <= 0.0 {
-        let [angle, most] = [base.angle, base.half_pitch].map(|angle| Plain(angle * 180.0 / PI));
-        return Err(Problem::NoSpace { angle, most }.into());
+        let [angle, maximum] = [base.angle, base.half_pitch].map(|angle| Plain(angle * 180.0 / PI));
+        return Err(Problem::NoSpace { angle, maximum }.into());
     }
     Ok(base.touching_radius().min(middle))
 }

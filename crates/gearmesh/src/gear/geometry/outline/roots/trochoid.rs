@@ -45,8 +45,8 @@ impl Root for Trochoid {
         if let Some(neck) = crossing::bracketed(0.0, to, |q| curve.rates(q).0) {
             let [half_thickness, height] = curve.point_at(neck);
             if half_thickness <= 0.0 {
-                let least = Plain(other.least_shift_without_undercut());
-                return Err(Problem::CutOff { height: Millimetres(height), teeth: given.teeth, least }.into());
+                let minimum = Plain(other.least_shift_without_undercut());
+                return Err(Problem::CutOff { height: Millimetres(height), teeth: given.teeth, minimum }.into());
             }
         }
         let root = Segment { part: OutlinePart::Root, curve: Curve::Trochoid(curve), from: 0.0, to };
