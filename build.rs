@@ -1,8 +1,8 @@
 //! Digests of the sources that results depend on, so that a cache key changes when the code does.
 //!
 //! Each stage kind's key holds the digest of the shared kernel layers and of its own file: a changed message in one
-//! stage does not recompute another, a changed test nothing. The compiler's version, the commit and the digest of `Cargo.lock` go into the
-//! program for the manifest.
+//! stage does not recompute another, a changed test nothing. The compiler's version, the commit and the digest of
+//! `Cargo.lock` go into the program for the manifest.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -11,8 +11,13 @@ use std::{env, fs, io};
 
 /// Where everything is that the tables of any stage may depend on; beside it the files of `src/stage` that belong to no
 /// single kind.
-const SHARED: [&str; 4] =
-    ["crates/declare/src", "crates/gearmesh/src", "crates/studygraph/src/stage", "crates/studygraph/src/table"];
+const SHARED: [&str; 5] = [
+    "crates/cholesky/src",
+    "crates/declare/src",
+    "crates/gearmesh/src",
+    "crates/studygraph/src/stage",
+    "crates/studygraph/src/table",
+];
 /// All sources.
 const ALL: [&str; 2] = ["crates", "src"];
 

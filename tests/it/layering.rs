@@ -16,6 +16,7 @@ type Layers = &'static [(&'static str, &'static [&'static str])];
 
 /// The folders of the crates, and their layers.
 const CRATES: &[(&str, Layers)] = &[
+    ("crates/cholesky/src/", &[]),
     (
         "crates/declare/src/",
         &[
@@ -70,7 +71,7 @@ const CRATES: &[(&str, Layers)] = &[
 
 /// Crates that compute: no files, clocks, threads, printing, chance order; and elementary functions from `libm` alone,
 /// since those of the C library differ between CPUs.
-const KERNELS: &[&str] = &["crates/declare/src/", "crates/gearmesh/src/"];
+const KERNELS: &[&str] = &["crates/cholesky/src/", "crates/declare/src/", "crates/gearmesh/src/"];
 
 const NEVER_IN_KERNELS: &[&str] = &[
     "std::env",
@@ -122,7 +123,7 @@ const NEVER_IN_KERNELS: &[&str] = &[
 /// A crate and the only files or folders that may name it.
 const OWNERS: &[(&str, &[&str])] = &[
     ("petgraph", &["crates/studygraph/src/runner/graph.rs"]),
-    ("faer", &["crates/gearmesh/src/gear/finite_elements/"]),
+    ("faer", &["crates/cholesky/src/"]),
     ("minijinja", &["src/report/", "crates/studygraph/src/diff/"]),
     ("parquet", &["crates/studygraph/src/store/"]),
     ("hdf5_metno", &["crates/studygraph/src/store/hdf5"]),

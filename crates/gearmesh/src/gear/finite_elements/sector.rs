@@ -3,17 +3,7 @@
 //! Freedoms of the edges are radial and clockwise, so that they are the same seen from either sector that shares them.
 //! Nondimensional: E = 1, lengths in modules, forces per width. Must not know: the ring of sectors, gears.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor::LltRegularization;
-use faer::perm::PermRef;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::linalg::cholesky::{
-    CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
-    factorize_symbolic_cholesky,
-};
-use faer::sparse::linalg::{SupernodalThreshold, amd};
-use faer::sparse::{SparseColMat, Triplet};
-use faer::{Conj, MatMut, Par, Side, Spec};
+use cholesky::{CholeskyError, Entries, Factor, Order};
 
 use super::MeshError;
 use super::element::{Elasticity, FREEDOMS, stiffness};
@@ -32,20 +22,6 @@ enum Freedom {
     Inside(usize),
     /// Among those of the left edge, then of the right one.
     Edge(usize),
-}
-
-/// In which order the sums of a factorisation are made. All but the first exist to see by how much the order moves results,
-/// as a processor does for which the library uses other instructions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Order {
-    /// Dense blocks of columns.
-    Blocks,
-    /// Column by column.
-    #[cfg(test)]
-    Columns,
-    /// The inside as it is numbered, with much more fill.
-    #[cfg(test)]
-    Numbered,
 }
 
 /// A factorised sector.
@@ -86,7 +62,7 @@ impl Sector {
         let edge = 2 * mesh.left.len();
         let (sine, cosine) = libm::sincos(mesh.half_pitch);
         let directions = [[-sine, cosine], [sine, cosine]];
-        let mut triplets: Vec<Triplet<usize, usize, f64>> = Vec::new();
+        let mut entries = Entries::default();
         for (index, element) in mesh.elements.iter().enumerate() {
             let folded = MeshError::Folded { element: index + 1, elements: mesh.elements.len() };
             let mut matrix = stiffness(&mesh.corners(index), elasticity).ok_or(folded)?;
@@ -107,13 +83,18 @@ impl Sector {
                 let Some(row) = row else { continue };
                 for (&column, value) in places.iter().zip(values) {
                     if let Some(column) = column.filter(|&column| row >= column) {
-                        triplets.push(Triplet::new(row, column, value));
+                        entries.add(row, column, value);
                     }
                 }
             }
         }
-        triplets.extend((inside..inside + 2 * edge).map(|place| Triplet::new(place, place, SUPPORT)));
-        let factor = Factor::new(&triplets, inside, inside + 2 * edge, order)?;
+        for place in inside..inside + 2 * edge {
+            entries.add(place, place, SUPPORT);
+        }
+        let factor = Factor::new(&entries, inside, inside + 2 * edge, order).map_err(|error| match error {
+            CholeskyError::Memory => MeshError::Memory,
+            CholeskyError::Singular => MeshError::Singular,
+        })?;
         let supported = factor.trailing(inside);
         Ok(Self { freedoms, directions, inside, edge, factor, supported })
     }
@@ -240,115 +221,5 @@ fn turn(matrix: &mut [[f64; FREEDOMS]; FREEDOMS], node: usize, [x, y]: [f64; 2])
     let (above, below) = matrix.split_at_mut(second);
     for (a, b) in above[first].iter_mut().zip(&mut below[0]) {
         (*a, *b) = (x * *a + y * *b, y * *a - x * *b);
-    }
-}
-
-/// L Lᵀ of a sparse matrix.
-struct Factor {
-    symbolic: SymbolicCholesky<usize>,
-    values: Vec<f64>,
-}
-
-impl Factor {
-    /// Of a matrix by the triplets of its lower half; freedoms from `inside` on are eliminated last, in their order.
-    fn new(
-        triplets: &[Triplet<usize, usize, f64>],
-        inside: usize,
-        size: usize,
-        order: Order,
-    ) -> Result<Self, MeshError> {
-        let matrix = SparseColMat::try_new_from_triplets(size, size, triplets).map_err(|_| MeshError::Memory)?;
-        let inner: Vec<_> = triplets.iter().filter(|entry| entry.row < inside).copied().collect();
-        let inner = SparseColMat::try_new_from_triplets(inside, inside, &inner).map_err(|_| MeshError::Memory)?;
-        let (mut forward, mut inverse) = (vec![0; inside], vec![0; inside]);
-        let scratch = amd::order_maybe_unsorted_scratch::<usize>(inside, inner.compute_nnz());
-        let mut memory = MemBuffer::new(scratch);
-        let stack = MemStack::new(&mut memory);
-        amd::order_maybe_unsorted(&mut forward, &mut inverse, inner.symbolic(), amd::Control::default(), stack)
-            .map_err(|_| MeshError::Memory)?;
-        for direction in [&mut forward, &mut inverse] {
-            #[cfg(test)]
-            if order == Order::Numbered {
-                *direction = (0..inside).collect();
-            }
-            direction.extend(inside..size);
-        }
-        let threshold = match order {
-            #[cfg(test)]
-            Order::Columns => SupernodalThreshold::FORCE_SIMPLICIAL,
-            _ => SupernodalThreshold::FORCE_SUPERNODAL,
-        };
-        let ordering = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, size));
-        let params =
-            CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..CholeskySymbolicParams::default() };
-        let symbolic = factorize_symbolic_cholesky(matrix.symbolic(), Side::Lower, ordering, params)
-            .map_err(|_| MeshError::Memory)?;
-        let mut values = vec![0.0; symbolic.len_val()];
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(Par::Seq, Spec::default());
-        symbolic
-            .factorize_numeric_llt(
-                &mut values,
-                matrix.as_ref(),
-                Side::Lower,
-                LltRegularization::default(),
-                Par::Seq,
-                MemStack::new(&mut MemBuffer::new(scratch)),
-                Spec::default(),
-            )
-            .map_err(|_| MeshError::Singular)?;
-        Ok(Self { symbolic, values })
-    }
-
-    /// What remains of the matrix for the freedoms from `first` on when the others are eliminated: L_EE L_EEᵀ, by columns.
-    fn trailing(&self, first: usize) -> Vec<Vec<f64>> {
-        let size = self.symbolic.nrows() - first;
-        let mut lower = vec![vec![0.0; size]; size];
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                let factor = SupernodalLltRef::new(symbolic, &self.values);
-                for index in 0..symbolic.n_supernodes() {
-                    let node = factor.supernode(index);
-                    let (start, values) = (node.start(), node.val());
-                    for column in first.max(start)..start + values.ncols() {
-                        let rows = (start..start + values.ncols()).chain(node.pattern().iter().copied());
-                        for (row, &value) in rows.zip(values.col(column - start).iter()) {
-                            if row >= column {
-                                lower[column - first][row - first] = value;
-                            }
-                        }
-                    }
-                }
-            }
-            SymbolicCholeskyRaw::Simplicial(symbolic) => {
-                for (column, slots) in (first..).zip(&mut lower) {
-                    let range = symbolic.col_ptr()[column]..symbolic.col_ptr()[column + 1];
-                    for (&row, &value) in symbolic.row_idx()[range.clone()].iter().zip(&self.values[range]) {
-                        slots[row - first] = value;
-                    }
-                }
-            }
-        }
-        let mut product = vec![vec![0.0; size]; size];
-        for (pivot, column) in lower.iter().enumerate() {
-            for (row, &left) in column.iter().enumerate().skip(pivot) {
-                for (slot, &right) in product[row][pivot..].iter_mut().zip(&column[pivot..]) {
-                    *slot += left * right;
-                }
-            }
-        }
-        product
-    }
-
-    /// Replaces forces by displacements, one column after the other.
-    fn solve(&self, columns: &mut [f64]) {
-        let size = self.symbolic.nrows();
-        let count = columns.len() / size;
-        let mut memory = MemBuffer::new(self.symbolic.solve_in_place_scratch::<f64>(count, Par::Seq));
-        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
-            Conj::No,
-            MatMut::from_column_major_slice_mut(columns, size, count),
-            Par::Seq,
-            MemStack::new(&mut memory),
-        );
     }
 }

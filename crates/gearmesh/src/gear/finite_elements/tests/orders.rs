@@ -1,7 +1,9 @@
 //! By how much a sector moves when the sums of its factorisation are made in another order.
 
 use super::super::element::{Plane, elasticity};
-use super::super::sector::{Order, Sector};
+use cholesky::Order;
+
+use super::super::sector::Sector;
 use super::{gear, model, standard};
 use crate::gear::geometry::root::RootShape;
 
