@@ -69,7 +69,7 @@ fn depth_in_a_corner(segment: &Segment, parameter: f64, specification: &Specific
 const SPARSE: Density = Density { points: 24, chord_error: None };
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 3000, max_global_rejects: 300_000, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 1000, max_global_rejects: 100_000, ..ProptestConfig::default() })]
 
     /// Tier: the cutter itself; the rolling rack, all its teeth, touches root land, root and flank of three neighbouring
     /// teeth to 1e-9 mm, goes nowhere deeper, and leaves the tip alone.

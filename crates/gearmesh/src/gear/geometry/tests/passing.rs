@@ -81,14 +81,11 @@ fn with_tip(gear: &Gear, family: &str, tip: Tip) -> Outline {
 fn the_distance_is_that_of_the_path_s_polyline() {
     for (z1, z2, module, family, tip, apart) in [
         (17, 23, 1.0, "optimised_arc", Tip::Land, 0.0),
-        (17, 17, 1.5, "optimised_arc", Tip::Land, 0.0),
         (17, 17, 1.5, "arc", Tip::Land, 0.0),
         (19, 30, 1.0, "arc", Tip::Chamfer(0.1e-3), 0.0),
         (19, 30, 1.0, "optimised_arc", Tip::Rounding(0.15e-3), 0.0),
-        (17, 23, 1.0, "optimised_arc", Tip::Land, 0.05e-3),
         (23, 19, 1.0, "tangent_arc", Tip::Land, 0.02e-3),
         (19, 26, 1.0, "trochoid", Tip::Rounding(0.1e-3), 0.0),
-        (20, 26, 1.0, "trochoid", Tip::Land, 0.0),
     ] {
         let [pinion, gear] = [z1, z2].map(|teeth| specification(teeth, module, 0.0));
         let nearest = GearPair::new(pinion, gear, None).unwrap().centre_distance;
