@@ -105,7 +105,7 @@
 //! #[declared(name = "wave")]
 //! struct Wave {
 //!     /// How deep it is.
-//!     #[declared(dimension = LENGTH, least = 0.0, most = 1e-4, range)]
+//!     #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1e-4, range)]
 //!     pub amount: f64,
 //! }
 //!
