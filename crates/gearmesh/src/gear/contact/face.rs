@@ -55,18 +55,11 @@ impl<'a> Face<'a> {
         let width = to - from;
         let parts = || design.pinion.iter().chain(&design.gear).map(|part| &part.modification);
         if !parts().any(|part| part.varies_along_face()) {
-            return Self { offset: 0.0, mean: 0.0, shape: DeviationForm::Flat, rule };
+            return Self::flat(rule);
         }
-        let mut cuts = vec![from, to];
         #[allow(clippy::float_cmp)] // the middle of the face is 0 only where it was put there
         let even = from == -to && design.lead_is_even();
-        for z in parts().flat_map(|part| part.lead_breaks()).copied() {
-            if z > from && z < to {
-                cuts.push(z);
-            }
-        }
-        cuts.sort_by(f64::total_cmp);
-        cuts.dedup();
+        let cuts = cuts(design, [from, to]);
         let quadratic = |z: f64| {
             parts()
                 .map(|part| part.lead_quadratic(z))
@@ -78,6 +71,30 @@ impl<'a> Face<'a> {
             Some(polynomials) => Self::quadratic(stretches().zip(polynomials), width, rule, even),
             None => Self::sliced(stretches(), width, rule, even, |z| design.lead(z)),
         }
+    }
+
+    /// One across which nothing varies.
+    #[must_use]
+    pub fn flat(rule: &'a Rule) -> Self {
+        Self { offset: 0.0, mean: 0.0, shape: DeviationForm::Flat, rule }
+    }
+
+    /// One whose deviations are known slice by slice: shares of the width, and deviations that count from `lowest`.
+    #[must_use]
+    pub fn of_slices(mut slices: Vec<(f64, f64)>, lowest: f64, rule: &'a Rule) -> Self {
+        for slice in &mut slices {
+            slice.1 -= lowest;
+        }
+        let mean = slices.iter().map(|slice| slice.0 * slice.1).sum();
+        Self { offset: lowest, mean, shape: DeviationForm::Sliced(slices), rule }
+    }
+
+    /// Where slices lie across a face on which anything may vary: shares of the width, and z \[m\].
+    #[must_use]
+    pub fn places(design: &Design, [from, to]: [f64; 2], rule: &Rule) -> Vec<(f64, f64)> {
+        let cuts = cuts(design, [from, to]);
+        let stretches = cuts.windows(2).map(|cut| (cut[0], cut[1]));
+        slices(stretches, rule).into_iter().map(|(length, z)| (length / (to - from), z)).collect()
     }
 
     fn quadratic(
@@ -114,24 +131,14 @@ impl<'a> Face<'a> {
         even: bool,
         lead: impl Fn(f64) -> f64,
     ) -> Self {
-        let place = |(from, to): (f64, f64)| {
-            rule.nodes
-                .iter()
-                .zip(&rule.weights)
-                .map(move |(node, weight)| (weight * (to - from), from + (to - from) * node))
-        };
-        let places: Vec<(f64, f64)> = stretches.flat_map(place).collect();
+        let places = slices(stretches, rule);
         // Of an even face the first half stands for both, and an odd place in the middle for itself.
         let kept = if even { places.len().div_ceil(2) } else { places.len() };
         let share = |index: usize| if index == places.len() - 1 - index || !even { 1.0 } else { 2.0 };
         let slice = |(index, (length, z)): (usize, &(f64, f64))| (share(index) * length / width, lead(*z));
-        let mut found: Vec<(f64, f64)> = places[..kept].iter().enumerate().map(slice).collect();
-        let offset = found.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
-        for slice in &mut found {
-            slice.1 -= offset;
-        }
-        let mean = found.iter().map(|slice| slice.0 * slice.1).sum();
-        Self { offset, mean, shape: DeviationForm::Sliced(found), rule }
+        let found: Vec<(f64, f64)> = places[..kept].iter().enumerate().map(slice).collect();
+        let lowest = found.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
+        Self::of_slices(found, lowest, rule)
     }
 
     /// Whether both flanks run parallel across the face.
@@ -231,6 +238,25 @@ impl<'a> Face<'a> {
         }
         (sum, slope)
     }
+}
+
+/// Both ends, and what is not smooth between them.
+fn cuts(design: &Design, [from, to]: [f64; 2]) -> Vec<f64> {
+    let parts = design.pinion.iter().chain(&design.gear);
+    let inside = parts.flat_map(|part| part.modification.lead_breaks()).copied().filter(|z| *z > from && *z < to);
+    let mut cuts: Vec<f64> = [from, to].into_iter().chain(inside).collect();
+    cuts.sort_by(f64::total_cmp);
+    cuts.dedup();
+    cuts
+}
+
+/// Lengths and places of the slices of smooth stretches.
+fn slices(stretches: impl Iterator<Item = (f64, f64)>, rule: &Rule) -> Vec<(f64, f64)> {
+    let place = |(from, to): (f64, f64)| {
+        let nodes = rule.nodes.iter().zip(&rule.weights);
+        nodes.map(move |(node, weight)| (weight * (to - from), from + (to - from) * node))
+    };
+    stretches.flat_map(place).collect()
 }
 
 impl Piece {

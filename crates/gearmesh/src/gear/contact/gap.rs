@@ -7,7 +7,7 @@
 
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
-use crate::gear::modification::Modification;
+use crate::gear::modification::section::{Profiles, Section};
 use crate::numeric::extremum::maximum;
 
 /// Samples of each smooth piece of a profile, which say how deep it can get and whether it bends back.
@@ -68,7 +68,7 @@ struct Way<'a> {
 /// The depths of one profile against positions that count as those of [`Facing`].
 #[derive(Clone, Debug)]
 struct Outline<'a> {
-    parts: Vec<&'a dyn Modification>,
+    parts: Vec<Section<'a>>,
     facing: Facing,
     is_point: bool,
     /// Where it is not smooth, with both ends, ascending.
@@ -95,11 +95,11 @@ struct Search<'a, 'b> {
 }
 
 impl<'a> Gaps<'a> {
-    /// `profiles` of pinion and gear, as far as they vary along the profile.
+    /// `profiles` of one section across the face.
     #[must_use]
-    pub fn new(pair: &GearPair, profiles: &[Vec<&'a dyn Modification>; 2]) -> Self {
+    pub fn new(pair: &GearPair, profiles: &Profiles<'a>) -> Self {
         let [pinion, gear] = profiles;
-        let way = |side: Side, point: &[&'a dyn Modification], flank: &[&'a dyn Modification]| {
+        let way = |side: Side, point: &[Section<'a>], flank: &[Section<'a>]| {
             let facing = Facing::new(pair, side);
             Way { side, facing, point: Outline::new(point, facing, true), flank: Outline::new(flank, facing, false) }
         };
@@ -324,7 +324,7 @@ impl Search<'_, '_> {
 }
 
 impl<'a> Outline<'a> {
-    fn new(parts: &[&'a dyn Modification], facing: Facing, is_point: bool) -> Self {
+    fn new(parts: &[Section<'a>], facing: Facing, is_point: bool) -> Self {
         let mut outline = Self {
             parts: parts.to_vec(),
             facing,
@@ -333,7 +333,7 @@ impl<'a> Outline<'a> {
             shapes: Vec::new(),
             minimum: Vec::new(),
         };
-        for roll in parts.iter().flat_map(|part| part.profile_breaks()).copied() {
+        for roll in parts.iter().flat_map(|part| part.breaks()).copied() {
             let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
             if position > facing.start && position < facing.end {
                 outline.cuts.push(position);

@@ -20,7 +20,7 @@ pub enum Slice {
 pub struct Slices<'a> {
     /// All slices of the first pair, then those of the next.
     pub slices: Vec<Slice>,
-    /// The deviations within each slice, the same for all pairs.
+    /// The deviations within each slice, of one pair that stands for all, or of one pair after the other.
     pub faces: &'a [Face<'a>],
     /// Width of each of these slices \[m\]; the width of two where one stands for both.
     pub widths: &'a [f64],
@@ -28,8 +28,7 @@ pub struct Slices<'a> {
 
 impl Springs for Slices<'_> {
     fn response(&self, spring: usize, penetration: f64) -> (f64, f64) {
-        let slice = spring % self.faces.len();
-        let (face, width) = (&self.faces[slice], self.widths[slice]);
+        let (face, width) = (&self.faces[spring % self.faces.len()], self.widths[spring % self.widths.len()]);
         match &self.slices[spring] {
             Slice::Linear(stiffness) => {
                 let (passed, share) = face.passed(penetration);

@@ -10,14 +10,14 @@ use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 pub struct LinearPairs<'a> {
     /// Stiffness of each pair as if the face were flat \[N/m\].
     pub stiffness: PerSpring,
-    /// The deviation across the common face, the same for all pairs.
-    pub face: &'a Face<'a>,
+    /// The deviation across the common face.
+    pub faces: [&'a Face<'a>; MOST_SPRINGS],
 }
 
 impl Springs for LinearPairs<'_> {
     #[inline]
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (passed, share) = self.face.passed(penetration);
+        let (passed, share) = self.faces[pair].passed(penetration);
         (self.stiffness[pair] * passed, self.stiffness[pair] * share)
     }
 }
@@ -29,8 +29,8 @@ pub struct LogarithmicPairs<'a> {
     pub slices: [InSeries; MOST_SPRINGS],
     /// Common face width b \[m\].
     pub width: f64,
-    /// The deviation across the common face, the same for all pairs.
-    pub face: &'a Face<'a>,
+    /// The deviation across the common face.
+    pub faces: [&'a Face<'a>; MOST_SPRINGS],
 }
 
 impl LogarithmicPairs<'_> {
@@ -38,13 +38,13 @@ impl LogarithmicPairs<'_> {
     /// of the response, that of a flat face plus the mean deviation.
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
-        self.slices[pair].penetration(total / self.width) + self.face.mean
+        self.slices[pair].penetration(total / self.width) + self.faces[pair].mean
     }
 }
 
 impl Springs for LogarithmicPairs<'_> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (load, slope) = self.face.summed(penetration, |depth| self.slices[pair].load(depth));
+        let (load, slope) = self.faces[pair].summed(penetration, |depth| self.slices[pair].load(depth));
         (self.width * load, self.width * slope)
     }
 }

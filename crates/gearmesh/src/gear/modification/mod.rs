@@ -16,6 +16,7 @@ pub mod profile_crowning;
 pub mod profile_slope;
 pub mod relief;
 pub mod root_relief;
+pub mod section;
 pub mod template;
 #[cfg(test)]
 mod tests;
@@ -151,13 +152,24 @@ pub trait Modification: Debug + Send + Sync {
         0.0
     }
 
-    /// Roll angles at which the depth is not smooth.
+    /// Roll angles at which the depth, or the surface, is not smooth; any number of them.
     fn profile_breaks(&self) -> &[f64] {
         &[]
     }
 
     /// Whether [`Modification::depth`] may differ from 0.
     fn varies_along_profile(&self) -> bool {
+        false
+    }
+
+    /// What is taken off at a roll angle and z beside the depth and the lead: for what is no sum of both, such as a twist;
+    /// continuous. It may be broken where [`Modification::profile_breaks`] and [`Modification::lead_breaks`] say.
+    fn surface(&self, _roll: f64, _z: f64) -> f64 {
+        0.0
+    }
+
+    /// Whether [`Modification::surface`] may differ from 0.
+    fn varies_over_surface(&self) -> bool {
         false
     }
 
@@ -173,7 +185,7 @@ pub trait Modification: Debug + Send + Sync {
         Some([0.0; 3])
     }
 
-    /// The z at which the lead is not smooth.
+    /// The z at which the lead, or the surface, is not smooth.
     fn lead_breaks(&self) -> &[f64] {
         &[]
     }
@@ -183,9 +195,9 @@ pub trait Modification: Debug + Send + Sync {
         false
     }
 
-    /// Whether the lead at −z is that at z.
+    /// Whether the lead, and the surface, at −z is that at z.
     fn lead_is_even(&self) -> bool {
-        !self.varies_along_face()
+        !self.varies_along_face() && !self.varies_over_surface()
     }
 
     /// Names and values (SI) of what was given and of what follows from it.
@@ -282,13 +294,19 @@ impl Design {
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
         let edges = parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();
-        let lead = looks(face, edges).map(|z| sum(&|part| part.lead(z))).fold(0.0, f64::max);
+        let across: Vec<f64> = looks(face, edges).collect();
+        let largest = |of: &dyn Fn(f64) -> f64| across.iter().map(|z| of(*z)).fold(0.0, f64::max);
+        let lead = largest(&|z| sum(&|part| part.lead(z)));
+        let surface = parts.iter().any(|part| part.modification.varies_over_surface());
         let last = flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll);
         let places = || {
             let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks()).copied();
             looks((flank.root_roll, last), breaks)
         };
-        let depth = |roll: f64| sum(&|part| part.depth(roll)) + lead;
+        let depth = |roll: f64| {
+            let across = || largest(&|z| sum(&|part| part.lead(z) + part.surface(roll, z)));
+            sum(&|part| part.depth(roll)) + if surface { across() } else { lead }
+        };
         // Room falls with the roll angle, by r_b tan²(u − ψ_b): what fits where there is least need not be looked at closer.
         let minimum = gear.depth_to_centreline(last);
         if places().all(|roll| depth(roll) <= minimum) {
@@ -316,7 +334,7 @@ impl Design {
         )))
     }
 
-    /// The sum of the depths of one gear at a roll angle.
+    /// The sum of the depths of one gear at a roll angle; leads and surfaces are not among them.
     #[must_use]
     pub fn depth(&self, side: Side, roll: f64) -> f64 {
         self.side(side).iter().map(|part| part.modification.depth(roll)).sum()

@@ -42,11 +42,8 @@ struct Pairs {
 
 fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
     let Built { pair, design, compliance, cycle } = built;
-    let profiles = [Side::Pinion, Side::Gear].map(|side| {
-        let parts = design.side(side).iter().map(|part| part.modification.as_ref());
-        parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
-    });
-    let corners = (cycle.settings.corner_contact == CornerContact::Exact).then(|| Gaps::new(pair, &profiles));
+    let exact = cycle.settings.corner_contact == CornerContact::Exact;
+    let corners = exact.then(|| Gaps::new(pair, &design.profiles(0.0)));
     let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
     let s = |index: usize| cycle.path_position(position, index);
     let rolls = |index: usize| cycle.rolls(s(index));

@@ -2,17 +2,17 @@
 //!
 //! Must not know: which positions are computed, what is done with the values.
 
+use std::sync::Arc;
+
 use super::count::Count;
 use super::cycle::{Elasticity, MeshCycle};
+use super::flanks::Flanks;
 use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
-use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
-use crate::gear::contact::gap::Gaps;
 use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
-use crate::gear::geometry::Side;
-use crate::gear::modification::{Design, Modification};
+use crate::gear::modification::Design;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
 /// Places closer than this share of the base pitch are one.
@@ -25,12 +25,11 @@ pub struct LoadCase<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
-    face: Face<'a>,
+    flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
-    profiles: [Vec<&'a dyn Modification>; 2],
-    touching: Touching<'a>,
+    touching: Touching,
     /// Cycle positions at which a profile is not smooth, ascending.
-    pub(super) breaks: Vec<f64>,
+    pub(super) breaks: Arc<[f64]>,
     /// Penetrations at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
     pub(super) count: Count<'a>,
@@ -48,24 +47,20 @@ enum Regime<'a> {
     /// Each pair's load deflects its neighbours too.
     CoupledPairs,
     /// Each slice's load deflects all others.
-    CoupledSlices(Sliced<'a>),
+    CoupledSlices(Arc<Sliced<'a>>),
 }
 
 /// Where a pair may touch.
-#[derive(Clone)]
-enum Touching<'a> {
+#[derive(Clone, Copy)]
+enum Touching {
     LineOfAction,
-    Anywhere(Box<Corners<'a>>),
-}
-
-/// What corner contact adds.
-#[derive(Clone)]
-struct Corners<'a> {
-    gaps: Gaps<'a>,
-    /// Path positions farther out than these are too far apart under this load.
-    window: (f64, f64),
-    /// The gap where the model ends \[m\].
-    limit: f64,
+    /// With corner contact.
+    Anywhere {
+        /// Path positions farther out than these are too far apart under this load.
+        window: (f64, f64),
+        /// The gap where the model ends \[m\].
+        limit: f64,
+    },
 }
 
 /// The penetration of a pair that is out of reach \[m\]: far from any contact.
@@ -94,20 +89,16 @@ impl<'a> LoadCase<'a> {
     /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair just touches.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
-        let face = Face::new(design, cycle.face_width, &cycle.slices);
-        let of = |side: Side| {
-            let parts = design.side(side).iter().map(|part| part.modification.as_ref());
-            parts.filter(|part| part.varies_along_profile()).collect::<Vec<_>>()
-        };
-        let profiles = [of(Side::Pinion), of(Side::Gear)];
-        let sliced = Sliced::new(cycle, design, &face);
+        let flanks = Arc::new(Flanks::new(cycle, design));
+        let face = &flanks.face;
+        let sliced = Sliced::new(&flanks, design).map(Arc::new);
         // Where slices hold each other, the load of a pair is no function of its penetration alone.
         let levels = if sliced.is_some() { Vec::new() } else { face.levels() };
         let uncoupled = match cycle.elasticity {
             Elasticity::Linear(_) => face.slices_passed(),
             Elasticity::Logarithmic { .. } => face.slices(),
         };
-        let count = Count::new(&cycle.work, sliced.as_ref().map_or(uncoupled, Sliced::count));
+        let count = Count::new(&cycle.work, sliced.as_ref().map_or(uncoupled, |sliced| sliced.count()));
         // Slices take up load one by one: no cut makes what they carry smooth.
         // Corners come into contact as a square root: halving goes on to no end there, at three times the price.
         let refines = sliced.is_none() && !face.is_sliced() && cycle.settings.corner_contact == CornerContact::None;
@@ -123,73 +114,50 @@ impl<'a> LoadCase<'a> {
             cycle,
             force: torque / cycle.pair.pinion.base_radius,
             regime,
-            face,
-            profiles,
+            flanks,
             touching: Touching::LineOfAction,
-            breaks: Vec::new(),
+            breaks: Arc::default(),
             refines,
         };
-        let pair = &cycle.pair;
+        let mut window = None;
         if cycle.settings.corner_contact == CornerContact::Exact {
-            load_case.add_corners();
-            return load_case;
+            let corners = load_case.corners();
+            (load_case.touching, window) =
+                (Touching::Anywhere { window: corners.0, limit: corners.1 }, Some(corners.0));
         }
-        let mut breaks = Vec::new();
-        for (side, profile) in load_case.profiles.iter().enumerate() {
-            for roll in profile.iter().flat_map(|part| part.profile_breaks()).copied() {
-                let s = if side == 0 {
-                    roll * pair.pinion.base_radius
-                } else {
-                    pair.tangent_length - roll * pair.gear.base_radius
-                };
-                if s > pair.start_of_contact && s < pair.end_of_contact {
-                    let pitches = (s - pair.start_of_contact) / pair.base_pitch;
-                    breaks.push((pitches - pitches.floor()) * pair.base_pitch);
-                }
-            }
-        }
-        breaks.sort_by(f64::total_cmp);
-        load_case.breaks = breaks;
+        load_case.breaks = load_case.flanks.breaks(window).into();
         load_case
     }
 
-    fn add_corners(&mut self) {
-        let cycle = self.cycle;
-        let pair = &cycle.pair;
-        let gaps = Gaps::new(pair, &self.profiles);
-        let (first, last) = cycle.path.window();
+    /// With corner contact: between which path positions anything can touch, and the gap where the model ends.
+    fn corners(&self) -> ((f64, f64), f64) {
+        let (pair, flanks) = (&self.cycle.pair, &self.flanks);
+        let (first, last) = self.cycle.path.window();
         // A little inside, for rounding.
         let inwards = CLOSEST * pair.base_pitch;
-        let ends = [gaps.at(first + inwards), gaps.at(last - inwards)];
-        let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + self.face.offset;
+        let ends = [flanks.gap(first + inwards), flanks.gap(last - inwards)];
+        let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + flanks.offset();
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s) + gaps.at(s).unwrap_or(0.0)));
+        let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s) + flanks.gap(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..8 {
                 let middle = 0.5 * (near + far);
-                if gaps.at(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
+                if flanks.gap(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
             }
             far
         };
-        let window = (outermost(from, first), outermost(to, last));
-        let fold = |s: f64| {
-            let pitches = (s - from) / pair.base_pitch;
-            (pitches - pitches.floor()) * pair.base_pitch
-        };
-        self.breaks = gaps.breaks(window).into_iter().map(fold).collect();
-        self.breaks.sort_by(f64::total_cmp);
-        self.touching = Touching::Anywhere(Box::new(Corners { gaps, window, limit }));
+        ((outermost(from, first), outermost(to, last)), limit)
     }
 
     /// Whether the number of slices across the face matters: not where every pair's load has a closed form.
     #[must_use]
     pub fn uses_slices(&self) -> bool {
         self.slices().is_some()
-            || self.face.is_sliced()
-            || (!self.face.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
+            || self.flanks.face.is_sliced()
+            || (!self.flanks.is_flat() && matches!(self.cycle.elasticity, Elasticity::Logarithmic { .. }))
     }
 
     /// Whether an approach is within the model: with corner contact, below the gap at which a pair that is no longer
@@ -202,9 +170,9 @@ impl<'a> LoadCase<'a> {
     /// The largest approach that is modelled \[m\].
     #[must_use]
     pub fn largest_approach(&self) -> f64 {
-        match &self.touching {
+        match self.touching {
             Touching::LineOfAction => f64::INFINITY,
-            Touching::Anywhere(corners) => corners.limit,
+            Touching::Anywhere { limit, .. } => limit,
         }
     }
 
@@ -229,16 +197,10 @@ impl<'a> LoadCase<'a> {
     /// too far apart.
     #[must_use]
     pub fn gap(&self, s: f64) -> Option<f64> {
-        if let Touching::Anywhere(corners) = &self.touching {
-            let Corners { gaps, window, .. } = corners.as_ref();
-            return if s >= window.0 && s <= window.1 { gaps.at(s) } else { None };
+        match self.touching {
+            Touching::Anywhere { window, .. } if s < window.0 || s > window.1 => None,
+            _ => self.flanks.gap(s),
         }
-        let pair = &self.cycle.pair;
-        let depth = |profile: &[&dyn Modification], roll: f64| profile.iter().map(|part| part.depth(roll)).sum::<f64>();
-        let [pinion, gear] = &self.profiles;
-        Some(
-            depth(pinion, s / pair.pinion.base_radius) + depth(gear, (pair.tangent_length - s) / pair.gear.base_radius),
-        )
     }
 
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
@@ -246,7 +208,7 @@ impl<'a> LoadCase<'a> {
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
         let reach = self.within_reach(position, pairs);
         let (balance, peaks) = self.balance(&reach);
-        let unloaded = reach.smallest + self.face.offset;
+        let unloaded = reach.smallest + self.flanks.offset();
         if matches!(self.touching, Touching::LineOfAction) {
             return Equilibrium { unloaded, balance, peaks };
         }
@@ -280,7 +242,7 @@ impl<'a> LoadCase<'a> {
             }
         }
         reach.count_gaps_from_the_smallest();
-        if matches!(self.touching, Touching::Anywhere(_)) && self.force > 0.0 {
+        if matches!(self.touching, Touching::Anywhere { .. }) && self.force > 0.0 {
             reach.keep_nearer_than(self.alone(reach.nearest_position()));
         }
         reach
@@ -295,7 +257,7 @@ impl<'a> LoadCase<'a> {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
             Elasticity::Logarithmic { .. } => self.slice(s).penetration(self.force / width),
         };
-        2.0 * (alone + self.face.mean)
+        2.0 * (alone + self.flanks.mean(s))
     }
 
     /// Equilibrium of the pairs within reach and, where slices hold each other, the largest load per width of each.
@@ -311,21 +273,25 @@ impl<'a> LoadCase<'a> {
             let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
             return (balance, Some(peaks));
         }
+        let own = self.flanks.faces(reach.positions());
+        let mut faces = [&self.flanks.face; MOST_SPRINGS];
+        faces.iter_mut().zip(&own).for_each(|(slot, face)| *slot = face);
         let balance = match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST_SPRINGS];
                 for (slot, s) in stiffness.iter_mut().zip(reach.positions()) {
                     *slot = graded.value(*s);
                 }
-                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + self.face.mean;
-                self.balance_of_pairs(reach, &LinearPairs { stiffness, face: &self.face }, above)
+                let mean = own.iter().map(|face| face.mean).reduce(f64::max).unwrap_or(self.flanks.face.mean);
+                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + mean;
+                self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } => {
                 let mut slices = [InSeries::NONE; MOST_SPRINGS];
                 for (slot, s) in slices.iter_mut().zip(reach.positions()) {
                     *slot = self.slice(*s);
                 }
-                let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, face: &self.face };
+                let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, faces };
                 let above = pairs.above(reach.nearest(), self.force);
                 self.balance_of_pairs(reach, &pairs, above)
             }
@@ -365,7 +331,7 @@ impl<'a> LoadCase<'a> {
             return peaks[spring];
         }
         let penetration = state.balance.penetration[spring];
-        if self.face.is_flat() || penetration <= 0.0 {
+        if self.flanks.is_flat() || penetration <= 0.0 {
             return state.balance.loads[spring] / self.cycle.face_width;
         }
         let s = self.cycle.path_position(position, spring);

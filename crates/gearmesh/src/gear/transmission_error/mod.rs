@@ -9,6 +9,7 @@ mod change;
 mod count;
 pub mod curve;
 pub mod cycle;
+mod flanks;
 pub mod load_case;
 mod path;
 pub mod sampling;

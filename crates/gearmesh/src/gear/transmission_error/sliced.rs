@@ -3,8 +3,12 @@
 //! A load that is spread evenly gives what it gives without coupling. On a face that is the same on either side of its
 //! middle, two slices that mirror each other are one. Must not know: how lengths are found.
 
+use std::borrow::Cow;
+use std::sync::Arc;
+
 use super::across::Across;
 use super::cycle::{Elasticity, MeshCycle};
+use super::flanks::{Flanks, strips};
 use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::Logarithmic;
@@ -15,12 +19,11 @@ use crate::numeric::layer::add_influences;
 use crate::numeric::many_springs;
 
 /// The slices of a design.
-#[derive(Clone)]
 pub(super) struct Sliced<'a> {
+    flanks: Arc<Flanks<'a>>,
     across: &'a Across,
-    faces: Vec<Face<'a>>,
-    /// The smallest deviation of each slice, above that of the whole face.
-    lows: Vec<f64>,
+    /// The deviations within each slice; none of a surface, where each position has its own.
+    strips: Deviations<'a>,
     /// How many slices of the face each stands for: itself, or itself and its mirror image.
     stands_for: Vec<f64>,
     /// The width of that \[m\].
@@ -31,27 +34,67 @@ pub(super) struct Sliced<'a> {
     body: Vec<f64>,
 }
 
+/// Slice by slice, of one pair that stands for all or of one after the other.
+#[derive(Clone, Default)]
+struct Deviations<'a> {
+    faces: Vec<Face<'a>>,
+    /// The smallest deviation of each slice, above that of the whole face.
+    lows: Vec<f64>,
+}
+
+impl Deviations<'_> {
+    /// How far each slice of the pairs stands back, whose gaps are these.
+    fn behind(&self, gaps: &[f64], count: usize) -> Vec<f64> {
+        let place = |index: usize| gaps[index / count] + self.lows[index % self.lows.len()];
+        (0..gaps.len() * count).map(place).collect()
+    }
+}
+
 impl<'a> Sliced<'a> {
     /// None where slices are independent, or one does for all.
-    pub(super) fn new(cycle: &'a MeshCycle, design: &Design, whole: &Face) -> Option<Self> {
-        let across = cycle.across.as_ref().filter(|_| !whole.is_flat())?;
+    pub(super) fn new(flanks: &Arc<Flanks<'a>>, design: &Design) -> Option<Self> {
+        let cycle = flanks.cycle;
+        let across = cycle.across.as_ref().filter(|_| !flanks.is_flat())?;
         let count = cycle.settings.slices.max(1);
-        let kept = if design.lead_is_even() { count.div_ceil(2) } else { count };
+        let places = strips(cycle, design.lead_is_even());
+        let kept = places.len();
         let stands_for = |slice: usize| if kept == count || slice == count - 1 - slice { 1.0 } else { 2.0 };
-        let place = |index: usize| cycle.face_width * (index as f64 / count as f64 - 0.5);
-        let strip = |slice: usize| Face::between(design, [place(slice), place(slice + 1)], &across.rule);
-        let faces: Vec<Face> = (0..kept).map(strip).collect();
-        let lows = faces.iter().map(|face| (face.offset - whole.offset).max(0.0)).collect();
+        let strips = if flanks.is_surface {
+            Deviations::default()
+        } else {
+            let strip = |ends: [f64; 2]| Face::between(design, ends, &across.rule);
+            let faces: Vec<Face> = places.into_iter().map(strip).collect();
+            // The lowest place of the face is one of a slice but for rounding, unless it was looked for in other places.
+            let lowest = if flanks.face.is_sliced() { f64::NEG_INFINITY } else { 0.0 };
+            let lows = faces.iter().map(|face| (face.offset - flanks.face.offset).max(lowest)).collect();
+            Deviations { faces, lows }
+        };
         let stands_for: Vec<f64> = (0..kept).map(stands_for).collect();
         let widths = stands_for.iter().map(|stands_for| stands_for * cycle.face_width / count as f64).collect();
         let mut body = vec![0.0; count * count];
         add_influences(across.reach, 1.0, count, count, &mut body);
-        Some(Self { across, faces, lows, stands_for, widths, whole: count, body })
+        Some(Self { flanks: Arc::clone(flanks), across, strips, stands_for, widths, whole: count, body })
     }
 
     /// How many slices are looked at.
     pub(super) fn count(&self) -> usize {
-        self.faces.len()
+        self.stands_for.len()
+    }
+
+    /// The deviations within the slices of pairs at path positions.
+    fn deviations(&self, positions: &[f64]) -> Cow<'_, Deviations<'a>> {
+        if !self.flanks.is_surface {
+            return Cow::Borrowed(&self.strips);
+        }
+        let mut found = Deviations::default();
+        for &s in positions {
+            let gap = self.flanks.gap(s).unwrap_or(0.0);
+            let faces = self.flanks.strips_at(s, self.count());
+            let from = found.faces.len();
+            found.faces.extend(faces);
+            found.lows.extend(found.faces[from..].iter().map(|face| face.offset - gap));
+        }
+        Cow::Owned(found)
     }
 
     /// Equilibrium of the pairs within reach and the largest load per width of each, as a mean
@@ -62,7 +105,7 @@ impl<'a> Sliced<'a> {
         reach: &WithinReach,
         [force, above]: [f64; 2],
     ) -> (Balance, PerSpring) {
-        let count = self.faces.len();
+        let count = self.count();
         let (found, smallest) = self.slices(cycle, reach, [force, above]);
         let (approach, slope) = (found.approach + smallest, found.slope);
         let mut balance = Balance { approach, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope };
@@ -82,25 +125,28 @@ impl<'a> Sliced<'a> {
     fn slices(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> (many_springs::Balance, f64) {
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
         // The lowest place of the face is one of a slice but for rounding.
-        let behind = || reach.gaps().iter().flat_map(|gap| self.lows.iter().map(move |low| gap + low));
-        let smallest = behind().fold(f64::INFINITY, f64::min);
-        let behind: Vec<f64> = behind().map(|gap| gap - smallest).collect();
-        let slices = self.springs(cycle, reach.positions(), &own);
+        let strips = self.deviations(reach.positions());
+        let mut behind = strips.behind(reach.gaps(), self.count());
+        let smallest = behind.iter().copied().fold(f64::INFINITY, f64::min);
+        behind.iter_mut().for_each(|gap| *gap -= smallest);
+        let slices = self.springs(cycle, reach.positions(), &own, &strips.faces);
         (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
     }
 
     /// The load over the force that a slice carries and its penetration, recomputed from loads, gaps and influences, does
     /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
     pub(super) fn unexplained(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> [f64; 2] {
-        let (count, size) = (self.faces.len(), reach.gaps().len() * self.faces.len());
+        let size = reach.gaps().len() * self.count();
         let (found, smallest) = self.slices(cycle, reach, [force, above]);
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
-        let slices = self.springs(cycle, reach.positions(), &own);
+        let strips = self.deviations(reach.positions());
+        let behind = strips.behind(reach.gaps(), self.count());
+        let slices = self.springs(cycle, reach.positions(), &own, &strips.faces);
         let mut worst = [0.0, 1.0];
         for (slice, &load) in found.loads.iter().enumerate() {
             let row = &matrix[slice * size..][..size];
             let others: f64 = row.iter().zip(&found.loads).map(|(influence, load)| influence * load).sum();
-            let gap = reach.gaps()[slice / count] + self.lows[slice % count] - smallest;
+            let gap = behind[slice] - smallest;
             let penetration = found.approach - gap - others;
             let (carried, rise) =
                 if penetration > 0.0 { slices.response(slice, penetration) } else { (0.0, 1.0 / own[slice]) };
@@ -114,7 +160,7 @@ impl<'a> Sliced<'a> {
     }
 
     /// What each slice carries by itself.
-    fn springs(&self, cycle: &MeshCycle, positions: &[f64], own: &[f64]) -> Slices<'_> {
+    fn springs<'b>(&'b self, cycle: &MeshCycle, positions: &[f64], own: &[f64], faces: &'b [Face]) -> Slices<'b> {
         let mut slices = Vec::with_capacity(own.len());
         for (&s, own) in positions.iter().zip(own.chunks(self.count())) {
             let own = own.iter().zip(&self.widths);
@@ -128,13 +174,13 @@ impl<'a> Sliced<'a> {
                 }
             }
         }
-        Slices { slices, faces: &self.faces, widths: &self.widths }
+        Slices { slices, faces, widths: &self.widths }
     }
 
     /// Penetration of each slice, pair by pair, per load on each \[m/N\], contact left out; by rows. And that of each
     /// slice by its own load, which is not in it.
     fn matrix(&self, cycle: &MeshCycle, springs: &[usize], positions: &[f64]) -> (Vec<f64>, Vec<f64>) {
-        let (across, count) = (self.across, self.faces.len());
+        let (across, count) = (self.across, self.count());
         let size = positions.len() * count;
         let (mut matrix, mut own) = (vec![0.0; size * size], Vec::with_capacity(size));
         let mut block = vec![0.0; self.body.len()];
@@ -165,7 +211,7 @@ impl<'a> Sliced<'a> {
     /// Puts influences between all slices of two pairs, given by their places, into the matrix of those that are looked at:
     /// what a load that is shared with the mirror image does to either of the two.
     fn put(&self, block: &[f64], scale: f64, matrix: &mut [f64], [by, on]: [usize; 2], size: usize) {
-        let count = self.faces.len();
+        let count = self.count();
         for (slice, influences) in block.chunks(self.whole).take(count).enumerate() {
             let start = (by * count + slice) * size + on * count;
             let mirrored = influences.iter().rev();

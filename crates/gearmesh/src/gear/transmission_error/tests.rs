@@ -5,6 +5,7 @@
 mod accuracy;
 mod corner;
 mod extremes;
+mod surface;
 mod work;
 
 use super::curve::Wanted;

@@ -37,13 +37,6 @@ fn designs(pair: &GearPair) -> Vec<Design> {
     ]
 }
 
-fn profiles(design: &Design) -> [Vec<&dyn Modification>; 2] {
-    [Side::Pinion, Side::Gear].map(|side| {
-        let parts = design.side(side).iter().map(|part| part.modification.as_ref());
-        parts.filter(|part| part.varies_along_profile()).collect()
-    })
-}
-
 fn positions(pair: &GearPair, count: u32) -> impl Iterator<Item = f64> {
     let (from, to) = (pair.start_of_contact - 4e-3, pair.end_of_contact + 4e-3);
     (0..=count).map(move |index| from + (to - from) * (f64::from(index) + 0.313) / f64::from(count + 1))
@@ -90,7 +83,7 @@ fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
 fn the_gap_is_the_least_of_a_fine_scan() {
     let pair = pair();
     for (index, design) in designs(&pair).iter().enumerate() {
-        let profiles = profiles(design);
+        let profiles = design.profiles(0.0);
         let gaps = Gaps::new(&pair, &profiles);
         for s in positions(&pair, 40) {
             let (found, scanned) = (gaps.at(s).unwrap(), brute(&pair, design, s, false));
@@ -109,7 +102,7 @@ fn the_gap_is_the_least_of_a_fine_scan() {
 fn the_gap_is_that_of_true_points_to_first_order() {
     let pair = pair();
     for (index, design) in designs(&pair).iter().enumerate() {
-        let profiles = profiles(design);
+        let profiles = design.profiles(0.0);
         let gaps = Gaps::new(&pair, &profiles);
         for s in positions(&pair, 25) {
             let (found, exact) = (gaps.at(s).unwrap(), brute(&pair, design, s, true));
@@ -144,7 +137,7 @@ fn the_gap_is_continuous_and_smooth_between_its_breaks() {
     let pair = pair();
     let window = (pair.start_of_contact - 3e-3, pair.end_of_contact + 3e-3);
     for (index, design) in designs(&pair).iter().enumerate() {
-        let profiles = profiles(design);
+        let profiles = design.profiles(0.0);
         let gaps = Gaps::new(&pair, &profiles);
         for s in gaps.breaks(window) {
             let jump = gaps.at(s + 1e-13).unwrap() - gaps.at(s - 1e-13).unwrap();
@@ -172,7 +165,7 @@ fn pinion_and_gear_may_change_places() {
     let pair = pair();
     let swapped = swapped(&pair);
     for design in designs(&pair) {
-        let [pinion, gear] = profiles(&design);
+        let [pinion, gear] = design.profiles(0.0);
         let (here, there) = ([pinion.clone(), gear.clone()], [gear, pinion]);
         let (here, there) = (Gaps::new(&pair, &here), Gaps::new(&swapped, &there));
         for s in positions(&pair, 50) {

@@ -199,7 +199,7 @@ fn loads_balance_and_slices_fulfil_complementarity() {
                         .zip(&found.loads)
                         .map(|(influence, load)| influence * load)
                         .sum();
-                    let gap = gaps[slice / count] + sliced.lows[slice % count] - smallest;
+                    let gap = gaps[slice / count] + sliced.strips.lows[slice % count] - smallest;
                     let penetration = found.approach - gap - deflection;
                     let size = found.approach + gap + deflection;
                     assert!((penetration - found.penetration[slice]).abs() < 1e-12 * size);

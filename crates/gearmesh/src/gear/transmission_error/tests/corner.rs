@@ -153,9 +153,7 @@ fn loads_balance_and_fulfil_complementarity() {
         if design.pinion.iter().any(|part| part.modification.varies_along_face()) {
             continue;
         }
-        let profiles = [Pinion, Gear]
-            .map(|side| design.side(side).iter().map(|part| part.modification.as_ref()).collect::<Vec<_>>());
-        let gaps = crate::gear::contact::gap::Gaps::new(&pair, &profiles);
+        let gaps = crate::gear::contact::gap::Gaps::new(&pair, &design.profiles(0.0));
         for point in LoadCase::new(&cycle, design, torque).curve(Wanted::default()) {
             close(point.loads.iter().sum(), torque / pair.pinion.base_radius, 1e-12);
             let places = (0..5).map(|spring| point.path_position + BASE_PITCH * (f64::from(spring) - 1.0));

@@ -2,7 +2,6 @@
 //! until they touch. The model's depths, separations and corners have no part in it.
 
 use super::super::Gaps;
-use super::profiles;
 use crate::gear::fixtures::{design, standard};
 use crate::gear::geometry::{Gear, GearPair, Side};
 use declare::record::Value::Number;
@@ -114,7 +113,7 @@ fn the_gap_is_that_of_turned_outlines() {
             }
         }
         let design = design(&pair, &parts).unwrap();
-        let profiles = profiles(&design);
+        let profiles = design.profiles(0.0);
         let gaps = Gaps::new(&pair, &profiles);
         let outlines = [outline(&pair.pinion, cuts[0]), outline(&pair.gear, cuts[1])];
         for beyond in [-0.3e-3, 0.0, 0.1e-3, 0.3e-3, 0.8e-3, 1.5e-3, 2.5e-3, 3.5e-3] {

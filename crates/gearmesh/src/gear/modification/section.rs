@@ -1,0 +1,58 @@
+//! The profiles of a design as one section across the face sees them.
+//!
+//! A sum of a profile and a lead has one profile all over the face; what varies over the surface has another one in each
+//! section. Must not know: any single family, load.
+
+use super::{Design, Modification, NamedModification};
+use crate::gear::geometry::Side;
+
+/// A modification in one section.
+#[derive(Clone, Copy, Debug)]
+pub struct Section<'a> {
+    modification: &'a dyn Modification,
+    /// Where the section is \[m\], if that matters.
+    z: Option<f64>,
+}
+
+/// Those of the pinion and of the gear.
+pub type Profiles<'a> = [Vec<Section<'a>>; 2];
+
+impl<'a> Section<'a> {
+    fn new(modification: &'a dyn Modification, z: f64) -> Self {
+        Self { modification, z: modification.varies_over_surface().then_some(z) }
+    }
+
+    /// Depth at a roll angle, what the lead takes off not among it \[m\].
+    #[must_use]
+    #[inline]
+    pub fn depth(&self, roll: f64) -> f64 {
+        let depth = self.modification.depth(roll);
+        self.z.map_or(depth, |z| depth + self.modification.surface(roll, z))
+    }
+
+    /// Roll angles at which that is not smooth.
+    #[must_use]
+    pub fn breaks(&self) -> &'a [f64] {
+        self.modification.profile_breaks()
+    }
+}
+
+impl Design {
+    /// What varies along the profile of either gear, in the section at z \[m\].
+    #[must_use]
+    pub fn profiles(&self, z: f64) -> Profiles<'_> {
+        let varies = |part: &&NamedModification| {
+            part.modification.varies_along_profile() || part.modification.varies_over_surface()
+        };
+        [Side::Pinion, Side::Gear].map(|side| {
+            let parts = self.side(side).iter().filter(varies);
+            parts.map(|part| Section::new(&*part.modification, z)).collect()
+        })
+    }
+
+    /// Whether anything is no sum of a profile and a lead.
+    #[must_use]
+    pub fn varies_over_surface(&self) -> bool {
+        self.pinion.iter().chain(&self.gear).any(|part| part.modification.varies_over_surface())
+    }
+}

@@ -1,0 +1,165 @@
+//! Both flanks of a pair under one design: how far they stand apart along the path of contact and across the face.
+//!
+//! Where a design is a sum of profiles and leads, the face is the same at every position. Where something varies over the
+//! surface, the face is cut into sections, each with profiles of its own. Must not know: load, compliance.
+
+use super::cycle::MeshCycle;
+use crate::gear::contact::CornerContact;
+use crate::gear::contact::face::Face;
+use crate::gear::contact::gap::Gaps;
+use crate::gear::geometry::GearPair;
+use crate::gear::modification::Design;
+use crate::gear::modification::section::{Profiles, Section};
+
+/// The flanks of a design.
+pub(super) struct Flanks<'a> {
+    pub(super) cycle: &'a MeshCycle,
+    /// The deviation across the face, the same at every position; of a surface, that where contact starts.
+    pub(super) face: Face<'a>,
+    /// Whether the face differs from position to position.
+    pub(super) is_surface: bool,
+    /// Of a surface those of all slices of the face, or of all its strips.
+    sections: Vec<FaceSection<'a>>,
+}
+
+/// A section across the face.
+struct FaceSection<'a> {
+    /// Of the width.
+    share: f64,
+    /// What the leads of both gears take off \[m\].
+    lead: f64,
+    profiles: Profiles<'a>,
+    /// With corner contact.
+    gaps: Option<Gaps<'a>>,
+}
+
+impl<'a> Flanks<'a> {
+    pub(super) fn new(cycle: &'a MeshCycle, design: &'a Design) -> Self {
+        let corners = cycle.settings.corner_contact == CornerContact::Exact;
+        let section = |share: f64, z: f64, lead: f64| {
+            let profiles = design.profiles(z);
+            let gaps = corners.then(|| Gaps::new(&cycle.pair, &profiles));
+            FaceSection { share, lead, profiles, gaps }
+        };
+        if !design.varies_over_surface() {
+            let face = Face::new(design, cycle.face_width, &cycle.slices);
+            return Self { cycle, face, is_surface: false, sections: vec![section(1.0, 0.0, 0.0)] };
+        }
+        let half = 0.5 * cycle.face_width;
+        let places = match &cycle.across {
+            Some(across) => {
+                let strips = strips(cycle, design.lead_is_even());
+                let share = 1.0 / strips.len() as f64;
+                let within = |strip| Face::places(&Design::default(), strip, &across.rule);
+                strips.into_iter().flat_map(within).map(|(part, z)| (part * share, z)).collect()
+            }
+            None => Face::places(design, [-half, half], &cycle.slices),
+        };
+        let sections = places.into_iter().map(|(share, z)| section(share, z, design.lead(z))).collect();
+        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, sections };
+        flanks.face = flanks.face_at(cycle.pair.start_of_contact);
+        flanks
+    }
+
+    /// Whether both flanks run parallel across the face at every position.
+    pub(super) fn is_flat(&self) -> bool {
+        self.face.is_flat() && !self.is_surface
+    }
+
+    /// What the gaps count from \[m\].
+    pub(super) fn offset(&self) -> f64 {
+        if self.is_surface { 0.0 } else { self.face.offset }
+    }
+
+    /// The gap at a path position: on the line of action; with corner contact, where the flanks
+    /// come nearest, and none where they are too far apart for that.
+    pub(super) fn gap(&self, s: f64) -> Option<f64> {
+        let pair = &self.cycle.pair;
+        if !self.is_surface {
+            return self.sections[0].gap(pair, s);
+        }
+        self.sections.iter().filter_map(|section| section.deviation(pair, s)).reduce(f64::min)
+    }
+
+    /// The face of a surface at a path position, above its gap there.
+    pub(super) fn face_at(&self, s: f64) -> Face<'a> {
+        Face::of_slices(self.deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
+    }
+
+    /// The faces of a surface at path positions; none where one face holds for all.
+    pub(super) fn faces(&self, positions: &[f64]) -> Vec<Face<'a>> {
+        if self.is_surface { positions.iter().map(|&s| self.face_at(s)).collect() } else { Vec::new() }
+    }
+
+    /// The mean deviation above the gap at a path position.
+    pub(super) fn mean(&self, s: f64) -> f64 {
+        if self.is_surface { self.face_at(s).mean } else { self.face.mean }
+    }
+
+    /// The deviations of a surface within each of `count` strips, at a path position.
+    pub(super) fn strips_at(&self, s: f64, count: usize) -> impl Iterator<Item = Face<'a>> {
+        self.sections.chunks(self.sections.len() / count).map(move |sections| {
+            let mut slices = self.deviations(sections, s);
+            slices.iter_mut().for_each(|slice| slice.0 *= count as f64);
+            let lowest = slices.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
+            Face::of_slices(slices, lowest, &self.cycle.slices)
+        })
+    }
+
+    fn deviations(&self, sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
+        let of = |section: &FaceSection| (section.share, section.deviation(&self.cycle.pair, s).unwrap_or(0.0));
+        sections.iter().map(of).collect()
+    }
+
+    /// Cycle positions at which the gap is not smooth, ascending; with corner contact, from places inside `window`.
+    pub(super) fn breaks(&self, window: Option<(f64, f64)>) -> Vec<f64> {
+        let pair = &self.cycle.pair;
+        let mut breaks: Vec<f64> = Vec::new();
+        let fold = |s: f64| {
+            let pitches = (s - pair.start_of_contact) / pair.base_pitch;
+            (pitches - pitches.floor()) * pair.base_pitch
+        };
+        for section in &self.sections {
+            if let (Some(gaps), Some(window)) = (&section.gaps, window) {
+                breaks.extend(gaps.breaks(window).into_iter().map(fold));
+                continue;
+            }
+            let [pinion, gear] = &section.profiles;
+            let of_pinion = pinion.iter().flat_map(Section::breaks).map(|roll| roll * pair.pinion.base_radius);
+            let of_gear =
+                gear.iter().flat_map(Section::breaks).map(|roll| pair.tangent_length - roll * pair.gear.base_radius);
+            let inside = |s: &f64| *s > pair.start_of_contact && *s < pair.end_of_contact;
+            breaks.extend(of_pinion.chain(of_gear).filter(inside).map(fold));
+        }
+        breaks.sort_by(f64::total_cmp);
+        if self.is_surface {
+            breaks.dedup();
+        }
+        breaks
+    }
+}
+
+/// The strips into which the face is cut where slices hold each other \[m\]; of an even face those of one half.
+pub(super) fn strips(cycle: &MeshCycle, even: bool) -> Vec<[f64; 2]> {
+    let count = cycle.settings.slices.max(1);
+    let kept = if even { count.div_ceil(2) } else { count };
+    let place = |index: usize| cycle.face_width * (index as f64 / count as f64 - 0.5);
+    (0..kept).map(|strip| [place(strip), place(strip + 1)]).collect()
+}
+
+impl FaceSection<'_> {
+    fn gap(&self, pair: &GearPair, s: f64) -> Option<f64> {
+        if let Some(gaps) = &self.gaps {
+            return gaps.at(s);
+        }
+        let [pinion, gear] = &self.profiles;
+        let [on_pinion, on_gear] = [s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius];
+        let pinion = pinion.iter().map(|part| part.depth(on_pinion)).sum::<f64>();
+        Some(pinion + gear.iter().map(|part| part.depth(on_gear)).sum::<f64>())
+    }
+
+    /// With what the leads take off.
+    fn deviation(&self, pair: &GearPair, s: f64) -> Option<f64> {
+        self.gap(pair, s).map(|gap| gap + self.lead)
+    }
+}

@@ -1,0 +1,194 @@
+//! Modifications that are no sum of a profile and a lead.
+
+use std::sync::Arc;
+
+use super::*;
+use crate::gear::contact::{CornerContact, SliceCoupling};
+use crate::gear::modification::{Modification, NamedModification};
+
+/// A tip relief and a bow across the face, lowest at an end, where any slices have a place, told as a profile and a lead, or most of it as a
+/// surface.
+#[derive(Debug)]
+struct Relieved {
+    start: [f64; 1],
+    as_surface: bool,
+}
+
+impl Relieved {
+    fn profile(&self, roll: f64) -> f64 {
+        120e-6 * (roll - self.start[0]).max(0.0)
+    }
+
+    fn across(z: f64) -> f64 {
+        3e-6 * (1.0 - libm::cos(60.0 * (z + 9e-3)))
+    }
+}
+
+impl Modification for Relieved {
+    fn depth(&self, roll: f64) -> f64 {
+        let part = if self.as_surface { 0.3 } else { 1.0 };
+        part * self.profile(roll)
+    }
+
+    fn profile_breaks(&self) -> &[f64] {
+        &self.start
+    }
+
+    fn varies_along_profile(&self) -> bool {
+        true
+    }
+
+    fn lead(&self, z: f64) -> f64 {
+        let part = if self.as_surface { 0.4 } else { 1.0 };
+        part * Self::across(z)
+    }
+
+    fn lead_quadratic(&self, _z: f64) -> Option<[f64; 3]> {
+        None
+    }
+
+    fn varies_along_face(&self) -> bool {
+        true
+    }
+
+    fn surface(&self, roll: f64, z: f64) -> f64 {
+        if self.as_surface { 0.7 * self.profile(roll) + 0.6 * Self::across(z) } else { 0.0 }
+    }
+
+    fn varies_over_surface(&self) -> bool {
+        self.as_surface
+    }
+
+    fn resolved(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+fn of(modification: impl Modification + 'static) -> Design {
+    Design {
+        pinion: vec![NamedModification { family: "test", modification: Arc::new(modification) }],
+        gear: Vec::new(),
+    }
+}
+
+/// Tier: second method; a surface that is a sum gives what profile and lead give, whatever the contact, the coupling, and
+/// where the flanks touch.
+#[test]
+fn a_sum_told_as_a_surface_gives_the_same() {
+    let pair = pair();
+    let logarithmic = |pair: PairCompliance| PairCompliance { contact: Some(ContactLaw::LoadDependent), ..pair };
+    for (corner_contact, slice_coupling, slices, positions) in [
+        (CornerContact::None, SliceCoupling::None, 17, 24),
+        (CornerContact::Exact, SliceCoupling::None, 9, 16),
+        (CornerContact::None, SliceCoupling::Plate, 7, 16),
+        (CornerContact::Exact, SliceCoupling::Plate, 5, 8),
+    ] {
+        let settings = Settings { positions, slices, corner_contact, slice_coupling };
+        for compliance in [varying(), coupled(), logarithmic(varying()), logarithmic(coupled())] {
+            let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+            for torque in [0.0, 5.0, 120.0, 900.0] {
+                let [sum, surface] = [false, true].map(|as_surface| of(Relieved { start: [0.42], as_surface }));
+                let [sum, surface] = [&sum, &surface].map(|design| LoadCase::new(&cycle, design, torque));
+                let context = format!("{settings:?}, {torque} N m");
+                assert!(sum.uses_slices() && surface.uses_slices());
+                let [one, two] = [&surface, &sum].map(LoadCase::peak_to_peak);
+                assert!((one - two).abs() <= 1e-7 * two, "{context}: {one:e} {two:e}");
+                for point in sum.curve(Wanted::default()) {
+                    let at = (point.cycle_position, point.pairs);
+                    let [one, two] = [&surface, &sum].map(|loading| loading.state(at.0, at.1));
+                    let away = (one.transmission_error() - two.transmission_error()).abs();
+                    assert!(away <= 1e-9 * two.transmission_error() + 1e-18, "{context}: {away:e}");
+                    for spring in 0..5 {
+                        let [here, there] = [&one, &two].map(|state| state.balance.loads[spring]);
+                        assert!((here - there).abs() < 1e-7 * cycle_force(torque) + 1e-12, "{context}: {here} {there}");
+                        let [here, there] = [(&surface, &one), (&sum, &two)]
+                            .map(|(loading, state)| loading.line_load(at.0, state, spring));
+                        let mean = cycle_force(torque) / cycle.face_width;
+                        assert!((here - there).abs() < 1e-6 * mean + 1e-9, "{context}: {here} {there}");
+                    }
+                }
+            }
+        }
+    }
+}
+
+fn cycle_force(torque: f64) -> f64 {
+    torque / pair().pinion.base_radius
+}
+
+/// Twisted: ever more to one end towards the tip, and to the other end towards the root.
+#[derive(Debug)]
+struct Twist {
+    middle: f64,
+    /// Slope across the face by roll angle.
+    rate: f64,
+}
+
+impl Modification for Twist {
+    fn surface(&self, roll: f64, z: f64) -> f64 {
+        self.rate * (roll - self.middle) * z
+    }
+
+    fn varies_over_surface(&self) -> bool {
+        true
+    }
+
+    fn resolved(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// Tier: closed form and invariant. With the whole face in contact a twist, whose mean is 0, leaves the transmission error
+/// as it is; where less is in contact, one pair with a slope a across the face b carries k w²/2ab; and the mirrored twist
+/// gives the same.
+#[test]
+fn a_twisted_flank_is_a_slope_that_turns() {
+    let pair = pair();
+    let settings = Settings { slices: 1025, ..Settings::default() };
+    let cycle = MeshCycle::new(&pair, &constant(&pair, STIFFNESS), settings).unwrap();
+    let (middle, rate) = (0.3, 4e-3);
+    let (twisted, mirrored) = (of(Twist { middle, rate }), of(Twist { middle, rate: -rate }));
+    let width = cycle.face_width;
+    let (mut whole, mut partly) = (0, 0);
+    for torque in [2.0, 20.0, 4000.0] {
+        let loading = LoadCase::new(&cycle, &twisted, torque);
+        let points = loading.curve(Wanted::default());
+        let other = LoadCase::new(&cycle, &mirrored, torque).curve(Wanted::default());
+        let force = cycle_force(torque);
+        for (point, mirror) in points.iter().zip(&other) {
+            close(mirror.transmission_error, point.transmission_error, 1e-9);
+            if point.pairs != 1 {
+                continue;
+            }
+            let roll = point.path_position / pair.pinion.base_radius;
+            let slope = (rate * (roll - middle)).abs();
+            if force / STIFFNESS > 0.5 * slope * width {
+                whole += 1;
+                close(point.transmission_error, force / STIFFNESS, 1e-9);
+            } else {
+                partly += 1;
+                // Φ = w²/2ab; the lowest place is −ab/2.
+                let penetration = (2.0 * slope * width * force / STIFFNESS).sqrt();
+                let exact = penetration - 0.5 * slope * width;
+                let size = penetration + 0.5 * slope * width;
+                assert!(
+                    (point.transmission_error - exact).abs() < 2e-3 * size,
+                    "{:e} {exact:e}",
+                    point.transmission_error
+                );
+            }
+        }
+    }
+    assert!(whole > 10 && partly > 10, "{whole} {partly}");
+}
+
+/// What is left of the tooth is looked at where the surface is deepest.
+#[test]
+fn a_surface_that_takes_half_the_tooth_is_refused() {
+    let pair = pair();
+    let mut design = of(Twist { middle: 0.3, rate: 4e-3 });
+    let slope = crate::gear::modification::helix_slope::HelixSlope { amount: 1e-6 };
+    assert!(design.add(crate::gear::modification::Gears::Pinion, &slope, &pair).is_ok());
+    design.pinion.extend(of(Twist { middle: 0.3, rate: 4.0 }).pinion);
+    assert!(design.add(crate::gear::modification::Gears::Pinion, &slope, &pair).is_err());
+}
