@@ -19,24 +19,27 @@ impl LoadCase<'_> {
         (CLOSEST * pair.base_pitch).max(ROUNDINGS * f64::EPSILON * pair.tangent_length)
     }
 
-    /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
+    /// A change of the set of loaded pairs between two nodes of a span with these states, or a level that a pair's
     /// penetration passes: where, and for a first or last touch of which pair.
-    pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES]) -> Option<(f64, Option<usize>)> {
+    pub(super) fn change(
+        &self,
+        span: &Span,
+        nodes: [usize; 2],
+        states: &[Equilibrium; 2],
+    ) -> Option<(f64, Option<usize>)> {
         let closest = self.closest();
-        for node in 0..NODES - 1 {
-            for pair in 0..self.cycle.springs(span.pairs) {
-                let touch = if known(span, node, pair) { None } else { Some((0.0, Some(pair))) };
-                for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                    let [before, after] = [node, node + 1].map(|node| states[node].balance.penetration[pair] - level);
-                    if (before > 0.0) == (after > 0.0) {
-                        continue;
-                    }
-                    let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
-                    let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
-                    let at = crossing(above, (from, before), (to, after), 0.1 * closest);
-                    if at - span.start > closest && span.end - at > closest {
-                        return Some((at, touch));
-                    }
+        for pair in 0..self.cycle.springs(span.pairs) {
+            let touch = if known(span, nodes, pair) { None } else { Some((0.0, Some(pair))) };
+            for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
+                let [before, after] = [&states[0], &states[1]].map(|state| state.balance.penetration[pair] - level);
+                if (before > 0.0) == (after > 0.0) {
+                    continue;
+                }
+                let [from, to] = nodes.map(|node| span.position(&self.cycle.rows, node));
+                let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
+                let at = crossing(above, (from, before), (to, after), 0.1 * closest);
+                if at - span.start > closest && span.end - at > closest {
+                    return Some((at, touch));
                 }
             }
         }
@@ -55,7 +58,7 @@ impl LoadCase<'_> {
         {
             let differs = (0..self.cycle.springs(span.pairs)).any(|pair| {
                 let loaded = |at: usize| states[at].balance.penetration[pair] > 0.0;
-                loaded(end) != loaded(next) && !known(span, node, pair)
+                loaded(end) != loaded(next) && !known(span, [node, node + 1], pair)
             });
             if differs {
                 states[end] = self.state(inside, span.pairs);
@@ -64,8 +67,8 @@ impl LoadCase<'_> {
     }
 }
 
-/// Whether the change of a pair between a node and the next one is what the span's own end is.
-fn known(span: &Span, node: usize, pair: usize) -> bool {
-    let ends = [node == 0, node + 2 == NODES];
+/// Whether the change of a pair between two nodes is what the span's own end is.
+fn known(span: &Span, nodes: [usize; 2], pair: usize) -> bool {
+    let ends = [nodes[0] == 0, nodes[1] + 1 == NODES];
     (0..2).any(|end| ends[end] && span.touches[end] == Some(pair))
 }

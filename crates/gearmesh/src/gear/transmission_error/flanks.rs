@@ -62,17 +62,20 @@ impl<'a> Flanks<'a> {
     }
 
     /// Whether both flanks run parallel across the face at every position.
+    #[inline]
     pub(super) fn is_flat(&self) -> bool {
         self.face.is_flat() && !self.is_surface
     }
 
     /// What the gaps count from \[m\].
+    #[inline]
     pub(super) fn offset(&self) -> f64 {
         if self.is_surface { 0.0 } else { self.face.offset }
     }
 
     /// The gap at a path position: on the line of action; with corner contact, where the flanks
     /// come nearest, and none where they are too far apart for that.
+    #[inline]
     pub(super) fn gap(&self, s: f64) -> Option<f64> {
         let pair = &self.cycle.pair;
         if !self.is_surface {
@@ -92,6 +95,7 @@ impl<'a> Flanks<'a> {
     }
 
     /// The mean deviation above the gap at a path position.
+    #[inline]
     pub(super) fn mean(&self, s: f64) -> f64 {
         if self.is_surface { self.face_at(s).mean } else { self.face.mean }
     }
@@ -148,6 +152,7 @@ pub(super) fn strips(cycle: &MeshCycle, even: bool) -> Vec<[f64; 2]> {
 }
 
 impl FaceSection<'_> {
+    #[inline]
     fn gap(&self, pair: &GearPair, s: f64) -> Option<f64> {
         if let Some(gaps) = &self.gaps {
             return gaps.at(s);

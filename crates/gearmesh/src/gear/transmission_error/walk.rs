@@ -62,12 +62,17 @@ impl LoadCase<'_> {
         visit: &mut impl FnMut(&Span, &[Equilibrium; NODES]),
     ) {
         let rows = &self.cycle.rows;
+        // What has changed from end to end is found before anything between them is computed, which would be in vain.
+        let mut change = if *cuts > 0 { self.change(span, [0, NODES - 1], ends) } else { None };
         let mut states = [ends[0]; NODES];
-        states[NODES - 1] = ends[1];
-        for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
-            *state = self.state(span.position(rows, node), span.pairs);
+        if change.is_none() {
+            states[NODES - 1] = ends[1];
+            for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
+                *state = self.state(span.position(rows, node), span.pairs);
+            }
+            let next = |node: usize| self.change(span, [node, node + 1], &[states[node], states[node + 1]]);
+            change = if *cuts > 0 { (0..NODES - 1).find_map(next) } else { None };
         }
-        let change = if *cuts > 0 { self.change(span, &states) } else { None };
         let bent = || self.refines && *cuts > 0 && rows.tail(&states.map(|state| state.transmission_error())) > TAIL;
         let cut = change.or_else(|| bent().then_some((0.5 * (span.start + span.end), None)));
         let Some((position, pair)) = cut else {
