@@ -6,18 +6,46 @@ use super::face::Face;
 use super::flattening::InSeries;
 use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 
+/// The deviations across the common face.
+#[derive(Clone, Copy)]
+pub enum Faces<'a> {
+    /// Of all pairs alike.
+    Same(&'a Face<'a>),
+    /// Of one pair after the other.
+    Each(&'a [Face<'a>]),
+}
+
+impl<'a> Faces<'a> {
+    #[inline]
+    fn of(self, pair: usize) -> &'a Face<'a> {
+        match self {
+            Self::Same(face) => face,
+            Self::Each(faces) => &faces[pair],
+        }
+    }
+
+    /// The largest mean deviation above the smallest \[m\].
+    #[must_use]
+    pub fn mean(self) -> f64 {
+        match self {
+            Self::Same(face) => face.mean,
+            Self::Each(faces) => faces.iter().map(|face| face.mean).fold(0.0, f64::max),
+        }
+    }
+}
+
 /// Pairs with the linear contact law.
 pub struct LinearPairs<'a> {
     /// Stiffness of each pair as if the face were flat \[N/m\].
     pub stiffness: PerSpring,
     /// The deviation across the common face.
-    pub faces: [&'a Face<'a>; MOST_SPRINGS],
+    pub faces: Faces<'a>,
 }
 
 impl Springs for LinearPairs<'_> {
     #[inline]
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (passed, share) = self.faces[pair].passed(penetration);
+        let (passed, share) = self.faces.of(pair).passed(penetration);
         (self.stiffness[pair] * passed, self.stiffness[pair] * share)
     }
 }
@@ -30,7 +58,7 @@ pub struct LogarithmicPairs<'a> {
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.
-    pub faces: [&'a Face<'a>; MOST_SPRINGS],
+    pub faces: Faces<'a>,
 }
 
 impl LogarithmicPairs<'_> {
@@ -38,13 +66,13 @@ impl LogarithmicPairs<'_> {
     /// of the response, that of a flat face plus the mean deviation.
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
-        self.slices[pair].penetration(total / self.width) + self.faces[pair].mean
+        self.slices[pair].penetration(total / self.width) + self.faces.of(pair).mean
     }
 }
 
 impl Springs for LogarithmicPairs<'_> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (load, slope) = self.faces[pair].summed(penetration, |depth| self.slices[pair].load(depth));
+        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slices[pair].load(depth));
         (self.width * load, self.width * slope)
     }
 }

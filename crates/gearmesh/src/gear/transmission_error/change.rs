@@ -12,6 +12,9 @@ const CLOSEST: f64 = 1e-14;
 /// Roundings in a path position.
 const ROUNDINGS: f64 = 4.0;
 
+/// Where a span ends before its end, and for a first or last touch of which pair.
+pub(super) type Cut = (f64, Option<usize>);
+
 impl LoadCase<'_> {
     /// How near to the end of a span a change counts as being at that end: path positions are not known any better.
     fn closest(&self) -> f64 {
@@ -20,18 +23,13 @@ impl LoadCase<'_> {
     }
 
     /// A change of the set of loaded pairs between two nodes of a span with these states, or a level that a pair's
-    /// penetration passes: where, and for a first or last touch of which pair.
-    pub(super) fn change(
-        &self,
-        span: &Span,
-        nodes: [usize; 2],
-        states: &[Equilibrium; 2],
-    ) -> Option<(f64, Option<usize>)> {
+    /// penetration passes.
+    pub(super) fn change(&self, span: &Span, nodes: [usize; 2], states: [&Equilibrium; 2]) -> Option<Cut> {
         let closest = self.closest();
         for pair in 0..self.cycle.springs(span.pairs) {
             let touch = if known(span, nodes, pair) { None } else { Some((0.0, Some(pair))) };
             for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                let [before, after] = [&states[0], &states[1]].map(|state| state.balance.penetration[pair] - level);
+                let [before, after] = states.map(|state| state.balance.penetration[pair] - level);
                 if (before > 0.0) == (after > 0.0) {
                     continue;
                 }

@@ -89,11 +89,6 @@ impl<'a> Flanks<'a> {
         Face::of_slices(self.deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
     }
 
-    /// The faces of a surface at path positions; none where one face holds for all.
-    pub(super) fn faces(&self, positions: &[f64]) -> Vec<Face<'a>> {
-        if self.is_surface { positions.iter().map(|&s| self.face_at(s)).collect() } else { Vec::new() }
-    }
-
     /// The mean deviation above the gap at a path position.
     #[inline]
     pub(super) fn mean(&self, s: f64) -> f64 {

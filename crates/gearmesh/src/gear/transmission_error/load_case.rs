@@ -10,8 +10,9 @@ use super::flanks::Flanks;
 use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
+use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::{InSeries, Logarithmic};
-use crate::gear::contact::springs::{LinearPairs, LogarithmicPairs};
+use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
@@ -273,17 +274,22 @@ impl<'a> LoadCase<'a> {
             let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
             return (balance, Some(peaks));
         }
-        let own = self.flanks.faces(reach.positions());
-        let mut faces = [&self.flanks.face; MOST_SPRINGS];
-        faces.iter_mut().zip(&own).for_each(|(slot, face)| *slot = face);
-        let balance = match &self.cycle.elasticity {
+        if self.flanks.is_surface {
+            let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
+            return (self.balance_behind(reach, Faces::Each(&faces)), None);
+        }
+        (self.balance_behind(reach, Faces::Same(&self.flanks.face)), None)
+    }
+
+    /// Where slices do not hold each other.
+    fn balance_behind(&self, reach: &WithinReach, faces: Faces) -> Balance {
+        match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST_SPRINGS];
                 for (slot, s) in stiffness.iter_mut().zip(reach.positions()) {
                     *slot = graded.value(*s);
                 }
-                let mean = own.iter().map(|face| face.mean).reduce(f64::max).unwrap_or(self.flanks.face.mean);
-                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + mean;
+                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } => {
@@ -295,8 +301,7 @@ impl<'a> LoadCase<'a> {
                 let above = pairs.above(reach.nearest(), self.force);
                 self.balance_of_pairs(reach, &pairs, above)
             }
-        };
-        (balance, None)
+        }
     }
 
     fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {

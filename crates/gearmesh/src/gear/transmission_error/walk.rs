@@ -4,6 +4,7 @@
 //! place (with corner contact), and where a pair takes up or loses its load, which is found to rounding. In between
 //! everything is smooth. Must not know: how equilibrium is found, what is done with the values.
 
+use super::change::Cut;
 use super::load_case::{CLOSEST, Equilibrium, LoadCase};
 use super::trace::{NODES, Span, Trace};
 
@@ -61,23 +62,9 @@ impl LoadCase<'_> {
         cuts: &mut usize,
         visit: &mut impl FnMut(&Span, &[Equilibrium; NODES]),
     ) {
-        let rows = &self.cycle.rows;
-        // What has changed from end to end is found before anything between them is computed, which would be in vain.
-        let mut change = if *cuts > 0 { self.change(span, [0, NODES - 1], ends) } else { None };
-        let mut states = [ends[0]; NODES];
-        if change.is_none() {
-            states[NODES - 1] = ends[1];
-            for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
-                *state = self.state(span.position(rows, node), span.pairs);
-            }
-            let next = |node: usize| self.change(span, [node, node + 1], &[states[node], states[node + 1]]);
-            change = if *cuts > 0 { (0..NODES - 1).find_map(next) } else { None };
-        }
-        let bent = || self.refines && *cuts > 0 && rows.tail(&states.map(|state| state.transmission_error())) > TAIL;
-        let cut = change.or_else(|| bent().then_some((0.5 * (span.start + span.end), None)));
-        let Some((position, pair)) = cut else {
-            self.settle(span, &mut states);
-            return visit(span, &states);
+        let (position, pair) = match self.nodes(span, ends, *cuts > 0) {
+            Ok(states) => return visit(span, &states),
+            Err(cut) => cut,
         };
         *cuts -= 1;
         let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
@@ -85,6 +72,30 @@ impl LoadCase<'_> {
         let middle = self.state(position, span.pairs);
         self.smooth(&before, &[ends[0], middle], cuts, visit);
         self.smooth(&after, &[middle, ends[1]], cuts, visit);
+    }
+
+    /// The states at the nodes of a span, or where it is to be cut, if that is still allowed.
+    fn nodes(&self, span: &Span, ends: &[Equilibrium; 2], may_cut: bool) -> Result<[Equilibrium; NODES], Cut> {
+        let rows = &self.cycle.rows;
+        let change = |nodes: [usize; 2], states: [&Equilibrium; 2]| {
+            if may_cut { self.change(span, nodes, states).map_or(Ok(()), Err) } else { Ok(()) }
+        };
+        // What has changed from end to end is found before anything between them is computed, which would be in vain.
+        change([0, NODES - 1], [&ends[0], &ends[1]])?;
+        let mut states = [ends[0]; NODES];
+        states[NODES - 1] = ends[1];
+        for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
+            *state = self.state(span.position(rows, node), span.pairs);
+        }
+        for node in 0..NODES - 1 {
+            change([node, node + 1], [&states[node], &states[node + 1]])?;
+        }
+        let bent = || rows.tail(&states.each_ref().map(Equilibrium::transmission_error)) > TAIL;
+        if self.refines && may_cut && bent() {
+            return Err((0.5 * (span.start + span.end), None));
+        }
+        self.settle(span, &mut states);
+        Ok(states)
     }
 
     /// The transmission error over the cycle.
