@@ -293,10 +293,8 @@ impl Design {
         }
         let sum = |of: &dyn Fn(&dyn Modification) -> f64| parts.iter().map(|part| of(&*part.modification)).sum::<f64>();
         let face = (-0.5 * flank.face_width, 0.5 * flank.face_width);
-        let edges = parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();
-        let across: Vec<f64> = looks(face, edges).collect();
-        let largest = |of: &dyn Fn(f64) -> f64| across.iter().map(|z| of(*z)).fold(0.0, f64::max);
-        let lead = largest(&|z| sum(&|part| part.lead(z)));
+        let edges = || parts.iter().flat_map(|part| part.modification.lead_breaks()).copied();
+        let lead = looks(face, edges()).map(|z| sum(&|part| part.lead(z))).fold(0.0, f64::max);
         let surface = parts.iter().any(|part| part.modification.varies_over_surface());
         let last = flank.tip_roll + gear.half_angle_at_roll(flank.tip_roll);
         let places = || {
@@ -304,8 +302,9 @@ impl Design {
             looks((flank.root_roll, last), breaks)
         };
         let depth = |roll: f64| {
-            let across = || largest(&|z| sum(&|part| part.lead(z) + part.surface(roll, z)));
-            sum(&|part| part.depth(roll)) + if surface { across() } else { lead }
+            let at = |z: f64| sum(&|part| part.lead(z) + part.surface(roll, z));
+            sum(&|part| part.depth(roll))
+                + if surface { looks(face, edges()).map(at).fold(0.0, f64::max) } else { lead }
         };
         // Room falls with the roll angle, by r_b tan²(u − ψ_b): what fits where there is least need not be looked at closer.
         let minimum = gear.depth_to_centreline(last);

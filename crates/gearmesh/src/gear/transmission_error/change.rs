@@ -22,22 +22,26 @@ impl LoadCase<'_> {
         (CLOSEST * pair.base_pitch).max(ROUNDINGS * f64::EPSILON * pair.tangent_length)
     }
 
-    /// A change of the set of loaded pairs between two nodes of a span with these states, or a level that a pair's
-    /// penetration passes.
-    pub(super) fn change(&self, span: &Span, nodes: [usize; 2], states: [&Equilibrium; 2]) -> Option<Cut> {
-        let closest = self.closest();
-        for pair in 0..self.cycle.springs(span.pairs) {
-            let touch = if known(span, nodes, pair) { None } else { Some((0.0, Some(pair))) };
-            for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                let [before, after] = states.map(|state| state.balance.penetration[pair] - level);
-                if (before > 0.0) == (after > 0.0) {
-                    continue;
-                }
-                let [from, to] = nodes.map(|node| span.position(&self.cycle.rows, node));
-                let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
-                let at = crossing(above, (from, before), (to, after), 0.1 * closest);
-                if at - span.start > closest && span.end - at > closest {
-                    return Some((at, touch));
+    /// The first change of the set of loaded pairs between nodes of a span with these states, or the first level that a
+    /// pair's penetration passes.
+    pub(super) fn change(&self, span: &Span, nodes: &[usize], states: &[Equilibrium]) -> Option<Cut> {
+        let springs = self.cycle.springs(span.pairs);
+        for (nodes, states) in nodes.windows(2).zip(states.windows(2)) {
+            let penetration = |node: usize, pair: usize| states[node].balance.penetration[pair];
+            for pair in 0..springs {
+                let touch = if known(span, [nodes[0], nodes[1]], pair) { None } else { Some((0.0, Some(pair))) };
+                for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
+                    let (before, after) = (penetration(0, pair) - level, penetration(1, pair) - level);
+                    if (before > 0.0) == (after > 0.0) {
+                        continue;
+                    }
+                    let closest = self.closest();
+                    let [from, to] = [nodes[0], nodes[1]].map(|node| span.position(&self.cycle.rows, node));
+                    let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
+                    let at = crossing(above, (from, before), (to, after), 0.1 * closest);
+                    if at - span.start > closest && span.end - at > closest {
+                        return Some((at, touch));
+                    }
                 }
             }
         }

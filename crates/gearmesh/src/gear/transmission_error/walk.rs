@@ -77,19 +77,17 @@ impl LoadCase<'_> {
     /// The states at the nodes of a span, or where it is to be cut, if that is still allowed.
     fn nodes(&self, span: &Span, ends: &[Equilibrium; 2], may_cut: bool) -> Result<[Equilibrium; NODES], Cut> {
         let rows = &self.cycle.rows;
-        let change = |nodes: [usize; 2], states: [&Equilibrium; 2]| {
+        let change = |nodes: &[usize], states: &[Equilibrium]| {
             if may_cut { self.change(span, nodes, states).map_or(Ok(()), Err) } else { Ok(()) }
         };
         // What has changed from end to end is found before anything between them is computed, which would be in vain.
-        change([0, NODES - 1], [&ends[0], &ends[1]])?;
+        change(&[0, NODES - 1], ends)?;
         let mut states = [ends[0]; NODES];
         states[NODES - 1] = ends[1];
         for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        for node in 0..NODES - 1 {
-            change([node, node + 1], [&states[node], &states[node + 1]])?;
-        }
+        change(&std::array::from_fn::<usize, NODES, _>(|node| node), &states)?;
         let bent = || rows.tail(&states.each_ref().map(Equilibrium::transmission_error)) > TAIL;
         if self.refines && may_cut && bent() {
             return Err((0.5 * (span.start + span.end), None));
