@@ -99,6 +99,21 @@ impl Record {
         self.entry(name).map_or(self.place, |entry| entry.place)
     }
 
+    /// The record that a field holds, for places in it, or this one when the field was not given.
+    #[must_use]
+    pub fn inside(&self, name: &str) -> &Self {
+        self.entry(name).and_then(|entry| entry.value.record()).unwrap_or(self)
+    }
+
+    /// The records of the list that a field holds, for places in them.
+    pub fn each_inside(&self, name: &str) -> impl Iterator<Item = &Self> {
+        let items = self.entry(name).map(|entry| match &entry.value {
+            Value::List(items) => items.as_slice(),
+            _ => &[],
+        });
+        items.unwrap_or_default().iter().filter_map(|item| item.value.record())
+    }
+
     /// What was found wrong with what was read from here, with the place of the field that is meant.
     #[must_use]
     pub fn locate(&self, wrong: Diagnostic) -> Diagnostic {

@@ -7,6 +7,7 @@ use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
 use crate::numeric::crossing;
+use declare::declared::Registrable;
 use declare::units::LENGTH;
 use declare::{Declared, registry};
 
@@ -45,7 +46,7 @@ pub struct Rounding {
 }
 
 /// What a study states of a tip.
-pub trait Stated {
+pub trait Stated: Registrable {
     /// The tip with its size in SI.
     fn tip(&self) -> Tip;
 }
