@@ -137,18 +137,8 @@ pub fn record_of(fields: &[Field], given: &[(&str, Value)]) -> Record {
     Record { fields, place: Place::default() }
 }
 
-// Here and not beside the other getters, since these know declarations.
+// Here and not beside the getters, since it knows declarations.
 impl Record {
-    /// A choice, as the enum whose words it was declared with.
-    ///
-    /// # Panics
-    /// When the declaration has no such field, or another enum's words.
-    #[must_use]
-    pub fn word<T: Words>(&self, name: &str) -> T {
-        let word = self.choice(name);
-        T::of(word).unwrap_or_else(|| panic!("field `{name}` was declared with other words than `{word}`"))
-    }
-
     /// The same record with the least value of each range.
     #[must_use]
     pub fn without_ranges(&self, fields: &[Field]) -> Self {

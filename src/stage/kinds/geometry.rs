@@ -153,9 +153,9 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         };
         Diagnostic::new(error.to_string()).at(place)
     };
-    let gears = || [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())].into_iter();
-    let gears = || gears().filter_map(|(side, gear)| Some((side, gear?)));
-    for (side, gear) in gears() {
+    let given = [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())];
+    let given = || given.into_iter().filter_map(|(side, gear)| Some((side, gear?)));
+    for (side, gear) in given() {
         if gear.tip_radius.is_some() && gear.tip_shortening.is_some() {
             return Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
                 .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
@@ -184,7 +184,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })
     };
-    let gears = gears().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
+    let gears = given().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
     let density = Density { points: options.points, chord_error: options.chord_error };
     Ok(Box::new(Geometry { pair, gears, density, teeth: options.teeth }))
 }

@@ -29,15 +29,6 @@ use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
 use verdict::Verdict;
 
-/// A verdict on every published number, and the figures of the report.
-#[derive(Debug, Declared)]
-struct Stated {
-    /// the paper's numbers and claims
-    pub published: Option<Vec<Published>>,
-    /// the figures of the report
-    pub figures: Option<Vec<StatedFigure>>,
-}
-
 pub const KIND: Kind = Kind {
     name: "report",
     version: 1,
@@ -67,6 +58,15 @@ figures:
     build,
 };
 
+/// A verdict on every published number, and the figures of the report.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// the paper's numbers and claims
+    pub published: Option<Vec<Published>>,
+    /// the figures of the report
+    pub figures: Option<Vec<StatedFigure>>,
+}
+
 /// Points of a figure that its drawing shows at most, about: a few lines, each as fine as the drawing.
 const MOST_DRAWN: u64 = 50_000;
 /// Bytes in memory of a point that is read, and of one that is drawn: the table and its copy; the figure, and the page.
@@ -83,9 +83,8 @@ struct Report {
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let stated = Stated::checked(record)?;
-    let places = record.each_inside(Stated::NAMES.published).map(|record| record.place);
-    let published = (1..).zip(stated.published.iter().flatten()).zip(places);
-    let entries = published.map(|((number, stated), place)| ReportEntry::read(number, stated, place));
+    let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
+    let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
     let entries = entries.collect::<Result<_, _>>()?;
     let drawn: Vec<&Record> = record.each_inside(Stated::NAMES.figures).collect();
     let figures = (1..).zip(stated.figures.iter().flatten()).zip(&drawn);

@@ -11,6 +11,7 @@ use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
+use declare::record::Record;
 use declare::units::{RATIO, in_unit};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
@@ -125,14 +126,14 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
 impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
-    pub fn read(number: usize, stated: &Published, place: Place) -> Result<Self, Diagnostic> {
-        let subject = read_subject(stated, place)?;
+    pub fn read(number: usize, stated: &Published, record: &Record) -> Result<Self, Diagnostic> {
+        let subject = read_subject(stated, record)?;
         let is_claim = matches!(subject, Subject::Claim(..));
         let published = match (&stated.value, is_claim) {
             (Some(value), false) => Some(read_target(value, &stated.tolerance, None)?),
             (None, false) => {
                 return Err(Diagnostic::new("the published `value` is missing")
-                    .at(place)
+                    .at(record.place)
                     .help("write `value: 2.316 um`"));
             }
             (Some(value), true) => {
@@ -144,16 +145,16 @@ impl ReportEntry {
         let expected = stated.expected.as_ref();
         let expected = expected.map(|Expected { value, tolerance }| read_target(value, tolerance, Some(unit)));
         let expected = expected.transpose()?;
-        let proof = stated.proof.as_ref().map(|proof| read_proof(&proof.value)).transpose()?;
+        let proof = stated.proof.as_ref().map(read_proof).transpose()?;
         let because = trimmed(stated.because.as_deref());
-        if let Some(proof) = stated.proof.as_ref().filter(|_| because.is_empty()) {
+        if because.is_empty() && proof.is_some() {
             return Err(Diagnostic::new("a proof is given, but not the reason it proves")
-                .at(proof.place)
+                .at(record.place_of(Published::NAMES.proof))
                 .help("add `because: …`"));
         }
         let entry = Self {
             number,
-            place,
+            place: record.place,
             label: trimmed(stated.label.as_deref()),
             location: trimmed(stated.location.as_deref()),
             subject,
@@ -186,7 +187,7 @@ impl ReportEntry {
             && with.iter().all(|(_, operand)| operand.cell().is_none())
             && claim.names().all(|name| name != "computed" && (name != "published" || self.published.is_some()))
         {
-            let place = stated.proof.as_ref().map_or(self.place, |proof| proof.value.claim.place);
+            let place = stated.proof.as_ref().map_or(self.place, |proof| proof.claim.place);
             self.prove(
                 &Inputs::default(),
                 self.published.as_ref().map_or(f64::NAN, |target| target.stated.number),
@@ -327,7 +328,7 @@ fn trimmed(text: Option<&str>) -> String {
     text.unwrap_or_default().trim().to_owned()
 }
 
-fn read_subject(stated: &Published, place: Place) -> Result<Subject, Diagnostic> {
+fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnostic> {
     let names = Published::NAMES;
     let all = [(names.cell, &stated.cell), (names.formula, &stated.formula), (names.claim, &stated.claim)];
     let given: Vec<_> = all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?))).collect();
@@ -335,12 +336,13 @@ fn read_subject(stated: &Published, place: Place) -> Result<Subject, Diagnostic>
         let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
         let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
         let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
-        return Err(Diagnostic::new(message).at(given.get(1).map_or(place, |(_, text)| text.place)));
+        return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
     };
     let wrong = |message: String| Diagnostic::new(message).at(*place);
     if stated.cell.is_some() {
-        if let Some(with) = &stated.with {
-            return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`").at(with.place));
+        if stated.with.is_some() {
+            return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
+                .at(record.place_of(names.with)));
         }
         let operand = Operand::parse(text).map_err(wrong)?;
         return if operand.cell().is_some() {
@@ -349,7 +351,7 @@ fn read_subject(stated: &Published, place: Place) -> Result<Subject, Diagnostic>
             Err(wrong(format!("`{text}` is no cell; write `stage.table[key=value, …].column`")))
         };
     }
-    let with = read_operands(stated.with.as_ref().map_or(&[], |with| with.value.as_slice()), &[])?;
+    let with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
     let formula = read_formula(text, &with, &[], *place)?;
     match (stated.claim.is_some(), formula.is_claim()) {
         (false, false) => Ok(Subject::Formula(formula, with)),

@@ -25,7 +25,7 @@ pub struct Published {
     /// or a comparison that the paper says is true, in every row of its cells
     pub claim: Option<Placed<String>>,
     /// what the names in a formula or claim stand for: cells or quantities
-    pub with: Option<Placed<Vec<(String, Placed<String>)>>>,
+    pub with: Option<Vec<(String, Placed<String>)>>,
     /// the published value as printed, with its unit
     pub value: Option<Placed<String>>,
     /// how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity
@@ -36,7 +36,7 @@ pub struct Published {
     /// why they differ
     pub because: Option<String>,
     /// arithmetic that proves the reason
-    pub proof: Option<Placed<StatedProof>>,
+    pub proof: Option<StatedProof>,
     /// a remark that claims no difference
     pub note: Option<String>,
 }
