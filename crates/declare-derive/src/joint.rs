@@ -7,7 +7,8 @@ use quote::quote;
 use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Ident, LitStr};
 
 use crate::doc::sentence;
-use crate::fields::{Declaration, Marks, declaration};
+use crate::fields::{Declaration, declaration};
+use crate::marks::Marks;
 use crate::words::name_of;
 
 /// Each variant holds one value and is a field of its own; exactly one of them is given.

@@ -7,6 +7,7 @@
 mod doc;
 mod fields;
 mod joint;
+mod marks;
 mod types;
 mod words;
 

@@ -6,7 +6,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 use syn::{Error, GenericArgument, Ident, PathArguments, Type, TypeTuple};
 
-use crate::fields::Marks;
+use crate::marks::Marks;
 
 /// How a type is declared, read from an `entry: &PlacedValue`, and written from a `value: &T` to a `PlacedValue`.
 pub struct Kind {

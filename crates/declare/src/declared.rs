@@ -22,7 +22,7 @@ pub trait Declared: Sized {
     /// Itself, as a consistent record without ranges that was decoded by [`Declared::MEMBER`] says.
     fn read(record: &Record) -> Self;
 
-    /// Itself, as a record without ranges says.
+    /// Itself, as a record without ranges of its own says.
     ///
     /// # Errors
     /// When fields do not go together.
