@@ -1,6 +1,7 @@
 //! What several kinds declare and read alike: how teeth deflect, and how a mesh cycle is sampled and loaded.
 //!
-//! A field that is added to one of these structs is a field of every kind that has it. Must not know: what any kind computes.
+//! A field that is added to one of these structs is a field of every kind that has it. Must not know: what any kind
+//! computes.
 
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
 use declare::Declared;

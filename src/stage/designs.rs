@@ -16,8 +16,8 @@ use studygraph::table::columns::Columns;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
-/// The modifications of a design as a study writes them, members of the families: as records, since any of their values may
-/// be a range, which no struct of a family holds.
+/// The modifications of a design as a study writes them, members of the families: as records, since any of their values
+/// may be a range, which no struct of a family holds.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Elements(Vec<PlacedValue>);
 

@@ -51,8 +51,8 @@ impl Marks {
                     "flatten" => marks.flatten = true,
                     _ => {
                         return Err(meta.error(
-                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, `chooses`, \
-                             `kinds`, `overrides`, `name` or `flatten`",
+                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, \
+                             `chooses`, `kinds`, `overrides`, `name` or `flatten`",
                         ));
                     }
                 }

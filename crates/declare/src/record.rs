@@ -1,8 +1,8 @@
 //! Values of declared parameters, after defaults, in SI, each with its place in the study.
 //!
 //! A [`Record`] holds the fields in the order of their declaration, so its digest depends neither on the order nor on
-//! the spelling in the YAML. The typed getters panic on a name or type that was not declared, which is a mistake of this
-//! program; structs that declare themselves need none of them. Must not know: YAML.
+//! the spelling in the YAML. The typed getters panic on a name or type that was not declared, which is a mistake of
+//! this program; structs that declare themselves need none of them. Must not know: YAML.
 
 use std::collections::BTreeSet;
 

@@ -5,8 +5,8 @@
 
 /// `registry!(METHODS: Method = energy::Energy, iso6336::Iso6336)`, of declared structs that implement the trait `Method`,
 /// makes the list `METHODS`, in the order in which they are listed to the user, `members()` for
-/// [`crate::parameter::Shape::Member`], `read(name, record)`, the struct that a decoded record says, and `Box<dyn Method>`
-/// a parameter. `Method` asks its members to be [`crate::declared::Registrable`], which every declared struct is.
+/// [`crate::parameter::Shape::Member`], `read(name, record)`, the struct that a decoded record says, and a parameter of
+/// `Box<dyn Method>`. `Method` asks its members to be [`crate::declared::Registrable`], which every declared struct is.
 #[macro_export]
 macro_rules! registry {
     ($list:ident: $family:ident = $($member:path),+ $(,)?) => {

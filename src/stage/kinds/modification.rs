@@ -32,7 +32,8 @@ designs:
     build,
 };
 
-/// Named designs of flank modifications (ISO 21771): tip and root relief, arcs, parabolas, crowning, slopes, end relief.
+/// Named designs of flank modifications (ISO 21771): tip and root relief, arcs, parabolas, crowning, slopes, end
+/// relief.
 #[derive(Debug, Declared)]
 struct Stated {
     /// The pair that is modified.
