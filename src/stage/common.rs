@@ -1,13 +1,14 @@
 //! What several kinds declare and read alike: how teeth deflect, and how a mesh cycle is sampled and loaded.
 //!
-//! A field that is added to one of these tables is a field of every kind that has it. Must not know: what any kind computes.
+//! A field that is added to one of these structs is a field of every kind that has it. Must not know: what any kind
+//! computes.
 
 use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
+use declare::Declared;
 use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Field, Shape};
 use declare::record::Record;
-use gearmesh::gear::compliance::{self, Assumptions, ContactLaw, Method};
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::contact::{CornerContact, MOST_COUPLED_SLICES, SliceCoupling};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
@@ -15,103 +16,93 @@ use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::trace::NODES;
 use gearmesh::gear::work::CONTACT_SOLVES;
 
-/// How the teeth of a pair deflect; read by [`teeth`].
-pub const TEETH: &[Field] = &[
-    Field::new("method", Shape::Member(compliance::members), "How the compliance of a tooth is found.")
-        .default("energy"),
-    Field::choice("root", RootShape::CHOICES, "The shape of the tooth below its involute.").default("trochoid"),
-    Field::choice("contact", ContactLaw::CHOICES, "How the flanks flatten against each other.").default("linear"),
-];
-
-/// How teeth deflect: a method, what it is called, and what it is to assume but for what is each kind's own.
+/// How the teeth of a pair deflect.
+#[derive(Debug, Declared)]
 pub struct Teeth {
-    pub name: &'static str,
+    /// How the compliance of a tooth is found.
+    #[declared(default = "energy")]
     pub method: Box<dyn Method>,
-    pub assumptions: Assumptions,
+    /// The shape of the tooth below its involute.
+    #[declared(default = "trochoid")]
+    pub root: RootShape,
+    /// How the flanks flatten against each other.
+    #[declared(default = "linear")]
+    pub contact: ContactLaw,
 }
 
-/// What [`TEETH`] says.
-///
-/// # Errors
-/// When the choices exclude each other.
-pub fn teeth(record: &Record) -> Result<Teeth, Diagnostic> {
-    let (name, options) = record.member("method");
-    let method = compliance::read(name, options)?;
-    let (root, contact): (RootShape, ContactLaw) = (record.word("root"), record.word("contact"));
-    if method.whole_pair() && contact != ContactLaw::Linear {
-        return Err(Diagnostic::new(format!(
-            "`contact: {}` is not for the method `{name}`: its stiffness is that of a pair with its contact",
-            contact.word()
-        ))
-        .at(record.place_of("contact"))
-        .help("leave `contact` out, or take a method of single teeth"));
+impl Teeth {
+    /// Refuses choices that exclude each other.
+    ///
+    /// # Errors
+    /// Which of them, with its place in `record`.
+    pub fn check(&self, record: &Record) -> Result<(), Diagnostic> {
+        let Self { method, root, contact } = self;
+        if method.whole_pair() && *contact != ContactLaw::Linear {
+            return Err(Diagnostic::new(format!(
+                "`contact: {}` is not for the method `{}`: its stiffness is that of a pair with its contact",
+                contact.word(),
+                method.name()
+            ))
+            .at(record.place_of(Self::NAMES.contact))
+            .help("leave `contact` out, or take a method of single teeth"));
+        }
+        if method.needs_fillet() && *root == RootShape::BaseCircle {
+            return Err(Diagnostic::new(format!(
+                "`root: {}` is not for the method `{}`: it meets the body in a sharp corner, where no stress is finite",
+                root.word(),
+                method.name()
+            ))
+            .at(record.place_of(Self::NAMES.root))
+            .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
+        }
+        Ok(())
     }
-    if method.needs_fillet() && root == RootShape::BaseCircle {
-        return Err(Diagnostic::new(format!(
-            "`root: {}` is not for the method `{name}`: it meets the body in a sharp corner, where no stress is finite",
-            root.word()
-        ))
-        .at(record.place_of("root"))
-        .help("take a root with a fillet, `trochoid` or `circular_fillet`"));
+
+    /// What the method is to assume, but for what is each kind's own.
+    pub fn assumptions(&self, coupled: bool) -> Assumptions {
+        Assumptions { root: self.root, contact: self.contact, coupled, torque: None, accuracy: None }
     }
-    let coupled = record.choice("coupling") == "body";
-    let assumptions = Assumptions { root, contact, coupled, torque: None, accuracy: None };
-    Ok(Teeth { name, method, assumptions })
 }
 
-pub const STIFFNESS: Field = Field::reference("stiffness", &["stiffness"], "The pair's compliances.");
-
-/// At most `maximum`.
-pub const fn positions(maximum: i64) -> Field {
-    let summary = "Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.";
-    Field::integer("positions", 8, maximum, summary).default("64")
+/// How finely the face is divided.
+#[derive(Clone, Copy, Debug, Declared)]
+pub struct Slices {
+    /// Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the
+    /// whole face, 200 at most.
+    #[declared(minimum = 1, maximum = 10_000, default = "17")]
+    pub slices: usize,
 }
-
-pub const SLICES: Field = Field::integer(
-    "slices",
-    1,
-    10_000,
-    "Slices on each smooth stretch of the face where no closed form exists; with `slice_coupling`, equal ones on the \
-     whole face, 200 at most.",
-)
-.default("17");
 
 /// Where flanks touch and what holds them.
-pub const CONTACT: &[Field] = &[
-    Field::choice(
-        "corner_contact",
-        CornerContact::CHOICES,
-        "Where flanks can touch: on the line of action, or also off it.",
-    )
-    .default("none"),
-    Field::choice("slice_coupling", SliceCoupling::CHOICES, "Whether slices across the face hold each other.")
-        .default("none"),
-];
+#[derive(Clone, Copy, Debug, Declared)]
+pub struct Contact {
+    /// Where flanks can touch: on the line of action, or also off it.
+    #[declared(default = "none")]
+    pub corner_contact: CornerContact,
+    /// Whether slices across the face hold each other.
+    #[declared(default = "none")]
+    pub slice_coupling: SliceCoupling,
+}
 
-/// What [`positions`], [`SLICES`] and [`CONTACT`] say.
+/// How a mesh cycle is sampled and loaded.
+pub fn settings(positions: usize, Slices { slices }: Slices, contact: Contact) -> Settings {
+    let Contact { corner_contact, slice_coupling } = contact;
+    Settings { positions, slices, corner_contact, slice_coupling }
+}
+
+/// Refuses more slices than can hold each other.
 ///
 /// # Errors
-/// With more slices than can hold each other.
-pub fn settings(record: &Record) -> Result<Settings, Diagnostic> {
-    let settings = Settings {
-        positions: whole(record, "positions"),
-        slices: whole(record, "slices"),
-        corner_contact: record.word("corner_contact"),
-        slice_coupling: record.word("slice_coupling"),
-    };
+/// How many can, with the place in `record`.
+pub fn check_slices(settings: Settings, record: &Record) -> Result<(), Diagnostic> {
     let slices = settings.slices;
     if settings.slice_coupling == SliceCoupling::Plate && slices > MOST_COUPLED_SLICES {
         return Err(Diagnostic::new(format!(
             "`slices` is {slices}, but with `slice_coupling: plate` it must be 1 to {MOST_COUPLED_SLICES}"
         ))
-        .at(record.place_of("slices")));
+        .at(record.place_of(Slices::NAMES.slices)));
     }
-    Ok(settings)
-}
-
-/// A whole number that is declared not to be negative.
-pub fn whole(record: &Record, name: &str) -> usize {
-    usize::try_from(record.integer(name)).unwrap_or(0)
+    Ok(())
 }
 
 /// The ports through which [`mesh_cycle`] reads.

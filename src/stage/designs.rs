@@ -5,17 +5,52 @@
 
 use std::collections::BTreeMap;
 
+use declare::declared::{self, Parameter};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::{Field, Member, Shape};
 use declare::record::{PlacedValue, Record, Value};
 use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::template::Template;
 use gearmesh::gear::modification::{self, Design};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
-/// A design as a study writes it: a list of members of the modification families.
-pub const ELEMENTS: Shape = Shape::List(&Shape::Member(modification::members));
+/// The modifications of a design as a study writes them, members of the families: as records, since any of their values
+/// may be a range, which no struct of a family holds.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Elements(Vec<PlacedValue>);
+
+impl Elements {
+    /// Ranges become variables.
+    ///
+    /// # Errors
+    /// What no declaration can express: fields of a modification that contradict each other.
+    pub fn template(&self) -> Result<Template, Diagnostic> {
+        Template::new(&self.0)
+    }
+
+    #[must_use]
+    pub fn elements(&self) -> Vec<Element> {
+        let of = |item: &PlacedValue| match &item.value {
+            Value::Member(family, record) => Some(Element { family, record: record.clone() }),
+            _ => None,
+        };
+        self.0.iter().filter_map(of).collect()
+    }
+}
+
+impl Parameter for Elements {
+    const SHAPE: Shape = Shape::List(&Shape::Member(modification::members));
+
+    fn of_value(value: &Value) -> Self {
+        Self(declared::items(value).to_vec())
+    }
+
+    fn to_value(&self) -> Value {
+        Value::List(self.0.clone())
+    }
+}
 
 /// One modification: the family and its parameters.
 #[derive(Clone, Debug, PartialEq)]

@@ -35,7 +35,14 @@ const CRATES: &[(&str, Layers)] = &[
     ),
     (
         "crates/declare-derive/src/",
-        &[("doc", &[]), ("fields", &["doc"]), ("joint", &["words"]), ("words", &["fields"])],
+        &[
+            ("doc", &[]),
+            ("marks", &[]),
+            ("types", &["marks"]),
+            ("fields", &["doc", "types"]),
+            ("words", &["fields"]),
+            ("joint", &["words"]),
+        ],
     ),
     (
         "crates/gearmesh/src/",

@@ -7,14 +7,15 @@ use quote::quote;
 use syn::{Attribute, Data, DataEnum, DeriveInput, Error, Fields, Ident, LitStr};
 
 use crate::doc::sentence;
-use crate::fields::{Declaration, Marks, declaration};
+use crate::fields::{Declaration, declaration};
+use crate::marks::Marks;
 use crate::words::name_of;
 
 /// Each variant holds one value and is a field of its own; exactly one of them is given.
 pub fn alternatives(input: &DeriveInput) -> Result<TokenStream, Error> {
     let name = &input.ident;
     let (mut tables, mut reads, mut writes, mut proofs) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-    let (mut idents, mut texts) = (Vec::new(), Vec::new());
+    let (mut idents, mut texts, mut checks) = (Vec::new(), Vec::new(), Vec::new());
     for variant in &variants(input)?.variants {
         let ident = &variant.ident;
         let mut held = match &variant.fields {
@@ -24,10 +25,11 @@ pub fn alternatives(input: &DeriveInput) -> Result<TokenStream, Error> {
         let (marks, text) = marks(&variant.attrs, ident)?;
         // The doc comment of the variant is that of the field.
         held.attrs.clone_from(&variant.attrs);
-        let Declaration { declared, read, write, proof, .. } = declaration(&held, &marks, ident)?;
+        let Declaration { declared, read, write, check, proof, .. } = declaration(&held, &marks, ident)?;
         tables.push(quote!(#declared.optional()));
         reads.push(quote!(if record.entry(#text).is_some() { return Self::#ident(#read); }));
         writes.push(quote!(Self::#ident(value) => { #write }));
+        checks.push(check);
         proofs.push(proof);
         idents.push(ident);
         texts.push(text);
@@ -35,7 +37,11 @@ pub fn alternatives(input: &DeriveInput) -> Result<TokenStream, Error> {
     let joint = joint(
         name,
         &tables,
-        &quote!(::declare::declared::exactly_one(record, &[#(#texts),*])),
+        &quote!(
+            ::declare::declared::exactly_one(record, &[#(#texts),*])?;
+            #(#checks)*
+            ::core::result::Result::Ok(())
+        ),
         &quote!(#(#reads)* ::declare::declared::of_another_declaration()),
         &quote!(match self { #(#writes)* }),
     );
@@ -71,10 +77,10 @@ pub fn tagged(input: &DeriveInput) -> Result<TokenStream, Error> {
                 for field in &fields.named {
                     let Some(own) = &field.ident else { continue };
                     let (marks, text) = self::marks(&field.attrs, own)?;
-                    let Declaration { declared, read, write, proof, .. } = declaration(field, &marks, own)?;
+                    let Declaration { declared, read, write, check, proof, .. } = declaration(field, &marks, own)?;
                     tables.push(quote!(#declared.optional()));
                     proofs.push(proof);
-                    checks.push(quote!(::declare::declared::goes_with(record, #text, [#tag, #word])?;));
+                    checks.push(quote!(::declare::declared::goes_with(record, #text, [#tag, #word])?; #check));
                     read_fields.push(quote!(#own: #read));
                     write_fields.push(quote!({ let value = #own; #write }));
                     bound.push(own);

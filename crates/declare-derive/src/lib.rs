@@ -7,6 +7,8 @@
 mod doc;
 mod fields;
 mod joint;
+mod marks;
+mod types;
 mod words;
 
 use proc_macro::TokenStream;
@@ -16,9 +18,13 @@ use syn::{DeriveInput, Error, parse_macro_input};
 ///
 /// On the struct: `#[declared(name = "genetic")]` where it is a member of a family. On a field: `minimum`, `maximum`
 /// (numbers, in SI), `multiple` (of integers), `dimension` (of `declare::units`, for quantities), `default` (as in a
-/// study), `range` (an optimiser may choose), `axis = N`, `name` (as a study writes it), `flatten` (what is `Joint`).
-/// The type says the rest: `f64`, integers, `bool`, `String`, `Option` of these, `Vec` of these, words, and structs
-/// that are declared themselves. Where every field has a default, `Default` is implemented too.
+/// study), `range` (an optimiser may choose), `chooses` (an optimiser may choose below it), `axis = N` (of a
+/// `Vec<f64>`), `kinds = ["geometry"]` (a `String` that names a stage of one of these), `overrides = Its::NAMES.of` (a
+/// `Variant` of the stage that the field `of` names), `name` (as a study writes it), `flatten` (what is `Joint`). The
+/// type says the rest: `f64`, integers, `bool`, `String`, words, structs that are declared themselves, and whatever
+/// else is a `Parameter`, such as `Box<dyn Method>` of a registry; `Vec` of these, `Vec<(String, T)>` where the user
+/// gives them names, `Placed` of these where a message points there, and `Option` of all. Where every field has a
+/// default, `Default` is implemented too.
 #[proc_macro_derive(Declared, attributes(declared))]
 pub fn declared(input: TokenStream) -> TokenStream {
     let input = parse_macro_input!(input as DeriveInput);

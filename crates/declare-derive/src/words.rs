@@ -7,7 +7,7 @@ use quote::quote;
 use syn::{Attribute, Data, DeriveInput, Error, Fields, Ident};
 
 use crate::doc::sentence;
-use crate::fields::Marks;
+use crate::marks::Marks;
 
 pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
     let name = &input.ident;

@@ -5,7 +5,7 @@
 
 use crate::error::{Diagnostic, Place};
 use crate::parameter::{Choice, Field, Member, Presence, Shape};
-use crate::record::{PlacedValue, Record, Value};
+use crate::record::{PlacedValue, Record, Value, Variant};
 use crate::units::parse_quantity;
 
 /// A struct whose fields are parameters.
@@ -21,6 +21,15 @@ pub trait Declared: Sized {
 
     /// Itself, as a consistent record without ranges that was decoded by [`Declared::MEMBER`] says.
     fn read(record: &Record) -> Self;
+
+    /// Itself, as a record without ranges of its own says.
+    ///
+    /// # Errors
+    /// When fields do not go together.
+    fn checked(record: &Record) -> Result<Self, Diagnostic> {
+        Self::consistent(record)?;
+        Ok(Self::read(record))
+    }
 
     /// The record that says the same.
     fn record(&self) -> Record;
@@ -67,10 +76,44 @@ pub trait Joint: Sized {
 pub trait Parameter: Sized {
     const SHAPE: Shape;
 
+    /// Refuses fields inside that do not go together; values may still be ranges.
+    ///
+    /// # Errors
+    /// The first such field, with its place.
+    fn consistent(_value: &Value) -> Result<(), Diagnostic> {
+        Ok(())
+    }
+
     /// From a value of this shape.
     fn of_value(value: &Value) -> Self;
 
     fn to_value(&self) -> Value;
+}
+
+/// A declared struct of which nobody knows more than its family: what the trait of a family asks of its members.
+pub trait Registrable {
+    /// Its name among the members of its family.
+    fn name(&self) -> &'static str;
+
+    /// As [`Shape::Member`] has it.
+    fn member(&self) -> Value;
+}
+
+impl<T: Declared> Registrable for T {
+    fn name(&self) -> &'static str {
+        T::MEMBER.name
+    }
+
+    fn member(&self) -> Value {
+        Value::Member(T::MEMBER.name, self.record())
+    }
+}
+
+/// A value and where it stands, for messages about one of several.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Placed<T> {
+    pub value: T,
+    pub place: Place,
 }
 
 /// The record of a study that gives these values and leaves the other fields to their defaults.
@@ -94,18 +137,8 @@ pub fn record_of(fields: &[Field], given: &[(&str, Value)]) -> Record {
     Record { fields, place: Place::default() }
 }
 
-// Here and not beside the other getters, since these know declarations.
+// Here and not beside the getters, since it knows declarations.
 impl Record {
-    /// A choice, as the enum whose words it was declared with.
-    ///
-    /// # Panics
-    /// When the declaration has no such field, or another enum's words.
-    #[must_use]
-    pub fn word<T: Words>(&self, name: &str) -> T {
-        let word = self.choice(name);
-        T::of(word).unwrap_or_else(|| panic!("field `{name}` was declared with other words than `{word}`"))
-    }
-
     /// The same record with the least value of each range.
     #[must_use]
     pub fn without_ranges(&self, fields: &[Field]) -> Self {
@@ -172,7 +205,19 @@ fn check_value(value: &Value, shape: &Shape, name: &str) -> Result<(), Diagnosti
         (Value::Integer(value), Shape::Integer { multiple, .. }) if value % multiple != 0 => {
             Err(Diagnostic::new(format!("`{name}` is {value}")).help(format!("it may be multiples of {multiple}")))
         }
+        (Value::Axis(values), Shape::Quantity { .. }) => {
+            values.iter().try_for_each(|value| check_value(&Value::Quantity(*value), shape, name))
+        }
+        (Value::Axis(values), Shape::Number { .. }) => {
+            values.iter().try_for_each(|value| check_value(&Value::Number(*value), shape, name))
+        }
         (Value::Group(record), Shape::Group(fields)) => check(record, fields),
+        (Value::Member(name, record), Shape::Member(members)) => {
+            members().iter().find(|member| member.name == *name).map_or(Ok(()), |member| check(record, member.fields))
+        }
+        (Value::Map(entries), Shape::Map(item)) => {
+            entries.iter().try_for_each(|(name, entry)| check_value(&entry.value, item, name))
+        }
         (Value::List(items), Shape::List(item)) => {
             items.iter().try_for_each(|entry| check_value(&entry.value, item, name))
         }
@@ -232,8 +277,8 @@ fn mistyped(value: &Value) -> ! {
 /// # Panics
 /// When the record is of another declaration.
 #[must_use]
-pub fn value<'a>(record: &'a Record, name: &str) -> &'a Value {
-    record.entry(name).map_or_else(|| panic!("a record of another declaration has no `{name}`"), |entry| &entry.value)
+pub fn given<'a>(record: &'a Record, name: &str) -> &'a PlacedValue {
+    record.entry(name).unwrap_or_else(|| panic!("a record of another declaration has no `{name}`"))
 }
 
 /// A value that stands nowhere.
@@ -289,10 +334,36 @@ pub fn word<T: Words>(value: &Value) -> T {
 }
 
 #[must_use]
-pub fn group<T: Declared>(value: &Value) -> T {
-    if let Value::Group(record) = value { T::read(record) } else { mistyped(value) }
+pub fn group(value: &Value) -> &Record {
+    if let Value::Group(record) = value { record } else { mistyped(value) }
 }
 
-pub fn items(value: &Value) -> impl Iterator<Item = &Value> {
-    if let Value::List(items) = value { items.iter().map(|entry| &entry.value) } else { mistyped(value) }
+#[must_use]
+pub fn reference(value: &Value) -> String {
+    if let Value::Reference(stage) = value { stage.clone() } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn axis(value: &Value) -> Vec<f64> {
+    if let Value::Axis(values) = value { values.clone() } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn member(value: &Value) -> (&'static str, &Record) {
+    if let Value::Member(name, record) = value { (name, record) } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn variant(value: &Value) -> Variant {
+    if let Value::Variant(variant) = value { variant.clone() } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn items(value: &Value) -> &[PlacedValue] {
+    if let Value::List(items) = value { items } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn named(value: &Value) -> &[(String, PlacedValue)] {
+    if let Value::Map(entries) = value { entries } else { mistyped(value) }
 }

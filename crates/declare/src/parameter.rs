@@ -1,8 +1,8 @@
 //! Declared parameters: what a stage kind, a modification family, a stiffness method or an optimiser can be told.
 //!
 //! One declaration serves the reader of the YAML, its messages, the JSON schema, `gearstudy kinds`, the canonical
-//! digest and the conformance tests, so a new member is one file with one table of fields. Must not know: YAML, and
-//! what any parameter means. Ranges are inclusive and in SI.
+//! digest and the conformance tests, so a new member is one file with one struct that declares itself. Must not know:
+//! YAML, and what any parameter means. Ranges are inclusive and in SI.
 
 use super::units::Dimension;
 

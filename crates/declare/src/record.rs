@@ -1,8 +1,8 @@
 //! Values of declared parameters, after defaults, in SI, each with its place in the study.
 //!
 //! A [`Record`] holds the fields in the order of their declaration, so its digest depends neither on the order nor on
-//! the spelling in the YAML. The typed getters panic on a name or type that was not declared: that is a mistake of
-//! this program, and the conformance test builds every registered kind to find it. Must not know: YAML.
+//! the spelling in the YAML. The typed getters panic on a name or type that was not declared, which is a mistake of
+//! this program; structs that declare themselves need none of them. Must not know: YAML.
 
 use std::collections::BTreeSet;
 
@@ -99,6 +99,21 @@ impl Record {
         self.entry(name).map_or(self.place, |entry| entry.place)
     }
 
+    /// The record that a field holds, for places in it, or this one when the field was not given.
+    #[must_use]
+    pub fn inside(&self, name: &str) -> &Self {
+        self.entry(name).and_then(|entry| entry.value.record()).unwrap_or(self)
+    }
+
+    /// The records of the list that a field holds, for places in them.
+    pub fn each_inside(&self, name: &str) -> impl Iterator<Item = &Self> {
+        let items = self.entry(name).map(|entry| match &entry.value {
+            Value::List(items) => items.as_slice(),
+            _ => &[],
+        });
+        items.unwrap_or_default().iter().filter_map(|item| item.value.record())
+    }
+
     /// What was found wrong with what was read from here, with the place of the field that is meant.
     #[must_use]
     pub fn locate(&self, wrong: Diagnostic) -> Diagnostic {
@@ -119,7 +134,6 @@ impl Record {
     getter!(map, maybe_map, Value::Map(value) => value.as_slice(), &[(String, PlacedValue)]);
     getter!(group, maybe_group, Value::Group(value) => value, &Record);
     getter!(member, maybe_member, Value::Member(name, record) => (*name, record), (&'static str, &Record));
-    getter!(variant, maybe_variant, Value::Variant(variant) => variant, &Variant);
     getter!(
         /// The values of an axis field.
         axis, maybe_axis, Value::Axis(values) => values.as_slice(), &[f64]);

@@ -5,7 +5,8 @@
 
 /// `registry!(METHODS: Method = energy::Energy, iso6336::Iso6336)`, of declared structs that implement the trait `Method`,
 /// makes the list `METHODS`, in the order in which they are listed to the user, `members()` for
-/// [`crate::parameter::Shape::Member`], and `read(name, record)`, the struct that a decoded record says.
+/// [`crate::parameter::Shape::Member`], `read(name, record)`, the struct that a decoded record says, and a parameter of
+/// `Box<dyn Method>`. `Method` asks its members to be [`crate::declared::Registrable`], which every declared struct is.
 #[macro_export]
 macro_rules! registry {
     ($list:ident: $family:ident = $($member:path),+ $(,)?) => {
@@ -14,6 +15,8 @@ macro_rules! registry {
         pub struct Registered {
             /// Its declaration: name, meaning and fields.
             pub member: $crate::parameter::Member,
+            /// Refuses fields that do not go together.
+            pub consistent: fn(&$crate::record::Record) -> Result<(), $crate::error::Diagnostic>,
             /// Itself, as a record that was decoded by `member` says.
             pub read: fn(&$crate::record::Record) -> Box<dyn $family>,
         }
@@ -21,6 +24,7 @@ macro_rules! registry {
         /// Every member, in the order in which they are listed to the user.
         pub const $list: &[Registered] = &[$(Registered {
             member: <$member as $crate::declared::Declared>::MEMBER,
+            consistent: <$member as $crate::declared::Declared>::consistent,
             read: |record| Box::new(<$member as $crate::declared::Declared>::read(record)),
         }),+];
 
@@ -45,6 +49,25 @@ macro_rules! registry {
                 let help = $crate::error::suggest(name, known);
                 $crate::error::Diagnostic::new(format!("there is no `{name}`")).at(record.place).help(help)
             })
+        }
+
+        impl $crate::declared::Parameter for Box<dyn $family> {
+            const SHAPE: $crate::parameter::Shape = $crate::parameter::Shape::Member(members);
+
+            fn consistent(value: &$crate::record::Value) -> Result<(), $crate::error::Diagnostic> {
+                let (name, record) = $crate::declared::member(value);
+                let found = $list.iter().find(|registered| registered.member.name == name);
+                found.map_or(Ok(()), |registered| (registered.consistent)(record))
+            }
+
+            fn of_value(value: &$crate::record::Value) -> Self {
+                let (name, record) = $crate::declared::member(value);
+                read(name, record).unwrap_or_else(|_| $crate::declared::of_another_declaration())
+            }
+
+            fn to_value(&self) -> $crate::record::Value {
+                $crate::declared::Registrable::member(&**self)
+            }
         }
     };
 }

@@ -2,12 +2,15 @@
 
 #![allow(clippy::float_cmp, reason = "values are copied, not computed")]
 
-use declare::declared::{Declared, Words, record_of};
+use std::fmt::Debug;
+
+use declare::declared::{Declared, Placed, Registrable, Words, entry, record_of};
 use declare::digest::Writer;
+use declare::error::Place;
 use declare::parameter::{Field, Presence, Shape, Span};
-use declare::record::{Record, Value};
+use declare::record::{PlacedValue, Record, Value, Variant};
 use declare::units::LENGTH;
-use declare::{Alternatives, Declared, Tagged, Words};
+use declare::{Alternatives, Declared, Tagged, Words, registry};
 
 /// Where a search starts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
@@ -194,4 +197,171 @@ fn fields_that_do_not_go_together_are_refused() {
     let range = record_of(Relief::MEMBER.fields, &[("length", Value::Range(0.1, 0.2))]);
     assert!(Relief::consistent(&range).is_ok());
     assert_eq!(Relief::read(&range.without_ranges(Relief::MEMBER.fields)).reach, Reach::Length(0.1));
+}
+
+/// What hills are.
+trait Hill: Debug + Registrable {
+    fn height(&self) -> f64;
+}
+
+/// as high everywhere
+#[derive(Debug, Declared)]
+#[declared(name = "flat")]
+struct Flat {}
+
+impl Hill for Flat {
+    fn height(&self) -> f64 {
+        0.0
+    }
+}
+
+/// one that ends somewhere
+#[derive(Debug, Declared)]
+#[declared(name = "round")]
+struct Round {
+    #[declared(flatten)]
+    pub reach: Reach,
+}
+
+impl Hill for Round {
+    fn height(&self) -> f64 {
+        let (Reach::Length(height) | Reach::Share(height)) = self.reach;
+        height
+    }
+}
+
+registry!(HILLS: Hill = Flat, Round);
+
+/// a stage that exists only here
+#[derive(Debug, Declared)]
+struct Stage {
+    /// where
+    #[declared(kinds = ["field", "wood"])]
+    pub ground: String,
+    /// who
+    #[declared(kinds = ["walker"])]
+    pub walkers: Vec<Placed<String>>,
+    /// how far
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, axis = 4)]
+    pub way: Vec<f64>,
+    /// how often
+    #[declared(minimum = 0.0, maximum = 9.0, axis = usize::MAX)]
+    pub times: Option<Vec<f64>>,
+    /// over what
+    #[declared(default = "flat", chooses)]
+    pub hill: Box<dyn Hill>,
+    /// what else
+    pub others: Option<Vec<Relief>>,
+    /// by names
+    pub names: Vec<(String, Placed<String>)>,
+    /// as it is best
+    #[declared(overrides = Stage::NAMES.ground)]
+    pub best: Variant,
+    /// as it may be
+    #[declared(overrides = Stage::NAMES.ground)]
+    pub steps: Vec<(String, Vec<Variant>)>,
+}
+
+fn at(line: usize, value: Value) -> PlacedValue {
+    PlacedValue { value, place: Place { line, ..Place::default() } }
+}
+
+fn stage(hill: Value, others: Vec<Value>) -> Record {
+    let variant = |written: &str| {
+        Value::Variant(Variant { kind: "field", written: written.to_owned(), record: Record::default() })
+    };
+    let text = |text: &str| Value::Text(text.to_owned());
+    record_of(
+        Stage::MEMBER.fields,
+        &[
+            ("ground", Value::Reference("meadow".to_owned())),
+            (
+                "walkers",
+                Value::List(vec![at(3, Value::Reference("ann".into())), at(4, Value::Reference("bob".into()))]),
+            ),
+            ("way", Value::Axis(vec![0.25, 0.5])),
+            ("hill", hill),
+            ("others", Value::List(others.into_iter().map(entry).collect())),
+            ("names", Value::Map(vec![("a".to_owned(), at(7, text("one"))), ("b".to_owned(), at(8, text("two")))])),
+            ("best", variant("wet")),
+            ("steps", Value::Map(vec![("dry".to_owned(), entry(Value::List(vec![entry(variant("sandy"))])))])),
+        ],
+    )
+}
+
+#[test]
+fn references_axes_members_maps_and_variants_are_declared_as_by_hand() {
+    let by_hand = [
+        Field::reference("ground", &["field", "wood"], "where"),
+        Field::new("walkers", Shape::List(&Shape::Reference(&["walker"])), "who"),
+        Field::quantity("way", LENGTH, 0.0, 1.0, "how far").axis(4),
+        Field::number("times", 0.0, 9.0, "how often").axis(usize::MAX).optional(),
+        Field::new("hill", Shape::Member(members), "over what").default("flat").chooses(),
+        Field::new("others", Shape::List(&Shape::Group(Relief::MEMBER.fields)), "what else").optional(),
+        Field::new("names", Shape::Map(&Shape::Text), "by names"),
+        Field::new("best", Shape::Overrides("ground"), "as it is best"),
+        Field::new("steps", Shape::Map(&Shape::List(&Shape::Overrides("ground"))), "as it may be"),
+    ];
+    assert_eq!(Stage::MEMBER.fields.len(), by_hand.len());
+    for (derived, by_hand) in Stage::MEMBER.fields.iter().zip(&by_hand) {
+        assert_eq!((derived.name, derived.summary), (by_hand.name, by_hand.summary));
+        assert!(derived.presence == by_hand.presence && derived.span == by_hand.span, "{}", derived.name);
+        assert_eq!(derived.chooses, by_hand.chooses, "{}", derived.name);
+        assert!(same(&derived.shape, &by_hand.shape), "{}", derived.name);
+    }
+}
+
+fn same(one: &Shape, two: &Shape) -> bool {
+    match (one, two) {
+        (Shape::Reference(one), Shape::Reference(two)) => one == two,
+        (Shape::List(one), Shape::List(two)) | (Shape::Map(one), Shape::Map(two)) => same(one, two),
+        (
+            Shape::Quantity { dimension, minimum, maximum },
+            Shape::Quantity { dimension: other, minimum: least, maximum: most },
+        ) => (dimension, minimum, maximum) == (other, least, most),
+        (Shape::Number { minimum, maximum }, Shape::Number { minimum: least, maximum: most }) => {
+            (minimum, maximum) == (least, most)
+        }
+        (Shape::Member(one), Shape::Member(two)) => {
+            one().iter().map(|member| member.name).eq(two().iter().map(|member| member.name))
+        }
+        (Shape::Group(one), Shape::Group(two)) => {
+            one.iter().map(|field| field.name).eq(two.iter().map(|field| field.name))
+        }
+        (Shape::Overrides(one), Shape::Overrides(two)) => one == two,
+        (Shape::Text, Shape::Text) => true,
+        _ => false,
+    }
+}
+
+#[test]
+fn they_are_read_with_their_places_and_written_as_they_were() {
+    let round = Value::Member("round", Round { reach: Reach::Length(0.5) }.record());
+    let record =
+        stage(round, vec![Value::Group(Relief { reach: Reach::Share(1.0), growth: Growth::Straight }.record())]);
+    let stage = Stage::checked(&record).unwrap();
+    assert_eq!((stage.ground.as_str(), stage.way.as_slice(), stage.times.as_ref()), ("meadow", &[0.25, 0.5][..], None));
+    let walkers: Vec<_> = stage.walkers.iter().map(|walker| (walker.value.as_str(), walker.place.line)).collect();
+    assert_eq!(walkers, [("ann", 3), ("bob", 4)]);
+    let names: Vec<_> = stage.names.iter().map(|(name, text)| (name.as_str(), text.value.as_str())).collect();
+    assert_eq!((names, stage.names[1].1.place.line), (vec![("a", "one"), ("b", "two")], 8));
+    assert_eq!((stage.hill.name(), stage.hill.height()), ("round", 0.5));
+    assert_eq!((stage.best.written.as_str(), stage.steps[0].1[0].written.as_str()), ("wet", "sandy"));
+    assert_eq!(stage.record(), record);
+    assert!(stage.in_range().is_ok());
+    let refused = |stage: Stage| stage.in_range().unwrap_err().message;
+    assert_eq!(refused(Stage { way: vec![0.5, 2.0], ..Stage::read(&record) }), "`way` is 2");
+    let far = Box::new(Round { reach: Reach::Length(3.0) });
+    assert_eq!(refused(Stage { hill: far, ..Stage::read(&record) }), "`length` is 3");
+}
+
+#[test]
+fn what_does_not_go_together_is_refused_wherever_it_is() {
+    let refused = |hill, others| Stage::checked(&stage(hill, others)).unwrap_err().message;
+    let nothing = || Record::default();
+    let flat = || Value::Member("flat", nothing());
+    let none = "exactly one of `length`, `length_share` is needed, and there is none";
+    assert_eq!(refused(Value::Member("round", nothing()), vec![]), none);
+    assert_eq!(refused(flat(), vec![Value::Group(nothing())]), none);
+    assert!(Stage::checked(&stage(flat(), vec![])).is_ok());
 }

@@ -10,9 +10,10 @@ mod trial;
 mod variant;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
+use declare::Declared;
+use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Field, Shape};
-use declare::record::{PlacedValue, Record, Value};
+use declare::record::{self, Record};
 use declare::units::RATIO;
 use quantity::Quantity;
 use studygraph::table::data::Table;
@@ -23,8 +24,8 @@ use variant::Variant;
 pub const KIND: Kind = Kind {
     name: "accuracy",
     version: 1,
-    summary: "Error and cost of a stage's settings against converged ones, and the cheapest that meet an accuracy.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: accuracy
 of: ste
@@ -36,35 +37,32 @@ ladders:
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("of", &[], "The stage whose settings are tried; it reads there what it reads in the study."),
-    Field::new(
-        "quantities",
-        Shape::List(&Shape::Text),
-        "Columns of its tables, `table.column` or `table[key=value, …].column`; of several rows the worst one counts.",
-    ),
-    Field::new("reference", Shape::Overrides("of"), "The settings that count as converged."),
-    Field::new(
-        "ladders",
-        Shape::Map(&Shape::List(&Shape::Overrides("of"))),
-        "Settings to try, in lists with names of their own, from coarse to fine.",
-    ),
-    Field::new(
-        "evaluations",
-        Shape::Text,
-        "A column of its tables that counts its work; of several rows the sum counts.",
-    )
-    .optional(),
-    Field::integer("repeats", 1, 1000, "How often each run of a ladder is repeated; the median time counts.")
-        .default("3"),
-    Field::integer("seeds", 1, 1000, "With how many seeds a stage that draws random numbers is run.").default("1"),
-    Field::new(
-        "wanted",
-        Shape::List(&Shape::Quantity { dimension: RATIO, minimum: 1e-15, maximum: 10.0 }),
-        "Relative accuracies for which the cheapest setting is looked for.",
-    )
-    .default("[1 %, 0.1 %, 0.01 %]"),
-];
+/// Error and cost of a stage's settings against converged ones, and the cheapest that meet an accuracy.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The stage whose settings are tried; it reads there what it reads in the study.
+    #[declared(kinds = [])]
+    pub of: String,
+    /// Columns of its tables, `table.column` or `table[key=value, …].column`; of several rows the worst one counts.
+    pub quantities: Vec<Placed<String>>,
+    /// The settings that count as converged.
+    #[declared(overrides = Stated::NAMES.of)]
+    pub reference: record::Variant,
+    /// Settings to try, in lists with names of their own, from coarse to fine.
+    #[declared(overrides = Stated::NAMES.of)]
+    pub ladders: Vec<(String, Vec<record::Variant>)>,
+    /// A column of its tables that counts its work; of several rows the sum counts.
+    pub evaluations: Option<Placed<String>>,
+    /// How often each run of a ladder is repeated; the median time counts.
+    #[declared(minimum = 1, maximum = 1000, default = "3")]
+    pub repeats: usize,
+    /// With how many seeds a stage that draws random numbers is run.
+    #[declared(minimum = 1, maximum = 1000, default = "1")]
+    pub seeds: usize,
+    /// Relative accuracies for which the cheapest setting is looked for.
+    #[declared(minimum = 1e-15, maximum = 10.0, dimension = RATIO, default = "[1 %, 0.1 %, 0.01 %]")]
+    pub wanted: Vec<f64>,
+}
 
 struct Accuracy {
     quantities: Vec<Quantity>,
@@ -82,48 +80,41 @@ struct Ladder {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let reference = Variant::build("reference".to_owned(), record.variant("reference"))?;
+    let stated = Stated::checked(record)?;
+    let reference = Variant::build("reference".to_owned(), &stated.reference)?;
     let mut ladders = Vec::new();
-    for (name, entry) in record.map("ladders") {
-        let Value::List(items) = &entry.value else { continue };
-        let step = |(step, item): (usize, &PlacedValue)| match &item.value {
-            Value::Variant(variant) => Some(Variant::build(format!("{name} {step}"), variant)),
-            _ => None,
-        };
-        let steps = (1..).zip(items).filter_map(step).collect::<Result<_, _>>()?;
-        ladders.push(Ladder { name: name.clone(), steps });
+    for (name, settings) in stated.ladders {
+        let step = |(step, setting)| Variant::build(format!("{name} {step}"), setting);
+        let steps = (1..).zip(&settings).map(step).collect::<Result<_, _>>()?;
+        ladders.push(Ladder { name, steps });
     }
     if ladders.iter().all(|ladder| ladder.steps.is_empty()) {
-        return Err(Diagnostic::new("the ladders are empty").at(record.place_of("ladders")));
+        return Err(Diagnostic::new("the ladders are empty").at(record.place_of(Stated::NAMES.ladders)));
     }
     let variants = || ladders.iter().flat_map(|ladder| &ladder.steps).chain([&reference]);
-    let read = |text: &str, place| {
-        let quantity = Quantity::read(text).map_err(|problem| Diagnostic::new(problem).at(place))?;
+    let read = |text: &Placed<String>| {
+        let quantity = Quantity::read(&text.value).map_err(|problem| Diagnostic::new(problem).at(text.place))?;
         for variant in variants() {
-            quantity.check(&variant.stage.outputs()).map_err(|found| found.at(place))?;
+            quantity.check(&variant.stage.outputs()).map_err(|found| found.at(text.place))?;
         }
         Ok(quantity)
     };
     let mut quantities: Vec<Quantity> = Vec::new();
-    for entry in record.list("quantities") {
-        let Value::Text(text) = &entry.value else { continue };
-        let quantity = read(text, entry.place)?;
+    for text in &stated.quantities {
+        let quantity = read(text)?;
         if quantities.iter().any(|other| other.name == quantity.name) {
-            return Err(Diagnostic::new(format!("`{}` is listed twice", quantity.name)).at(entry.place));
+            return Err(Diagnostic::new(format!("`{}` is listed twice", quantity.name)).at(text.place));
         }
         quantities.push(quantity);
     }
     if quantities.is_empty() {
-        return Err(Diagnostic::new("no quantities are given").at(record.place_of("quantities")));
+        return Err(Diagnostic::new("no quantities are given").at(record.place_of(Stated::NAMES.quantities)));
     }
-    let evaluations = record.maybe_text("evaluations").map(|text| read(text, record.place_of("evaluations")));
-    let evaluations = evaluations.transpose()?;
-    let whole = |name: &str| usize::try_from(record.integer(name)).unwrap_or(1);
-    let number = |entry: &PlacedValue| if let Value::Quantity(value) = entry.value { Some(value) } else { None };
-    let mut wanted: Vec<f64> = record.list("wanted").iter().filter_map(number).collect();
+    let evaluations = stated.evaluations.as_ref().map(read).transpose()?;
+    let mut wanted = stated.wanted;
     wanted.sort_by(f64::total_cmp);
     wanted.dedup();
-    let plan = Plan { repeats: whole("repeats"), seeds: whole("seeds") };
+    let plan = Plan { repeats: stated.repeats, seeds: stated.seeds };
     Ok(Box::new(Accuracy { quantities, evaluations, reference, ladders, plan, wanted }))
 }
 

@@ -15,9 +15,10 @@ mod tests;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
 use contour::{Contour, contours};
+use declare::declared::{Declared, Placed, Words};
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, Shape};
-use declare::record::{Record, Value};
+use declare::record::Record;
+use declare::{Declared, Words};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Row, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -25,8 +26,8 @@ use studygraph::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "export",
     version: 1,
-    summary: "Profiles as files for drawing, cutting and meshing programs: DXF, SVG, CSV.",
-    fields: FIELDS,
+    summary: Export::MEMBER.summary,
+    fields: Export::MEMBER.fields,
     example: "
 kind: export
 pair: geometry
@@ -36,23 +37,51 @@ formats: [dxf, svg, csv]
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("pair", &["geometry"], "The pair; its `outline` says what is drawn and how densely."),
-    Field::choice("gear", GEARS, "Which gears; each has files of its own.").default("both"),
-    Field::new("formats", Shape::List(&Shape::Choice(FORMATS)), "Which files.").default("[dxf, svg, csv]"),
-];
+/// Profiles as files for drawing, cutting and meshing programs: DXF, SVG, CSV.
+#[derive(Debug, Declared)]
+struct Export {
+    /// The pair; its `outline` says what is drawn and how densely.
+    #[declared(kinds = ["geometry"])]
+    pub pair: String,
+    /// Which gears; each has files of its own.
+    #[declared(default = "both")]
+    pub gear: Which,
+    /// Which files.
+    #[declared(default = "[dxf, svg, csv]")]
+    pub formats: Vec<Placed<Format>>,
+}
 
-const GEARS: &[Choice] = &[
-    Choice { name: "both", summary: "pinion and gear" },
-    Choice { name: "pinion", summary: "the pinion" },
-    Choice { name: "gear", summary: "the mating gear" },
-];
+/// Which gears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Which {
+    /// pinion and gear
+    Both,
+    /// the pinion
+    Pinion,
+    /// the mating gear
+    Gear,
+}
 
-const FORMATS: &[Choice] = &[
-    Choice { name: "dxf", summary: "DXF of AutoCAD 2000 in mm: ARC, LINE, LWPOLYLINE, the bore as CIRCLE" },
-    Choice { name: "svg", summary: "SVG, true to scale in mm" },
-    Choice { name: "csv", summary: "the points, in mm" },
-];
+/// A format of files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Format {
+    /// DXF of AutoCAD 2000 in mm: ARC, LINE, LWPOLYLINE, the bore as CIRCLE
+    Dxf,
+    /// SVG, true to scale in mm
+    Svg,
+    /// the points, in mm
+    Csv,
+}
+
+impl Which {
+    fn names(self) -> &'static [&'static str] {
+        match self {
+            Self::Both => &["pinion", "gear"],
+            Self::Pinion => &["pinion"],
+            Self::Gear => &["gear"],
+        }
+    }
+}
 
 /// Lines of a file for each point, where they are more than one, and beside the points.
 const DXF_LINES: usize = 4;
@@ -61,31 +90,19 @@ const HEAD: usize = 200;
 const CONTOUR_POINT: u64 = 160;
 const LINE: u64 = 80;
 
-struct Export {
-    pair: String,
-    gears: Vec<&'static str>,
-    formats: Vec<&'static str>,
-}
-
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let gears = match record.choice("gear") {
-        "both" => vec!["pinion", "gear"],
-        one => vec![one],
-    };
-    let mut formats = Vec::new();
-    for entry in record.list("formats") {
-        let Value::Choice(format) = entry.value else { continue };
-        if formats.contains(&format) {
-            return Err(Diagnostic::new(format!("the format `{format}` is named twice")).at(entry.place));
+    let export = Export::checked(record)?;
+    for (index, Placed { value: format, place }) in export.formats.iter().enumerate() {
+        if export.formats[..index].iter().any(|other| other.value == *format) {
+            return Err(Diagnostic::new(format!("the format `{}` is named twice", format.word())).at(*place));
         }
-        formats.push(format);
     }
-    if formats.is_empty() {
+    if export.formats.is_empty() {
         return Err(Diagnostic::new("no format is named")
-            .at(record.place_of("formats"))
+            .at(record.place_of(Export::NAMES.formats))
             .help("name at least one of dxf, svg, csv"));
     }
-    Ok(Box::new(Export { pair: record.reference("pair").to_owned(), gears, formats }))
+    Ok(Box::new(export))
 }
 
 fn drawn<'a>() -> Columns<&'a Contour> {
@@ -110,10 +127,19 @@ fn drawn<'a>() -> Columns<&'a Contour> {
         .but(Column::allows_nan)
 }
 
+/// The name of a file of a gear.
+fn file(gear: &str, format: Format) -> String {
+    format!("{gear}.{}", format.word())
+}
+
 impl Export {
+    fn formats(&self) -> impl Iterator<Item = Format> {
+        self.formats.iter().map(|format| format.value)
+    }
+
     fn files_schema(&self) -> Schema {
-        let names = |gear: &&str| self.formats.iter().map(|format| format!("{gear}.{format}")).collect::<Vec<_>>();
-        let files = self.gears.iter().flat_map(names).collect();
+        let names = |gear: &&str| self.formats().map(|format| file(gear, format)).collect::<Vec<_>>();
+        let files = self.gear.names().iter().flat_map(names).collect();
         Schema::of_files("files", "The files, line by line; each also lies beside the tables.", files)
     }
 }
@@ -129,32 +155,33 @@ impl Stage for Export {
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         // Both gears have about as many points.
-        let points = ahead.rows("pair", "outline").index().saturating_mul(self.gears.len()) / 2;
-        let per_point: usize = self.formats.iter().map(|format| if *format == "dxf" { DXF_LINES } else { 1 }).sum();
-        let lines = points.saturating_mul(per_point).saturating_add(HEAD * self.gears.len() * self.formats.len());
+        let points = ahead.rows("pair", "outline").index().saturating_mul(self.gear.names().len()) / 2;
+        let per_point: usize = self.formats().map(|format| if format == Format::Dxf { DXF_LINES } else { 1 }).sum();
+        let lines =
+            points.saturating_mul(per_point).saturating_add(HEAD * self.gear.names().len() * self.formats.len());
         Estimate::new(false)
             .holding((points as u64).saturating_mul(CONTOUR_POINT).saturating_add(lines as u64 * LINE))
-            .rows(demand, drawn().schema(), RowCount::exact(self.gears.len()))
+            .rows(demand, drawn().schema(), RowCount::exact(self.gear.names().len()))
             .rows(demand, self.files_schema(), RowCount::about(lines))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let all = contours(inputs.table("pair", "outline")?, inputs.table("pair", "gears")?)?;
         let wanted: Vec<&Contour> =
-            self.gears.iter().filter_map(|gear| all.iter().find(|contour| contour.gear == *gear)).collect();
-        if wanted.len() < self.gears.len() {
+            self.gear.names().iter().filter_map(|gear| all.iter().find(|contour| contour.gear == *gear)).collect();
+        if wanted.len() < self.gear.names().len() {
             return Err(Failure::new(format!("`{}` has one gear: write `gear: pinion`", self.pair)));
         }
         let mut rows = Vec::new();
         for contour in &wanted {
-            for format in &self.formats {
+            for format in self.formats() {
                 context.check_stop()?;
-                let lines = match *format {
-                    "dxf" => dxf::lines(contour),
-                    "svg" => svg::lines(contour),
-                    _ => contour.csv(),
+                let lines = match format {
+                    Format::Dxf => dxf::lines(contour),
+                    Format::Svg => svg::lines(contour),
+                    Format::Csv => contour.csv(),
                 };
-                let file = format!("{}.{format}", contour.gear);
+                let file = file(&contour.gear, format);
                 let numbered = lines.into_iter().enumerate();
                 rows.extend(
                     numbered.map(|(at, line)| -> Row { vec![file.as_str().into(), (at + 1).into(), line.into()] }),

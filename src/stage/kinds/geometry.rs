@@ -9,23 +9,26 @@ mod drawn;
 mod meshing;
 mod valid;
 
-use crate::stage::designs;
+use std::f64::consts::FRAC_PI_4;
+
+use crate::stage::designs::Elements;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
-use declare::units::{ANGLE, LENGTH, STRESS};
+use declare::units::{ANGLE, LENGTH};
 use declare::work::Work;
+use declare::{Declared, Words};
 use drawn::Drawn;
 use gearmesh::gear::geometry::error::GeometryError;
+use gearmesh::gear::geometry::outline::Outline;
+use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
 use gearmesh::gear::geometry::outline::tip;
-use gearmesh::gear::geometry::outline::{Outline, roots};
 use gearmesh::gear::geometry::validity::Mating;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::modification::template::Template;
 use gearmesh::gear::work::OUTLINES;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
@@ -33,8 +36,8 @@ use studygraph::table::schema::Schema;
 pub const KIND: Kind = Kind {
     name: "geometry",
     version: 1,
-    summary: "Two involute spur gears on their centre distance, or one alone: radii, contact ratio, full profiles.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: geometry
 module: 3 mm
@@ -47,65 +50,90 @@ gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::quantity("module", LENGTH, 1e-5, 1.0, "Module m."),
-    Field::quantity("pressure_angle", ANGLE, 0.08, std::f64::consts::FRAC_PI_4, "Pressure angle α of the basic rack.")
-        .default("20 deg"),
-    Field::group("rack", RACK, "Basic rack that cuts both gears, in modules (ISO 53).").default("{}"),
-    Field::group("material", MATERIAL, "Material of both gears.").default("{}"),
-    Field::group("pinion", GEAR, "The gear the torque is given on."),
-    Field::group("gear", GEAR, "The mating gear; without it the pinion is a gear alone, to be drawn.").optional(),
-    Field::quantity("centre_distance", LENGTH, 1e-6, 1e3, "Centre distance a_w; zero backlash when it is not given.")
-        .optional(),
-    Field::group(
-        "outline",
-        OUTLINE,
-        "The full profiles, as the tables `outline`, `junctions`, `validity` and `mesh_drawing` have them.",
-    )
-    .default("{}"),
-];
+/// Two involute spur gears on their centre distance, or one alone: radii, contact ratio, full profiles.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// Module m.
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH)]
+    pub module: f64,
+    /// Pressure angle α of the basic rack.
+    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, default = "20 deg")]
+    pub pressure_angle: f64,
+    /// Basic rack that cuts both gears, in modules (ISO 53).
+    #[declared(default = "{}")]
+    pub rack: Rack,
+    /// Material of both gears.
+    #[declared(default = "{}")]
+    pub material: Material,
+    /// The gear the torque is given on.
+    pub pinion: StatedGear,
+    /// The mating gear; without it the pinion is a gear alone, to be drawn.
+    pub gear: Option<StatedGear>,
+    /// Centre distance a_w; zero backlash when it is not given.
+    #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH)]
+    pub centre_distance: Option<f64>,
+    /// The full profiles, as the tables `outline`, `junctions`, `validity` and `mesh_drawing` have them.
+    #[declared(default = "{}")]
+    pub outline: StatedOutline,
+}
 
-const OUTLINE: &[Field] = &[
-    Field::new("root", Shape::Member(roots::members), "Root of the teeth.").default("trochoid"),
-    Field::new("tip", Shape::Member(tip::members), "What is done to the corners of the tip.").default("land"),
-    Field::new("flank", designs::ELEMENTS, "Modifications of the flanks, one or several.").optional(),
-    Field::integer("points", 8, 100_000, "Points per tooth, at least.").default("200"),
-    Field::quantity("chord_error", LENGTH, 1e-10, 1e-2, "How far a chord may lie from its curve; adds points.")
-        .optional(),
-    Field::choice("teeth", TEETH, "How many teeth the table `outline` has.").default("one"),
-];
+/// One of the gears.
+#[derive(Debug, Declared)]
+struct StatedGear {
+    /// Number of teeth z.
+    #[declared(minimum = 4, maximum = 10_000)]
+    pub teeth: u32,
+    /// Face width b.
+    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH)]
+    pub face_width: f64,
+    /// Radius of the bore, where the body is clamped.
+    #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH)]
+    pub bore_radius: f64,
+    /// Profile shift coefficient x.
+    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
+    pub profile_shift: f64,
+    /// Tip radius r_a, when it is not m(z/2 + h_aP* + x).
+    #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH)]
+    pub tip_radius: Option<f64>,
+    /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
+    #[declared(minimum = -1.0, maximum = 1.0)]
+    pub tip_shortening: Option<f64>,
+    /// Root of this gear's teeth in its outline, when it is not the common one.
+    pub root: Option<Box<dyn Root>>,
+    /// Material of this gear, when it is not the common one.
+    pub material: Option<Material>,
+}
 
-const TEETH: &[Choice] = &[
-    Choice { name: "one", summary: "one tooth with half a space on either side" },
-    Choice { name: "all", summary: "the whole gear" },
-];
+/// The full profiles.
+#[derive(Debug, Declared)]
+struct StatedOutline {
+    /// Root of the teeth.
+    #[declared(default = "trochoid")]
+    pub root: Box<dyn Root>,
+    /// What is done to the corners of the tip.
+    #[declared(default = "land")]
+    pub tip: Box<dyn tip::Stated>,
+    /// Modifications of the flanks, one or several.
+    pub flank: Option<Elements>,
+    /// Points per tooth, at least.
+    #[declared(minimum = 8, maximum = 100_000, default = "200")]
+    pub points: usize,
+    /// How far a chord may lie from its curve; adds points.
+    #[declared(minimum = 1e-10, maximum = 1e-2, dimension = LENGTH)]
+    pub chord_error: Option<f64>,
+    /// How many teeth the table `outline` has.
+    #[declared(default = "one")]
+    pub teeth: Teeth,
+}
 
-const RACK: &[Field] = &[
-    Field::number("addendum", 0.1, 3.0, "Addendum coefficient h_aP*.").default("1.0"),
-    Field::number("dedendum", 0.1, 4.0, "Dedendum coefficient h_fP*.").default("1.25"),
-    Field::number("tip_radius", 0.0, 2.0, "Tip radius coefficient ρ_fP*.").default("0.38"),
-];
-
-const MATERIAL: &[Field] = &[
-    Field::quantity("youngs_modulus", STRESS, 1.0, 1e15, "Young's modulus E.").default("206 GPa"),
-    Field::number("poisson_ratio", 0.0, 0.4999, "Poisson's ratio ν.").default("0.3"),
-];
-
-const GEAR: &[Field] = &[
-    Field::integer("teeth", 4, 10_000, "Number of teeth z."),
-    Field::quantity("face_width", LENGTH, 1e-6, 100.0, "Face width b."),
-    Field::quantity("bore_radius", LENGTH, 0.0, 1e4, "Radius of the bore, where the body is clamped."),
-    Field::number("profile_shift", -2.0, 3.0, "Profile shift coefficient x.").default("0.0"),
-    Field::quantity("tip_radius", LENGTH, 1e-6, 1e4, "Tip radius r_a, when it is not m(z/2 + h_aP* + x).").optional(),
-    Field::number("tip_shortening", -1.0, 1.0, "Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).").optional(),
-    Field::new(
-        "root",
-        Shape::Member(roots::members),
-        "Root of this gear's teeth in its outline, when it is not the common one.",
-    )
-    .optional(),
-    Field::group("material", MATERIAL, "Material of this gear, when it is not the common one.").optional(),
-];
+/// How many teeth of a gear.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Teeth {
+    /// one tooth with half a space on either side
+    One,
+    /// the whole gear
+    All,
+}
 
 struct Geometry {
     /// None of a gear alone.
@@ -113,102 +141,88 @@ struct Geometry {
     /// The pinion, and the gear of a pair.
     gears: Vec<Drawn>,
     density: Density,
-    whole: bool,
+    teeth: Teeth,
 }
 
-/// The fields that say something of a pair.
-const OF_A_PAIR: &[(&str, &str)] = &[
-    ("centre_distance", "a gear alone has no centre distance"),
-    ("outline.flank", "a modification is laid out on the flank down to where the mate's tip reaches"),
-];
-
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let stated = Stated::checked(record)?;
     let refused = |error: &GeometryError| {
-        let path: Vec<&str> = error.field().split('.').collect();
-        let place = match path[..] {
-            [group, field] => record.maybe_group(group).map_or(record.place, |group| group.place_of(field)),
-            _ => record.place_of(error.field()),
+        let place = match error.field().split_once('.') {
+            Some((group, field)) => record.inside(group).place_of(field),
+            None => record.place_of(error.field()),
         };
         Diagnostic::new(error.to_string()).at(place)
     };
-    let stated = [Side::Pinion, Side::Gear].map(|side| record.maybe_group(side.name()).map(|gear| (side, gear)));
-    for (_, gear) in stated.iter().flatten() {
-        if gear.entry("tip_radius").is_some() && gear.entry("tip_shortening").is_some() {
+    let given = [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())];
+    let given = || given.into_iter().filter_map(|(side, gear)| Some((side, gear?)));
+    for (side, gear) in given() {
+        if gear.tip_radius.is_some() && gear.tip_shortening.is_some() {
             return Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
-                .at(gear.place_of("tip_shortening"))
+                .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
                 .help("give one of them"));
         }
     }
-    let options = record.group("outline");
-    let pinion = specification(record, record.group("pinion"));
-    let (pair, design, gears) = if let Some(gear) = record.maybe_group("gear") {
-        let pair = GearPair::new(pinion, specification(record, gear), record.maybe_quantity("centre_distance"))
+    let pinion = stated.specification(&stated.pinion);
+    let (pair, design, built) = if let Some(gear) = &stated.gear {
+        let pair = GearPair::new(pinion, stated.specification(gear), stated.centre_distance)
             .map_err(|error| refused(&error))?;
-        let design = Template::new(options.maybe_list("flank").unwrap_or_default())?.design(&pair, &[])?;
-        let gears = vec![pair.pinion.clone(), pair.gear.clone()];
-        (Some(pair), design, gears)
+        let flank = stated.outline.flank.as_ref().map(Elements::template).transpose()?;
+        let design = flank.map_or(Ok(Design::default()), |flank| flank.design(&pair, &[]))?;
+        let built = vec![pair.pinion.clone(), pair.gear.clone()];
+        (Some(pair), design, built)
     } else {
-        check_alone(record)?;
+        stated.check_alone(record)?;
         let gear = Gear::new(&pinion).map_err(|error| refused(&error.on(Side::Pinion)))?;
         (None, Design::default(), vec![gear])
     };
-    let drawn = |((side, stated), gear): ((Side, &Record), Gear)| {
-        let (name, root) = stated.maybe_member("root").unwrap_or_else(|| options.member("root"));
-        let (root, tip) = (roots::read(name, root)?, options.member("tip"));
-        let tip = tip::read(tip.0, tip.1)?.tip();
+    let options = &stated.outline;
+    let drawn = |((side, stated), gear): ((Side, &StatedGear), Gear)| {
+        let root = stated.root.as_ref().unwrap_or(&options.root);
         let outline = root
             .toe(&gear)
-            .and_then(|toe| Outline::new(&gear, toe, tip, design.relief(side)))
+            .and_then(|toe| Outline::new(&gear, toe, options.tip.tip(), design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })
     };
-    let gears = stated.into_iter().flatten().zip(gears).map(drawn).collect::<Result<_, Diagnostic>>()?;
-    let points = usize::try_from(options.integer("points")).unwrap_or(0);
-    let density = Density { points, chord_error: options.maybe_quantity("chord_error") };
-    Ok(Box::new(Geometry { pair, gears, density, whole: options.choice("teeth") == "all" }))
+    let gears = given().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
+    let density = Density { points: options.points, chord_error: options.chord_error };
+    Ok(Box::new(Geometry { pair, gears, density, teeth: options.teeth }))
 }
 
-/// Refuses what only a pair can have.
-fn check_alone(record: &Record) -> Result<(), Diagnostic> {
-    for (path, why) in OF_A_PAIR {
-        let (group, field) = match path.split_once('.') {
-            Some((group, field)) => (record.group(group), field),
-            None => (record, *path),
+impl Stated {
+    /// Refuses what only a pair can have.
+    fn check_alone(&self, record: &Record) -> Result<(), Diagnostic> {
+        let refused = |record: &Record, field: &str, why: &str| {
+            Err(Diagnostic::new(format!("`{field}` needs a mate: {why}"))
+                .at(record.place_of(field))
+                .help("add the mating gear as `gear`, or leave this out"))
         };
-        if group.entry(field).is_some() {
-            return Err(Diagnostic::new(format!("`{field}` needs a mate: {why}"))
-                .at(group.place_of(field))
-                .help("add the mating gear as `gear`, or leave this out"));
+        if self.centre_distance.is_some() {
+            return refused(record, Self::NAMES.centre_distance, "a gear alone has no centre distance");
         }
+        if self.outline.flank.is_some() {
+            let why = "a modification is laid out on the flank down to where the mate's tip reaches";
+            return refused(record.inside(Self::NAMES.outline), StatedOutline::NAMES.flank, why);
+        }
+        Ok(())
     }
-    Ok(())
-}
 
-fn specification(record: &Record, gear: &Record) -> Specification {
-    let rack = record.group("rack");
-    let material = gear.maybe_group("material").unwrap_or_else(|| record.group("material"));
-    Specification {
-        // The declared range keeps it inside u32.
-        teeth: u32::try_from(gear.integer("teeth")).unwrap_or(u32::MAX),
-        module: record.quantity("module"),
-        pressure_angle: record.quantity("pressure_angle"),
-        profile_shift: gear.number("profile_shift"),
-        rack: Rack {
-            addendum: rack.number("addendum"),
-            dedendum: rack.number("dedendum"),
-            tip_radius: rack.number("tip_radius"),
-        },
-        tip_radius: gear.maybe_quantity("tip_radius").or_else(|| {
-            let height =
-                rack.number("addendum") + gear.number("profile_shift") - gear.maybe_number("tip_shortening")?;
-            Some(record.quantity("module") * (0.5 * gear.integer("teeth") as f64 + height))
-        }),
-        face_width: gear.quantity("face_width"),
-        bore_radius: gear.quantity("bore_radius"),
-        material: Material {
-            youngs_modulus: material.quantity("youngs_modulus"),
-            poisson_ratio: material.number("poisson_ratio"),
-        },
+    fn specification(&self, gear: &StatedGear) -> Specification {
+        let (module, rack) = (self.module, self.rack);
+        Specification {
+            teeth: gear.teeth,
+            module,
+            pressure_angle: self.pressure_angle,
+            profile_shift: gear.profile_shift,
+            rack,
+            tip_radius: gear.tip_radius.or_else(|| {
+                let height = rack.addendum + gear.profile_shift - gear.tip_shortening?;
+                Some(module * (0.5 * f64::from(gear.teeth) + height))
+            }),
+            face_width: gear.face_width,
+            bore_radius: gear.bore_radius,
+            material: gear.material.unwrap_or(self.material),
+        }
     }
 }
 
@@ -339,7 +353,10 @@ impl Stage for Geometry {
 impl Geometry {
     /// How many teeth of it are drawn.
     fn teeth(&self, drawn: &Drawn) -> u32 {
-        if self.whole { drawn.outline.teeth } else { 1 }
+        match self.teeth {
+            Teeth::One => 1,
+            Teeth::All => drawn.outline.teeth,
+        }
     }
 
     fn mating(&self, drawn: &Drawn) -> Option<(&GearPair, Mating)> {

@@ -3,14 +3,14 @@
 //! Families and their parameters come from `gear/modification`; this file only reads them and shows what they come to
 //! on the pair. Must not know: any single family.
 
-use crate::stage::designs::{self, Element, NamedDesign};
+use crate::stage::designs::{self, Elements, NamedDesign};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
+use declare::Declared;
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Field, Shape};
-use declare::record::{PlacedValue, Record, Value};
+use declare::record::Record;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::modification::Design;
-use gearmesh::gear::modification::template::Template;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -18,9 +18,8 @@ use studygraph::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "modification",
     version: 1,
-    summary: "Named designs of flank modifications (ISO 21771): tip and root relief, arcs, parabolas, crowning, slopes, end \
-              relief.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: modification
 pair: geometry
@@ -33,10 +32,16 @@ designs:
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("pair", &["geometry"], "The pair that is modified."),
-    Field::new("designs", Shape::Map(&designs::ELEMENTS), "The designs by name; an empty list is the unmodified pair."),
-];
+/// Named designs of flank modifications (ISO 21771): tip and root relief, arcs, parabolas, crowning, slopes, end
+/// relief.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The pair that is modified.
+    #[declared(kinds = ["geometry"])]
+    pub pair: String,
+    /// The designs by name; an empty list is the unmodified pair.
+    pub designs: Vec<(String, Elements)>,
+}
 
 struct Modification {
     pair: String,
@@ -44,27 +49,17 @@ struct Modification {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let mut designs = Vec::new();
-    for (name, entry) in record.map("designs") {
-        designs.push(NamedDesign { name: name.clone(), elements: elements(entry)? });
+    let Stated { pair, designs } = Stated::checked(record)?;
+    for (_, design) in &designs {
+        design.template()?;
     }
     if designs.is_empty() {
         return Err(Diagnostic::new("no designs are given")
-            .at(record.place_of("designs"))
+            .at(record.place_of(Stated::NAMES.designs))
             .help("an empty list is the unmodified pair: `designs: { unmodified: [] }`"));
     }
-    Ok(Box::new(Modification { pair: record.reference("pair").to_owned(), designs }))
-}
-
-/// The modifications of one design, each checked for what no declaration can express.
-fn elements(entry: &PlacedValue) -> Result<Vec<Element>, Diagnostic> {
-    let Value::List(items) = &entry.value else { return Ok(Vec::new()) };
-    Template::new(items)?;
-    let member = |item: &PlacedValue| match &item.value {
-        Value::Member(family, record) => Some(Element { family, record: record.clone() }),
-        _ => None,
-    };
-    Ok(items.iter().filter_map(member).collect())
+    let named = |(name, design): (String, Elements)| NamedDesign { name, elements: design.elements() };
+    Ok(Box::new(Modification { pair, designs: designs.into_iter().map(named).collect() }))
 }
 
 /// Resolved parameters that have a column of their own; others are not shown.

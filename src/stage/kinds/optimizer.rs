@@ -7,12 +7,14 @@ mod sampling;
 
 use rayon::prelude::*;
 
-use crate::stage::designs::{self, Element, NamedDesign};
+use crate::stage::common::{Contact, Slices};
+use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Stage, common};
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, Shape, count, joined};
 use declare::record::{Record, Value};
 use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
+use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -27,8 +29,8 @@ use studygraph::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "optimizer",
     version: 1,
-    summary: "Modifications that make the transmission error smallest, by a seeded search in a box.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: optimizer
 stiffness: stiffness
@@ -42,54 +44,71 @@ design:
     build,
 };
 
-const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+/// Modifications that make the transmission error smallest, by a seeded search in a box.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The pair's compliances.
+    #[declared(kinds = ["stiffness"])]
+    pub stiffness: String,
+    /// How to search.
+    #[declared(default = "differential_evolution")]
+    pub method: Box<dyn Method>,
+    /// What is to be small.
+    #[declared(default = "peak_to_peak")]
+    pub minimize: Objective,
+    /// The loads it is to be small at.
+    pub at: Loads,
+    /// The modifications; a value given as [least, most] is a variable.
+    #[declared(chooses)]
+    pub design: Elements,
+    /// Name of the design that is found.
+    #[declared(default = "optimum")]
+    pub name: String,
+    /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
+    #[declared(minimum = 8, maximum = 10_000, default = "64")]
+    pub positions: usize,
+    #[declared(flatten)]
+    pub slices: Slices,
+    /// Wanted relative accuracy of the objective at the design that is found; sets positions and slices.
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    pub accuracy: Option<f64>,
+    #[declared(flatten)]
+    pub contact: Contact,
+}
 
-const PARTS: &[&[Field]] = &[SEARCH, common::CONTACT];
+/// The loads a design is judged by.
+#[derive(Debug, Declared)]
+struct Loads {
+    /// Torque on the pinion, one or several.
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX)]
+    pub torque: Vec<f64>,
+    /// What counts when there are several.
+    #[declared(default = "worst")]
+    pub combine: Combine,
+}
 
-const SEARCH: &[Field] = &[
-    common::STIFFNESS,
-    Field::new("method", Shape::Member(optimize::members), "How to search.").default("differential_evolution"),
-    Field::choice("minimize", OBJECTIVES, "What is to be small.").default("peak_to_peak"),
-    Field::group("at", AT, "The loads it is to be small at."),
-    Field::new("design", designs::ELEMENTS, "The modifications; a value given as [least, most] is a variable.")
-        .chooses(),
-    Field::new("name", Shape::Text, "Name of the design that is found.").default("optimum"),
-    common::positions(10_000),
-    common::SLICES,
-    Field::quantity(
-        "accuracy",
-        RATIO,
-        1e-9,
-        0.1,
-        "Wanted relative accuracy of the objective at the design that is found; sets positions and slices.",
-    )
-    .optional(),
-];
+/// What is made small.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Objective {
+    /// largest less smallest transmission error
+    PeakToPeak,
+    /// integral mean of the squared deviation of the transmission error
+    Variance,
+}
 
-const AT: &[Field] = &[
-    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion, one or several.").axis(usize::MAX),
-    Field::choice("combine", COMBINE, "What counts when there are several.").default("worst"),
-];
-
-const OBJECTIVES: &[Choice] = &[
-    Choice { name: "peak_to_peak", summary: "largest less smallest transmission error" },
-    Choice { name: "variance", summary: "integral mean of the squared deviation of the transmission error" },
-];
-
-const COMBINE: &[Choice] =
-    &[Choice { name: "worst", summary: "the largest" }, Choice { name: "mean", summary: "the mean" }];
+/// What counts of several values.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Combine {
+    /// the largest
+    Worst,
+    /// the mean
+    Mean,
+}
 
 struct Optimizer {
-    stiffness: String,
-    method: Box<dyn Method>,
-    objective: &'static str,
-    torques: Vec<f64>,
-    worst: bool,
-    elements: Vec<Element>,
+    stated: Stated,
     template: Template,
-    name: String,
     settings: Settings,
-    accuracy: Option<f64>,
 }
 
 /// What a search came to.
@@ -115,41 +134,27 @@ struct BestRow<'a> {
 const ROUNDS: usize = 4;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let at = record.group("at");
-    let (method, options) = record.member("method");
-    let items = record.list("design");
-    let template = Template::new(items)?;
+    let stated = Stated::checked(record)?;
+    let template = stated.design.template()?;
     if template.variables().is_empty() {
         return Err(Diagnostic::new("nothing is left open for the search")
-            .at(record.place_of("design"))
+            .at(record.place_of(Stated::NAMES.design))
             .help("give at least one value as a range, for example `amount: [0 um, 8 um]`"));
     }
-    let element = |value: &Value| match value {
-        Value::Member(family, record) => Some(Element { family, record: record.clone() }),
-        _ => None,
-    };
-    let name = record.text("name");
+    let name = &stated.name;
     if name.is_empty() || name.chars().count() > 64 || !name.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) {
         return Err(Diagnostic::new(format!("`{}` cannot be the name of a design", name.escape_debug()))
-            .at(record.place_of("name"))
+            .at(record.place_of(Stated::NAMES.name))
             .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"));
     }
-    let optimizer = Optimizer {
-        stiffness: record.reference("stiffness").to_owned(),
-        method: optimize::read(method, options)?,
-        objective: record.choice("minimize"),
-        torques: at.axis("torque").to_vec(),
-        worst: at.choice("combine") == "worst",
-        elements: items.iter().filter_map(|item| element(&item.value)).collect(),
-        template,
-        name: name.to_owned(),
-        settings: common::settings(record)?,
-        accuracy: record.maybe_quantity("accuracy"),
-    };
+    let settings = common::settings(stated.positions, stated.slices, stated.contact);
+    common::check_slices(settings, record)?;
+    let optimizer = Optimizer { stated, template, settings };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's. Its
     // points are drawn when the stage runs.
     optimizer.bounds()?;
-    optimizer.method.foresee(optimizer.template.variables().len()).map_err(|wrong| options.locate(wrong))?;
+    let foreseen = optimizer.stated.method.foresee(optimizer.template.variables().len());
+    foreseen.map_err(|wrong| record.inside(Stated::NAMES.method).locate(wrong))?;
     Ok(Box::new(optimizer))
 }
 
@@ -185,11 +190,14 @@ impl Optimizer {
     }
 
     fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
-        optimize::search(&*self.method, self.bounds()?, seed)
+        optimize::search(&*self.stated.method, self.bounds()?, seed)
     }
 
     fn objective_unit(&self) -> &'static str {
-        if self.objective == "variance" { "um^2" } else { "um" }
+        match self.stated.minimize {
+            Objective::PeakToPeak => "um",
+            Objective::Variance => "um^2",
+        }
     }
 
     fn best<'a>(&self) -> Columns<BestRow<'a>> {
@@ -263,11 +271,18 @@ impl Optimizer {
     /// The objective \[m or m²\]; infinite where the design cannot be built.
     fn value(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> f64 {
         let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
-        let values = self.torques.iter().map(|torque| {
+        let Loads { torque, combine } = &self.stated.at;
+        let values = torque.iter().map(|torque| {
             let loading = LoadCase::new(cycle, &design, *torque);
-            if self.objective == "variance" { loading.variance() } else { loading.peak_to_peak() }
+            match self.stated.minimize {
+                Objective::PeakToPeak => loading.peak_to_peak(),
+                Objective::Variance => loading.variance(),
+            }
         });
-        if self.worst { values.fold(0.0, f64::max) } else { values.sum::<f64>() / self.torques.len() as f64 }
+        match combine {
+            Combine::Worst => values.fold(0.0, f64::max),
+            Combine::Mean => values.sum::<f64>() / torque.len() as f64,
+        }
     }
 
     /// The search with one sampling.
@@ -313,7 +328,7 @@ impl Optimizer {
     /// The elements with the values of the best point in the place of the ranges.
     fn best_elements(&self, point: &[f64]) -> Vec<Element> {
         let mut values = point.iter();
-        let mut elements = self.elements.clone();
+        let mut elements = self.stated.design.elements();
         for element in &mut elements {
             for (_, entry) in &mut element.record.fields {
                 if matches!(entry.value, Value::Range(..)) {
@@ -329,10 +344,15 @@ impl Optimizer {
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
-        let peak_to_peak =
-            self.torques.iter().map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak()).fold(0.0, f64::max);
-        let row = BestRow { name: &self.name, found, best, peak_to_peak };
-        let design = NamedDesign { name: self.name.clone(), elements: self.best_elements(&best.point) };
+        let peak_to_peak = self
+            .stated
+            .at
+            .torque
+            .iter()
+            .map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak())
+            .fold(0.0, f64::max);
+        let row = BestRow { name: &self.stated.name, found, best, peak_to_peak };
+        let design = NamedDesign { name: self.stated.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
             self.history().table_of(&(1..).zip(search.history().iter().copied())).map_err(failed)?,
@@ -344,7 +364,7 @@ impl Optimizer {
 
 impl Stage for Optimizer {
     fn inputs(&self) -> Vec<Port> {
-        common::mesh_cycle_ports(&self.stiffness)
+        common::mesh_cycle_ports(&self.stated.stiffness)
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -370,7 +390,7 @@ impl Stage for Optimizer {
         let mut round = 1;
         let mut found = loop {
             let found = self.found(context, &base, &pair, settings)?;
-            let (Some(accuracy), Some(best)) = (self.accuracy, found.search.best()) else { break found };
+            let (Some(accuracy), Some(best)) = (self.stated.accuracy, found.search.best()) else { break found };
             if found.error <= accuracy {
                 break found;
             }

@@ -17,55 +17,23 @@ mod verdict;
 use std::collections::BTreeSet;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
+use declare::Declared;
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Field, Shape};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
-use figure::{Figure, figures, marks};
+use figure::{Figure, StatedFigure, figures, marks};
+use stated::Published;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
 use verdict::Verdict;
 
-const WITH: Shape = Shape::Map(&Shape::Text);
-const TOLERANCE: &str =
-    "how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity";
-
-const EXPECTED: &[Field] = &[
-    Field::new("value", Shape::Text, "the value the study stands by, with its unit; for a claim the number of rows"),
-    Field::new("tolerance", Shape::Text, TOLERANCE).default("digits"),
-];
-
-const PROOF: &[Field] = &[
-    Field::new("claim", Shape::Text, "a comparison that must hold; `published` and `computed` are known in it"),
-    Field::new("with", WITH, "what its other names stand for: cells or quantities").optional(),
-];
-
-const PUBLISHED: &[Field] = &[
-    Field::new("label", Shape::Text, "what it is, in words").optional(),
-    Field::new("where", Shape::Text, "where the paper says it: a table, an equation, a page").optional(),
-    Field::new("cell", Shape::Text, "the computed cell, `stage.table[key=value, …].column`").optional(),
-    Field::new("formula", Shape::Text, "or arithmetic over the names in `with`: + - * / ^ sqrt abs min max").optional(),
-    Field::new("claim", Shape::Text, "or a comparison that the paper says is true, in every row of its cells")
-        .optional(),
-    Field::new("with", WITH, "what the names in a formula or claim stand for: cells or quantities").optional(),
-    Field::new("value", Shape::Text, "the published value as printed, with its unit").optional(),
-    Field::new("tolerance", Shape::Text, TOLERANCE).default("digits"),
-    Field::group("expected", EXPECTED, "where the computed value stands today, so that it cannot drift unseen")
-        .optional(),
-    Field::new("because", Shape::Text, "why they differ").optional(),
-    Field::group("proof", PROOF, "arithmetic that proves the reason").optional(),
-    Field::new("note", Shape::Text, "a remark that claims no difference").optional(),
-];
-
 pub const KIND: Kind = Kind {
     name: "report",
     version: 1,
-    summary: "A verdict on every published number, and the figures of the report.",
-    fields: &[
-        Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "the paper's numbers and claims").optional(),
-        Field::new("figures", Shape::List(&Shape::Group(figure::FIELDS)), "the figures of the report").optional(),
-    ],
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "\
 kind: report
 published:
@@ -90,6 +58,15 @@ figures:
     build,
 };
 
+/// A verdict on every published number, and the figures of the report.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// the paper's numbers and claims
+    pub published: Option<Vec<Published>>,
+    /// the figures of the report
+    pub figures: Option<Vec<StatedFigure>>,
+}
+
 /// Points of a figure that its drawing shows at most, about: a few lines, each as fine as the drawing.
 const MOST_DRAWN: u64 = 50_000;
 /// Bytes in memory of a point that is read, and of one that is drawn: the table and its copy; the figure, and the page.
@@ -105,13 +82,13 @@ struct Report {
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let records = |field: &str| -> Vec<&Record> {
-        record.maybe_list(field).unwrap_or_default().iter().filter_map(|entry| entry.value.record()).collect()
-    };
-    let (published, drawn) = (records("published"), records("figures"));
-    let entries = published.iter().enumerate().map(|(index, record)| ReportEntry::read(index + 1, record));
+    let stated = Stated::checked(record)?;
+    let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
+    let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
     let entries = entries.collect::<Result<_, _>>()?;
-    let figures = drawn.iter().enumerate().map(|(index, record)| Figure::read(index + 1, record));
+    let drawn: Vec<&Record> = record.each_inside(Stated::NAMES.figures).collect();
+    let figures = (1..).zip(stated.figures.iter().flatten()).zip(&drawn);
+    let figures = figures.map(|((number, stated), record)| Figure::read(number, stated, record));
     let figures: Vec<Figure> = figures.collect::<Result<_, _>>()?;
     figure::check_names(&figures, &drawn)?;
     Ok(Box::new(Report { entries, figures }))

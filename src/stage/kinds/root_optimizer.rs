@@ -6,13 +6,14 @@
 use rayon::prelude::*;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, Shape};
 use declare::record::Record;
 use declare::seed::Seed;
 use declare::units::LENGTH;
+use declare::{Declared, Words};
 use gearmesh::gear::geometry::{Gear, Side};
-use gearmesh::gear::problem::{self, Problem, Stated, Variable, Worth};
+use gearmesh::gear::problem::{self, Problem, Variable, Worth};
 use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
 use gearmesh::optimize::search::{Candidate, Reason};
@@ -24,8 +25,8 @@ use studygraph::table::schema::Schema;
 pub const KIND: Kind = Kind {
     name: "root_optimizer",
     version: 1,
-    summary: "The root of one gear that is best by some measure, by a search under constraints.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: root_optimizer
 pair: geometry
@@ -36,36 +37,40 @@ method: { powell: { tolerance: 1e-2, evaluations: 40 } }
     build,
 };
 
-const FIELDS: &[Field] = &[
-    Field::reference("pair", &["geometry"], "The pair."),
-    Field::choice("gear", GEARS, "Whose root it is.").default("pinion"),
-    Field::new("problem", Shape::Member(problem::members), "What is free, what is to be small, what is kept."),
-    Field::new("method", Shape::Member(optimize::members), "How to search.").default("powell"),
-];
+/// The root of one gear that is best by some measure, by a search under constraints.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The pair.
+    #[declared(kinds = ["geometry"])]
+    pub pair: String,
+    /// Whose root it is.
+    #[declared(default = "pinion")]
+    pub gear: Which,
+    /// What is free, what is to be small, what is kept.
+    pub problem: Box<dyn problem::Stated>,
+    /// How to search.
+    #[declared(default = "powell")]
+    pub method: Box<dyn Method>,
+}
 
-const GEARS: &[Choice] =
-    &[Choice { name: "pinion", summary: "the pinion" }, Choice { name: "gear", summary: "the mating gear" }];
+/// Which of the two gears.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Which {
+    /// the pinion
+    Pinion,
+    /// the mating gear
+    Gear,
+}
 
 struct RootOptimizer {
-    pair: String,
-    side: Side,
-    problem: Box<dyn Stated>,
-    method: Box<dyn Method>,
-    /// Where its settings stand.
+    stated: Stated,
+    /// Where the settings of the method stand.
     how: Record,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let (name, options) = record.member("problem");
-    // The decoder lets only registered problems through.
-    let (method, how) = record.member("method");
-    Ok(Box::new(RootOptimizer {
-        pair: record.reference("pair").to_owned(),
-        side: if record.choice("gear") == "gear" { Side::Gear } else { Side::Pinion },
-        problem: problem::read(name, options)?,
-        method: optimize::read(method, how)?,
-        how: how.clone(),
-    }))
+    let how = record.inside(Stated::NAMES.method).clone();
+    Ok(Box::new(RootOptimizer { stated: Stated::checked(record)?, how }))
 }
 
 /// A constraint, what is left of it, and whether it is kept.
@@ -117,8 +122,15 @@ impl TriedRow<'_> {
 }
 
 impl RootOptimizer {
+    fn side(&self) -> Side {
+        match self.stated.gear {
+            Which::Pinion => Side::Pinion,
+            Which::Gear => Side::Gear,
+        }
+    }
+
     fn unit(&self) -> &'static str {
-        if self.problem.dimension() == LENGTH { "mm" } else { "" }
+        if self.stated.problem.dimension() == LENGTH { "mm" } else { "" }
     }
 
     fn best<'a>(&self) -> Columns<BestRow<'a>> {
@@ -171,7 +183,7 @@ impl RootOptimizer {
             roots.extend(values.map(|(variable, &value)| TriedRow { number, variable: variable.name, value, worth }));
         }
         Ok(vec![
-            self.best().table(&[BestRow { side: self.side, best, evaluations: tried.len(), reason }])?,
+            self.best().table(&[BestRow { side: self.side(), best, evaluations: tried.len(), reason }])?,
             variables().table(&found)?,
             constraints().table(&reserves)?,
             self.evaluations().table(&roots)?,
@@ -180,13 +192,13 @@ impl RootOptimizer {
 
     fn search(&self, variables: &[Variable], seed: Seed) -> Result<optimize::search::Optimizer, Diagnostic> {
         let bounds = variables.iter().map(|variable| (variable.minimum, variable.maximum)).collect();
-        optimize::search(&*self.method, Bounds::new(bounds)?, seed).map_err(|wrong| self.how.locate(wrong))
+        optimize::search(&*self.stated.method, Bounds::new(bounds)?, seed).map_err(|wrong| self.how.locate(wrong))
     }
 }
 
 impl Stage for RootOptimizer {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+        vec![Port::tables("pair", &self.stated.pair, &["gears", "pair"])]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -194,14 +206,14 @@ impl Stage for RootOptimizer {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let [free, kept] = self.problem.maximum();
-        let Ok(foreseen) = self.method.foresee(free) else {
+        let [free, kept] = self.stated.problem.maximum();
+        let Ok(foreseen) = self.stated.method.foresee(free) else {
             return Estimate::new(true);
         };
         let held = (foreseen.evaluations as u64).saturating_mul(120);
         let tried = RowCount::at_most(foreseen.evaluations.saturating_mul(free));
         Estimate::new(true)
-            .taking(self.problem.seconds() * foreseen.evaluations as f64)
+            .taking(self.stated.problem.seconds() * foreseen.evaluations as f64)
             .holding((foreseen.memory as u64).saturating_add(held))
             .rows(demand, self.best().schema(), RowCount::exact(1))
             .rows(demand, variables().schema(), RowCount::at_most(free))
@@ -215,8 +227,8 @@ impl Stage for RootOptimizer {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-        let problem = self.problem.on(&pair, self.side).map_err(|error| Failure::new(error.to_string()))?;
-        let module = pair.side(self.side).specification.module;
+        let problem = self.stated.problem.on(&pair, self.side()).map_err(|error| Failure::new(error.to_string()))?;
+        let module = pair.side(self.side()).specification.module;
         let mut search =
             self.search(&problem.variables(), context.seed).map_err(|error| Failure::new(error.message))?;
         let budget = search.budget().max(1) as f64;
@@ -244,7 +256,7 @@ impl Stage for RootOptimizer {
             ));
         }
         let mut tables = self
-            .tables(problem.as_ref(), best, reason, &tried, pair.side(self.side))
+            .tables(problem.as_ref(), best, reason, &tried, pair.side(self.side()))
             .map_err(|error: TableError| Failure::new(error.to_string()))?;
         tables.retain(|table| context.demand.table(table.name()));
         Ok(tables)

@@ -5,14 +5,17 @@
 
 mod tables;
 
+use std::f64::consts::FRAC_PI_4;
+
 use rayon::prelude::*;
 
-use crate::stage::common::Teeth;
+use crate::stage::common::{Contact, Slices, Teeth};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, common, pair};
+use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, Shape, count, joined};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
+use declare::{Declared, Words};
 use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use gearmesh::optimize::latin_hypercube;
 use studygraph::stage::steps::Steps;
@@ -22,8 +25,8 @@ use studygraph::table::schema::Schema;
 pub const KIND: Kind = Kind {
     name: "stability",
     version: 1,
-    summary: "Invariants and digits lost of the chain from geometry to transmission error on extreme cases.",
-    fields: FIELDS,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
     example: "
 kind: stability
 pair: geometry
@@ -38,61 +41,133 @@ samples: 4
     build,
 };
 
-const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+/// Invariants and digits lost of the chain from geometry to transmission error on extreme cases.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The pair in the middle of the grid; cases stand without backlash.
+    #[declared(kinds = ["geometry"])]
+    pub pair: String,
+    /// Torque on the pinion, where an axis does not say otherwise.
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, default = "50 N m")]
+    pub torque: f64,
+    /// Depth of the linear tip relief of both gears.
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, default = "0 um")]
+    pub relief: f64,
+    /// Roll length of the relief from the tip.
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, default = "0 mm")]
+    pub relief_length: f64,
+    /// Lead crowning of both gears.
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, default = "0 um")]
+    pub crowning: f64,
+    #[declared(flatten)]
+    pub teeth: Teeth,
+    /// Whether loaded neighbours deflect each other through the gear bodies.
+    #[declared(default = "none")]
+    pub coupling: Coupling,
+    #[declared(flatten)]
+    pub contact: Contact,
+    #[declared(flatten)]
+    pub slices: Slices,
+    /// Positions per base pitch; zone ends, relief starts and touches come on top.
+    #[declared(minimum = 8, maximum = 100_000, default = "64")]
+    pub positions: usize,
+    /// Values of one parameter at a time.
+    #[declared(default = "{}")]
+    pub axes: Values,
+    /// Whether the named traps are checked.
+    #[declared(default = "true")]
+    pub traps: bool,
+    /// Points of a Latin hypercube over the whole box of the axes.
+    #[declared(minimum = 0, maximum = 100_000, default = "0")]
+    pub samples: usize,
+}
 
-const PARTS: &[&[Field]] = &[LOAD, common::TEETH, &[COUPLING], common::CONTACT, &[common::SLICES], CASES];
-
-const LOAD: &[Field] = &[
-    Field::reference("pair", &["geometry"], "The pair in the middle of the grid; cases stand without backlash."),
-    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion, where an axis does not say otherwise.")
-        .default("50 N m"),
-    Field::quantity("relief", LENGTH, 0.0, 5e-3, "Depth of the linear tip relief of both gears.").default("0 um"),
-    Field::quantity("relief_length", LENGTH, 0.0, 1.0, "Roll length of the relief from the tip.").default("0 mm"),
-    Field::quantity("crowning", LENGTH, 0.0, 5e-3, "Lead crowning of both gears.").default("0 um"),
-];
-
-const COUPLING: Field =
-    Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
-        .default("none");
-
-const CASES: &[Field] = &[
-    Field::integer(
-        "positions",
-        8,
-        100_000,
-        "Positions per base pitch; zone ends, relief starts and touches come on top.",
-    )
-    .default("64"),
-    Field::group("axes", VALUES, "Values of one parameter at a time.").default("{}"),
-    Field::new("traps", Shape::Flag, "Whether the named traps are checked.").default("true"),
-    Field::integer("samples", 0, 100_000, "Points of a Latin hypercube over the whole box of the axes.").default("0"),
-];
-
-const COUPLINGS: &[Choice] = &[
-    Choice { name: "none", summary: "pair stiffnesses are summed, as the second evaluation does" },
-    Choice { name: "body", summary: "a load on one tooth moves its neighbours" },
-];
+/// Whether a load on one tooth is felt by others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Coupling {
+    /// pair stiffnesses are summed, as the second evaluation does
+    None,
+    /// a load on one tooth moves its neighbours
+    Body,
+}
 
 /// By the names of [`AXES`].
-const VALUES: &[Field] = &[
-    Field::quantity("torque", TORQUE, 1e-12, 1e9, "Torque on the pinion.").axis(usize::MAX).optional(),
-    Field::quantity("youngs_modulus", STRESS, 1.0, 1e15, "E of both gears.").axis(usize::MAX).optional(),
-    Field::number("stiffness_ratio", 1e-12, 1e12, "E of the pinion over E of the gear.").axis(usize::MAX).optional(),
-    Field::quantity("module", LENGTH, 1e-5, 1.0, "Module, all lengths with it.").axis(usize::MAX).optional(),
-    Field::number("pinion_teeth", 4.0, 10_000.0, "Teeth of the pinion.").axis(usize::MAX).optional(),
-    Field::number("gear_teeth", 4.0, 10_000.0, "Teeth of the gear.").axis(usize::MAX).optional(),
-    Field::number("pinion_shift", -2.0, 3.0, "Profile shift coefficient of the pinion.").axis(usize::MAX).optional(),
-    Field::number("gear_shift", -2.0, 3.0, "Profile shift coefficient of the gear.").axis(usize::MAX).optional(),
-    Field::quantity("pressure_angle", ANGLE, 0.08, std::f64::consts::FRAC_PI_4, "Pressure angle of the basic rack.")
-        .axis(usize::MAX)
-        .optional(),
-    Field::quantity("face_width", LENGTH, 1e-6, 100.0, "Face width of both gears.").axis(usize::MAX).optional(),
-    Field::quantity("relief", LENGTH, 0.0, 5e-3, "Depth of the tip relief.").axis(usize::MAX).optional(),
-    Field::quantity("relief_length", LENGTH, 0.0, 1.0, "Roll length of the tip relief.").axis(usize::MAX).optional(),
-    Field::quantity("crowning", LENGTH, 0.0, 5e-3, "Lead crowning.").axis(usize::MAX).optional(),
-    Field::number("bore", 1e-3, 1.0, "Bore radius over root radius of both gears.").axis(usize::MAX).optional(),
-    Field::number("contact_ratio", 0.5, 4.0, "Contact ratio, by the addendum of the rack.").axis(usize::MAX).optional(),
-];
+#[derive(Debug, Declared)]
+struct Values {
+    /// Torque on the pinion.
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX)]
+    pub torque: Option<Vec<f64>>,
+    /// E of both gears.
+    #[declared(minimum = 1.0, maximum = 1e15, dimension = STRESS, axis = usize::MAX)]
+    pub youngs_modulus: Option<Vec<f64>>,
+    /// E of the pinion over E of the gear.
+    #[declared(minimum = 1e-12, maximum = 1e12, axis = usize::MAX)]
+    pub stiffness_ratio: Option<Vec<f64>>,
+    /// Module, all lengths with it.
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, axis = usize::MAX)]
+    pub module: Option<Vec<f64>>,
+    /// Teeth of the pinion.
+    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX)]
+    pub pinion_teeth: Option<Vec<f64>>,
+    /// Teeth of the gear.
+    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX)]
+    pub gear_teeth: Option<Vec<f64>>,
+    /// Profile shift coefficient of the pinion.
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX)]
+    pub pinion_shift: Option<Vec<f64>>,
+    /// Profile shift coefficient of the gear.
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX)]
+    pub gear_shift: Option<Vec<f64>>,
+    /// Pressure angle of the basic rack.
+    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, axis = usize::MAX)]
+    pub pressure_angle: Option<Vec<f64>>,
+    /// Face width of both gears.
+    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, axis = usize::MAX)]
+    pub face_width: Option<Vec<f64>>,
+    /// Depth of the tip relief.
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX)]
+    pub relief: Option<Vec<f64>>,
+    /// Roll length of the tip relief.
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, axis = usize::MAX)]
+    pub relief_length: Option<Vec<f64>>,
+    /// Lead crowning.
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX)]
+    pub crowning: Option<Vec<f64>>,
+    /// Bore radius over root radius of both gears.
+    #[declared(minimum = 1e-3, maximum = 1.0, axis = usize::MAX)]
+    pub bore: Option<Vec<f64>>,
+    /// Contact ratio, by the addendum of the rack.
+    #[declared(minimum = 0.5, maximum = 4.0, axis = usize::MAX)]
+    pub contact_ratio: Option<Vec<f64>>,
+}
+
+impl Values {
+    /// In the order of [`AXES`].
+    const fn all(&self) -> [&Option<Vec<f64>>; AXES.len()] {
+        [
+            &self.torque,
+            &self.youngs_modulus,
+            &self.stiffness_ratio,
+            &self.module,
+            &self.pinion_teeth,
+            &self.gear_teeth,
+            &self.pinion_shift,
+            &self.gear_shift,
+            &self.pressure_angle,
+            &self.face_width,
+            &self.relief,
+            &self.relief_length,
+            &self.crowning,
+            &self.bore,
+            &self.contact_ratio,
+        ]
+    }
+
+    /// Places in [`AXES`] with their values.
+    fn given(&self) -> impl Iterator<Item = (usize, &[f64])> {
+        self.all().into_iter().enumerate().filter_map(|(index, values)| Some((index, values.as_deref()?)))
+    }
+}
 
 /// The named traps, about; what is checked of each case, and the most quantities of one that are computed twice.
 const TRAPS: usize = 40;
@@ -106,33 +181,27 @@ struct Stability {
     /// Torque, relief, its length, crowning.
     load: [f64; 4],
     model: Model,
-    /// Places in [`AXES`] with their values.
-    axes: Vec<(usize, Vec<f64>)>,
+    axes: Values,
     traps: bool,
     samples: usize,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let Teeth { method, assumptions, .. } = common::teeth(record)?;
-    let settings = common::settings(record)?;
-    let given = record.group("axes");
-    let axes = AXES.iter().enumerate();
-    let axes = axes.filter_map(|(index, axis)| given.maybe_axis(axis.name).map(|values| (index, values.to_vec())));
-    Ok(Box::new(Stability {
-        pair: record.reference("pair").to_owned(),
-        load: ["torque", "relief", "relief_length", "crowning"].map(|field| record.quantity(field)),
-        model: Model { method: method.into(), assumptions, settings },
-        axes: axes.collect(),
-        traps: record.flag("traps"),
-        samples: common::whole(record, "samples"),
-    }))
+    let stated = Stated::checked(record)?;
+    stated.teeth.check(record)?;
+    let assumptions = stated.teeth.assumptions(stated.coupling == Coupling::Body);
+    let settings = common::settings(stated.positions, stated.slices, stated.contact);
+    common::check_slices(settings, record)?;
+    let Stated { pair, torque, relief, relief_length, crowning, teeth, axes, traps, samples, .. } = stated;
+    let model = Model { method: teeth.method.into(), assumptions, settings };
+    Ok(Box::new(Stability { pair, load: [torque, relief, relief_length, crowning], model, axes, traps, samples }))
 }
 
 impl Stability {
     fn cases(&self, base: &Point, context: &Context) -> Vec<Case> {
         let mut cases = Vec::new();
-        for (index, values) in &self.axes {
-            let axis = &AXES[*index];
+        for (index, values) in self.axes.given() {
+            let axis = &AXES[index];
             for (place, value) in values.iter().enumerate() {
                 let mut point = base.clone();
                 (axis.set)(&mut point, *value);
@@ -164,14 +233,14 @@ impl Stage for Stability {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let on_axes: usize = self.axes.iter().map(|(_, values)| values.len()).sum();
+        let on_axes: usize = self.axes.given().map(|(_, values)| values.len()).sum();
         let cases = on_axes + self.samples + if self.traps { TRAPS } else { 0 };
         let mut estimate = Estimate::new(true).taking(CASE_SECONDS * cases as f64);
         for schema in tables::schemas() {
             let rows = match schema.name.as_str() {
                 "checks" => RowCount::about(CHECKS * cases),
                 "digits" => RowCount::at_most(QUANTITIES * cases),
-                "summary" => RowCount::at_most(self.axes.len() + 2),
+                "summary" => RowCount::at_most(self.axes.given().count() + 2),
                 _ => RowCount::at_most(QUANTITIES),
             };
             estimate = estimate.rows(demand, schema, rows);
@@ -212,5 +281,21 @@ impl Stage for Stability {
             }
         }
         tables::write(&checked).map_err(|error| Failure::new(error.to_string()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use declare::declared::record_of;
+    use declare::record::Value;
+
+    #[test]
+    fn values_are_in_the_order_of_the_axes() {
+        for (index, axis) in AXES.iter().enumerate() {
+            let record = record_of(Values::MEMBER.fields, &[(axis.name, Value::Axis(vec![1.0]))]);
+            let values = Values::read(&record);
+            assert_eq!(values.given().map(|(index, _)| index).collect::<Vec<_>>(), [index], "{}", axis.name);
+        }
     }
 }

@@ -7,16 +7,19 @@ mod samples;
 mod tables;
 
 use std::collections::BTreeMap;
+use std::f64::consts::TAU;
 use std::time::Instant;
 
 use rayon::prelude::*;
 
 use self::samples::{Sample, Samples};
 use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
+use crate::stage::common::{Contact, Slices};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
+use declare::Declared;
+use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Field, Shape, count, joined};
-use declare::record::{Record, Value};
+use declare::record::Record;
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
 use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::modification::{self, Design};
@@ -32,8 +35,8 @@ use studygraph::table::schema::Schema;
 pub const KIND: Kind = Kind {
     name: "ste",
     version: 1,
-    summary: "Static transmission error of designs under torques, with load sharing and contact pressure.",
-    fields: FIELDS,
+    summary: Ste::MEMBER.summary,
+    fields: Ste::MEMBER.fields,
     example: "
 kind: ste
 stiffness: stiffness
@@ -43,36 +46,38 @@ torque: { from: 25 N m, to: 100 N m, count: 4 }
     build,
 };
 
-const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
-
-const PARTS: &[&[Field]] = &[LOADS, &[common::positions(100_000), common::SLICES], common::CONTACT, TABLES];
-
-const LOADS: &[Field] = &[
-    common::STIFFNESS,
-    Field::new("designs", Shape::List(&Shape::Reference(&["modification", "optimizer"])), "Who gives the designs."),
-    Field::quantity("torque", TORQUE, 0.0, 1e9, "Torque on the pinion.").axis(1),
-    Field::quantity(
-        "accuracy",
-        RATIO,
-        1e-9,
-        0.1,
-        "Wanted relative accuracy of the peak-to-peak; sets positions and slices.",
-    )
-    .optional(),
-];
-
-const TABLES: &[Field] = &[
-    Field::integer("harmonics", 0, 200, "How many harmonics of the mesh frequency.").default("8"),
-    Field::integer("samples", 1, 100_000, "Equidistant positions per mesh cycle in the table `samples`.").default("12"),
-    Field::quantity(
-        "first_sample",
-        ANGLE,
-        -std::f64::consts::TAU,
-        std::f64::consts::TAU,
-        "Where the first of them is: rotation of the pinion from where a pair starts contact in A, in driving direction.",
-    )
-    .default("0 deg"),
-];
+/// Static transmission error of designs under torques, with load sharing and contact pressure.
+#[derive(Debug, Declared)]
+struct Ste {
+    /// The pair's compliances.
+    #[declared(kinds = ["stiffness"])]
+    pub stiffness: String,
+    /// Who gives the designs.
+    #[declared(kinds = ["modification", "optimizer"])]
+    pub designs: Vec<Placed<String>>,
+    /// Torque on the pinion.
+    #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1)]
+    pub torque: Vec<f64>,
+    /// Wanted relative accuracy of the peak-to-peak; sets positions and slices.
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    pub accuracy: Option<f64>,
+    /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
+    #[declared(minimum = 8, maximum = 100_000, default = "64")]
+    pub positions: usize,
+    #[declared(flatten)]
+    pub slices: Slices,
+    #[declared(flatten)]
+    pub contact: Contact,
+    /// How many harmonics of the mesh frequency.
+    #[declared(minimum = 0, maximum = 200, default = "8")]
+    pub harmonics: usize,
+    /// Equidistant positions per mesh cycle in the table `samples`.
+    #[declared(minimum = 1, maximum = 100_000, default = "12")]
+    pub samples: usize,
+    /// Where the first of them is: rotation of the pinion from where a pair starts contact in A, in driving direction.
+    #[declared(minimum = -TAU, maximum = TAU, dimension = ANGLE, default = "0 deg")]
+    pub first_sample: f64,
+}
 
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
 const LARGE_APPROACH: f64 = 0.5;
@@ -88,42 +93,18 @@ const SOLVES_PER_POSITION: f64 = 4.0;
 /// The tables that need curves.
 const OF_CURVES: [&str; 4] = ["summary", "curve", "harmonics", "cost"];
 
-struct Ste {
-    stiffness: String,
-    designs: Vec<String>,
-    torques: Vec<f64>,
-    accuracy: Option<f64>,
-    settings: Settings,
-    harmonics: usize,
-    samples: usize,
-    first_sample: f64,
-}
-
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let reference = |value: &Value| match value {
-        Value::Reference(name) => Some(name.clone()),
-        _ => None,
-    };
-    let designs: Vec<String> = record.list("designs").iter().filter_map(|entry| reference(&entry.value)).collect();
-    if designs.is_empty() {
-        return Err(Diagnostic::new("no designs are given").at(record.place_of("designs")));
+    let ste = Ste::checked(record)?;
+    if ste.designs.is_empty() {
+        return Err(Diagnostic::new("no designs are given").at(record.place_of(Ste::NAMES.designs)));
     }
-    for (index, name) in designs.iter().enumerate() {
-        if designs[..index].contains(name) {
-            let place = record.list("designs")[index].place;
-            return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(place));
+    for (index, Placed { value: name, place }) in ste.designs.iter().enumerate() {
+        if ste.designs[..index].iter().any(|other| other.value == *name) {
+            return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(*place));
         }
     }
-    Ok(Box::new(Ste {
-        stiffness: record.reference("stiffness").to_owned(),
-        designs,
-        torques: record.axis("torque").to_vec(),
-        accuracy: record.maybe_quantity("accuracy"),
-        settings: common::settings(record)?,
-        harmonics: common::whole(record, "harmonics"),
-        samples: common::whole(record, "samples"),
-        first_sample: record.quantity("first_sample"),
-    }))
+    common::check_slices(ste.settings(), record)?;
+    Ok(Box::new(ste))
 }
 
 /// One design under one torque.
@@ -136,6 +117,10 @@ struct Answer {
 }
 
 impl Ste {
+    fn settings(&self) -> Settings {
+        common::settings(self.positions, self.slices, self.contact)
+    }
+
     fn answer(
         &self,
         base: &MeshCycle,
@@ -148,7 +133,7 @@ impl Ste {
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
             LoadCase::new(&base.sampled(settings), design, torque).peak_to_peak()
         });
-        let settings = self.accuracy.map_or(self.settings, |accuracy| sampled.coarsest(self.settings, accuracy));
+        let settings = self.accuracy.map_or(self.settings(), |accuracy| sampled.coarsest(self.settings(), accuracy));
         let cycle = base.sampled(settings);
         let loading = LoadCase::new(&cycle, design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
@@ -172,7 +157,7 @@ impl Stage for Ste {
     fn inputs(&self) -> Vec<Port> {
         let mut ports = common::mesh_cycle_ports(&self.stiffness);
         for (index, stage) in self.designs.iter().enumerate() {
-            ports.push(Port::tables(format!("designs_{}", index + 1), stage, &["designs", "elements"]));
+            ports.push(Port::tables(format!("designs_{}", index + 1), stage.value.as_str(), &["designs", "elements"]));
         }
         ports
     }
@@ -193,7 +178,7 @@ impl Stage for Ste {
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        let slices = match self.settings.slice_coupling {
+        let slices = match self.settings().slice_coupling {
             SliceCoupling::None => {
                 "crowning, slopes and linear or parabolic end relief have a closed form under linear contact"
             }
@@ -202,10 +187,10 @@ impl Stage for Ste {
         let sliced = Saved::For {
             done: &CONTACT_SOLVES,
             saved: &CONTACT_SOLVES,
-            times: PER_SLICE * self.settings.slices as f64,
+            times: PER_SLICE * self.settings().slices as f64,
         };
         let mut omissions = vec![Omission::new("slices across the face", slices).saving(Some(sliced))];
-        omissions.extend(common::corner_contact_left_out(self.settings));
+        omissions.extend(common::corner_contact_left_out(self.settings()));
         if self.harmonics == 0 {
             omissions.push(Omission::new("harmonics", "`harmonics` is 0"));
         }
@@ -220,7 +205,7 @@ impl Stage for Ste {
                 for_each_solve(&CONTACT_PRESSURES, 1.0)
             }
             ("samples", None) if !demand.table("sample_summary") => {
-                let curve = SOLVES_PER_POSITION * self.settings.positions as f64;
+                let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
                 for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
             }
             _ => None,
@@ -228,10 +213,10 @@ impl Stage for Ste {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
+        let (pair, base) = common::mesh_cycle(inputs, self.settings())?;
         let mut designs: Vec<(Design, String)> = Vec::new();
         let mut givers: BTreeMap<String, &str> = BTreeMap::new();
-        for (index, giver) in (1..).zip(&self.designs) {
+        for (index, Placed { value: giver, .. }) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
             let (names, elements) = (inputs.table(&port, "designs")?, inputs.table(&port, "elements")?);
             for named in designs::read(names, elements, modification::members())? {
@@ -248,7 +233,7 @@ impl Stage for Ste {
         let curve_pressure = context.demand.column("curve", "pressure");
         let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
         let tasks: Vec<(usize, f64)> =
-            (0..designs.len()).flat_map(|design| self.torques.iter().map(move |torque| (design, *torque))).collect();
+            (0..designs.len()).flat_map(|design| self.torque.iter().map(move |torque| (design, *torque))).collect();
         // Equidistant samples alone need no curve.
         let of_curves = OF_CURVES.iter().any(|table| context.demand.table(table));
         let answered = if of_curves { tasks.as_slice() } else { &[] };

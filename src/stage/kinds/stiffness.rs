@@ -10,12 +10,12 @@ use crate::stage::compliance as codec;
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, pair,
 };
-use declare::declared::Words;
+use declare::declared::{Declared, Words};
 use declare::error::{Diagnostic, Failure};
-use declare::parameter::{Choice, Field, count, joined};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE};
 use declare::work::Work;
+use declare::{Declared, Words};
 use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
 use gearmesh::gear::transmission_error::curve::Point;
@@ -29,8 +29,8 @@ use studygraph::table::schema::{Column, Schema};
 pub const KIND: Kind = Kind {
     name: "stiffness",
     version: 1,
-    summary: "Compliance of the teeth of both gears, and the mesh stiffness over the mesh cycle.",
-    fields: FIELDS,
+    summary: Stiffness::MEMBER.summary,
+    fields: Stiffness::MEMBER.fields,
     example: "
 kind: stiffness
 pair: geometry
@@ -42,36 +42,37 @@ coupling: body
     build,
 };
 
-const FIELDS: &[Field] = &joined::<{ count(PARTS) }>(PARTS);
+/// Compliance of the teeth of both gears, and the mesh stiffness over the mesh cycle.
+#[derive(Debug, Declared)]
+struct Stiffness {
+    /// The pair.
+    #[declared(kinds = ["geometry"])]
+    pub pair: String,
+    #[declared(flatten)]
+    pub teeth: Teeth,
+    /// Whether loaded neighbours deflect each other through the gear bodies.
+    #[declared(default = "body")]
+    pub coupling: Coupling,
+    /// Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE)]
+    pub torque: Option<f64>,
+    /// Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet
+    /// it.
+    #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO)]
+    pub accuracy: Option<f64>,
+    /// Positions per base pitch; the ends of contact come on top.
+    #[declared(minimum = 8, maximum = 100_000, default = "64")]
+    pub positions: usize,
+}
 
-const PARTS: &[&[Field]] = &[&[Field::reference("pair", &["geometry"], "The pair.")], common::TEETH, MESH];
-
-const MESH: &[Field] = &[
-    Field::choice("coupling", COUPLINGS, "Whether loaded neighbours deflect each other through the gear bodies.")
-        .default("body"),
-    Field::quantity(
-        "torque",
-        TORQUE,
-        1e-12,
-        1e9,
-        "Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.",
-    )
-    .optional(),
-    Field::quantity(
-        "accuracy",
-        RATIO,
-        1e-12,
-        0.1,
-        "Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet it.",
-    )
-    .optional(),
-    Field::integer("positions", 8, 100_000, "Positions per base pitch; the ends of contact come on top.").default("64"),
-];
-
-const COUPLINGS: &[Choice] = &[
-    Choice { name: "none", summary: "pair stiffnesses are summed" },
-    Choice { name: "body", summary: "a load on one tooth moves its neighbours" },
-];
+/// Whether a load on one tooth is felt by others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+enum Coupling {
+    /// pair stiffnesses are summed
+    None,
+    /// a load on one tooth moves its neighbours
+    Body,
+}
 
 /// What finite elements take without a wanted accuracy: for either gear the mesh, and one half as fine for its error.
 const USUAL_FACTORISATIONS: f64 = 4.0;
@@ -79,29 +80,15 @@ const USUAL_FACTORISATIONS: f64 = 4.0;
 /// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
 const ANY_TORQUE: f64 = 1.0;
 
-struct Stiffness {
-    pair: String,
-    teeth: Teeth,
-    torque: f64,
-    settings: Settings,
-}
-
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
-    let mut teeth = common::teeth(record)?;
-    let torque = record.maybe_quantity("torque");
-    teeth.assumptions = Assumptions { torque, accuracy: record.maybe_quantity("accuracy"), ..teeth.assumptions };
-    if teeth.assumptions.contact == ContactLaw::LoadDependent && torque.is_none() {
+    let stiffness = Stiffness::checked(record)?;
+    stiffness.teeth.check(record)?;
+    if stiffness.teeth.contact == ContactLaw::LoadDependent && stiffness.torque.is_none() {
         return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
-            .at(record.place_of("contact"))
+            .at(record.place_of(Teeth::NAMES.contact))
             .help("add for example `torque: 50 N m`"));
     }
-    let positions = common::whole(record, "positions");
-    Ok(Box::new(Stiffness {
-        pair: record.reference("pair").to_owned(),
-        teeth,
-        torque: torque.unwrap_or(ANY_TORQUE),
-        settings: Settings { positions, ..Settings::default() },
-    }))
+    Ok(Box::new(stiffness))
 }
 
 /// Where a row of the curve stands, from 1, and what is there.
@@ -218,8 +205,17 @@ fn stress_rows(stresses: Vec<RootStress>) -> Vec<StressRow> {
 }
 
 impl Stiffness {
+    fn assumptions(&self) -> Assumptions {
+        let (torque, accuracy) = (self.torque, self.accuracy);
+        Assumptions { torque, accuracy, ..self.teeth.assumptions(self.coupling == Coupling::Body) }
+    }
+
+    fn settings(&self) -> Settings {
+        Settings { positions: self.positions, ..Settings::default() }
+    }
+
     fn root_name(&self) -> &str {
-        if self.teeth.method.whole_pair() { "none" } else { self.teeth.assumptions.root.word() }
+        if self.teeth.method.whole_pair() { "none" } else { self.teeth.root.word() }
     }
 }
 
@@ -238,8 +234,8 @@ impl Stage for Stiffness {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let foreseen = self.teeth.method.foresee(self.teeth.assumptions);
-        let curve = common::curve_rows(self.settings, 0);
+        let foreseen = self.teeth.method.foresee(self.assumptions());
+        let curve = common::curve_rows(self.settings(), 0);
         let meshed = self.teeth.method.root_stresses().is_some();
         let solves = Work::of(&CONTACT_SOLVES, 2 * curve);
         let mut estimate =
@@ -257,7 +253,7 @@ impl Stage for Stiffness {
             estimate = estimate.rows(demand, schema, rows);
         }
         if demand.table("root_stress") {
-            let meshes = if self.teeth.assumptions.accuracy.is_some() { 6 } else { 2 };
+            let meshes = if self.accuracy.is_some() { 6 } else { 2 };
             estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
         }
         estimate
@@ -266,16 +262,16 @@ impl Stage for Stiffness {
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = Vec::new();
         if self.teeth.method.root_stresses().is_none() {
-            let reason = format!("method `{}` needs none", self.teeth.name);
+            let reason = format!("method `{}` needs none", self.teeth.method.name());
             let saved = Some(Saved::Fixed(&MESH_FACTORISATIONS, USUAL_FACTORISATIONS));
             omissions.push(Omission::new("finite-element mesh and factorisation", reason).saving(saved));
         }
         if self.teeth.method.whole_pair() {
-            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.teeth.name);
+            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.teeth.method.name());
             for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
                 omissions.push(Omission::new(what, &why));
             }
-        } else if !self.teeth.assumptions.coupled {
+        } else if self.coupling == Coupling::None {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
         }
         omissions
@@ -288,31 +284,28 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings, error_estimate, meshes, work } = self
-            .teeth
-            .method
-            .tabulate(&pair, self.teeth.assumptions)
-            .map_err(|error| Failure::new(error.to_string()))?;
+        let Tabulated { compliance, warnings, error_estimate, meshes, work } =
+            self.teeth.method.tabulate(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
             (context.warn)(warning);
         }
-        if let Some(accuracy) = self.teeth.assumptions.accuracy.filter(|accuracy| error_estimate > *accuracy) {
+        if let Some(accuracy) = self.accuracy.filter(|accuracy| error_estimate > *accuracy) {
             (context.warn)(format!(
                 "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
                  {accuracy:.1e}",
-                self.teeth.name
+                self.teeth.method.name()
             ));
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
         let mut tables =
-            Vec::from(codec::write(&compliance, radii, self.teeth.name, self.root_name()).map_err(failed)?);
+            Vec::from(codec::write(&compliance, radii, self.teeth.method.name(), self.root_name()).map_err(failed)?);
         context.check_stop()?;
 
-        let cycle = MeshCycle::new(&pair, &compliance, self.settings)?;
-        let (points, of_curve) = stiffness(&cycle, self.torque);
+        let cycle = MeshCycle::new(&pair, &compliance, self.settings())?;
+        let (points, of_curve) = stiffness(&cycle, self.torque.unwrap_or(ANY_TORQUE));
         context.work.add(&cycle.work());
         let rows: Vec<CurveRow> = (1..).zip(points).collect();
         tables.push(curve().table(&rows).map_err(failed)?);
@@ -330,7 +323,7 @@ impl Stage for Stiffness {
         }
         if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table("root_stress")) {
             let (found, work) =
-                method.root_stress(&pair, self.teeth.assumptions).map_err(|error| Failure::new(error.to_string()))?;
+                method.root_stress(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);
             tables.push(root_stress().table(&stress_rows(found)).map_err(failed)?);
         }

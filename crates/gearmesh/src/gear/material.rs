@@ -2,12 +2,17 @@
 //!
 //! Must not know: gears.
 
+use declare::Declared;
+use declare::units::STRESS;
+
 /// Linear elastic, isotropic.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct Material {
-    /// E \[Pa\].
+    /// Young's modulus E.
+    #[declared(minimum = 1.0, maximum = 1e15, dimension = STRESS, default = "206 GPa")]
     pub youngs_modulus: f64,
-    /// ν.
+    /// Poisson's ratio ν.
+    #[declared(minimum = 0.0, maximum = 0.4999, default = "0.3")]
     pub poisson_ratio: f64,
 }
 

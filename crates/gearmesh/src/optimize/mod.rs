@@ -34,7 +34,7 @@ pub mod sobol;
 use std::fmt::Debug;
 
 use bounds::Bounds;
-use declare::declared::Declared;
+use declare::declared::{Declared, Registrable};
 use declare::error::Diagnostic;
 use declare::registry;
 use declare::seed::Seed;
@@ -54,7 +54,7 @@ pub struct Foreseen {
 }
 
 /// A method of minimisation with its settings: a declared struct, which anybody can make.
-pub trait Method: Debug + Send + Sync {
+pub trait Method: Debug + Registrable + Send + Sync {
     /// What it will ask for with `dimension` variables, before a point is drawn.
     ///
     /// # Errors

@@ -18,14 +18,14 @@ impl Optimizer {
     pub fn ahead(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let dimension = self.template.variables().len();
         // What the method refuses was refused when the stage was built.
-        let Ok(foreseen) = self.method.foresee(dimension) else {
+        let Ok(foreseen) = self.stated.method.foresee(dimension) else {
             return Estimate::new(true);
         };
         let as_many = |count| if foreseen.exact { RowCount::exact(count) } else { RowCount::at_most(count) };
         let each = SOLVES + SOLVES_PER_POSITION * self.settings.positions as f64;
         // Far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let solves = (foreseen.evaluations as f64 * self.torques.len() as f64 * each) as usize;
+        let solves = (foreseen.evaluations as f64 * self.stated.at.torque.len() as f64 * each) as usize;
         let kept = if demand.table("evaluations") { foreseen.evaluations as u64 } else { 0 };
         let [designs, elements] = designs::schemas();
         Estimate::new(true)
@@ -34,7 +34,7 @@ impl Optimizer {
             .rows(demand, self.best().schema(), RowCount::exact(1))
             .rows(demand, self.history().schema(), as_many(foreseen.batches))
             .rows(demand, designs, RowCount::exact(1))
-            .rows(demand, elements, RowCount::exact(self.elements.iter().map(rows_of).sum()))
+            .rows(demand, elements, RowCount::exact(self.stated.design.elements().iter().map(rows_of).sum()))
             .columns(demand, self.evaluations().schema(), as_many(foreseen.evaluations))
     }
 }

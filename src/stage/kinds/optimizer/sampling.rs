@@ -15,7 +15,7 @@ const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 impl Optimizer {
     /// The settings to begin with.
     pub fn first_settings(&self, base: &MeshCycle, pair: &GearPair) -> Settings {
-        let Some(accuracy) = self.accuracy else { return self.settings };
+        let Some(accuracy) = self.stated.accuracy else { return self.settings };
         let variables = self.template.variables();
         let at = |share: &f64| -> Vec<f64> {
             variables.iter().map(|variable| variable.minimum + share * (variable.maximum - variable.minimum)).collect()
@@ -43,7 +43,7 @@ impl Optimizer {
         look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,
     ) -> Option<T> {
         let design = self.template.design(pair, point).ok()?;
-        let sliced = self.torques.iter().any(|torque| LoadCase::new(base, &design, *torque).uses_slices());
+        let sliced = self.stated.at.torque.iter().any(|torque| LoadCase::new(base, &design, *torque).uses_slices());
         let mut value = |settings| self.value(&base.sampled(settings), pair, point);
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }

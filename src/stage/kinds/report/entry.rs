@@ -6,11 +6,12 @@ use super::formula::{Formula, Outcome};
 use super::operand::{Operand, in_si};
 use super::quantity::Number;
 use super::rows::OperandRows;
-use super::stated::{Target, convert, read_target};
+use super::stated::{Expected, Published, StatedProof, Target, convert, read_target};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
+use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
-use declare::record::{Record, Value};
+use declare::record::Record;
 use declare::units::{RATIO, in_unit};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
@@ -125,53 +126,56 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
 impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
-    pub fn read(number: usize, record: &Record) -> Result<Self, Diagnostic> {
-        let wrong = |message: String, field: &str| Diagnostic::new(message).at(record.place_of(field));
-        let text = |field: &str| record.maybe_text(field).unwrap_or_default().trim().to_owned();
-        let subject = read_subject(record)?;
+    pub fn read(number: usize, stated: &Published, record: &Record) -> Result<Self, Diagnostic> {
+        let subject = read_subject(stated, record)?;
         let is_claim = matches!(subject, Subject::Claim(..));
-        let published = match (record.maybe_text("value"), is_claim) {
-            (Some(_), false) => Some(read_target(record, None)?),
+        let published = match (&stated.value, is_claim) {
+            (Some(value), false) => Some(read_target(value, &stated.tolerance, None)?),
             (None, false) => {
                 return Err(Diagnostic::new("the published `value` is missing")
                     .at(record.place)
                     .help("write `value: 2.316 um`"));
             }
-            (Some(_), true) => return Err(wrong("a claim holds or not; it has no `value`".to_owned(), "value")),
+            (Some(value), true) => {
+                return Err(Diagnostic::new("a claim holds or not; it has no `value`").at(value.place));
+            }
             (None, true) => None,
         };
         let unit = published.as_ref().map_or(RATIO, |target| target.stated.dimension);
-        let expected = record.maybe_group("expected").map(|group| read_target(group, Some(unit))).transpose()?;
-        let proof = record.maybe_group("proof").map(read_proof).transpose()?;
-        let because = text("because");
+        let expected = stated.expected.as_ref();
+        let expected = expected.map(|Expected { value, tolerance }| read_target(value, tolerance, Some(unit)));
+        let expected = expected.transpose()?;
+        let proof = stated.proof.as_ref().map(read_proof).transpose()?;
+        let because = trimmed(stated.because.as_deref());
         if because.is_empty() && proof.is_some() {
-            return Err(
-                wrong("a proof is given, but not the reason it proves".to_owned(), "proof").help("add `because: …`")
-            );
+            return Err(Diagnostic::new("a proof is given, but not the reason it proves")
+                .at(record.place_of(Published::NAMES.proof))
+                .help("add `because: …`"));
         }
         let entry = Self {
             number,
             place: record.place,
-            label: text("label"),
-            location: text("where"),
+            label: trimmed(stated.label.as_deref()),
+            location: trimmed(stated.location.as_deref()),
             subject,
             published,
             expected,
             because,
-            note: text("note"),
+            note: trimmed(stated.note.as_deref()),
             proof,
         };
-        entry.check_quantities(record)?;
+        entry.check_quantities(stated)?;
         Ok(entry)
     }
 
     /// Evaluates what needs no table, so that units which do not go together are found before anything runs.
-    fn check_quantities(&self, record: &Record) -> Result<(), Diagnostic> {
+    fn check_quantities(&self, stated: &Published) -> Result<(), Diagnostic> {
         if let Subject::Formula(formula, with) | Subject::Claim(formula, with) = &self.subject
             && with.iter().all(|(_, operand)| operand.cell().is_none())
         {
-            let field = if formula.is_claim() { "claim" } else { "formula" };
-            let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
+            let given = if formula.is_claim() { &stated.claim } else { &stated.formula };
+            let place = given.as_ref().map_or(self.place, |given| given.place);
+            let wrong = |message: String| Diagnostic::new(message).at(place);
             let outcome = OperandRows::of(&Inputs::default(), with)
                 .and_then(|rows| formula.evaluate(rows.names(0, &rows.lookup(None))))
                 .map_err(wrong)?;
@@ -183,7 +187,7 @@ impl ReportEntry {
             && with.iter().all(|(_, operand)| operand.cell().is_none())
             && claim.names().all(|name| name != "computed" && (name != "published" || self.published.is_some()))
         {
-            let place = record.maybe_group("proof").map_or(record.place, |proof| proof.place_of("claim"));
+            let place = stated.proof.as_ref().map_or(self.place, |proof| proof.claim.place);
             self.prove(
                 &Inputs::default(),
                 self.published.as_ref().map_or(f64::NAN, |target| target.stated.number),
@@ -320,21 +324,25 @@ impl Subject {
     }
 }
 
-fn read_subject(record: &Record) -> Result<Subject, Diagnostic> {
-    let given: Vec<&str> =
-        ["cell", "formula", "claim"].into_iter().filter(|field| record.entry(field).is_some()).collect();
-    let [field] = given.as_slice() else {
-        let found = if given.is_empty() { "none".to_owned() } else { format!("`{}`", given.join("` and `")) };
+fn trimmed(text: Option<&str>) -> String {
+    text.unwrap_or_default().trim().to_owned()
+}
+
+fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnostic> {
+    let names = Published::NAMES;
+    let all = [(names.cell, &stated.cell), (names.formula, &stated.formula), (names.claim, &stated.claim)];
+    let given: Vec<_> = all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?))).collect();
+    let [(_, Placed { value: text, place })] = given[..] else {
+        let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
+        let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
         let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
-        return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |field| record.place_of(field))));
+        return Err(Diagnostic::new(message).at(given.get(1).map_or(record.place, |(_, text)| text.place)));
     };
-    let place = record.place_of(field);
-    let wrong = |message: String| Diagnostic::new(message).at(place);
-    let text = record.text(field);
-    if *field == "cell" {
-        if record.entry("with").is_some() {
+    let wrong = |message: String| Diagnostic::new(message).at(*place);
+    if stated.cell.is_some() {
+        if stated.with.is_some() {
             return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
-                .at(record.place_of("with")));
+                .at(record.place_of(names.with)));
         }
         let operand = Operand::parse(text).map_err(wrong)?;
         return if operand.cell().is_some() {
@@ -343,20 +351,20 @@ fn read_subject(record: &Record) -> Result<Subject, Diagnostic> {
             Err(wrong(format!("`{text}` is no cell; write `stage.table[key=value, …].column`")))
         };
     }
-    let with = read_operands(record, &[])?;
-    let formula = read_formula(text, &with, &[], place)?;
-    match (*field, formula.is_claim()) {
-        ("formula", false) => Ok(Subject::Formula(formula, with)),
-        ("claim", true) => Ok(Subject::Claim(formula, with)),
-        ("formula", true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
-        _ => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
+    let with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
+    let formula = read_formula(text, &with, &[], *place)?;
+    match (stated.claim.is_some(), formula.is_claim()) {
+        (false, false) => Ok(Subject::Formula(formula, with)),
+        (true, true) => Ok(Subject::Claim(formula, with)),
+        (false, true) => Err(wrong(format!("`{text}` is true or false; call it `claim` and give no value"))),
+        (true, false) => Err(wrong(format!("`{text}` is a number; a claim compares, for example `ga <= iso`"))),
     }
 }
 
-fn read_proof(record: &Record) -> Result<Proof, Diagnostic> {
-    let with = read_operands(record, &GIVEN)?;
-    let place = record.place_of("claim");
-    let claim = read_formula(record.text("claim"), &with, &GIVEN, place)?;
+fn read_proof(StatedProof { claim, with }: &StatedProof) -> Result<Proof, Diagnostic> {
+    let with = read_operands(with.as_deref().unwrap_or_default(), &GIVEN)?;
+    let place = claim.place;
+    let claim = read_formula(&claim.value, &with, &GIVEN, place)?;
     if claim.is_claim() {
         Ok(Proof { claim, with })
     } else {
@@ -365,15 +373,14 @@ fn read_proof(record: &Record) -> Result<Proof, Diagnostic> {
     }
 }
 
-/// Reads `with`; refuses the names that stand for something already.
-fn read_operands(record: &Record, taken: &[&str]) -> Result<Operands, Diagnostic> {
+/// Reads what names stand for; refuses those that stand for something already.
+fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
     let mut operands = Operands::new();
-    for (name, entry) in record.maybe_map("with").unwrap_or_default() {
-        let wrong = |message: String| Diagnostic::new(message).at(entry.place);
+    for (name, Placed { value: text, place }) in with {
+        let wrong = |message: String| Diagnostic::new(message).at(*place);
         if taken.contains(&name.as_str()) {
             return Err(wrong(format!("`{name}` stands for the {name} value already; choose another name")));
         }
-        let Value::Text(text) = &entry.value else { return Err(wrong(format!("`{name}` is no text"))) };
         operands.push((name.clone(), Operand::parse(text).map_err(wrong)?));
     }
     Ok(operands)

@@ -6,61 +6,92 @@
 use super::operand::{in_si, no_rows, table};
 use super::quantity::{described, same_dimension};
 use crate::stage::{Ahead, Inputs};
-use declare::error::{Diagnostic, Place as TextPlace};
-use declare::parameter::{Choice, Field, Shape};
-use declare::record::{Record, Value};
+use declare::declared::{Placed, Words};
+use declare::error::Diagnostic;
+use declare::record::Record;
 use declare::text::is_device;
 use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
+use declare::{Declared, Words};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Column, Type};
 use studygraph::table::select::{rows_where, unknown_column};
 
-const KINDS: &[Choice] = &[
-    Choice { name: "line", summary: "a line for each series" },
-    Choice { name: "points", summary: "markers only" },
-    Choice { name: "bar", summary: "bars over the words or numbers of the x column" },
-    Choice { name: "drawing", summary: "lines, true to scale: both axes have one length per unit" },
-];
+/// A figure as a study states it.
+#[derive(Debug, Declared)]
+pub struct StatedFigure {
+    /// name of the file in `figures/`: letters, digits, - and _
+    pub name: String,
+    /// what is shown
+    pub title: String,
+    /// how it is drawn
+    #[declared(default = "line")]
+    pub kind: How,
+    /// `stage.table`; several are drawn together, told apart by stage
+    pub table: Vec<Placed<String>>,
+    /// column of the x axis
+    pub x: String,
+    /// column of the y axis; several need one unit
+    pub y: Vec<String>,
+    /// column whose values are drawn apart, one line each
+    pub series: Option<String>,
+    /// column at whose changes a line is interrupted (a jump stays a jump)
+    pub segments: Option<String>,
+    /// only the rows with these values, column: value
+    #[declared(name = "where")]
+    pub conditions: Option<Vec<(String, String)>>,
+    /// `stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|
+    pub reference: Option<Placed<String>>,
+    /// name of the x axis; otherwise that of the column
+    pub x_label: Option<String>,
+    /// name of the y axis; otherwise that of the column
+    pub y_label: Option<String>,
+    /// axes with a logarithmic scale
+    #[declared(default = "none")]
+    pub log: Logarithmic,
+    /// what the paper says, drawn for comparison
+    pub published: Option<Vec<StatedMark>>,
+    /// what to see in it
+    pub note: Option<String>,
+}
 
-const LOG: &[Choice] = &[
-    Choice { name: "none", summary: "both axes linear" },
-    Choice { name: "x", summary: "the x axis" },
-    Choice { name: "y", summary: "the y axis" },
-    Choice { name: "both", summary: "both axes" },
-];
+/// A published point or line as a study states it.
+#[derive(Debug, Declared)]
+pub struct StatedMark {
+    /// place on the x axis, with its unit; without it a line across the figure
+    pub x: Option<Placed<String>>,
+    /// place on the y axis, with its unit; without it an upright line
+    pub y: Option<Placed<String>>,
+    /// name in the legend; the name of a series takes that series' colour
+    #[declared(default = "published")]
+    pub label: String,
+}
 
-const PUBLISHED: &[Field] = &[
-    Field::new("x", Shape::Text, "place on the x axis, with its unit; without it a line across the figure").optional(),
-    Field::new("y", Shape::Text, "place on the y axis, with its unit; without it an upright line").optional(),
-    Field::new("label", Shape::Text, "name in the legend; the name of a series takes that series' colour")
-        .default("published"),
-];
+/// How a figure is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum How {
+    /// a line for each series
+    Line,
+    /// markers only
+    Points,
+    /// bars over the words or numbers of the x column
+    Bar,
+    /// lines, true to scale: both axes have one length per unit
+    Drawing,
+}
 
-pub const FIELDS: &[Field] = &[
-    Field::new("name", Shape::Text, "name of the file in `figures/`: letters, digits, - and _"),
-    Field::new("title", Shape::Text, "what is shown"),
-    Field::choice("kind", KINDS, "how it is drawn").default("line"),
-    Field::new("table", Shape::List(&Shape::Text), "`stage.table`; several are drawn together, told apart by stage"),
-    Field::new("x", Shape::Text, "column of the x axis"),
-    Field::new("y", Shape::List(&Shape::Text), "column of the y axis; several need one unit"),
-    Field::new("series", Shape::Text, "column whose values are drawn apart, one line each").optional(),
-    Field::new("segments", Shape::Text, "column at whose changes a line is interrupted (a jump stays a jump)")
-        .optional(),
-    Field::new("where", Shape::Map(&Shape::Text), "only the rows with these values, column: value").optional(),
-    Field::new(
-        "reference",
-        Shape::Text,
-        "`stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|",
-    )
-    .optional(),
-    Field::new("x_label", Shape::Text, "name of the x axis; otherwise that of the column").optional(),
-    Field::new("y_label", Shape::Text, "name of the y axis; otherwise that of the column").optional(),
-    Field::choice("log", LOG, "axes with a logarithmic scale").default("none"),
-    Field::new("published", Shape::List(&Shape::Group(PUBLISHED)), "what the paper says, drawn for comparison")
-        .optional(),
-    Field::new("note", Shape::Text, "what to see in it").optional(),
-];
+/// Which axes are logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Logarithmic {
+    /// both axes linear
+    None,
+    /// the x axis
+    X,
+    /// the y axis
+    Y,
+    /// both axes
+    Both,
+}
 
 /// A published point or line; lengths along the axes, in SI.
 struct Mark {
@@ -79,7 +110,7 @@ pub struct Figure {
     line: usize,
     name: String,
     title: String,
-    kind: &'static str,
+    kind: How,
     /// Stage and table.
     tables: Vec<(String, String)>,
     x: String,
@@ -91,7 +122,7 @@ pub struct Figure {
     conditions: Vec<(String, String)>,
     x_label: String,
     y_label: String,
-    log: &'static str,
+    log: Logarithmic,
     published: Vec<Mark>,
     note: String,
 }
@@ -99,64 +130,53 @@ pub struct Figure {
 impl Figure {
     /// # Errors
     /// What is wrong with it, at the place of the field.
-    pub fn read(number: usize, record: &Record) -> Result<Self, Diagnostic> {
-        let text = |field: &str| record.maybe_text(field).unwrap_or_default().trim().to_owned();
-        let name = text("name");
+    pub fn read(number: usize, stated: &StatedFigure, record: &Record) -> Result<Self, Diagnostic> {
+        const NAMES: StatedFigureNames = StatedFigure::NAMES;
+        let text = |text: &String| text.trim().to_owned();
+        let maybe = |maybe: &Option<String>| maybe.as_ref().map(text).unwrap_or_default();
+        let name = text(&stated.name);
         let fits = |character: char| character.is_ascii_alphanumeric() || matches!(character, '-' | '_');
         if name.is_empty() || name.len() > 60 || !name.chars().all(fits) {
             let message = format!("`{name}` is no name for a file; use up to 60 letters, digits, - and _");
-            return Err(Diagnostic::new(message).at(record.place_of("name")));
+            return Err(Diagnostic::new(message).at(record.place_of(NAMES.name)));
         }
         if is_device(&name) {
             let message = format!("`{name}` is no name for a file: Windows keeps it for a device");
             let help = format!("for example `{name}-figure`");
-            return Err(Diagnostic::new(message).at(record.place_of("name")).help(help));
+            return Err(Diagnostic::new(message).at(record.place_of(NAMES.name)).help(help));
         }
-        let mut tables = Vec::new();
-        for (table, place) in texts(record, "table") {
-            tables.push(read_table(&table, place)?);
-        }
-        let reference = record.maybe_text("reference");
-        let reference = reference.map(|table| read_table(table.trim(), record.place_of("reference"))).transpose()?;
-        let y: Vec<String> = texts(record, "y").into_iter().map(|(column, _)| column).collect();
-        for (field, is_empty) in [("table", tables.is_empty()), ("y", y.is_empty())] {
+        let tables = stated.table.iter().map(read_table).collect::<Result<Vec<_>, _>>()?;
+        let reference = stated.reference.as_ref().map(read_table).transpose()?;
+        for (field, is_empty) in [(NAMES.table, tables.is_empty()), (NAMES.y, stated.y.is_empty())] {
             if is_empty {
                 return Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)));
             }
         }
-        let mut conditions = Vec::new();
-        for (column, entry) in record.maybe_map("where").unwrap_or_default() {
-            let Value::Text(value) = &entry.value else { continue };
-            conditions.push((column.clone(), value.trim().to_owned()));
-        }
-        let mut published = Vec::new();
-        for entry in record.maybe_list("published").unwrap_or_default() {
-            if let Some(record) = entry.value.record() {
-                published.push(read_mark(record)?);
-            }
-        }
-        if record.choice("kind") == "drawing" && record.choice("log") != "none" {
+        let conditions = stated.conditions.iter().flatten();
+        let marks = stated.published.iter().flatten().zip(record.each_inside(NAMES.published));
+        let published = marks.map(|(mark, record)| read_mark(mark, record)).collect::<Result<_, _>>()?;
+        if stated.kind == How::Drawing && stated.log != Logarithmic::None {
             let message = "a drawing that is true to scale has no logarithmic axis";
-            return Err(Diagnostic::new(message).at(record.place_of("log")));
+            return Err(Diagnostic::new(message).at(record.place_of(NAMES.log)));
         }
         Ok(Self {
             number,
             line: record.place.line,
             name,
-            title: text("title"),
-            kind: record.choice("kind"),
+            title: text(&stated.title),
+            kind: stated.kind,
             tables,
-            x: text("x"),
-            y,
-            series: text("series"),
-            segments: text("segments"),
+            x: text(&stated.x),
+            y: stated.y.iter().map(text).collect(),
+            series: maybe(&stated.series),
+            segments: maybe(&stated.segments),
             reference,
-            conditions,
-            x_label: text("x_label"),
-            y_label: text("y_label"),
-            log: record.choice("log"),
+            conditions: conditions.map(|(column, value)| (column.clone(), text(value))).collect(),
+            x_label: maybe(&stated.x_label),
+            y_label: maybe(&stated.y_label),
+            log: stated.log,
             published,
-            note: text("note"),
+            note: maybe(&stated.note),
         })
     }
 
@@ -261,7 +281,7 @@ impl Figure {
             return Err(no_rows(table, &self.conditions));
         }
         let x = column(&self.x)?;
-        if self.kind != "bar" {
+        if self.kind != How::Bar {
             numbers(x)?;
         }
         let mut unit: Option<&str> = None;
@@ -278,7 +298,7 @@ impl Figure {
                 column(name)?;
             }
         }
-        if self.kind == "drawing" && unit != Some(&x.unit) {
+        if self.kind == How::Drawing && unit != Some(&x.unit) {
             return Err(format!(
                 "a drawing needs one unit on both axes, not {} and {}",
                 x.unit,
@@ -289,11 +309,12 @@ impl Figure {
     }
 }
 
-fn read_table(text: &str, place: TextPlace) -> Result<(String, String), Diagnostic> {
+fn read_table(Placed { value, place }: &Placed<String>) -> Result<(String, String), Diagnostic> {
+    let text = value.trim();
     text.split_once('.')
         .filter(|(stage, table)| !stage.is_empty() && !table.is_empty())
         .map(|(stage, table)| (stage.to_owned(), table.to_owned()))
-        .ok_or_else(|| Diagnostic::new(format!("`{text}` is no table; write `stage.table`")).at(place))
+        .ok_or_else(|| Diagnostic::new(format!("`{text}` is no table; write `stage.table`")).at(*place))
 }
 
 fn numbers(column: &Column) -> Result<(), String> {
@@ -320,29 +341,18 @@ impl Place {
     }
 }
 
-fn read_mark(record: &Record) -> Result<Mark, Diagnostic> {
-    let place = |field: &str| {
-        let Some(text) = record.maybe_text(field) else { return Ok(None) };
-        let wrong = |message: String| Diagnostic::new(message).at(record.place_of(field));
+fn read_mark(stated: &StatedMark, record: &Record) -> Result<Mark, Diagnostic> {
+    let place = |Placed { value: text, place }: &Placed<String>| {
+        let wrong = |message: String| Diagnostic::new(message).at(*place);
         let quantity = parse_quantity(text).map_err(|error| wrong(format!("`{text}`: {error}")))?;
-        Ok(Some(Place { text: text.trim().to_owned(), dimension: quantity.dimension }))
+        Ok(Place { text: text.trim().to_owned(), dimension: quantity.dimension })
     };
-    let mark = Mark { label: record.text("label").trim().to_owned(), x: place("x")?, y: place("y")? };
+    let [x, y] = [&stated.x, &stated.y].map(|text| text.as_ref().map(place).transpose());
+    let mark = Mark { label: stated.label.trim().to_owned(), x: x?, y: y? };
     if mark.x.is_none() && mark.y.is_none() {
         return Err(Diagnostic::new("a published point needs `x`, `y`, or both").at(record.place));
     }
     Ok(mark)
-}
-
-fn texts(record: &Record, field: &str) -> Vec<(String, TextPlace)> {
-    let entries = record.maybe_list(field).unwrap_or_default();
-    entries
-        .iter()
-        .filter_map(|entry| match &entry.value {
-            Value::Text(text) => Some((text.trim().to_owned(), entry.place)),
-            _ => None,
-        })
-        .collect()
 }
 
 /// Refuses two figures of one name: they would be one file.
@@ -352,7 +362,7 @@ fn texts(record: &Record, field: &str) -> Vec<(String, TextPlace)> {
 pub fn check_names(figures: &[Figure], records: &[&Record]) -> Result<(), Diagnostic> {
     for (index, figure) in figures.iter().enumerate() {
         if figures[..index].iter().any(|earlier| earlier.name.eq_ignore_ascii_case(&figure.name)) {
-            let place = records.get(index).map(|record| record.place_of("name")).unwrap_or_default();
+            let place = records.get(index).map(|record| record.place_of(StatedFigure::NAMES.name)).unwrap_or_default();
             return Err(Diagnostic::new(format!("two figures are called `{}`", figure.name)).at(place));
         }
     }
@@ -372,7 +382,7 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar or drawing.", |row| row.kind)
+        .text("kind", "Line, points, bar or drawing.", |row| row.kind.word())
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
@@ -382,7 +392,7 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .text("conditions", conditions, |row| row.conditions())
         .text("x_label", "Name of the x axis, if not that of the column.", |row| row.x_label.as_str())
         .text("y_label", "Name of the y axis, if not that of the column.", |row| row.y_label.as_str())
-        .text("log", "Axes with a logarithmic scale: none, x, y, both.", |row| row.log)
+        .text("log", "Axes with a logarithmic scale: none, x, y, both.", |row| row.log.word())
         .text("note", "What to see in it.", |row| row.note.as_str())
 }
 

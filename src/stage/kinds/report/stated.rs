@@ -1,13 +1,64 @@
-//! Values as a paper prints them, and how far a computed one may be from them and still agree.
+//! What a paper printed, as a study states it: values, and how far a computed one may be from them and still agree.
 //!
 //! Must not know: what is compared with them.
 
 use super::operand::in_si;
 use super::quantity::{Number, described, same_dimension};
+use declare::Declared;
+use declare::declared::Placed;
 use declare::error::Diagnostic;
 use declare::number::Printed;
-use declare::record::Record;
 use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
+
+/// One of the paper's numbers or claims.
+#[derive(Debug, Declared)]
+pub struct Published {
+    /// what it is, in words
+    pub label: Option<String>,
+    /// where the paper says it: a table, an equation, a page
+    #[declared(name = "where")]
+    pub location: Option<String>,
+    /// the computed cell, `stage.table[key=value, …].column`
+    pub cell: Option<Placed<String>>,
+    /// or arithmetic over the names in `with`: + - * / ^ sqrt abs min max
+    pub formula: Option<Placed<String>>,
+    /// or a comparison that the paper says is true, in every row of its cells
+    pub claim: Option<Placed<String>>,
+    /// what the names in a formula or claim stand for: cells or quantities
+    pub with: Option<Vec<(String, Placed<String>)>>,
+    /// the published value as printed, with its unit
+    pub value: Option<Placed<String>>,
+    /// how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity
+    #[declared(default = "digits")]
+    pub tolerance: Placed<String>,
+    /// where the computed value stands today, so that it cannot drift unseen
+    pub expected: Option<Expected>,
+    /// why they differ
+    pub because: Option<String>,
+    /// arithmetic that proves the reason
+    pub proof: Option<StatedProof>,
+    /// a remark that claims no difference
+    pub note: Option<String>,
+}
+
+/// Where a computed value stands.
+#[derive(Debug, Declared)]
+pub struct Expected {
+    /// the value the study stands by, with its unit; for a claim the number of rows
+    pub value: Placed<String>,
+    /// how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity
+    #[declared(default = "digits")]
+    pub tolerance: Placed<String>,
+}
+
+/// What proves a reason.
+#[derive(Debug, Declared)]
+pub struct StatedProof {
+    /// a comparison that must hold; `published` and `computed` are known in it
+    pub claim: Placed<String>,
+    /// what its other names stand for: cells or quantities
+    pub with: Option<Vec<(String, Placed<String>)>>,
+}
 
 /// A value as printed.
 pub struct Stated {
@@ -43,11 +94,14 @@ pub fn convert(value: f64, from: &str, to: &str) -> Result<f64, String> {
     if from == to { Ok(value) } else { in_si(value, from).map(|number| in_unit(number.si, to)) }
 }
 
-/// Reads `value` and `tolerance`; `dimension` is what the value must have, where that is known.
-pub fn read_target(record: &Record, dimension: Option<Dimension>) -> Result<Target, Diagnostic> {
-    let place = record.place_of("value");
-    let wrong = |message: String| Diagnostic::new(message).at(place);
-    let text = record.text("value").trim();
+/// Reads a value and its tolerance; `dimension` is what the value must have, where that is known.
+pub fn read_target(
+    value: &Placed<String>,
+    tolerance: &Placed<String>,
+    dimension: Option<Dimension>,
+) -> Result<Target, Diagnostic> {
+    let wrong = |message: String| Diagnostic::new(message).at(value.place);
+    let text = value.value.trim();
     let quantity = parse_quantity(text).map_err(|error| wrong(format!("value `{text}`: {error}")))?;
     if let Some(wanted) = dimension.filter(|wanted| !same_dimension(*wanted, quantity.dimension)) {
         let (found, wanted) = (described(quantity.dimension), described(wanted));
@@ -59,16 +113,16 @@ pub fn read_target(record: &Record, dimension: Option<Dimension>) -> Result<Targ
     };
     let stated =
         Stated { text: text.to_owned(), number, unit: unit.to_owned(), dimension: quantity.dimension, printed };
-    let tolerance = read_tolerance(record, &stated)?;
+    let tolerance = read_tolerance(tolerance, &stated)?;
     Ok(Target { stated, tolerance })
 }
 
 /// `digits`, `1 %` of the value, or a quantity.
-fn read_tolerance(record: &Record, stated: &Stated) -> Result<f64, Diagnostic> {
+fn read_tolerance(tolerance: &Placed<String>, stated: &Stated) -> Result<f64, Diagnostic> {
     const HELP: &str =
         "write `digits` (as far as the printed digits go), `1 %` (of the value), or a quantity in the value's unit";
-    let wrong = |message: String| Diagnostic::new(message).at(record.place_of("tolerance")).help(HELP);
-    let text = record.maybe_text("tolerance").unwrap_or("digits").trim();
+    let wrong = |message: String| Diagnostic::new(message).at(tolerance.place).help(HELP);
+    let text = tolerance.value.trim();
     if text == "digits" {
         return Ok(stated.printed.half_unit());
     }

@@ -2,8 +2,11 @@
 
 use std::sync::atomic::AtomicBool;
 
+use super::figure::StatedMark;
+use super::stated::{Expected, StatedProof};
 use super::*;
 use crate::stage::Demand;
+use declare::declared::record_of;
 use declare::error::Place;
 use declare::record::{PlacedValue as Item, Value};
 use declare::seed::Seed;
@@ -25,9 +28,11 @@ fn map(pairs: &[(&str, &str)]) -> Value {
     Value::Map(pairs.iter().map(|(name, value)| ((*name).to_owned(), item(text(value)))).collect())
 }
 
-fn group(fields: Fields) -> Value {
-    let fields = fields.iter().map(|(name, value)| (*name, item(value.clone()))).collect();
-    Value::Group(Record { fields, place: Place { line: 3, ..Place::default() } })
+fn group<T: Declared>(fields: Fields) -> Value {
+    let mut record = record_of(T::MEMBER.fields, fields);
+    record.place.line = 3;
+    record.fields.iter_mut().for_each(|(_, entry)| entry.place.line = 7);
+    Value::Group(record)
 }
 
 fn list(values: Vec<Value>) -> Value {
@@ -78,7 +83,7 @@ fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String>
 }
 
 fn verdict(fields: Fields) -> Result<(String, Table), String> {
-    let table = run(vec![group(fields)], vec![])?.remove(0);
+    let table = run(vec![group::<Published>(fields)], vec![])?.remove(0);
     Ok((table.texts("verdict")[0].clone(), table))
 }
 
@@ -174,14 +179,14 @@ fn a_claim_is_counted_row_by_row() {
     let mut explained = low.to_vec();
     explained.push(("because", text("each relief is best at one load")));
     assert_eq!(verdict(&explained).unwrap().0, "refuted");
-    explained.push(("expected", group(&[("value", text("1")), ("tolerance", text("0"))])));
+    explained.push(("expected", group::<Expected>(&[("value", text("1")), ("tolerance", text("0"))])));
     assert_eq!(verdict(&explained).unwrap().0, "refuted");
     explained.pop();
-    explained.push(("expected", group(&[("value", text("2")), ("tolerance", text("0"))])));
+    explained.push(("expected", group::<Expected>(&[("value", text("2")), ("tolerance", text("0"))])));
     assert_eq!(verdict(&explained).unwrap().0, "moved");
     explained.pop();
     // In the proof of a claim the two numbers are counts of rows.
-    explained.push(("proof", group(&[("claim", text("published == 3 && computed == 1"))])));
+    explained.push(("proof", group::<StatedProof>(&[("claim", text("published == 3 && computed == 1"))])));
     assert_eq!(verdict(&explained).unwrap().0, "refuted");
 
     let alone = [("claim", text("iso < other")), ("with", map(&[("iso", ISO), ("other", "0.5 um")]))];
@@ -235,8 +240,8 @@ fn a_reason_needs_its_proof_and_its_expectation() {
             ("cell", text(UNMODIFIED)),
             ("value", text("2.316 um")),
             ("because", text("its own stiffnesses bound it")),
-            ("proof", group(&[("claim", text(claim)), ("with", with)])),
-            ("expected", group(&[("value", text(expected)), ("tolerance", text("0.1 %"))])),
+            ("proof", group::<StatedProof>(&[("claim", text(claim)), ("with", with)])),
+            ("expected", group::<Expected>(&[("value", text(expected)), ("tolerance", text("0.1 %"))])),
         ]
     };
     let (word, table) = verdict(&entry("F / k1 - F / k2 > published", "3.0 um")).unwrap();
@@ -297,7 +302,7 @@ fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
         (vec![("formula", text("a + c")), ("with", map(&[("a", "1 um")])), value.clone()], "`c` is not given"),
         (vec![("formula", text("a")), ("with", map(&[("a", "1 furlong")])), value.clone()], "unknown unit `furlong`"),
         (
-            vec![("cell", text(ISO)), value.clone(), ("proof", group(&[("claim", text("1 < 2"))]))],
+            vec![("cell", text(ISO)), value.clone(), ("proof", group::<StatedProof>(&[("claim", text("1 < 2"))]))],
             "not the reason it proves",
         ),
         (
@@ -305,12 +310,12 @@ fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
                 ("cell", text(ISO)),
                 value.clone(),
                 ("because", text("x")),
-                ("proof", group(&[("claim", text("1 + 2"))])),
+                ("proof", group::<StatedProof>(&[("claim", text("1 + 2"))])),
             ],
             "a proof compares",
         ),
         (
-            vec![("cell", text(ISO)), value, ("expected", group(&[("value", text("1 N"))]))],
+            vec![("cell", text(ISO)), value, ("expected", group::<Expected>(&[("value", text("1 N"))]))],
             "is a force; the published value is a length",
         ),
     ];
@@ -337,13 +342,14 @@ fn figure(changes: Fields) -> Value {
             None => fields.push((name, value.clone())),
         }
     }
-    group(&fields)
+    group::<StatedFigure>(&fields)
 }
 
 #[test]
 fn figures_are_checked_and_their_points_put_in_the_axes_units() {
-    let mark = group(&[("x", text("50000 N mm")), ("y", text("0.002316 mm")), ("label", text("unmodified"))]);
-    let across = group(&[("y", text("2.316 um")), ("label", text("Table 2"))]);
+    let mark =
+        group::<StatedMark>(&[("x", text("50000 N mm")), ("y", text("0.002316 mm")), ("label", text("unmodified"))]);
+    let across = group::<StatedMark>(&[("y", text("2.316 um")), ("label", text("Table 2"))]);
     let tables = run(vec![], vec![figure(&[("published", list(vec![mark, across]))])]).unwrap();
     let (figures, marks) = (&tables[2], &tables[3]);
     assert_eq!(figures.texts("tables"), ["ste.summary"]);
@@ -355,10 +361,10 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         (("y", list(vec![text("peak_to_peak"), text("seconds")])), "different units"),
         (("where", map(&[("design", "best")])), "no row has design = best"),
         (
-            ("published", list(vec![group(&[("x", text("5 um")), ("label", text("p"))])])),
+            ("published", list(vec![group::<StatedMark>(&[("x", text("5 um")), ("label", text("p"))])])),
             "`5 um` is a length, but the axis shows a torque",
         ),
-        (("published", list(vec![group(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
+        (("published", list(vec![group::<StatedMark>(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
         (("name", text("../x")), "no name for a file"),
         (("name", text("NUL")), "`NUL` is no name for a file: Windows keeps it for a device"),
         (("table", list(vec![text("ste")])), "is no table"),
@@ -373,8 +379,8 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
 
 #[test]
 fn ports_ask_for_each_table_once_with_the_columns_named() {
-    let published = group(&[("cell", text(ISO)), ("value", text("1 um"))]);
-    let claim = group(&[("claim", text("a < 2")), ("with", map(&[("a", "pair.summary.ratio")]))]);
+    let published = group::<Published>(&[("cell", text(ISO)), ("value", text("1 um"))]);
+    let claim = group::<Published>(&[("claim", text("a < 2")), ("with", map(&[("a", "pair.summary.ratio")]))]);
     let stage = (KIND.build)(&record(vec![published, claim], vec![figure(&[])])).unwrap();
     let ports = stage.inputs();
     assert_eq!(ports.iter().map(|port| port.stage.as_str()).collect::<Vec<_>>(), ["ste", "pair"]);
@@ -384,7 +390,7 @@ fn ports_ask_for_each_table_once_with_the_columns_named() {
 
 #[test]
 fn the_counts_add_up_and_an_empty_report_is_one() {
-    let tables = run(vec![group(&[("cell", text(ISO)), ("value", text("1 um"))])], vec![]).unwrap();
+    let tables = run(vec![group::<Published>(&[("cell", text(ISO)), ("value", text("1 um"))])], vec![]).unwrap();
     assert_eq!(tables[1].integers("count").iter().sum::<i64>(), 1);
     assert_eq!(tables[1].column("verdict").unwrap().cell(0), Cell::from("unexplained"));
     let tables = run(vec![], vec![]).unwrap();

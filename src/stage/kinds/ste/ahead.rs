@@ -18,8 +18,8 @@ impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let ports = (1..=self.designs.len()).map(|index| format!("designs_{index}"));
         let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(RowCount::NONE, RowCount::and);
-        let curves = designs.times(RowCount::exact(self.torques.len()));
-        let of_each = common::curve_rows(self.settings, self.harmonics);
+        let curves = designs.times(RowCount::exact(self.torque.len()));
+        let of_each = common::curve_rows(self.settings(), self.harmonics);
         let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
         let rows = curves.times(RowCount::about(if of_curves { of_each } else { 0 }));
         let pressures = demand.column("summary", "largest_pressure") || demand.column("curve", "pressure");
@@ -31,7 +31,7 @@ impl Ste {
         let work = Work::of(&CONTACT_SOLVES, solves.saturating_add(sampled))
             .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 });
         Estimate::new(true)
-            .work(&work, common::solve_times(self.settings))
+            .work(&work, common::solve_times(self.settings()))
             // The points of all curves are there before the table is; their room is as large again.
             .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
             .rows(demand, summary().schema(), curves)

@@ -24,6 +24,7 @@ use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::surface::Surface;
+use declare::declared::Registrable;
 use declare::work::Work;
 use declare::{Words, registry};
 
@@ -35,7 +36,7 @@ registry!(
 );
 
 /// A way to the compliance of a pair: a declared struct, which anybody can make.
-pub trait Method: Any + Debug + Send + Sync {
+pub trait Method: Any + Debug + Registrable + Send + Sync {
     /// Whether it knows a pair of teeth only as a whole, so that root, contact law and coupling mean nothing to it.
     fn whole_pair(&self) -> bool {
         false

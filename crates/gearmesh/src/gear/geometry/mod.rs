@@ -16,15 +16,19 @@ pub mod validity;
 mod tests;
 
 use super::material::Material;
+use declare::Declared;
 
 /// Basic rack (ISO 53), in units of the module.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct Rack {
-    /// h_aP*.
+    /// Addendum coefficient h_aP*.
+    #[declared(minimum = 0.1, maximum = 3.0, default = "1.0")]
     pub addendum: f64,
-    /// h_fP*.
+    /// Dedendum coefficient h_fP*.
+    #[declared(minimum = 0.1, maximum = 4.0, default = "1.25")]
     pub dedendum: f64,
-    /// ρ_fP*.
+    /// Tip radius coefficient ρ_fP*.
+    #[declared(minimum = 0.0, maximum = 2.0, default = "0.38")]
     pub tip_radius: f64,
 }
 

@@ -31,6 +31,12 @@ fn specification(teeth: u32, module_mm: f64, profile_shift: f64) -> Specificatio
     }
 }
 
+#[test]
+fn what_a_study_leaves_out_is_the_rack_of_the_standard_and_steel() {
+    assert_eq!(Rack::default(), Rack::ISO_53_A);
+    assert_eq!(Material::default(), Material::STEEL);
+}
+
 fn gear(teeth: u32, module_mm: f64, profile_shift: f64) -> Gear {
     Gear::new(&specification(teeth, module_mm, profile_shift)).unwrap()
 }

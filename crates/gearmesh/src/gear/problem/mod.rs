@@ -9,6 +9,7 @@ use std::fmt::Debug;
 
 use super::geometry::error::GeometryError;
 use super::geometry::{GearPair, Side};
+use declare::declared::Registrable;
 use declare::registry;
 use declare::units::Dimension;
 
@@ -45,7 +46,7 @@ pub trait Problem: Send + Sync {
 }
 
 /// A problem as it is stated: a declared struct, which anybody can make.
-pub trait Stated: Debug + Send + Sync {
+pub trait Stated: Debug + Registrable + Send + Sync {
     /// The dimension of the objective.
     fn dimension(&self) -> Dimension;
 

@@ -3,10 +3,13 @@
 //! A chamfer begins on the flank its size below the tip circle and ends on the tip circle its size from the corner. A
 //! rounding is an arc tangent to the flank and, from inside, to the tip circle. Must not know: the root.
 
+use std::fmt::Debug;
+
 use super::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{GeometryError, Millimetres, Problem};
 use crate::numeric::crossing;
+use declare::declared::Registrable;
 use declare::units::LENGTH;
 use declare::{Declared, registry};
 
@@ -45,7 +48,7 @@ pub struct Rounding {
 }
 
 /// What a study states of a tip.
-pub trait Stated {
+pub trait Stated: Debug + Registrable {
     /// The tip with its size in SI.
     fn tip(&self) -> Tip;
 }

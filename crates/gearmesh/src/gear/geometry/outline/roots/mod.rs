@@ -13,6 +13,7 @@ use std::fmt::Debug;
 use super::curve::Segment;
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::GeometryError;
+use declare::declared::Registrable;
 use declare::registry;
 
 /// A root on the right half of a tooth.
@@ -25,7 +26,7 @@ pub struct Toe {
 }
 
 /// A root with its settings: a declared struct, which anybody can make.
-pub trait Root: Debug + Send + Sync {
+pub trait Root: Debug + Registrable + Send + Sync {
     /// The root of a gear, or why it does not exist, with numbers.
     ///
     /// # Errors

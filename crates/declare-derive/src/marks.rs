@@ -1,0 +1,72 @@
+//! The marks of a field: what its type does not say.
+//!
+//! Must not know: what they are marks of.
+
+use syn::punctuated::Punctuated;
+use syn::{Attribute, Error, Expr, Ident, LitStr, Token, bracketed};
+
+/// What stands on a field.
+#[derive(Default)]
+pub struct Marks {
+    minimum: Option<Expr>,
+    maximum: Option<Expr>,
+    pub dimension: Option<Expr>,
+    pub default: Option<LitStr>,
+    pub axis: Option<Expr>,
+    pub multiple: Option<Expr>,
+    /// Of which kinds the stage is that is named.
+    pub kinds: Option<Punctuated<LitStr, Token![,]>>,
+    /// The field that names the stage whose fields are replaced.
+    pub overrides: Option<Expr>,
+    pub range: bool,
+    pub chooses: bool,
+    pub flatten: bool,
+    /// As a study writes it, where that is not the name in the code.
+    pub name: Option<LitStr>,
+}
+
+impl Marks {
+    pub fn of(attributes: &[Attribute]) -> Result<Self, Error> {
+        let mut marks = Self::default();
+        for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("declared")) {
+            attribute.parse_nested_meta(|meta| {
+                let name = meta.path.get_ident().map(Ident::to_string).unwrap_or_default();
+                match name.as_str() {
+                    "minimum" => marks.minimum = Some(meta.value()?.parse()?),
+                    "maximum" => marks.maximum = Some(meta.value()?.parse()?),
+                    "dimension" => marks.dimension = Some(meta.value()?.parse()?),
+                    "default" => marks.default = Some(meta.value()?.parse()?),
+                    "axis" => marks.axis = Some(meta.value()?.parse()?),
+                    "multiple" => marks.multiple = Some(meta.value()?.parse()?),
+                    "kinds" => {
+                        let words;
+                        let value = meta.value()?;
+                        bracketed!(words in value);
+                        marks.kinds = Some(Punctuated::parse_terminated(&words)?);
+                    }
+                    "overrides" => marks.overrides = Some(meta.value()?.parse()?),
+                    "name" => marks.name = Some(meta.value()?.parse()?),
+                    "range" => marks.range = true,
+                    "chooses" => marks.chooses = true,
+                    "flatten" => marks.flatten = true,
+                    _ => {
+                        return Err(meta.error(
+                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, \
+                             `chooses`, `kinds`, `overrides`, `name` or `flatten`",
+                        ));
+                    }
+                }
+                Ok(())
+            })?;
+        }
+        Ok(marks)
+    }
+
+    /// The range of a number.
+    pub fn bounds(&self, owner: &Ident) -> Result<(&Expr, &Expr), Error> {
+        match (&self.minimum, &self.maximum) {
+            (Some(minimum), Some(maximum)) => Ok((minimum, maximum)),
+            _ => Err(Error::new(owner.span(), "a number has a range: `minimum` and `maximum`")),
+        }
+    }
+}
