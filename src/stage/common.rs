@@ -3,7 +3,7 @@
 //! A field that is added to one of these structs is a field of every kind that has it. Must not know: what any kind
 //! computes.
 
-use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, pair};
+use crate::stage::{Inputs, Omission, Port, Saved, compliance as codec, names, pair};
 use declare::Declared;
 use declare::declared::Words;
 use declare::error::{Diagnostic, Failure};
@@ -107,10 +107,7 @@ pub fn check_slices(settings: Settings, record: &Record) -> Result<(), Diagnosti
 
 /// The ports through which [`mesh_cycle`] reads.
 pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
-    vec![
-        Port::tables("pair", stiffness, &["gears", "pair"]).through("pair"),
-        Port::tables("stiffness", stiffness, &["compliance", "neighbours", "model"]),
-    ]
+    vec![pair::port(stiffness).through(names::PAIR_PORT), codec::port(stiffness)]
 }
 
 /// The pair and its mesh cycle.
@@ -118,9 +115,7 @@ pub fn mesh_cycle_ports(stiffness: &str) -> Vec<Port> {
 /// # Errors
 /// When a table is not what its schema says, or the pair cannot be loaded.
 pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, MeshCycle), Failure> {
-    let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
-    let read = |table| inputs.table("stiffness", table);
-    let compliance = codec::read(read("compliance")?, read("neighbours")?, read("model")?)?;
+    let (pair, compliance) = (pair::of(inputs)?, codec::of(inputs)?);
     let cycle = MeshCycle::new(&pair, &compliance, settings)?;
     Ok((pair, cycle))
 }

@@ -3,7 +3,9 @@
 //! Values stand at Chebyshev nodes of the roll angle, so the series that comes back is the one that was written, to the
 //! last few bits. Must not know: which method made them.
 
+use super::names;
 use super::pair::si;
+use crate::stage::{Inputs, Port};
 use declare::declared::Words;
 use declare::error::Failure;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
@@ -41,12 +43,12 @@ struct NodeRow<'a> {
 
 fn teeth<'a>() -> Columns<NodeRow<'a>> {
     let description = "Compliance of one tooth of each gear over its whole face width, along its active flank.";
-    let columns = Columns::new("compliance", description)
-        .text("gear", "Which gear: pinion or gear.", |row: &NodeRow| row.gear)
+    let columns = Columns::new(names::compliance::TABLE, description)
+        .text(names::compliance::GEAR, "Which gear: pinion or gear.", |row: &NodeRow| row.gear)
         .key()
         .integer("node", "Chebyshev node, from 1 at the root side.", |row| row.node)
         .key()
-        .float("roll_angle", "rad", "Roll angle of the loaded point.", |row| row.roll)
+        .float(names::compliance::ROLL_ANGLE, "rad", "Roll angle of the loaded point.", |row| row.roll)
         .float("radius", "mm", "Radius of the loaded point.", |row| row.radius);
     SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
         columns.float(name, unit, description, move |row| series(row.tooth).value(row.roll))
@@ -67,18 +69,20 @@ struct NeighbourRow {
 fn neighbours() -> Columns<NeighbourRow> {
     let further_roll = "Roll angle on the further tooth, where roll angles grow.";
     let compliance = "Deflection along the load line of one per load on the other; symmetric.";
-    Columns::new("neighbours", "Deflection of a tooth per load on a neighbour, through the gear body.")
-        .text("gear", "Which gear: pinion or gear.", |row: &NeighbourRow| row.gear)
+    Columns::new(names::neighbours::TABLE, "Deflection of a tooth per load on a neighbour, through the gear body.")
+        .text(names::neighbours::GEAR, "Which gear: pinion or gear.", |row: &NeighbourRow| row.gear)
         .key()
-        .integer("neighbour", "How many pitches apart the two teeth are.", |row| row.neighbour)
+        .integer(names::neighbours::NEIGHBOUR, "How many pitches apart the two teeth are.", |row| row.neighbour)
         .key()
-        .integer("node", "Chebyshev node of the first tooth, from 1.", |row| row.nodes[0])
+        .integer(names::neighbours::NODE, "Chebyshev node of the first tooth, from 1.", |row| row.nodes[0])
         .key()
         .integer("further_node", "Chebyshev node of the further tooth, from 1.", |row| row.nodes[1])
         .key()
-        .float("roll_angle", "rad", "Roll angle of the loaded point of the first tooth.", |row| row.rolls[0])
-        .float("further_roll_angle", "rad", further_roll, |row| row.rolls[1])
-        .float("compliance", "nm/N", compliance, |row| row.compliance)
+        .float(names::neighbours::ROLL_ANGLE, "rad", "Roll angle of the loaded point of the first tooth.", |row| {
+            row.rolls[0]
+        })
+        .float(names::neighbours::FURTHER_ROLL_ANGLE, "rad", further_roll, |row| row.rolls[1])
+        .float(names::neighbours::COMPLIANCE, "nm/N", compliance, |row| row.compliance)
 }
 
 /// What compliances were made with.
@@ -90,11 +94,11 @@ struct ModelRow<'a> {
 
 fn model<'a>() -> Columns<ModelRow<'a>> {
     let contact = "Contact law: linear, load_dependent, or included in the teeth.";
-    Columns::new("model", "What the compliances were made with, and how contact is to be added.")
+    Columns::new(names::model::TABLE, "What the compliances were made with, and how contact is to be added.")
         .text("method", "Method of the tooth compliance.", |row: &ModelRow<'a>| row.method)
         .text("root", "Root curve of the teeth; none where the method asks for none.", |row| row.root)
-        .text("contact", contact, |row| row.compliance.contact.map_or(INCLUDED, ContactLaw::word))
-        .text("coupling", "Whether loaded neighbours share the gear body: none or body.", |row| {
+        .text(names::model::CONTACT, contact, |row| row.compliance.contact.map_or(INCLUDED, ContactLaw::word))
+        .text(names::model::COUPLING, "Whether loaded neighbours share the gear body: none or body.", |row| {
             if row.compliance.coupled { "body" } else { "none" }
         })
 }
@@ -150,12 +154,28 @@ fn surface_nodes(surface: &Surface) -> [Vec<f64>; 2] {
     std::array::from_fn(|axis| nodes(surface.lower()[axis], surface.upper()[axis], surface.counts()[axis]))
 }
 
+/// The port through which [`of`] reads.
+#[must_use]
+pub fn port(stage: &str) -> Port {
+    let tables = [names::compliance::TABLE, names::neighbours::TABLE, names::model::TABLE];
+    Port::tables(names::STIFFNESS_PORT, stage, &tables)
+}
+
+/// The compliances that came in.
+///
+/// # Errors
+/// When their tables did not, or are not what [`write()`] made.
+pub fn of(inputs: &Inputs) -> Result<PairCompliance, Failure> {
+    let table = |table| inputs.table(names::STIFFNESS_PORT, table);
+    read(table(names::compliance::TABLE)?, table(names::neighbours::TABLE)?, table(names::model::TABLE)?)
+}
+
 /// The compliances that [`write()`] wrote.
 ///
 /// # Errors
 /// When a table is not one that [`write()`] made.
 pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<PairCompliance, Failure> {
-    let contact = match model.texts("contact").first().map_or("", String::as_str) {
+    let contact = match model.texts(names::model::CONTACT).first().map_or("", String::as_str) {
         INCLUDED => None,
         word => Some(ContactLaw::of(word).ok_or_else(|| Failure::new(format!("unknown contact law `{word}`")))?),
     };
@@ -163,17 +183,20 @@ pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<Pai
         pinion: tooth("pinion", compliance, neighbours)?,
         gear: tooth("gear", compliance, neighbours)?,
         contact,
-        coupled: model.texts("coupling").first().is_some_and(|coupling| coupling == "body"),
+        coupled: model.texts(names::model::COUPLING).first().is_some_and(|coupling| coupling == "body"),
     })
 }
 
 fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothCompliance, Failure> {
-    let rows: Vec<usize> = (0..table.rows()).filter(|&row| table.texts("gear")[row] == name).collect();
+    let rows: Vec<usize> = (0..table.rows()).filter(|&row| table.texts(names::compliance::GEAR)[row] == name).collect();
     let series = |column: &str| series_from(table, column, &rows);
     let mut across = Vec::new();
     for neighbour in 1.. {
         let rows: Vec<usize> = (0..neighbours.rows())
-            .filter(|&row| neighbours.texts("gear")[row] == name && neighbours.integers("neighbour")[row] == neighbour)
+            .filter(|&row| {
+                neighbours.texts(names::neighbours::GEAR)[row] == name
+                    && neighbours.integers(names::neighbours::NEIGHBOUR)[row] == neighbour
+            })
             .collect();
         if rows.is_empty() {
             break;
@@ -191,7 +214,7 @@ fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothComplianc
 }
 
 fn series_from(table: &Table, column: &str, rows: &[usize]) -> Result<Series, Failure> {
-    let rolls: Vec<f64> = rows.iter().map(|&row| table.floats("roll_angle")[row]).collect();
+    let rolls: Vec<f64> = rows.iter().map(|&row| table.floats(names::compliance::ROLL_ANGLE)[row]).collect();
     if rolls.is_empty() {
         return Err(Failure::new(format!("table `{}` has no rows for this gear", table.name())));
     }
@@ -215,12 +238,13 @@ fn interval(nodes: &[f64]) -> (f64, f64) {
 /// `rows` are not empty and in order of their keys.
 fn surface_from(table: &Table, rows: &[usize]) -> Surface {
     let column = |name: &str| table.floats(name);
-    let first_node = table.integers("node")[rows[0]];
-    let across = rows.iter().take_while(|&&row| table.integers("node")[row] == first_node).count();
-    let first: Vec<f64> = rows.iter().step_by(across).map(|&row| column("roll_angle")[row]).collect();
-    let further: Vec<f64> = rows[..across].iter().map(|&row| column("further_roll_angle")[row]).collect();
+    let first_node = table.integers(names::neighbours::NODE)[rows[0]];
+    let across = rows.iter().take_while(|&&row| table.integers(names::neighbours::NODE)[row] == first_node).count();
+    let first: Vec<f64> = rows.iter().step_by(across).map(|&row| column(names::neighbours::ROLL_ANGLE)[row]).collect();
+    let further: Vec<f64> =
+        rows[..across].iter().map(|&row| column(names::neighbours::FURTHER_ROLL_ANGLE)[row]).collect();
     let (first_range, further_range) = (interval(&first), interval(&further));
-    let values: Vec<f64> = rows.iter().map(|&row| si(table, "compliance", row)).collect();
+    let values: Vec<f64> = rows.iter().map(|&row| si(table, names::neighbours::COMPLIANCE, row)).collect();
     Surface::from_values(
         [first_range.0, further_range.0],
         [first_range.1, further_range.1],

@@ -3,6 +3,8 @@
 //! One row per parameter, so families of any shape share one table and a reader can query it. Values are in SI because
 //! a column of many parameters has no unit of its own. Must not know: what any parameter means.
 
+use super::names;
+use crate::stage::{Inputs, Port};
 use std::collections::BTreeMap;
 
 use declare::declared::{self, Parameter};
@@ -88,12 +90,12 @@ impl NamedDesign {
 /// A design and its place in the study, from 1.
 type DesignRow<'a> = (usize, &'a NamedDesign);
 
-fn names<'a>() -> Columns<DesignRow<'a>> {
-    Columns::new("designs", "The designs, in the order of the study.")
-        .text("design", "Name of the design.", |row: &DesignRow<'a>| row.1.name.as_str())
+fn listed<'a>() -> Columns<DesignRow<'a>> {
+    Columns::new(names::designs::TABLE, "The designs, in the order of the study.")
+        .text(names::designs::DESIGN, "Name of the design.", |row: &DesignRow<'a>| row.1.name.as_str())
         .key()
-        .integer("order", "Place in the study, from 1.", |row| row.0)
-        .integer("elements", "How many modifications it adds up.", |row| row.1.elements.len())
+        .integer(names::designs::ORDER, "Place in the study, from 1.", |row| row.0)
+        .integer(names::designs::ELEMENTS, "How many modifications it adds up.", |row| row.1.elements.len())
 }
 
 /// A parameter of a modification.
@@ -106,23 +108,23 @@ struct ParameterRow<'a> {
 }
 
 fn parameters<'a>() -> Columns<ParameterRow<'a>> {
-    Columns::new("elements", "The modifications of each design, one row per parameter.")
-        .text("design", "Name of the design.", |row: &ParameterRow<'a>| row.design)
+    Columns::new(names::elements::TABLE, "The modifications of each design, one row per parameter.")
+        .text(names::elements::DESIGN, "Name of the design.", |row: &ParameterRow<'a>| row.design)
         .key()
-        .integer("element", "Place in the design, from 1.", |row| row.element)
+        .integer(names::elements::ELEMENT, "Place in the design, from 1.", |row| row.element)
         .key()
-        .text("family", "Family of the modification.", |row| row.family)
-        .text("parameter", "Name of the parameter.", |row| row.parameter.0.clone())
+        .text(names::elements::FAMILY, "Family of the modification.", |row| row.family)
+        .text(names::elements::PARAMETER, "Name of the parameter.", |row| row.parameter.0.clone())
         .key()
-        .float("value", "", "Value in SI; NaN where the parameter is a word.", |row| row.parameter.1)
+        .float(names::elements::VALUE, "", "Value in SI; NaN where the parameter is a word.", |row| row.parameter.1)
         .but(Column::allows_nan)
-        .text("word", "The word, where the parameter is one.", |row| row.parameter.2.clone())
+        .text(names::elements::WORD, "The word, where the parameter is one.", |row| row.parameter.2.clone())
 }
 
 /// Those of the tables that [`write()`] makes.
 #[must_use]
 pub fn schemas() -> [Schema; 2] {
-    [names().schema(), parameters().schema()]
+    [listed().schema(), parameters().schema()]
 }
 
 /// The two tables of a list of designs.
@@ -135,7 +137,7 @@ pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
         for (element, Element { family, record }) in (1..).zip(elements) {
             let mut flat = Vec::new();
             flatten("", record, &mut flat).map_err(|problem| TableError::Column {
-                table: "elements".to_owned(),
+                table: names::elements::TABLE.to_owned(),
                 column: "value".to_owned(),
                 problem: format!("design `{design}`, {family}: {problem}"),
             })?;
@@ -143,7 +145,7 @@ pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
         }
     }
     let designs: Vec<DesignRow> = (1..).zip(designs).collect();
-    Ok([names().table(&designs)?, parameters().table(&rows)?])
+    Ok([listed().table(&designs)?, parameters().table(&rows)?])
 }
 
 /// How many rows of the table of elements a modification takes, ranges among its parameters included.
@@ -199,24 +201,44 @@ fn flatten_value(name: String, value: &Value, flat: &mut Vec<Flat>) -> Result<()
 /// The rows of a table of elements by design and place in the design.
 type Index<'a> = BTreeMap<(&'a str, i64), Vec<usize>>;
 
+/// The port of this name through which [`of`] reads.
+#[must_use]
+pub fn port(name: String, stage: &str) -> Port {
+    Port::tables(name, stage, &[names::designs::TABLE, names::elements::TABLE])
+}
+
+/// The designs that came in through a port.
+///
+/// # Errors
+/// When their tables did not, or when a family or a word is not known any more.
+pub fn of(inputs: &Inputs, port: &str, families: &[Member]) -> Result<Vec<NamedDesign>, Failure> {
+    let table = |table| inputs.table(port, table);
+    read(table(names::designs::TABLE)?, table(names::elements::TABLE)?, families)
+}
+
 /// The designs that [`write()`] wrote, in their order; `families` says what the parameters are.
 ///
 /// # Errors
 /// When a family or a word is not known any more.
 pub fn read(designs: &Table, elements: &Table, families: &[Member]) -> Result<Vec<NamedDesign>, Failure> {
     let mut index = Index::new();
-    for (row, key) in elements.texts("design").iter().map(String::as_str).zip(elements.integers("element")).enumerate()
+    for (row, key) in elements
+        .texts(names::elements::DESIGN)
+        .iter()
+        .map(String::as_str)
+        .zip(elements.integers(names::elements::ELEMENT))
+        .enumerate()
     {
         index.entry((key.0, *key.1)).or_default().push(row);
     }
-    let (names, counts) = (designs.texts("design"), designs.integers("elements"));
+    let (called, counts) = (designs.texts(names::designs::DESIGN), designs.integers(names::designs::ELEMENTS));
     let mut order: Vec<usize> = (0..designs.rows()).collect();
-    order.sort_by_key(|&row| designs.integers("order")[row]);
-    order.into_iter().map(|row| read_one(&names[row], counts[row], elements, &index, families)).collect()
+    order.sort_by_key(|&row| designs.integers(names::designs::ORDER)[row]);
+    order.into_iter().map(|row| read_one(&called[row], counts[row], elements, &index, families)).collect()
 }
 
 fn read_one(name: &str, count: i64, table: &Table, index: &Index, families: &[Member]) -> Result<NamedDesign, Failure> {
-    let (words, parameters) = (table.texts("family"), table.texts("parameter"));
+    let (words, parameters) = (table.texts(names::elements::FAMILY), table.texts(names::elements::PARAMETER));
     let mut elements = Vec::new();
     for place in 1..=count {
         let rows = index
@@ -227,7 +249,9 @@ fn read_one(name: &str, count: i64, table: &Table, index: &Index, families: &[Me
         let family = family.ok_or_else(|| Failure::new(format!("design `{name}`: unknown family `{word}`")))?;
         let lookup = |parameter: &str| {
             let row = rows.iter().find(|&&row| parameters[row] == parameter);
-            row.map(|&row| (table.floats("value")[row], table.texts("word")[row].as_str()))
+            row.map(|&row| {
+                (table.floats(names::elements::VALUE)[row], table.texts(names::elements::WORD)[row].as_str())
+            })
         };
         elements.push(Element { family: family.name, record: rebuilt("", family.fields, &lookup)? });
     }

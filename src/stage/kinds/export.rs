@@ -13,7 +13,7 @@ mod svg;
 #[cfg(test)]
 mod tests;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, names};
 use contour::{Contour, contours};
 use declare::declared::{Declared, Placed, Words};
 use declare::error::{Diagnostic, Failure};
@@ -146,7 +146,7 @@ impl Export {
 
 impl Stage for Export {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.pair, &["gears", "outline"])]
+        vec![Port::tables(names::PAIR_PORT, &self.pair, &[names::gears::TABLE, names::outline::TABLE])]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -166,7 +166,8 @@ impl Stage for Export {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let all = contours(inputs.table("pair", "outline")?, inputs.table("pair", "gears")?)?;
+        let table = |table| inputs.table(names::PAIR_PORT, table);
+        let all = contours(table(names::outline::TABLE)?, table(names::gears::TABLE)?)?;
         let wanted: Vec<&Contour> =
             self.gear.names().iter().filter_map(|gear| all.iter().find(|contour| contour.gear == *gear)).collect();
         if wanted.len() < self.gear.names().len() {

@@ -15,6 +15,8 @@ use studygraph::table::columns::Columns;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
+const PARAMETERS: &str = "parameters";
+
 pub const KIND: Kind = Kind {
     name: "modification",
     version: 1,
@@ -115,7 +117,7 @@ type ParameterRow<'a> = (&'a ResolvedRow<'a>, &'static str, f64);
 
 fn parameters<'a>() -> Columns<ParameterRow<'a>> {
     let description = "Everything a modification was given and comes to on the pair, one row per parameter.";
-    of_modification(Columns::new("parameters", description), |row: &ParameterRow<'a>| row.0)
+    of_modification(Columns::new(PARAMETERS, description), |row: &ParameterRow<'a>| row.0)
         .text("parameter", "Name of the parameter.", |row| row.1)
         .key()
         .float("value", "", "Value in SI.", |row| row.2)
@@ -138,7 +140,7 @@ fn parameter_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<ParameterRow<'a>> {
 
 impl Stage for Modification {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+        vec![pair::port(&self.pair)]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -159,7 +161,7 @@ impl Stage for Modification {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let pair = pair::of(inputs)?;
         let mut rows = Vec::new();
         for named in &self.designs {
             rows.extend(resolved_rows(&named.name, &named.built(&pair)?));
@@ -167,7 +169,7 @@ impl Stage for Modification {
         let failed = |error: TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
         tables.push(resolved().table(&rows).map_err(failed)?);
-        if context.demand.table("parameters") {
+        if context.demand.table(PARAMETERS) {
             tables.push(parameters().table(&parameter_rows(&rows)).map_err(failed)?);
         }
         Ok(tables)

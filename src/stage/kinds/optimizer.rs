@@ -26,6 +26,8 @@ use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
+const EVALUATIONS: &str = "evaluations";
+
 pub const KIND: Kind = Kind {
     name: "optimizer",
     version: 1,
@@ -252,7 +254,7 @@ impl Optimizer {
         let unit_of_objective = self.objective_unit();
         let fitness = fitness_in(unit_of_objective);
         let counts = "Counts the designs in the order of the search, from 1.";
-        let columns = Columns::new("evaluations", "Every design that was tried.")
+        let columns = Columns::new(EVALUATIONS, "Every design that was tried.")
             .integer("evaluation", counts, |row: &Tried| row.0)
             .key();
         let columns = self.template.variables().iter().enumerate().fold(columns, |columns, (at, variable)| {
@@ -296,7 +298,7 @@ impl Optimizer {
         let cycle = base.sampled(settings);
         let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
         let budget = search.budget().max(1) as f64;
-        let wanted = context.demand.table("evaluations");
+        let wanted = context.demand.table(EVALUATIONS);
         let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
         let mut done = 0_usize;
         let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
@@ -406,7 +408,7 @@ impl Stage for Optimizer {
             (context.warn)(doubt.to_owned());
         }
         let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
-        if context.demand.table("evaluations") {
+        if context.demand.table(EVALUATIONS) {
             let tried = (1..).zip(&found.tried).map(|(index, (point, value))| (index, point.as_slice(), *value));
             tables.push(
                 self.evaluations().table_of(&tried).map_err(|error: TableError| Failure::new(error.to_string()))?,

@@ -198,7 +198,7 @@ impl RootOptimizer {
 
 impl Stage for RootOptimizer {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.stated.pair, &["gears", "pair"])]
+        vec![pair::port(&self.stated.pair)]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -226,7 +226,7 @@ impl Stage for RootOptimizer {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let pair = pair::of(inputs)?;
         let problem = self.stated.problem.on(&pair, self.side()).map_err(|error| Failure::new(error.to_string()))?;
         let module = pair.side(self.side()).specification.module;
         let mut search =

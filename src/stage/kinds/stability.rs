@@ -225,7 +225,7 @@ impl Stability {
 
 impl Stage for Stability {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+        vec![pair::port(&self.pair)]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -253,7 +253,7 @@ impl Stage for Stability {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let pair = pair::of(inputs)?;
         let mut base = Point::of(&pair);
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;
         let cases = self.cases(&base, context);

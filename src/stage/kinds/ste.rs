@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use self::samples::{Sample, Samples};
 use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
+use crate::stage::names::{curve, summary};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
@@ -91,7 +92,7 @@ const PER_SLICE: f64 = 0.01;
 const SOLVES_PER_POSITION: f64 = 4.0;
 
 /// The tables that need curves.
-const OF_CURVES: [&str; 4] = ["summary", "curve", "harmonics", "cost"];
+const OF_CURVES: [&str; 4] = [summary::TABLE, curve::TABLE, tables::HARMONICS, tables::COST];
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let ste = Ste::checked(record)?;
@@ -157,7 +158,7 @@ impl Stage for Ste {
     fn inputs(&self) -> Vec<Port> {
         let mut ports = common::mesh_cycle_ports(&self.stiffness);
         for (index, stage) in self.designs.iter().enumerate() {
-            ports.push(Port::tables(format!("designs_{}", index + 1), stage.value.as_str(), &["designs", "elements"]));
+            ports.push(designs::port(format!("designs_{}", index + 1), &stage.value));
         }
         ports
     }
@@ -201,10 +202,10 @@ impl Stage for Ste {
         let for_each_solve = |saved, times| Some(Saved::For { done: &CONTACT_SOLVES, saved, times });
         match (table, column) {
             // Either column takes all pressures.
-            ("summary", Some("largest_pressure")) if !demand.column("curve", "pressure") => {
+            (summary::TABLE, Some(summary::LARGEST_PRESSURE)) if !demand.column(curve::TABLE, curve::PRESSURE) => {
                 for_each_solve(&CONTACT_PRESSURES, 1.0)
             }
-            ("samples", None) if !demand.table("sample_summary") => {
+            (samples::TABLE, None) if !demand.table(samples::SUMMARY) => {
                 let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
                 for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
             }
@@ -218,8 +219,7 @@ impl Stage for Ste {
         let mut givers: BTreeMap<String, &str> = BTreeMap::new();
         for (index, Placed { value: giver, .. }) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
-            let (names, elements) = (inputs.table(&port, "designs")?, inputs.table(&port, "elements")?);
-            for named in designs::read(names, elements, modification::members())? {
+            for named in designs::of(inputs, &port, modification::members())? {
                 if let Some(earlier) = givers.insert(named.name.clone(), giver) {
                     return Err(Failure::new(format!(
                         "`{earlier}` and `{giver}` both give a design called `{}`; one of them needs another name",
@@ -229,8 +229,8 @@ impl Stage for Ste {
                 designs.push((named.built(&pair)?, named.name));
             }
         }
-        let summary_pressure = context.demand.column("summary", "largest_pressure");
-        let curve_pressure = context.demand.column("curve", "pressure");
+        let summary_pressure = context.demand.column(summary::TABLE, summary::LARGEST_PRESSURE);
+        let curve_pressure = context.demand.column(curve::TABLE, curve::PRESSURE);
         let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
         let tasks: Vec<(usize, f64)> =
             (0..designs.len()).flat_map(|design| self.torque.iter().map(move |torque| (design, *torque))).collect();
@@ -288,10 +288,10 @@ impl Stage for Ste {
             curves.map_err(failed)?,
             harmonics.map_err(failed)?,
         ];
-        if context.demand.table("cost") {
+        if context.demand.table(tables::COST) {
             tables.push(cost().table(&keyed).map_err(failed)?);
         }
-        let [each, of_each] = ["samples", "sample_summary"].map(|table| context.demand.table(table));
+        let [each, of_each] = [samples::TABLE, samples::SUMMARY].map(|table| context.demand.table(table));
         if each || of_each {
             let (mut rows, mut sums): (Vec<Keyed<Sample>>, Vec<Keyed<Samples>>) = Default::default();
             for &(design, torque) in &tasks {

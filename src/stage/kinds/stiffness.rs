@@ -26,6 +26,11 @@ use studygraph::table::columns::Columns;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
+/// Tables that are not always there.
+const COST: &str = "cost";
+const ISO_6336: &str = "iso6336";
+const ROOT_STRESS: &str = "root_stress";
+
 pub const KIND: Kind = Kind {
     name: "stiffness",
     version: 1,
@@ -143,7 +148,7 @@ fn summary() -> Columns<SummaryRow> {
 
 /// By itself, since a table with measured times differs from run to run.
 fn cost() -> Columns<SummaryRow> {
-    Columns::new("cost", "Error of the compliances against the time they took.")
+    Columns::new(COST, "Error of the compliances against the time they took.")
         .float("mean", "N/m", "As in the table `summary`.", |row: &SummaryRow| row.summary.mean)
         .float("error_estimate", "%", "As in the table `summary`.", |row| row.error_estimate)
         .but(|column| column.tolerance(1e-9, 1e-2))
@@ -155,7 +160,7 @@ fn cost() -> Columns<SummaryRow> {
 fn iso() -> Columns<iso6336::Stiffness> {
     let description = "Mesh stiffness per face width by ISO 6336-1; for solid discs unless the method says otherwise.";
     let unit = "N/(mm um)";
-    Columns::new("iso6336", description)
+    Columns::new(ISO_6336, description)
         .float("theoretical", unit, "c′_th: theoretical stiffness of a pair.", |found: &iso6336::Stiffness| {
             found.theoretical
         })
@@ -183,7 +188,7 @@ type StressRow = (usize, RootStress);
 
 fn root_stress() -> Columns<StressRow> {
     let stress = "Largest first principal stress per load per face width.";
-    Columns::new("root_stress", "The largest stress on the surface of a loaded tooth's root, on the side of the load.")
+    Columns::new(ROOT_STRESS, "The largest stress on the surface of a loaded tooth's root, on the side of the load.")
         .text("gear", "Which gear: pinion or gear.", |row: &StressRow| row.1.side.name())
         .key()
         .integer("node", "Chebyshev node, from 1 at the root side.", |row| row.0)
@@ -221,7 +226,7 @@ impl Stiffness {
 
 impl Stage for Stiffness {
     fn inputs(&self) -> Vec<Port> {
-        vec![Port::tables("pair", &self.pair, &["gears", "pair"])]
+        vec![pair::port(&self.pair)]
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -247,12 +252,12 @@ impl Stage for Stiffness {
                 // Without reliefs there are few spans.
                 "curve" => RowCount::at_most(curve),
                 "mesh" => RowCount::exact(if meshed { 2 } else { 0 }),
-                "root_stress" => RowCount::about(32),
+                ROOT_STRESS => RowCount::about(32),
                 _ => RowCount::exact(1),
             };
             estimate = estimate.rows(demand, schema, rows);
         }
-        if demand.table("root_stress") {
+        if demand.table(ROOT_STRESS) {
             let meshes = if self.accuracy.is_some() { 6 } else { 2 };
             estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
         }
@@ -278,11 +283,11 @@ impl Stage for Stiffness {
     }
 
     fn saved(&self, _demand: &Demand, table: &str, _column: Option<&str>) -> Option<Saved> {
-        (table == "root_stress").then_some(Saved::Fixed(&MESH_FACTORISATIONS, 2.0))
+        (table == ROOT_STRESS).then_some(Saved::Fixed(&MESH_FACTORISATIONS, 2.0))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let pair = pair::read(inputs.table("pair", "gears")?, inputs.table("pair", "pair")?)?;
+        let pair = pair::of(inputs)?;
         let began = Instant::now();
         let Tabulated { compliance, warnings, error_estimate, meshes, work } =
             self.teeth.method.tabulate(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
@@ -312,16 +317,16 @@ impl Stage for Stiffness {
         let row = [SummaryRow { summary: of_curve, error_estimate, seconds }];
         tables.push(summary().table(&row).map_err(failed)?);
         tables.push(mesh().table(&meshes).map_err(failed)?);
-        if context.demand.table("cost") {
+        if context.demand.table(COST) {
             tables.push(cost().table(&row).map_err(failed)?);
         }
-        if context.demand.table("iso6336") {
+        if context.demand.table(ISO_6336) {
             // The standard's own factors where the method is another one.
             let method = (self.teeth.method.as_ref() as &dyn Any).downcast_ref().cloned().unwrap_or_default();
             let found = iso6336::stiffness(&iso6336::Inputs::of(&pair, &method));
             tables.push(iso().table(&[found]).map_err(failed)?);
         }
-        if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table("root_stress")) {
+        if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table(ROOT_STRESS)) {
             let (found, work) =
                 method.root_stress(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);

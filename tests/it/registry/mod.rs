@@ -14,6 +14,7 @@ use std::path::Path;
 use declare::units::parse_unit;
 use gearstudy::program;
 use gearstudy::stage::kinds::KINDS;
+use gearstudy::stage::names;
 use studygraph::runner::events::Silent;
 use studygraph::runner::execute::execute;
 use studygraph::runner::options::Options;
@@ -176,4 +177,40 @@ fn the_runner_gives_what_a_plain_walk_through_the_stages_gives() {
         }
         assert!(compared > 100, "{compared}");
     }
+}
+
+/// What is read by name is there: tables of the ports in what their stages give, columns in the tables they are read from.
+#[test]
+fn every_table_that_is_read_by_name_is_written_by_its_kind() {
+    let mut ports = 0;
+    for study in studies() {
+        let outputs = |name: &str| study.nodes.iter().find(|node| node.name == name).unwrap().stage.outputs();
+        for node in &study.nodes {
+            for port in node.stage.inputs().iter().filter(|port| port.through.is_none()) {
+                for want in &port.wants {
+                    let given = outputs(&port.stage);
+                    let table = given.iter().find(|schema| schema.name == want.table);
+                    let lacks = |column: &&String| table.is_some_and(|table| table.column(column).is_none());
+                    assert!(table.is_some(), "{}: `{}` has no `{}`", node.name, port.stage, want.table);
+                    assert_eq!(want.columns.iter().find(lacks), None, "{}: `{}.{}`", node.name, port.stage, want.table);
+                    ports += 1;
+                }
+            }
+        }
+        for read in names::READ {
+            for node in study.nodes.iter().filter(|node| node.kind.name == read.kind) {
+                let given = node.stage.outputs();
+                let table = given.iter().find(|schema| schema.name == read.table);
+                // A gear alone has no pair.
+                let Some(table) = table else {
+                    assert!(node.stage.lacks(read.table).is_some(), "`{}` has no `{}`", node.name, read.table);
+                    continue;
+                };
+                for column in read.columns {
+                    assert!(table.column(column).is_some(), "`{}.{}` has no `{column}`", node.name, read.table);
+                }
+            }
+        }
+    }
+    assert!(ports > 50, "{ports}");
 }

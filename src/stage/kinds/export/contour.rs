@@ -2,6 +2,7 @@
 //!
 //! Must not know: file formats.
 
+use crate::stage::names;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use crate::stage::pair::si;
@@ -67,26 +68,30 @@ pub fn contours(outline: &Table, gears: &Table) -> Result<Vec<Contour>, Failure>
     let mut stretch = None;
     let mut begin = 0;
     for row in 0..outline.rows() {
-        let gear = &outline.texts("gear")[row];
+        let gear = &outline.texts(names::outline::GEAR)[row];
         if contours.last().is_none_or(|contour| contour.gear != *gear) {
-            let place = gears.texts("gear").iter().position(|name| name == gear);
+            let place = gears.texts(names::gears::GEAR).iter().position(|name| name == gear);
             let place = place.ok_or_else(|| Failure::new(format!("the geometry has no row for the {gear}")))?;
-            let bore_radius = 1e3 * si(gears, "bore_radius", place);
+            let bore_radius = 1e3 * si(gears, names::gears::BORE_RADIUS, place);
             let (pieces, points) = (Vec::new(), Vec::new());
             contours.push(Contour { gear: gear.clone(), closed: false, bore_radius, pieces, points });
         }
         let Some(contour) = contours.last_mut() else { continue };
         let value = |column: &str| outline.floats(column)[row];
         contour.points.push(Point {
-            tooth: outline.integers("tooth")[row],
-            number: outline.integers("point")[row],
-            part: outline.texts("part")[row].clone(),
-            curve: outline.texts("curve")[row].clone(),
-            at: [value("x"), value("y")],
-            direction: value("direction").to_radians(),
-            curvature: value("curvature"),
+            tooth: outline.integers(names::outline::TOOTH)[row],
+            number: outline.integers(names::outline::POINT)[row],
+            part: outline.texts(names::outline::PART)[row].clone(),
+            curve: outline.texts(names::outline::CURVE)[row].clone(),
+            at: [value(names::outline::X), value(names::outline::Y)],
+            direction: value(names::outline::DIRECTION).to_radians(),
+            curvature: value(names::outline::CURVATURE),
         });
-        let now = Some((gear.clone(), outline.integers("tooth")[row], outline.integers("stretch")[row]));
+        let now = Some((
+            gear.clone(),
+            outline.integers(names::outline::TOOTH)[row],
+            outline.integers(names::outline::STRETCH)[row],
+        ));
         if now != stretch {
             (stretch, begin) = (now.clone(), contour.points.len() - 1);
         }
@@ -94,9 +99,9 @@ pub fn contours(outline: &Table, gears: &Table) -> Result<Vec<Contour>, Failure>
         let goes_on = next < outline.rows()
             && now
                 == Some((
-                    outline.texts("gear")[next].clone(),
-                    outline.integers("tooth")[next],
-                    outline.integers("stretch")[next],
+                    outline.texts(names::outline::GEAR)[next].clone(),
+                    outline.integers(names::outline::TOOTH)[next],
+                    outline.integers(names::outline::STRETCH)[next],
                 ));
         if !goes_on {
             contour.take(begin)?;

@@ -2,6 +2,7 @@
 //!
 //! Must not know: how a profile is made.
 
+use crate::stage::names;
 use std::f64::consts::PI;
 
 use declare::error::Failure;
@@ -31,25 +32,39 @@ pub fn of_gear<T>(columns: Columns<T>, side: impl Fn(&T) -> Side + 'static) -> C
 #[must_use]
 pub fn outline_schema() -> Schema {
     Schema::new(
-        "outline",
+        names::outline::TABLE,
         "Points on the profile, counterclockwise; tooth 1 is symmetric about the gear's y axis.",
         vec![
-            Column::text("gear", "Which gear: pinion or gear.").key(),
-            Column::integer("tooth", "Number of the tooth, counterclockwise.").key(),
-            Column::integer("point", "Number of the point on the tooth, from the middle of the space to its right.")
-                .key(),
-            Column::integer("stretch", "Number of the curve on the tooth; both its ends stand in it."),
-            Column::text("part", "What it is part of: root_land, root, step, flank, tip_break, tip_land."),
-            Column::text("curve", "What it lies on: line, arc, trochoid, involute, modified_involute."),
+            Column::text(names::outline::GEAR, "Which gear: pinion or gear.").key(),
+            Column::integer(names::outline::TOOTH, "Number of the tooth, counterclockwise.").key(),
+            Column::integer(
+                names::outline::POINT,
+                "Number of the point on the tooth, from the middle of the space to its right.",
+            )
+            .key(),
+            Column::integer(names::outline::STRETCH, "Number of the curve on the tooth; both its ends stand in it."),
+            Column::text(
+                names::outline::PART,
+                "What it is part of: root_land, root, step, flank, tip_break, tip_land.",
+            ),
+            Column::text(names::outline::CURVE, "What it lies on: line, arc, trochoid, involute, modified_involute."),
             Column::float("radius", "mm", "Distance from the gear's centre."),
             Column::float("angle", "deg", "Polar angle from the y axis, counterclockwise.").tolerance(1e-9, 1e-9),
-            Column::float("x", "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
-            Column::float("y", "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
-            Column::float("direction", "deg", "Direction of the tangent from the x axis, counterclockwise.")
-                .tolerance(1e-7, 1e-9),
-            Column::float("curvature", "1/mm", "Curvature, positive where convex; NaN where it is infinite.")
-                .allows_nan()
-                .tolerance(1e-6, 1e-6),
+            Column::float(names::outline::X, "mm", "Place across, in the gear's frame.").tolerance(1e-9, 1e-9),
+            Column::float(names::outline::Y, "mm", "Place upwards, in the gear's frame.").tolerance(1e-9, 1e-9),
+            Column::float(
+                names::outline::DIRECTION,
+                "deg",
+                "Direction of the tangent from the x axis, counterclockwise.",
+            )
+            .tolerance(1e-7, 1e-9),
+            Column::float(
+                names::outline::CURVATURE,
+                "1/mm",
+                "Curvature, positive where convex; NaN where it is infinite.",
+            )
+            .allows_nan()
+            .tolerance(1e-6, 1e-6),
         ],
     )
     .on_demand()

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how any method searches.
 
-use super::Optimizer;
+use super::{EVALUATIONS, Optimizer};
 use crate::stage::designs::{self, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
@@ -26,7 +26,7 @@ impl Optimizer {
         // Far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (foreseen.evaluations as f64 * self.stated.at.torque.len() as f64 * each) as usize;
-        let kept = if demand.table("evaluations") { foreseen.evaluations as u64 } else { 0 };
+        let kept = if demand.table(EVALUATIONS) { foreseen.evaluations as u64 } else { 0 };
         let [designs, elements] = designs::schemas();
         Estimate::new(true)
             .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))

@@ -4,7 +4,7 @@
 
 use super::tables::{cost, curve, harmonics, summary};
 use super::{OF_CURVES, Ste, samples};
-use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
+use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
@@ -17,13 +17,14 @@ const CYCLE: u64 = 1 << 20;
 impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let ports = (1..=self.designs.len()).map(|index| format!("designs_{index}"));
-        let designs = ports.map(|port| ahead.rows(&port, "designs")).fold(RowCount::NONE, RowCount::and);
+        let designs = ports.map(|port| ahead.rows(&port, names::designs::TABLE)).fold(RowCount::NONE, RowCount::and);
         let curves = designs.times(RowCount::exact(self.torque.len()));
         let of_each = common::curve_rows(self.settings(), self.harmonics);
         let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
         let rows = curves.times(RowCount::about(if of_curves { of_each } else { 0 }));
-        let pressures = demand.column("summary", "largest_pressure") || demand.column("curve", "pressure");
-        let samples = if demand.table("samples") || demand.table("sample_summary") { self.samples } else { 0 };
+        let pressures = demand.column(names::summary::TABLE, names::summary::LARGEST_PRESSURE)
+            || demand.column(names::curve::TABLE, names::curve::PRESSURE);
+        let samples = if demand.table(samples::TABLE) || demand.table(samples::SUMMARY) { self.samples } else { 0 };
         let sampled = curves.times(RowCount::exact(samples)).index();
         // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]

@@ -7,6 +7,9 @@ use super::tables::{Keyed, keyed};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use studygraph::table::columns::Columns;
 
+pub const TABLE: &str = "samples";
+pub const SUMMARY: &str = "sample_summary";
+
 /// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
 /// rounding made of it.
 const BORDER: f64 = 1e-12;
@@ -24,7 +27,7 @@ pub struct Sample {
 
 pub fn samples<'a>() -> Columns<Keyed<'a, Sample>> {
     let position = "Distance from where a pair starts contact, along the line of action.";
-    keyed("samples", "Transmission error at equidistant positions of the mesh cycle.")
+    keyed(TABLE, "Transmission error at equidistant positions of the mesh cycle.")
         .integer("sample", "Counts the positions, from 1.", |row: &Keyed<Sample>| row.2.number)
         .key()
         .shown("rotation_angle", "deg", "Rotation of the pinion from the first sample.", |row| row.2.angle)
@@ -50,7 +53,7 @@ impl Samples {
 
 pub fn summary<'a>() -> Columns<Keyed<'a, Samples>> {
     let fitness = "f = n/Σ(TE − mean)² (mei2016, equation 16); NaN where nothing varies.";
-    keyed("sample_summary", "What the samples of each curve amount to.")
+    keyed(SUMMARY, "What the samples of each curve amount to.")
         .float("mean", "um", "Mean of the samples.", |row: &Keyed<Samples>| row.2.mean)
         .float("peak_to_peak", "um", "Largest less smallest sample.", |row| row.2.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))

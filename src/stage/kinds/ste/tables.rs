@@ -3,9 +3,13 @@
 //! Must not know: how a curve is found.
 
 use super::Answer;
+use crate::stage::names;
 use gearmesh::gear::transmission_error::curve::Point;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
+
+pub const HARMONICS: &str = "harmonics";
+pub const COST: &str = "cost";
 
 /// Design, torque, and what they gave.
 pub type Keyed<'a, T = &'a Answer> = (&'a str, f64, T);
@@ -25,7 +29,7 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
     let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
     let slices = "Slices that were used on each stretch of the face without a closed form.";
     let error = "Estimated relative error of the peak-to-peak from positions and slices.";
-    keyed("summary", "What each curve of the transmission error amounts to.")
+    keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.")
         .float("mean", "um", mean, |row: &Keyed| row.2.summary.mean)
         .float("peak_to_peak", "um", "Largest less smallest transmission error.", |row| row.2.summary.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))
@@ -43,7 +47,7 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
         .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
             row.2.summary.largest_load_share
         })
-        .float("largest_pressure", "MPa", "Largest Hertzian pressure in the mesh cycle.", |row| {
+        .float(names::summary::LARGEST_PRESSURE, "MPa", "Largest Hertzian pressure in the mesh cycle.", |row| {
             row.2.summary.largest_pressure.map_or(f64::NAN, |largest| largest.value)
         })
         .but(Column::on_demand)
@@ -55,7 +59,7 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
 
 /// By itself, since a table with measured times differs from run to run.
 pub fn cost<'a>() -> Columns<Keyed<'a>> {
-    keyed("cost", "Error of each curve against the time it took.")
+    keyed(COST, "Error of each curve against the time it took.")
         .float("peak_to_peak", "um", "As in the table `summary`.", |row: &Keyed| row.2.summary.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))
         .integer("positions", "As in the table `summary`.", |row| row.2.settings.positions)
@@ -78,7 +82,7 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
     let share = "Share of the load on the pair that came into contact last.";
     let secant = "Load over loaded less unloaded transmission error; NaN without load.";
     let counts = "Counts the positions, from 1; those of the extrema are among them.";
-    keyed("curve", description)
+    keyed(names::curve::TABLE, description)
         .integer("point", counts, |(.., (point, _)): &PointRow| *point)
         .key()
         .float("cycle_position", "mm", position, |(.., (_, point))| point.cycle_position)
@@ -108,7 +112,7 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
         )
         // Where a corner begins to touch, the slope goes with the square root of how far it is in.
         .but(|column| column.tolerance(0.0, 1e-5).allows_nan())
-        .float("pressure", "MPa", "Largest Hertzian pressure of any pair.", |(.., (_, point))| {
+        .float(names::curve::PRESSURE, "MPa", "Largest Hertzian pressure of any pair.", |(.., (_, point))| {
             point.pressure.unwrap_or(f64::NAN)
         })
         .but(Column::on_demand)
@@ -125,7 +129,7 @@ pub fn points<'a>(answers: &'a [Keyed<'a>]) -> impl Iterator<Item = PointRow<'a>
 pub type HarmonicRow<'a> = Keyed<'a, (usize, f64)>;
 
 pub fn harmonics<'a>() -> Columns<HarmonicRow<'a>> {
-    keyed("harmonics", "Harmonics of the transmission error.")
+    keyed(HARMONICS, "Harmonics of the transmission error.")
         .integer("order", "Multiple of the mesh frequency.", |(.., (order, _)): &HarmonicRow| *order)
         .key()
         .float("amplitude", "um", "Amplitude of the transmission error.", |(.., (_, amplitude))| *amplitude)

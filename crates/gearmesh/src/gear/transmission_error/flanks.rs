@@ -18,7 +18,9 @@ pub(super) struct Flanks<'a> {
     pub(super) face: Face<'a>,
     /// Whether the face differs from position to position.
     pub(super) is_surface: bool,
-    /// Of a surface those of all slices of the face, or of all its strips.
+    /// In the middle of the face.
+    middle: FaceSection<'a>,
+    /// Of a surface those of all slices of the face, or of all its strips; otherwise none.
     sections: Vec<FaceSection<'a>>,
 }
 
@@ -41,9 +43,10 @@ impl<'a> Flanks<'a> {
             let gaps = corners.then(|| Gaps::new(&cycle.pair, &profiles));
             FaceSection { share, lead, profiles, gaps }
         };
+        let middle = section(1.0, 0.0, 0.0);
         if !design.varies_over_surface() {
             let face = Face::new(design, cycle.face_width, &cycle.slices);
-            return Self { cycle, face, is_surface: false, sections: vec![section(1.0, 0.0, 0.0)] };
+            return Self { cycle, face, is_surface: false, middle, sections: Vec::new() };
         }
         let half = 0.5 * cycle.face_width;
         let places = match &cycle.across {
@@ -56,7 +59,7 @@ impl<'a> Flanks<'a> {
             None => Face::places(design, [-half, half], &cycle.slices),
         };
         let sections = places.into_iter().map(|(share, z)| section(share, z, design.lead(z))).collect();
-        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, sections };
+        let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, middle, sections };
         flanks.face = flanks.face_at(cycle.pair.start_of_contact);
         flanks
     }
@@ -73,15 +76,17 @@ impl<'a> Flanks<'a> {
         if self.is_surface { 0.0 } else { self.face.offset }
     }
 
-    /// The gap at a path position: on the line of action; with corner contact, where the flanks
-    /// come nearest, and none where they are too far apart for that.
+    /// The gap at a path position: on the line of action; with corner contact, where the flanks come nearest, and none where
+    /// they are too far apart for that.
     #[inline]
     pub(super) fn gap(&self, s: f64) -> Option<f64> {
-        let pair = &self.cycle.pair;
-        if !self.is_surface {
-            return self.sections[0].gap(pair, s);
-        }
-        self.sections.iter().filter_map(|section| section.deviation(pair, s)).reduce(f64::min)
+        if self.is_surface { self.least_gap(s) } else { self.middle.gap(&self.cycle.pair, s) }
+    }
+
+    /// Out of the way of what most designs need.
+    #[cold]
+    fn least_gap(&self, s: f64) -> Option<f64> {
+        self.sections.iter().filter_map(|section| section.deviation(&self.cycle.pair, s)).reduce(f64::min)
     }
 
     /// The face of a surface at a path position, above its gap there.
@@ -118,7 +123,8 @@ impl<'a> Flanks<'a> {
             let pitches = (s - pair.start_of_contact) / pair.base_pitch;
             (pitches - pitches.floor()) * pair.base_pitch
         };
-        for section in &self.sections {
+        let sections = if self.is_surface { &self.sections[..] } else { std::slice::from_ref(&self.middle) };
+        for section in sections {
             if let (Some(gaps), Some(window)) = (&section.gaps, window) {
                 breaks.extend(gaps.breaks(window).into_iter().map(fold));
                 continue;

@@ -1,0 +1,82 @@
+//! Names of tables and columns by which one stage reads what another one writes.
+//!
+//! Writer and reader take a name from here, so neither can change it alone; that the tables have these columns is checked
+//! with the registry of kinds. Must not know: what is in a table.
+
+/// Through which port a stage reads the pair.
+pub const PAIR_PORT: &str = "pair";
+/// Through which port a stage reads the pair's compliances.
+pub const STIFFNESS_PORT: &str = "stiffness";
+
+/// A table that is read by name.
+pub struct Read {
+    /// The kind of the stage that writes it.
+    pub kind: &'static str,
+    pub table: &'static str,
+    /// Those of its columns that are read by name.
+    pub columns: &'static [&'static str],
+}
+
+macro_rules! tables {
+    ($($module:ident of $kind:literal: $table:literal { $($column:ident = $name:literal),* $(,)? })*) => {
+        $(pub mod $module {
+            pub const TABLE: &str = $table;
+            $(pub const $column: &str = $name;)*
+        })*
+
+        /// All of them.
+        pub const READ: &[Read] = &[$(Read { kind: $kind, table: $table, columns: &[$($name),*] }),*];
+    };
+}
+
+tables! {
+    gears of "geometry": "gears" {
+        GEAR = "gear",
+        TEETH = "teeth",
+        MODULE = "module",
+        PRESSURE_ANGLE = "pressure_angle",
+        PROFILE_SHIFT = "profile_shift",
+        RACK_ADDENDUM = "rack_addendum",
+        RACK_DEDENDUM = "rack_dedendum",
+        RACK_TIP_RADIUS = "rack_tip_radius",
+        FACE_WIDTH = "face_width",
+        BORE_RADIUS = "bore_radius",
+        YOUNGS_MODULUS = "youngs_modulus",
+        POISSON_RATIO = "poisson_ratio",
+        TIP_RADIUS = "tip_radius",
+    }
+    pair of "geometry": "pair" { CENTRE_DISTANCE = "centre_distance" }
+    outline of "geometry": "outline" {
+        GEAR = "gear",
+        TOOTH = "tooth",
+        POINT = "point",
+        STRETCH = "stretch",
+        PART = "part",
+        CURVE = "curve",
+        X = "x",
+        Y = "y",
+        DIRECTION = "direction",
+        CURVATURE = "curvature",
+    }
+    compliance of "stiffness": "compliance" { GEAR = "gear", ROLL_ANGLE = "roll_angle" }
+    neighbours of "stiffness": "neighbours" {
+        GEAR = "gear",
+        NEIGHBOUR = "neighbour",
+        NODE = "node",
+        ROLL_ANGLE = "roll_angle",
+        FURTHER_ROLL_ANGLE = "further_roll_angle",
+        COMPLIANCE = "compliance",
+    }
+    model of "stiffness": "model" { CONTACT = "contact", COUPLING = "coupling" }
+    designs of "modification": "designs" { DESIGN = "design", ORDER = "order", ELEMENTS = "elements" }
+    elements of "modification": "elements" {
+        DESIGN = "design",
+        ELEMENT = "element",
+        FAMILY = "family",
+        PARAMETER = "parameter",
+        VALUE = "value",
+        WORD = "word",
+    }
+    summary of "ste": "summary" { LARGEST_PRESSURE = "largest_pressure" }
+    curve of "ste": "curve" { PRESSURE = "pressure" }
+}
