@@ -25,9 +25,11 @@ fn check_place(error: &LoadError) {
     let breaks = before.replace("\r\n", "\n").replace('\r', "\n");
     assert_eq!(place.line, breaks.matches('\n').count() + 1, "{error}\n{text:?}");
     let line = breaks.rfind('\n').map_or(0, |at| at + 1);
-    // A byte order mark in front of a document has no width; elsewhere it is a character.
+    // One byte order mark in front of a document has no width; elsewhere it is a character.
+    let of_line = &breaks[line..];
     let columns =
-        [breaks[line..].chars().count() + 1, breaks[line..].trim_start_matches('\u{feff}').chars().count() + 1];
+        [of_line, of_line.strip_prefix('\u{feff}').unwrap_or(of_line), of_line.trim_start_matches('\u{feff}')]
+            .map(|text| text.chars().count() + 1);
     assert!(columns.contains(&place.column), "{columns:?}: {error}\n{text:?}");
 }
 
@@ -97,6 +99,11 @@ proptest! {
     #[test]
     fn any_text_gets_an_answer(text in "(?s).{0,200}") {
         check(&text);
+    }
+
+    #[test]
+    fn marks_and_a_control_character_get_an_answer(marks in 0_usize..4) {
+        check(&format!("{}\u{e}", "\u{feff}".repeat(marks)));
     }
 
     #[test]
