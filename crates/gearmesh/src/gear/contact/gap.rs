@@ -333,7 +333,7 @@ impl<'a> Outline<'a> {
             shapes: Vec::new(),
             minimum: Vec::new(),
         };
-        for roll in parts.iter().flat_map(|part| part.breaks()).copied() {
+        for roll in parts.iter().flat_map(Section::breaks).copied() {
             let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
             if position > facing.start && position < facing.end {
                 outline.cuts.push(position);

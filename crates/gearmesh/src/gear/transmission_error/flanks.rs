@@ -104,7 +104,9 @@ impl<'a> Flanks<'a> {
     pub(super) fn strips_at(&self, s: f64, count: usize) -> impl Iterator<Item = Face<'a>> {
         self.sections.chunks(self.sections.len() / count).map(move |sections| {
             let mut slices = self.deviations(sections, s);
-            slices.iter_mut().for_each(|slice| slice.0 *= count as f64);
+            for slice in &mut slices {
+                slice.0 *= count as f64;
+            }
             let lowest = slices.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
             Face::of_slices(slices, lowest, &self.cycle.slices)
         })

@@ -128,7 +128,9 @@ impl<'a> Sliced<'a> {
         let strips = self.deviations(reach.positions());
         let mut behind = strips.behind(reach.gaps(), self.count());
         let smallest = behind.iter().copied().fold(f64::INFINITY, f64::min);
-        behind.iter_mut().for_each(|gap| *gap -= smallest);
+        for gap in &mut behind {
+            *gap -= smallest;
+        }
         let slices = self.springs(cycle, reach.positions(), &own, &strips.faces);
         (many_springs::balance(&slices, &behind, &matrix, force, above), smallest)
     }
