@@ -22,21 +22,20 @@ impl LoadCase<'_> {
         (CLOSEST * pair.base_pitch).max(ROUNDINGS * f64::EPSILON * pair.tangent_length)
     }
 
-    /// The first change of the set of loaded pairs between nodes of a span with these states, or the first level that a
-    /// pair's penetration passes.
-    pub(super) fn change(&self, span: &Span, nodes: &[usize], states: &[Equilibrium]) -> Option<Cut> {
+    /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
+    /// penetration passes.
+    pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES]) -> Option<Cut> {
         let springs = self.cycle.springs(span.pairs);
-        for (nodes, states) in nodes.windows(2).zip(states.windows(2)) {
-            let penetration = |node: usize, pair: usize| states[node].balance.penetration[pair];
+        for node in 0..NODES - 1 {
             for pair in 0..springs {
-                let touch = if known(span, [nodes[0], nodes[1]], pair) { None } else { Some((0.0, Some(pair))) };
+                let touch = if known(span, node, pair) { None } else { Some((0.0, Some(pair))) };
                 for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                    let (before, after) = (penetration(0, pair) - level, penetration(1, pair) - level);
+                    let [before, after] = [node, node + 1].map(|node| states[node].balance.penetration[pair] - level);
                     if (before > 0.0) == (after > 0.0) {
                         continue;
                     }
                     let closest = self.closest();
-                    let [from, to] = [nodes[0], nodes[1]].map(|node| span.position(&self.cycle.rows, node));
+                    let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
                     let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
                     let at = crossing(above, (from, before), (to, after), 0.1 * closest);
                     if at - span.start > closest && span.end - at > closest {
@@ -60,7 +59,7 @@ impl LoadCase<'_> {
         {
             let differs = (0..self.cycle.springs(span.pairs)).any(|pair| {
                 let loaded = |at: usize| states[at].balance.penetration[pair] > 0.0;
-                loaded(end) != loaded(next) && !known(span, [node, node + 1], pair)
+                loaded(end) != loaded(next) && !known(span, node, pair)
             });
             if differs {
                 states[end] = self.state(inside, span.pairs);
@@ -69,8 +68,8 @@ impl LoadCase<'_> {
     }
 }
 
-/// Whether the change of a pair between two nodes is what the span's own end is.
-fn known(span: &Span, nodes: [usize; 2], pair: usize) -> bool {
-    let ends = [nodes[0] == 0, nodes[1] + 1 == NODES];
+/// Whether the change of a pair between a node and the next one is what the span's own end is.
+fn known(span: &Span, node: usize, pair: usize) -> bool {
+    let ends = [node == 0, node + 2 == NODES];
     (0..2).any(|end| ends[end] && span.touches[end] == Some(pair))
 }

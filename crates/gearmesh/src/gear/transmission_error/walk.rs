@@ -77,17 +77,14 @@ impl LoadCase<'_> {
     /// The states at the nodes of a span, or where it is to be cut, if that is still allowed.
     fn nodes(&self, span: &Span, ends: &[Equilibrium; 2], may_cut: bool) -> Result<[Equilibrium; NODES], Cut> {
         let rows = &self.cycle.rows;
-        let change = |nodes: &[usize], states: &[Equilibrium]| {
-            if may_cut { self.change(span, nodes, states).map_or(Ok(()), Err) } else { Ok(()) }
-        };
-        // What has changed from end to end is found before anything between them is computed, which would be in vain.
-        change(&[0, NODES - 1], ends)?;
         let mut states = [ends[0]; NODES];
         states[NODES - 1] = ends[1];
         for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        change(&std::array::from_fn::<usize, NODES, _>(|node| node), &states)?;
+        if may_cut && let Some(cut) = self.change(span, &states) {
+            return Err(cut);
+        }
         let bent = || rows.tail(&states.each_ref().map(Equilibrium::transmission_error)) > TAIL;
         if self.refines && may_cut && bent() {
             return Err((0.5 * (span.start + span.end), None));
