@@ -7,8 +7,8 @@ use serde_json::json;
 use super::progress::{duration, rough};
 use crate::stage::{Omission, RowCount, omission};
 use studygraph::runner::foresee::Expected;
-use studygraph::runner::limits::{grouped, size};
 use studygraph::runner::plan::{Action, Plan};
+use studygraph::runner::refuse::{grouped, size};
 use studygraph::study::Study;
 
 pub(super) fn plan_text(study: &Study, plan: &Plan) -> String {

@@ -116,7 +116,8 @@ pub struct Placed<T> {
     pub place: Place,
 }
 
-/// The record of a study that gives these values and leaves the other fields to their defaults.
+/// The record of a study that gives these values and leaves the other fields to their defaults, those of groups in them
+/// too.
 ///
 /// # Panics
 /// When a field must be given and is not, or has another name: the declaration and its caller are one program.
@@ -126,7 +127,8 @@ pub fn record_of(fields: &[Field], given: &[(&str, Value)]) -> Record {
         assert!(fields.iter().any(|field| field.name == *name), "`{name}` is not declared");
     }
     let value_of = |field: &Field| {
-        let value = given.iter().find(|(name, _)| *name == field.name).map(|(_, value)| value.clone());
+        let value = given.iter().find(|(name, _)| *name == field.name);
+        let value = value.map(|(_, value)| completed(&field.shape, value.clone()));
         value.or_else(|| match field.presence {
             Presence::Optional => None,
             Presence::Required => panic!("`{}` must be given", field.name),
@@ -135,6 +137,24 @@ pub fn record_of(fields: &[Field], given: &[(&str, Value)]) -> Record {
     };
     let fields = fields.iter().filter_map(|field| Some((field.name, entry(value_of(field)?)))).collect();
     Record { fields, place: Place::default() }
+}
+
+fn completed(shape: &Shape, value: Value) -> Value {
+    match (value, shape) {
+        (Value::Group(record), Shape::Group(fields)) => {
+            let given: Vec<_> = record.fields.iter().map(|(name, entry)| (*name, entry.value.clone())).collect();
+            let mut all = record_of(fields, &given);
+            all.place = record.place;
+            for (name, entry) in &mut all.fields {
+                entry.place = record.entry(name).map_or(record.place, |entry| entry.place);
+            }
+            Value::Group(all)
+        }
+        (Value::List(items), Shape::List(item)) => Value::List(
+            items.into_iter().map(|entry| PlacedValue { value: completed(item, entry.value), ..entry }).collect(),
+        ),
+        (value, _) => value,
+    }
 }
 
 // Here and not beside the getters, since it knows declarations.

@@ -3,10 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 
-use super::record::{item, list};
+use super::record::list;
 use super::tables::tables;
-use declare::error::Place;
-use declare::record::{Record, Value};
+use declare::declared;
+use declare::record::Value;
 use declare::seed::Seed;
 use declare::work::Tally;
 use gearstudy::report::{self, Rendered};
@@ -18,9 +18,9 @@ use studygraph::store::manifest::{
 use studygraph::table::data::Table;
 
 fn report_tables(published: Vec<Value>, figures: Vec<Value>, tables: &BTreeMap<String, Table>) -> Vec<Table> {
-    let fields = vec![("published", item(list(published))), ("figures", item(list(figures)))];
-    let record = Record { fields, place: Place::default() };
-    let built = (stage::kind("report").unwrap().build)(&record).unwrap();
+    let kind = stage::kind("report").unwrap();
+    let record = declared::record_of(kind.fields, &[("published", list(published)), ("figures", list(figures))]);
+    let built = (kind.build)(&record).unwrap();
     let wanted = built.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
     let (demand, stop) = (Demand { tables: wanted }, AtomicBool::new(false));
     let context = Context {

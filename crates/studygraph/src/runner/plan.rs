@@ -7,8 +7,8 @@ use super::board::{Board, StageState};
 use super::events::Silent;
 use super::foresee::{Expected, foresee};
 use super::key::{Why, phrase};
-use super::limits;
 use super::options::Options;
+use super::refuse;
 use crate::stage::Omission;
 use crate::store::cache::Cache;
 use crate::study::Study;
@@ -89,7 +89,7 @@ pub fn plan(study: &Study, cache: &Cache, options: &Options) -> Result<Plan, Dia
 pub fn of(board: &Board, options: &Options) -> Plan {
     let threads = options.threads();
     let mut foresight = foresee(board, threads, None);
-    let refused = limits::refusal(board, &foresight, &options.limits, threads);
+    let refused = refuse::refusal(board, &foresight, &options.limits, threads);
     let stages = board.graph.order.iter().map(|&node| {
         let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
         let action = match progress.state {

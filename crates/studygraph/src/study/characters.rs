@@ -3,7 +3,7 @@
 //! Titles, names, reasons and labels go into files of every format that is published. What one of those cannot hold is
 //! refused before anything runs; see `text.rs` of `declare`. Must not know: fields.
 
-use super::document::place_at;
+use super::place::place_at;
 use declare::error::{Diagnostic, Place};
 use declare::text::{is_unfit, number};
 

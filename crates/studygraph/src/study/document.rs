@@ -11,6 +11,7 @@ use serde_saphyr::granit_parser::{
 };
 
 use super::characters;
+use super::place::place_at;
 use super::words::quote;
 use declare::error::{Diagnostic, Place};
 use declare::text::unfit;
@@ -327,17 +328,6 @@ impl<'a> Tree<'a> {
         let offset = before.or_else(|| self.text[place.offset..].find('\t').map(|at| place.offset + at));
         offset.map_or(place, |offset| place_at(self.text, offset, 1))
     }
-}
-
-/// The place of a byte, where nobody has counted lines yet.
-pub fn place_at(text: &str, offset: usize, length: usize) -> Place {
-    let before = &text[..offset];
-    let line = before.rfind(['\n', '\r']).map_or(0, |at| at + 1);
-    // A line may end in LF, CR or both; a byte order mark at the start is no character of the first.
-    let breaks = before.matches('\n').count() + before.matches('\r').count() - before.matches("\r\n").count();
-    let marks = usize::from(line == 0 && before.starts_with('\u{feff}'));
-    let column = before[line..].chars().count() + 1 - marks;
-    Place { line: breaks + 1, column, offset, length }
 }
 
 fn too_deep() -> Diagnostic {

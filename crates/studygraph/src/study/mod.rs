@@ -12,6 +12,7 @@ mod document;
 mod links;
 mod notation;
 mod overrides;
+mod place;
 mod quantity;
 mod read;
 pub mod schema;

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::LoadError;
-use super::document::place_at;
+use super::place::place_at;
 use declare::error::{Diagnostic, nearest};
 
 /// Bytes of a study. The largest that anybody wrote has a few ten thousand.
