@@ -378,7 +378,7 @@ mod tests {
     }
 
     #[test]
-    fn crowning_alone_is_the_known_formula_down_to_vanishing_interference() {
+    fn crowning_alone_is_the_known_formula_down_to_vanishing_penetration() {
         let rule = Rule::new(5);
         let pair = pair();
         for crown in [1e-300, 1e-15, 8e-6] {
