@@ -22,6 +22,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
     let (mut tables, mut read, mut written) = (Vec::new(), Vec::new(), Vec::new());
     let (mut proofs, mut checks) = (Vec::new(), Vec::new());
     let (mut idents, mut texts) = (Vec::new(), Vec::new());
+    let mut defaults = Vec::new();
     for field in &fields.named {
         let Some(ident) = &field.ident else { continue };
         if !matches!(field.vis, Visibility::Public(_)) {
@@ -40,6 +41,7 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
         let Declaration { declared, read: from, write, check, proof, given } = declaration(field, &marks, ident)?;
         all_default &= !given;
         let text = marks.name.as_ref().map_or_else(|| ident.to_string(), LitStr::value);
+        defaults.extend(marks.default.as_ref().map(|default| format!("`{ident}`: {}", default.value())));
         tables.push(quote!(&[#declared]));
         proofs.push(proof);
         checks.push(check);
@@ -48,9 +50,11 @@ pub fn expand(input: &DeriveInput) -> Result<TokenStream, Error> {
         idents.push(ident);
         texts.push(text);
     }
+    let defaults = format!("As a study has it that says nothing: {}.", defaults.join(", "));
     let default = all_default.then(|| {
         quote! {
             impl ::core::default::Default for #name {
+                #[doc = #defaults]
                 fn default() -> Self {
                     <Self as ::declare::declared::Declared>::read(&::declare::declared::record_of(
                         <Self as ::declare::declared::Declared>::MEMBER.fields,

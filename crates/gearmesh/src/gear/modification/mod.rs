@@ -146,8 +146,23 @@ impl<T: Declared> Stated<T> {
 const MOST_FIELDS: usize = 16;
 
 /// One modification of one gear, with everything resolved.
+///
+/// What is taken off at a place is the sum of up to three functions. One that is not 0 comes with its flag; without it the
+/// function is never asked for, and [`Design::add`] refuses what it finds:
+///
+/// | function | of | flag | broken where |
+/// |---|---|---|---|
+/// | [`Self::depth`] | the roll angle | [`Self::varies_along_profile`] | [`Self::profile_breaks`] |
+/// | [`Self::lead`] | z | [`Self::varies_along_face`] | [`Self::lead_breaks`] |
+/// | [`Self::surface`] | both | [`Self::varies_over_surface`] | both |
+///
+/// Roll angles \[rad\] are those of the gear and may lie beyond its active flank, where corner contact or an outline
+/// looks; z \[m\] counts from the middle of its face, which is the middle of the mate's too, and points the same way for
+/// both gears. Values are \[m\], normal to the flank, positive where material is removed; a slope or a twist may be negative
+/// in places. With the whole face in contact and linear contact, what has a mean of 0 across the face leaves the loaded
+/// transmission error as it is.
 pub trait Modification: Debug + Send + Sync {
-    /// Depth at a roll angle; continuous.
+    /// Depth at a roll angle; continuous. 0 unless it is said.
     fn depth(&self, _roll: f64) -> f64 {
         0.0
     }
@@ -195,7 +210,7 @@ pub trait Modification: Debug + Send + Sync {
         false
     }
 
-    /// Whether the lead, and the surface, at −z is that at z.
+    /// Whether the lead, and the surface, at −z is that at z; unless it is said, where neither varies.
     fn lead_is_even(&self) -> bool {
         !self.varies_along_face() && !self.varies_over_surface()
     }
@@ -273,6 +288,12 @@ impl Design {
         stated.check()?;
         for &side in gears.sides() {
             let modification = stated.on(pair, side)?;
+            check_flags(&*modification, &Flank::new(pair, side)).map_err(|function| {
+                let family = T::MEMBER.name;
+                Diagnostic::new(format!(
+                    "`{family}` has a {function} that is not 0, but its flag says that there is none"
+                ))
+            })?;
             let parts = if side == Side::Pinion { &mut self.pinion } else { &mut self.gear };
             parts.push(NamedModification { family: T::MEMBER.name, modification });
         }
@@ -356,6 +377,23 @@ impl Design {
         };
         of(Side::Pinion).chain(of(Side::Gear)).collect()
     }
+}
+
+/// Which function is not 0 although its flag says that there is none: a family that forgot a flag would do nothing.
+fn check_flags(modification: &dyn Modification, flank: &Flank) -> Result<(), &'static str> {
+    // Nowhere special.
+    let roll = flank.root_roll + 0.93 * (flank.tip_roll - flank.root_roll);
+    let z = 0.37 * flank.face_width;
+    if !modification.varies_along_profile() && modification.depth(roll) != 0.0 {
+        return Err("depth");
+    }
+    if !modification.varies_along_face() && modification.lead(z) != 0.0 {
+        return Err("lead");
+    }
+    if !modification.varies_over_surface() && modification.surface(roll, z) != 0.0 {
+        return Err("surface");
+    }
+    Ok(())
 }
 
 /// The ends of a range, the `breaks` inside it, and equidistant places between.

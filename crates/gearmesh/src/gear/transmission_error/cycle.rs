@@ -45,6 +45,7 @@ pub struct Settings {
 }
 
 impl Default for Settings {
+    /// 64 positions, 17 slices, contact on the line of action only, slices that do not hold each other.
     fn default() -> Self {
         Self { positions: 64, slices: 17, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None }
     }

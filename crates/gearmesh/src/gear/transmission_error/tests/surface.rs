@@ -4,7 +4,10 @@ use std::sync::Arc;
 
 use super::*;
 use crate::gear::contact::{CornerContact, SliceCoupling};
-use crate::gear::modification::{Modification, NamedModification};
+use crate::gear::geometry::Side;
+use crate::gear::modification::helix_slope::HelixSlope;
+use crate::gear::modification::{Gears, Modification, NamedModification, Specified};
+use declare::error::Diagnostic;
 
 /// A tip relief and a bow across the face, lowest at an end, where any slices have a place, told as a profile and a lead, or most of it as a
 /// surface.
@@ -187,8 +190,53 @@ fn a_twisted_flank_is_a_slope_that_turns() {
 fn a_surface_that_takes_half_the_tooth_is_refused() {
     let pair = pair();
     let mut design = of(Twist { middle: 0.3, rate: 4e-3 });
-    let slope = crate::gear::modification::helix_slope::HelixSlope { amount: 1e-6 };
-    assert!(design.add(crate::gear::modification::Gears::Pinion, &slope, &pair).is_ok());
+    let slope = HelixSlope { amount: 1e-6 };
+    assert!(design.add(Gears::Pinion, &slope, &pair).is_ok());
     design.pinion.extend(of(Twist { middle: 0.3, rate: 4.0 }).pinion);
-    assert!(design.add(crate::gear::modification::Gears::Pinion, &slope, &pair).is_err());
+    assert!(design.add(Gears::Pinion, &slope, &pair).is_err());
+}
+
+/// A family that forgets a flag would do nothing.
+#[test]
+fn a_function_without_its_flag_is_refused() {
+    /// One that says nothing of its function.
+    #[derive(Clone, Copy, Debug, declare::Declared)]
+    #[declared(name = "forgetful")]
+    struct Forgetful {
+        /// Which function it has.
+        #[declared(minimum = 0, maximum = 3, default = "0")]
+        pub function: u8,
+    }
+
+    impl Specified for Forgetful {
+        fn on(&self, _: &GearPair, _: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+            Ok(Arc::new(*self))
+        }
+    }
+
+    impl Modification for Forgetful {
+        fn depth(&self, _: f64) -> f64 {
+            if self.function == 1 { 1e-6 } else { 0.0 }
+        }
+
+        fn lead(&self, _: f64) -> f64 {
+            if self.function == 2 { 1e-6 } else { 0.0 }
+        }
+
+        fn surface(&self, _: f64, _: f64) -> f64 {
+            if self.function == 3 { 1e-6 } else { 0.0 }
+        }
+
+        fn resolved(&self) -> Vec<(&'static str, f64)> {
+            Vec::new()
+        }
+    }
+
+    let pair = pair();
+    let said = |function: u8| Design::default().add(Gears::Both, &Forgetful { function }, &pair);
+    assert!(said(0).is_ok());
+    for (function, name) in [(1, "depth"), (2, "lead"), (3, "surface")] {
+        let message = said(function).unwrap_err().message;
+        assert!(message.contains(&format!("`forgetful` has a {name} that is not 0")), "{message}");
+    }
 }
