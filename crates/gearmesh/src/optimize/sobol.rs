@@ -90,3 +90,21 @@ fn coordinate(directions: &[u32; BITS as usize], index: usize) -> f64 {
     let bits = directions.iter().enumerate().filter(|(bit, _)| gray >> bit & 1 == 1).fold(0, |sum, (_, v)| sum ^ v);
     f64::from(bits) / 4_294_967_296.0
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tier: second method; SciPy 1.17, `qmc.Sobol(16, scramble=False)` after `fast_forward(0xAAAAA)`, times 2²⁰. The Gray
+    /// code of this number is twenty ones: the first twenty direction numbers of every variable are in its point.
+    #[test]
+    fn a_point_far_on_is_that_of_joe_and_kuo() {
+        let expected = [
+            1_048_575, 65_553, 324_859, 774_285, 477_635, 327_961, 399_107, 888_303, 94_959, 377_517, 54_201, 65_591,
+            912_827, 610_221, 271_419, 296_243,
+        ];
+        let found: Vec<f64> =
+            (0..16).map(|variable| coordinate(&directions(variable), 0xAAAAA) * 1_048_576.0).collect();
+        assert_eq!(found, expected.map(f64::from));
+    }
+}

@@ -361,3 +361,74 @@ impl Table {
         writer.finish()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::schema::Column;
+    use super::*;
+
+    fn table(name: &str, columns: Vec<Column>, rows: Vec<Row>) -> Table {
+        Table::from_rows(Schema::new(name, "", columns), rows).unwrap()
+    }
+
+    fn columns() -> Vec<Column> {
+        vec![
+            Column::text("design", "").key(),
+            Column::float("torque", "N m", ""),
+            Column::integer("teeth", ""),
+            Column::flag("fits", ""),
+            Column::float("seconds", "s", "").volatile(),
+        ]
+    }
+
+    fn rows() -> Vec<Row> {
+        vec![
+            vec!["iso".into(), 50.0.into(), Cell::Integer(19), Cell::Flag(true), 3.0.into()],
+            vec!["none".into(), 25.0.into(), Cell::Integer(48), Cell::Flag(false), 4.0.into()],
+        ]
+    }
+
+    /// Tier: invariant; the cache takes tables of one digest for the same: all that tells two apart must be in it, and nothing
+    /// that a run of the same study may change.
+    #[test]
+    fn the_digest_tells_tables_apart_by_all_they_say() {
+        let base = table("summary", columns(), rows()).content_hash();
+        let mut others = vec![table("curve", columns(), rows())];
+        let changes: [fn(&mut Vec<Column>); 4] = [
+            |columns| columns[1].name = "force".to_owned(),
+            |columns| columns[1].unit = "kN m".to_owned(),
+            |columns| columns[1].key = true,
+            |columns| columns.swap(2, 3),
+        ];
+        for (index, change) in changes.into_iter().enumerate() {
+            let (mut columns, mut rows) = (columns(), rows());
+            change(&mut columns);
+            if index == 3 {
+                for row in &mut rows {
+                    row.swap(2, 3);
+                }
+            }
+            others.push(table("summary", columns, rows));
+        }
+        let cells: [(usize, Cell); 4] =
+            [(0, "is".into()), (1, 50.5.into()), (2, Cell::Integer(20)), (3, Cell::Flag(false))];
+        for (at, cell) in cells {
+            let mut rows = rows();
+            rows[0][at] = cell;
+            others.push(table("summary", columns(), rows));
+        }
+        others.push(table("summary", columns(), rows()[..1].to_vec()));
+        let mut digests: Vec<Digest> = others.iter().map(Table::content_hash).collect();
+        digests.push(base);
+        for (at, digest) in digests.iter().enumerate() {
+            assert!(!digests[..at].contains(digest), "table {at} has the digest of another");
+        }
+        // Neither what is volatile nor prose.
+        let (mut later, mut described) = (rows(), columns());
+        for row in &mut later {
+            row[4] = 9.0.into();
+        }
+        described[1].description = "at the pinion".to_owned();
+        assert_eq!(table("summary", described, later).content_hash(), base);
+    }
+}

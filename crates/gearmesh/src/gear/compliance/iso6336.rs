@@ -311,6 +311,25 @@ mod tests {
         assert!(tables(&pair([19, 48], [0.0; 2], 1.0), Some(51.4)).warnings.is_empty());
     }
 
+    /// Tier: published; the ranges of ISO 6336-1:2019, clause 9, as printed, looked at a thousandth inside and outside.
+    #[test]
+    fn the_ranges_are_the_standard_s() {
+        let pair = pair([19, 48], [0.0; 2], 1.0);
+        let steel = Inputs::of(&pair, &Iso6336::default());
+        let told = |inputs: &Inputs, torque| !warnings(inputs, &pair, torque).is_empty();
+        for (limit, outwards) in [(-0.5, 1.001), (2.0, 1.001)] {
+            let of = |sum: f64| Inputs { profile_shift: [sum + 0.6, -0.6], ..steel };
+            assert!(told(&of(limit * outwards), None) && !told(&of(limit / outwards), None), "x1 + x2 {limit}");
+        }
+        for (limit, outwards) in [(1.2, 0.999), (2.5, 1.001)] {
+            let of = |contact_ratio| Inputs { contact_ratio, ..steel };
+            assert!(told(&of(limit * outwards), None) && !told(&of(limit / outwards), None), "ε_α {limit}");
+        }
+        // 100 N/mm on the reference radius of 28.5 mm and 18 mm.
+        let torque = 100e3 * 28.5e-3 * 18e-3;
+        assert!(told(&steel, Some(0.999 * torque)) && !told(&steel, Some(1.001 * torque)));
+    }
+
     /// Tier: published; ISO 6336-1:2019, clause 9.3, C1 to C9 as printed, each from differences that leave it alone.
     #[test]
     fn every_constant_of_the_flexibility_is_the_standard_s() {

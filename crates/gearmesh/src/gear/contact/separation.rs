@@ -198,6 +198,15 @@ mod tests {
         }
     }
 
+    /// Tier: closed form; where t and sin t are far enough apart for their difference to keep its digits.
+    #[test]
+    fn the_series_of_the_defect_is_t_less_its_sine() {
+        for share in 5..=10 {
+            let t = 0.05 * f64::from(share);
+            assert!((defect(t) / (t - t.sin()) - 1.0).abs() < 1e-13 * (0.5 / t).powi(2), "at {t}");
+        }
+    }
+
     /// S = x²/2ρ with x = u e the tangential offset, and the first correction vanishes with e.
     #[test]
     fn near_the_nominal_point_separation_is_a_parabola() {

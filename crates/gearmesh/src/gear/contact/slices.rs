@@ -41,3 +41,30 @@ impl Springs for Slices<'_> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    use crate::gear::contact::flattening::Logarithmic;
+    use crate::gear::fixtures::{STEEL, design, pair};
+    use crate::numeric::lobatto::Rule;
+    use declare::record::Value::Quantity;
+
+    /// Tier: invariant; the slope is that of the load, by central differences, whichever law holds.
+    #[test]
+    fn the_slope_of_a_slice_is_that_of_its_load() {
+        let (rule, width) = (Rule::new(9), 4e-3);
+        let crowned = design(&pair(), &[("lead_crowning", "pinion", &[("amount", Quantity(8e-6))])]).unwrap();
+        let faces = [Face::new(&crowned, width, &rule)];
+        let law = Logarithmic::new([&STEEL; 2], 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
+        let slices = [Slice::Linear(3e8), Slice::Logarithmic(law)].to_vec();
+        let springs = Slices { slices, faces: &faces, widths: &[width] };
+        for (spring, penetration) in [(0, 1e-7), (0, 5e-6), (0, 3e-5), (1, 1e-7), (1, 5e-6), (1, 3e-5)] {
+            let step = 1e-5 * penetration;
+            let [below, above] = [-step, step].map(|step| springs.response(spring, penetration + step).0);
+            let ratio = springs.response(spring, penetration).1 * 2.0 * step / (above - below);
+            assert!((ratio - 1.0).abs() < 1e-8, "spring {spring} at {penetration}: {ratio}");
+        }
+    }
+}

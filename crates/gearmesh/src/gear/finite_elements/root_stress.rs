@@ -24,15 +24,6 @@ pub struct SurfaceStress {
     pub stress: f64,
 }
 
-impl SurfaceStress {
-    /// (σ_x, σ_y, τ_xy).
-    #[must_use]
-    pub fn tensor(&self) -> [f64; 3] {
-        let [x, y] = self.along;
-        [self.stress * x * x, self.stress * y * y, self.stress * x * y]
-    }
-}
-
 /// The stress at two points of each of a chain of edges that carry no load, from the displacements of all nodes.
 #[must_use]
 pub fn along_surface(

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 use proptest::prelude::*;
 
 use super::error::{GeometryError, Problem};
-use super::root::RootShape;
+use super::root::{Root, RootShape};
 use super::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
 use crate::numeric::crossing::bracketed;
@@ -51,6 +51,13 @@ fn pair(pinion: u32, gear: u32) -> Result<GearPair, GeometryError> {
 
 fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
     assert!((found - expected).abs() <= tolerance, "{what}: {found} for {expected}");
+}
+
+/// Tier: published; ISO 53:1998, table 2, rack A; ISO 6336-1 and -2: E 206 000 N/mm² and ν 0.3 of steel.
+#[test]
+fn rack_and_steel_are_the_standards() {
+    assert_eq!(Rack::ISO_53_A, Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 });
+    assert_eq!(Material::STEEL, Material { youngs_modulus: 206e9, poisson_ratio: 0.3 });
 }
 
 /// Tier: values computed independently, to every digit given (lengths in mm).
@@ -388,6 +395,44 @@ fn the_circular_fillet_is_tangent() {
     let error = crowded.root(RootShape::CircularFillet).unwrap_err();
     assert_eq!(error.field(), "rack.tip_radius");
     assert!(error.to_string().contains("would overlap by 0.1"), "{error}");
+}
+
+/// Tier: invariant; a limit that a refusal names is where it begins.
+#[test]
+fn what_a_refusal_asks_for_is_just_enough() {
+    let pair = |sum: f64| GearPair::new(specification(20, 3.0, 0.5 * sum), specification(20, 3.0, 0.5 * sum), None);
+    let refused = |sum: f64| match pair(sum).map_err(|error| error.problem) {
+        Err(Problem::ProfileShiftSum { minimum, .. }) => Some(minimum.0),
+        _ => None,
+    };
+    let minimum = refused(-1.0).unwrap();
+    assert!(refused(minimum - 1e-6).is_some() && refused(minimum + 1e-6).is_none(), "x1 + x2 {minimum}");
+    let refused =
+        |pressure_angle: f64| match Gear::new(&Specification { pressure_angle, ..specification(30, 3.0, 0.0) })
+            .map_err(|error| error.problem)
+        {
+            Err(Problem::NoTipLand { largest, .. }) => Some(largest.0),
+            _ => None,
+        };
+    let largest = refused(40.0 * DEGREE).unwrap();
+    assert!(refused(largest + 1e-6).is_some() && refused(largest - 1e-6).is_none(), "α {largest}");
+}
+
+/// Tier: closed form; an arc with the centre at r_f + ρ touches the involute itself from (r_f + ρ)² − r_b² = ρ² on. Its
+/// centre is outside the base circle before that, from ρ = r_b − r_f on.
+#[test]
+fn a_fillet_leaves_the_involute_whole_until_it_touches_it() {
+    let gear = gear(30, 3.0, 0.0);
+    let (base, root) = (gear.base_radius, gear.root_radius);
+    let touching = (base - root) * (base + root) / (2.0 * root);
+    assert!(base - root < 0.995 * touching);
+    for share in [0.5, 0.995, 0.9999, 1.001, 1.1] {
+        let Root { form_roll, pieces, .. } = gear.fillet(share * touching).unwrap();
+        assert_eq!(
+            (form_roll > 0.0, form_roll >= 0.0, pieces.len()),
+            if share > 1.0 { (true, true, 1) } else { (false, true, 2) }
+        );
+    }
 }
 
 /// The apex is where the thickness vanishes, found here by bisection.

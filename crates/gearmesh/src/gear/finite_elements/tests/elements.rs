@@ -2,7 +2,7 @@
 
 use super::super::element::{NODES, Plane, RULE, edge_shape, elasticity, shape, stiffness, stress};
 use super::super::mesh::{Edge, Mesh};
-use super::super::root_stress::along_surface;
+use super::super::root_stress::{SurfaceStress, along_surface, largest};
 use super::super::sector::{NodalForces, Sector};
 use super::super::wheel::Wheel;
 
@@ -224,4 +224,53 @@ fn a_thick_ring_follows_lame() {
         assert!(order[0] > 2.8 && order[1] > 2.8 && order[2] > 2.5, "{order:?}");
     }
     assert!(errors[2].iter().all(|error| *error < 1e-3));
+}
+
+/// Tier: closed form; Hooke's law in space, with no stress along the width or no strain.
+#[test]
+fn both_planes_are_hooke_s_law() {
+    let (nu, stresses) = (0.3, [3.0, -2.0, 0.7]);
+    let [x, y, shear] = stresses;
+    for (plane, z) in [(Plane::Stress, 0.0), (Plane::Strain, nu * (x + y))] {
+        let strain = [x - nu * (y + z), y - nu * (x + z), 2.0 * (1.0 + nu) * shear];
+        for (row, stress) in elasticity(plane, nu).iter().zip(stresses) {
+            let found: f64 = row.iter().zip(strain).map(|(d, strain)| d * strain).sum();
+            assert!((found - stress).abs() < 1e-14, "{plane:?}: {found} for {stress}");
+        }
+    }
+}
+
+/// Tier: closed form; on a straight line the length from its start is the place, whatever divides it, and the points are
+/// those of Gauss: (1 ± 1/√3)/2 of an edge whose middle node is in the middle.
+#[test]
+fn the_length_along_a_straight_surface_is_the_place_on_it() {
+    let mut mesh = ring(7, 2);
+    mesh.nodes = [0.0, 0.4, 1.0, 2.1, 3.0, 3.5, 4.0].map(|x| [0.6 * x, 0.8 * x]).to_vec();
+    let edges = [0, 2, 4].map(|first| Edge { element: 0, side: 0, nodes: [first, first + 1, first + 2] });
+    // Stretched by a thousandth.
+    let moved: Vec<[f64; 2]> = mesh.nodes.iter().map(|node| node.map(|x| 1e-3 * x)).collect();
+    let points = along_surface(&mesh, &edges, &moved, Plane::Strain, 0.3);
+    for point in &points {
+        let [x, y] = point.place;
+        assert!((point.length - x.hypot(y)).abs() < 1e-14, "{point:?}");
+        assert!((point.stress - 1e-3 / 0.91).abs() < 1e-16, "{point:?}");
+    }
+    for (point, sign) in points[4..].iter().zip([-1.0, 1.0]) {
+        assert!((point.length - 3.0 - 0.5 * (1.0 + sign / 3_f64.sqrt())).abs() < 1e-14, "{point:?}");
+    }
+}
+
+/// Tier: closed form; the top of a parabola over the length, and its radius, which is one too.
+#[test]
+fn the_largest_stress_is_the_top_of_a_parabola() {
+    let point = |length: f64| SurfaceStress {
+        place: [0.0, 20.0 + 0.3 * length + 0.1 * length * length],
+        along: [1.0, 0.0],
+        length,
+        stress: 5.0 - 2.0 * (length - 0.9).powi(2),
+    };
+    for lengths in [[0.0, 0.7, 1.2, 1.4], [0.1, 0.5, 0.8, 2.0]] {
+        let (stress, radius) = largest(&lengths.map(point)).unwrap();
+        assert!((stress - 5.0).abs() < 1e-14 && (radius - 20.351).abs() < 1e-13, "{stress} at {radius}");
+    }
 }

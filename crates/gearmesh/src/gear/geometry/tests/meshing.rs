@@ -4,7 +4,7 @@ use super::outline::shaped;
 use super::*;
 use crate::gear::geometry::outline::Outline;
 use crate::gear::geometry::outline::sample::{Density, Point};
-use crate::gear::geometry::validity::Mating;
+use crate::gear::geometry::validity::{Mating, Validity};
 
 /// Half the angle of the tooth over its radius, read off a polygon of its right half: knows nothing of involutes.
 struct Silhouette {
@@ -122,5 +122,22 @@ fn polygons_overlap_where_the_mate_s_tip_cuts_into_the_root() {
         let what = format!("{z1}/{z2} {family}: {depth:e} for {distance:e}");
         assert!((distance < 0.0) == cuts && (depth > 1e-8) == cuts, "{what}");
         assert!(depth >= -0.98 * distance && (!cuts || depth < -2.5 * distance), "{what}");
+    }
+}
+
+/// Tier: closed form; ISO 21771: a rack with sharp corners undercuts below x = h_aP − z/2 sin²α, which is 0 for 17.0973 teeth.
+/// Tips that are not lowered take from the clearance what the centre distance is short of both shifts: −k modules.
+#[test]
+fn least_shifts_and_missing_clearance_are_those_of_iso_21771() {
+    for (z1, x1, z2, x2) in [(17, 0.4, 30, 0.3), (24, 0.0, 36, 0.0), (40, 0.7, 21, -0.1)] {
+        let pair = GearPair::new(specification(z1, 3.0, x1), specification(z2, 3.0, x2), None).unwrap();
+        let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, "trochoid").unwrap());
+        let sharp = Validity::new(&pair.pinion, &pinion).least_shift_sharp;
+        assert_near(sharp, 1.0 - f64::from(z1) / 17.097_264, 1e-7, "least shift of a sharp rack");
+        let moved = (pair.centre_distance - 1.5e-3 * f64::from(z1 + z2)) / 3e-3;
+        for (side, own, mate) in [(Side::Pinion, &pinion, &gear), (Side::Gear, &gear, &pinion)] {
+            let missing = Mating::new(&pair, side, own, mate).missing_tip_shortening;
+            assert_near(missing, x1 + x2 - moved, 1e-12, "missing tip shortening");
+        }
     }
 }
