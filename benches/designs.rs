@@ -1,11 +1,13 @@
-//! The stage `ste` over many designs: its time must go with their number.
+//! Stages over many designs: the time of `ste` must go with their number, that of `optimizer` be the kernel's.
 
 use std::fmt::Write;
 
 use criterion::{Criterion, criterion_group};
+use gearmesh::optimize::{self, sobol::Sobol};
+use gearmesh::prelude::*;
 
 use crate::accuracy::seconds;
-use crate::article::Stages;
+use crate::article::{Stages, cycle};
 use crate::brief;
 
 criterion_group!(name = benches; config = brief().sample_size(10); targets = designs);
@@ -14,6 +16,13 @@ const FEW: usize = 1_000;
 const MANY: usize = 8_000;
 /// How much longer many may take than few.
 const MOST_RATIO: f64 = 9.0;
+
+/// Designs that the optimiser tries.
+const TRIED: u32 = 20_000;
+/// Its time per design, in that of the transmission error alone.
+const MOST_REST: f64 = 1.34;
+/// Processor time on two threads, in that on one.
+const MOST_SHARED: f64 = 1.5;
 
 const PAIR: &str = "\
 study: designs
@@ -32,6 +41,18 @@ stages:
     designs:
 ";
 
+/// Crowned and relieved designs in a box.
+const OPTIMIZER: &str = "
+  optimum:
+    kind: optimizer
+    stiffness: stiffness
+    at: { torque: 100 N m }
+    method: { sobol: { points: 20000 } }
+    design:
+      - tip_relief: { gear: both, amount: [0 um, 30 um], length: [0.5 mm, 5 mm] }
+      - lead_crowning: { gear: pinion, amount: [2 um, 10 um] }
+";
+
 /// Everything that `ste` reads, with so many tip reliefs of different amounts and lengths.
 fn prepared(count: usize) -> Stages {
     let mut text = PAIR.to_owned();
@@ -40,11 +61,16 @@ fn prepared(count: usize) -> Stages {
         let relief = format!("gear: both, amount: {amount:.6} um, length: {length:.4} mm");
         writeln!(text, "      d{index}: [tip_relief: {{ {relief} }}]").expect("a string takes all");
     }
+    stages(&text, "ste")
+}
+
+/// A study of which everything is run that this stage reads.
+fn stages(text: &str, stage: &str) -> Stages {
     let folder = tempfile::tempdir().expect("there is a place for temporary files");
     let path = folder.path().join("designs.yaml");
     std::fs::write(&path, text).expect("the folder is ours");
     let mut stages = Stages::at(&path);
-    stages.prepare("ste");
+    stages.prepare(stage);
     stages
 }
 
@@ -67,4 +93,64 @@ pub fn print() {
     let ratio = taken[1] / taken[0];
     let verdict = if ratio <= MOST_RATIO { "met" } else { "MISSED" };
     println!("ratio {ratio:.2}, target {MOST_RATIO} at most: {verdict}");
+}
+
+/// What a design costs an optimiser, and what of it the transmission error takes.
+pub fn print_optimizer() {
+    let text = format!("{PAIR}      none: []\n{OPTIMIZER}");
+    let mut stages = stages(&text, "optimum");
+    let per_design = |seconds: f64| seconds * 1e6 / f64::from(TRIED);
+    let [one, two] = [1, 2].map(|threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads can be started");
+        per_design(pool.install(|| seconds(|| stages.run("optimum"))))
+    });
+    let pair = stages.pair();
+    let cycle = cycle(&pair, ContactLaw::Linear, false);
+    let points = tried();
+    let built = || points.iter().map(|point| design(point, &pair).expect("the box has none that is refused"));
+    let building = per_design(seconds(|| built().for_each(drop)));
+    let designs: Vec<Design> = built().collect();
+    let error = |design: &Design| LoadCase::new(&cycle, design, 100.0).peak_to_peak();
+    let lean = per_design(seconds(|| designs.iter().map(error).sum::<f64>()));
+    let rest = one - lean;
+    // Nothing is compared with something else: both find the same design.
+    let best = designs.iter().map(error).fold(f64::INFINITY, f64::min);
+    let found = stages.run("optimum")[0].floats("objective")[0] * 1e-6;
+    assert!((found / best - 1.0).abs() < 1e-9, "the stage found {found} m, the kernel {best} m");
+    println!("\nStage optimizer over {TRIED} Sobol points, crowned and relieved, one torque, 64 positions\n");
+    println!("{:<46} {:>9}", "µs a design", "");
+    println!("{:<46} {one:>9.1}", "the stage, one thread");
+    println!("{:<46} {:>9.1}", "the stage, two threads, of both", 2.0 * two);
+    println!("{:<46} {lean:>9.1}", "peak-to-peak of the same designs, called alone");
+    println!("{:<46} {building:>9.1}", "building them, with a look at their teeth");
+    println!("{:<46} {rest:>9.1}", "the rest, one thread");
+    for (name, ratio, target) in
+        [("one thread / alone", one / lean, MOST_REST), ("two threads / one", 2.0 * two / one, MOST_SHARED)]
+    {
+        let verdict = if ratio <= target { "met" } else { "MISSED" };
+        println!("{name} {ratio:.2}, target {target} at most: {verdict}");
+    }
+}
+
+/// The points of the stage.
+fn tried() -> Vec<Vec<f64>> {
+    let bounds = Bounds::new(vec![(0.0, 30e-6), (0.5e-3, 5e-3), (2e-6, 10e-6)]).expect("the bounds are ascending");
+    let method = Sobol { points: TRIED as usize };
+    let mut search = optimize::search(&method, bounds, Seed::of_stage(0, "optimum")).expect("three variables");
+    let mut tried = Vec::new();
+    let ended = search.run(|points| -> Result<Vec<f64>, Failure> {
+        tried.extend_from_slice(points);
+        Ok(vec![0.0; points.len()])
+    });
+    ended.expect("it cannot fail");
+    tried
+}
+
+fn design(point: &[f64], pair: &GearPair) -> Result<Design, Diagnostic> {
+    let (amount, start) = (Amount::Depth(point[0]), Start::Length(point[1]));
+    let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
+    let mut design = Design::default();
+    design.add(Gears::Both, &relief, pair)?;
+    design.add(Gears::Pinion, &LeadCrowning { amount: point[2] }, pair)?;
+    Ok(design)
 }

@@ -35,6 +35,7 @@ fn main() {
         accuracy::print();
         finite_elements::print();
         designs::print();
+        designs::print_optimizer();
         summary::print(&processes);
     }
 }
