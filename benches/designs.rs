@@ -43,9 +43,10 @@ stages:
 
 /// Crowned and relieved designs in a box.
 const OPTIMIZER: &str = "
+  plain: { kind: stiffness, pair: pair, coupling: none, root: circular_fillet }
   optimum:
     kind: optimizer
-    stiffness: stiffness
+    stiffness: plain
     at: { torque: 100 N m }
     method: { sobol: { points: 20000 } }
     design:

@@ -3,36 +3,28 @@
 use criterion::{Criterion, criterion_group};
 
 use crate::brief;
-use declare::declared::record_of;
-use declare::error::Failure;
-use declare::record::Value;
-use declare::seed::Seed;
-use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::{self, METHODS};
+use gearmesh::optimize::{self, Method, sobol::Sobol};
+use gearmesh::prelude::*;
 
 criterion_group!(name = benches; config = brief(); targets = methods);
 
 fn methods(criterion: &mut Criterion) {
-    let bench = |criterion: &mut Criterion, name: &str, method: &str, given: &[(&str, Value)]| {
-        let fields =
-            METHODS.iter().find(|entry| entry.member.name == method).map_or(&[][..], |entry| entry.member.fields);
-        let method = optimize::read(method, &record_of(fields, given)).expect("the method is registered");
+    let bench = |criterion: &mut Criterion, name: &str, method: &dyn Method| {
         criterion.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let bounds =
                     Bounds::new(vec![(0.0, 8e-6), (0.0, 6e-3), (0.0, 8e-6)]).expect("the bounds are ascending");
                 let seed = Seed::of_stage(7, "optimum");
-                let mut search = optimize::search(&*method, bounds, seed).expect("it fits three variables");
+                let mut search = optimize::search(method, bounds, seed).expect("it fits three variables");
                 search.run(|points| Ok::<_, Failure>(points.iter().map(|point| objective(point)).collect()))
             });
         });
     };
-    let evolution =
-        [("population", Value::Integer(60)), ("generations", Value::Integer(200)), ("tolerance", Value::Number(0.0))];
-    bench(criterion, "optimize/genetic 100x100", "genetic", &[]);
-    bench(criterion, "optimize/differential_evolution 60x200", "differential_evolution", &evolution);
-    bench(criterion, "optimize/nelder_mead", "nelder_mead", &[]);
-    bench(criterion, "optimize/sobol 65536", "sobol", &[("points", Value::Integer(65_536))]);
+    let evolution = DifferentialEvolution { population: 60, generations: 200, tolerance: 0.0, ..<_>::default() };
+    bench(criterion, "optimize/genetic 100x100", &Genetic::default());
+    bench(criterion, "optimize/differential_evolution 60x200", &evolution);
+    bench(criterion, "optimize/nelder_mead", &NelderMead::default());
+    bench(criterion, "optimize/sobol 65536", &Sobol { points: 65_536 });
 }
 
 /// A bowl in lengths like those of a tooth modification, above 0.

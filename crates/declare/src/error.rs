@@ -13,7 +13,7 @@ pub struct Place {
 
 /// What is wrong with a study, found before anything runs (exit code 2).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
+#[error("{message}{}", .help.as_ref().map_or_else(String::new, |help| format!("; {help}")))]
 pub struct Diagnostic {
     /// One sentence: what was found and what was expected.
     pub message: String,

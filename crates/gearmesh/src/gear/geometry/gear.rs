@@ -41,7 +41,8 @@ impl Gear {
         let half_base_angle =
             (FRAC_PI_2 + 2.0 * profile_shift * libm::tan(pressure_angle)) / f64::from(teeth) + involute(pressure_angle);
         if half_base_angle <= 0.0 {
-            let minimum = -FRAC_PI_4 / libm::tan(pressure_angle);
+            let at_reference = FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle);
+            let minimum = -at_reference / (2.0 * libm::tan(pressure_angle));
             return Err(out_of_range(
                 Parameter::ProfileShift,
                 &Plain(profile_shift),

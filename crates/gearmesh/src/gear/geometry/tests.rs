@@ -4,6 +4,7 @@ mod cutter;
 mod meshing;
 mod outline;
 mod passing;
+mod refusals;
 
 use std::f64::consts::PI;
 
@@ -395,27 +396,6 @@ fn the_circular_fillet_is_tangent() {
     let error = crowded.root(RootShape::CircularFillet).unwrap_err();
     assert_eq!(error.field(), "rack.tip_radius");
     assert!(error.to_string().contains("would overlap by 0.1"), "{error}");
-}
-
-/// Tier: invariant; a limit that a refusal names is where it begins.
-#[test]
-fn what_a_refusal_asks_for_is_just_enough() {
-    let pair = |sum: f64| GearPair::new(specification(20, 3.0, 0.5 * sum), specification(20, 3.0, 0.5 * sum), None);
-    let refused = |sum: f64| match pair(sum).map_err(|error| error.problem) {
-        Err(Problem::ProfileShiftSum { minimum, .. }) => Some(minimum.0),
-        _ => None,
-    };
-    let minimum = refused(-1.0).unwrap();
-    assert!(refused(minimum - 1e-6).is_some() && refused(minimum + 1e-6).is_none(), "x1 + x2 {minimum}");
-    let refused =
-        |pressure_angle: f64| match Gear::new(&Specification { pressure_angle, ..specification(30, 3.0, 0.0) })
-            .map_err(|error| error.problem)
-        {
-            Err(Problem::NoTipLand { largest, .. }) => Some(largest.0),
-            _ => None,
-        };
-    let largest = refused(40.0 * DEGREE).unwrap();
-    assert!(refused(largest + 1e-6).is_some() && refused(largest - 1e-6).is_none(), "α {largest}");
 }
 
 /// Tier: closed form; an arc with the centre at r_f + ρ touches the involute itself from (r_f + ρ)² − r_b² = ρ² on. Its
