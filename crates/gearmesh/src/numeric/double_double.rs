@@ -380,4 +380,14 @@ mod tests {
             assert!((sine.square() + cosine.square() - Double::ONE).high.abs() < 1e-30);
         }
     }
+
+    /// Tier: invariant; whatever the size of the divisor.
+    #[test]
+    fn a_quotient_times_its_divisor_is_the_dividend() {
+        for size in [1e-9, 1e-3, 1.0, 7e4, 3e11] {
+            let divisor = Double::PI.sqrt() * size;
+            let error = Double::PI / divisor * divisor / Double::PI - Double::ONE;
+            assert!(error.high.abs() < 4e-31, "{size}: {error:?}");
+        }
+    }
 }

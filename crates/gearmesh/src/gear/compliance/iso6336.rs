@@ -296,6 +296,15 @@ mod tests {
         assert_ne!(of([19, 48], [0.3, -0.1]), of([19, 48], [-0.1, 0.3]));
     }
 
+    /// Tier: invariant; of two gears with as many teeth the one with more profile shift is the first, whichever drives.
+    #[test]
+    fn of_equal_gears_the_one_with_more_shift_comes_first() {
+        for shift in [[0.1, 0.4], [0.4, 0.1]] {
+            let inputs = Inputs::of(&pair([30, 30], shift, 1.0), &Iso6336::default());
+            assert_eq!(inputs.profile_shift.map(f64::to_bits), [0.4_f64, 0.1].map(f64::to_bits));
+        }
+    }
+
     #[test]
     fn what_the_standard_does_not_cover_is_told_with_both_numbers() {
         let told = |teeth, shift, addendum, torque, words: &[&str]| {

@@ -76,3 +76,28 @@ impl Springs for LogarithmicPairs<'_> {
         (self.width * load, self.width * slope)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::contact::flattening::Logarithmic;
+    use crate::gear::fixtures::{STEEL, design, pair};
+    use crate::numeric::lobatto::Rule;
+    use declare::record::Value::Quantity;
+
+    /// Tier: invariant; what is said to be above is: the pair carries the load there, with a face that is flat or not.
+    #[test]
+    fn a_pair_carries_the_load_at_the_penetration_above() {
+        let rule = Rule::new(17);
+        let law = Logarithmic::new([&STEEL; 2], 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
+        for crown in [0.0, 2e-6, 30e-6] {
+            let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
+            let face = Face::new(&crowned, 18e-3, &rule);
+            let pairs = LogarithmicPairs { slices: [law; MOST_SPRINGS], width: 18e-3, faces: Faces::Same(&face) };
+            for load in [1.0, 300.0, 2e3, 1e5] {
+                let carried = pairs.response(0, pairs.above(0, load)).0;
+                assert!(carried >= load * (1.0 - 1e-12), "{carried} N of {load} N with a crown of {crown} m");
+            }
+        }
+    }
+}

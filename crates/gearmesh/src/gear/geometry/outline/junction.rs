@@ -79,3 +79,22 @@ impl Outline {
         junctions
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Tier: closed form; 3, 4 and 5, and a quarter turn to the left.
+    #[test]
+    fn a_gap_and_a_corner_are_seen() {
+        let local = |position, tangent| Local { position, tangent, curvature: 0.0 };
+        let before = local([1e-3, 2e-3], [1.0, 0.0]);
+        let junction = |after| Junction { place: Place::Centreline, before, after };
+        let apart = junction(local([4e-3, 6e-3], [1.0, 0.0]));
+        assert!((apart.position_jump() - 5e-3).abs() < 1e-18 && apart.tangent_jump().abs() < 1e-18);
+        assert!(apart.is_smooth(5.1e-3, 0.0) && !apart.is_smooth(4.9e-3, 1.0));
+        let corner = junction(local([1e-3, 2e-3], [0.0, 1.0]));
+        assert!(corner.position_jump() < 1e-18 && (corner.tangent_jump() - 0.5 * PI).abs() < 1e-15);
+        assert!(corner.is_smooth(0.0, 1.6) && !corner.is_smooth(1.0, 1.5));
+    }
+}

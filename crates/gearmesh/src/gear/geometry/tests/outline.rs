@@ -378,3 +378,20 @@ fn segment_distance([x, y]: [f64; 2], [a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64
     let along = (((x - a) * dx + (y - b) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
     (x - a - along * dx).hypot(y - b - along * dy)
 }
+
+/// Tier: invariant; an arc that crosses the root circle ends on it, one that stays outside goes on to it in a straight step.
+#[test]
+fn arcs_reach_from_the_root_circle_to_the_base_circle() {
+    let base = Base::new(&gear(30, 3.0, 0.0), "an arc").unwrap();
+    assert!(1.3 * base.touching_radius() < base.middle_radius());
+    for (share, pieces) in [(0.6, 2), (0.95, 2), (1.05, 1), (1.3, 1)] {
+        let circle = base.tangent_circle(share * base.touching_radius());
+        let lowest = circle.centre[1].atan2(circle.centre[0]) + PI;
+        let segments = base.segments(circle, lowest);
+        assert_eq!(segments.len(), pieces, "{share}");
+        let [x, y] = segments[0].start();
+        assert_near(x.hypot(y), base.root_radius, 1e-15, "the root circle");
+        let [x, y] = segments[pieces - 1].end();
+        assert_near((x - base.a[0]).hypot(y - base.a[1]), 0.0, 1e-15, "the base circle");
+    }
+}
