@@ -14,13 +14,13 @@ use std::f64::consts::FRAC_PI_4;
 use crate::stage::designs::Elements;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH};
 use declare::work::Work;
 use declare::{Declared, Words};
 use drawn::Drawn;
-use gearmesh::gear::geometry::error::GeometryError;
+use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
 use gearmesh::gear::geometry::outline::Outline;
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
@@ -144,15 +144,38 @@ struct Geometry {
     teeth: Teeth,
 }
 
+/// Where the study states what an error is about.
+fn place_of(error: &GeometryError, record: &Record) -> Place {
+    let (names, own) = (Stated::NAMES, StatedGear::NAMES);
+    let gear = record.inside(if error.side == Some(Side::Gear) { names.gear } else { names.pinion });
+    let (rack, material) =
+        (|field| record.inside(names.rack).place_of(field), |field| record.inside(names.material).place_of(field));
+    let outline = record.inside(names.outline);
+    match error.subject() {
+        Subject::Parameter(parameter) => match parameter {
+            Parameter::Teeth => gear.place_of(own.teeth),
+            Parameter::ProfileShift => gear.place_of(own.profile_shift),
+            Parameter::TipRadius => gear.place_of(own.tip_radius),
+            Parameter::FaceWidth => gear.place_of(own.face_width),
+            Parameter::BoreRadius => gear.place_of(own.bore_radius),
+            Parameter::Module => record.place_of(names.module),
+            Parameter::PressureAngle => record.place_of(names.pressure_angle),
+            Parameter::CentreDistance => record.place_of(names.centre_distance),
+            Parameter::RackAddendum => rack(Rack::NAMES.addendum),
+            Parameter::RackDedendum => rack(Rack::NAMES.dedendum),
+            Parameter::RackTipRadius => rack(Rack::NAMES.tip_radius),
+            Parameter::YoungsModulus => material(Material::NAMES.youngs_modulus),
+            Parameter::PoissonRatio => material(Material::NAMES.poisson_ratio),
+        },
+        Subject::Root => outline.place_of(StatedOutline::NAMES.root),
+        Subject::Tip => outline.place_of(StatedOutline::NAMES.tip),
+        Subject::Flank => outline.place_of(StatedOutline::NAMES.flank),
+    }
+}
+
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let stated = Stated::checked(record)?;
-    let refused = |error: &GeometryError| {
-        let place = match error.field().split_once('.') {
-            Some((group, field)) => record.inside(group).place_of(field),
-            None => record.place_of(error.field()),
-        };
-        Diagnostic::new(error.to_string()).at(place)
-    };
+    let refused = |error: &GeometryError| Diagnostic::new(error.to_string()).at(place_of(error, record));
     let given = [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())];
     let given = || given.into_iter().filter_map(|(side, gear)| Some((side, gear?)));
     for (side, gear) in given() {

@@ -260,27 +260,6 @@ pub enum ComplianceError {
     },
 }
 
-impl ComplianceError {
-    /// The parameter it is about, as a path such as `pinion.bore_radius` or `root`.
-    #[must_use]
-    pub fn field(&self) -> &'static str {
-        let own = |side: Side, pinion, gear| if side == Side::Pinion { pinion } else { gear };
-        match self {
-            Self::Root(error) => error.field(),
-            Self::Unresolved { side, .. } => own(*side, "pinion.tip_radius", "gear.tip_radius"),
-            Self::BoreOfFormula { side, .. } => own(*side, "pinion.bore_radius", "gear.bore_radius"),
-            Self::NoIsoStiffness { .. } => "pinion.profile_shift",
-            Self::Mesh { error: MeshError::SharpRoot, .. } => "root",
-            Self::Mesh { side, error: MeshError::Bore { .. } | MeshError::Rounding { .. }, .. } => {
-                own(*side, "pinion.bore_radius", "gear.bore_radius")
-            }
-            Self::Mesh { .. } => "method",
-            Self::Incompressible { .. } => "material.poisson_ratio",
-            Self::NegativeBody { side, .. } | Self::ManyTeeth { side, .. } => own(*side, "pinion.teeth", "gear.teeth"),
-        }
-    }
-}
-
 /// The compliances \[m/N\] of one gear's tooth over the whole of its face width, against the roll angle \[rad\] of the
 /// contact point.
 #[derive(Clone, Debug, PartialEq)]

@@ -310,13 +310,12 @@ fn formulas_outside_their_range_are_told_or_refused() {
             _ => false,
         };
         assert!(refused, "z {teeth}: {error}");
-        assert_eq!(error.field(), "gear.teeth");
         let by_ring = energy_on(GearBody::Ring).tabulate(&large(teeth, 1.75), SUMMED).unwrap();
         assert!(by_ring.compliance.gear.body.value(20_f64.to_radians().tan()) > 0.0);
     }
     for (ratio, shown) in [(1.05, "1.05"), (20.5, "20.5")] {
         let error = energy(&large(48, ratio), SUMMED).unwrap_err();
-        assert_eq!(error.field(), "gear.bore_radius");
+        assert!(matches!(error, ComplianceError::BoreOfFormula { side: Side::Gear, .. }), "{error}");
         assert_eq!(
             error.to_string(),
             format!(
@@ -378,7 +377,6 @@ fn a_tip_that_is_all_but_pointed() {
     for missing in [1e-6, 1e-12] {
         let error = energy(&with_tip(missing), SUMMED).unwrap_err();
         assert!(matches!(error, ComplianceError::Unresolved { side: Side::Pinion, .. }), "{error}");
-        assert_eq!(error.field(), "pinion.tip_radius");
     }
 }
 

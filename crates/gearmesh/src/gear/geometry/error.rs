@@ -297,37 +297,26 @@ impl Parameter {
             Self::CentreDistance => "the centre distance",
         }
     }
+}
 
-    /// The field's name, after `pinion.` or `gear.` where each gear has its own.
-    fn field(self, side: Option<Side>) -> &'static str {
-        let [alone, pinion, gear] = match self {
-            Self::Teeth => ["teeth", "pinion.teeth", "gear.teeth"],
-            Self::ProfileShift => ["profile_shift", "pinion.profile_shift", "gear.profile_shift"],
-            Self::TipRadius => ["tip_radius", "pinion.tip_radius", "gear.tip_radius"],
-            Self::FaceWidth => ["face_width", "pinion.face_width", "gear.face_width"],
-            Self::BoreRadius => ["bore_radius", "pinion.bore_radius", "gear.bore_radius"],
-            Self::Module => ["module"; 3],
-            Self::PressureAngle => ["pressure_angle"; 3],
-            Self::RackAddendum => ["rack.addendum"; 3],
-            Self::RackDedendum => ["rack.dedendum"; 3],
-            Self::RackTipRadius => ["rack.tip_radius"; 3],
-            Self::YoungsModulus => ["material.youngs_modulus"; 3],
-            Self::PoissonRatio => ["material.poisson_ratio"; 3],
-            Self::CentreDistance => ["centre_distance"; 3],
-        };
-        match side {
-            None => alone,
-            Some(Side::Pinion) => pinion,
-            Some(Side::Gear) => gear,
-        }
-    }
+/// What an error is about, of all that its user stated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Subject {
+    /// A number.
+    Parameter(Parameter),
+    /// The shape of the root.
+    Root,
+    /// What is done to the tip's corner.
+    Tip,
+    /// The modification of the flank.
+    Flank,
 }
 
 impl GeometryError {
-    /// The parameter it is about, as a path such as `pinion.teeth` or `rack.tip_radius`.
+    /// What it is about; of which gear, `side` says.
     #[must_use]
-    pub fn field(&self) -> &'static str {
-        let parameter = match &self.problem {
+    pub fn subject(&self) -> Subject {
+        Subject::Parameter(match &self.problem {
             Problem::OutOfRange { parameter, .. } | Problem::Differs { parameter, .. } => *parameter,
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
@@ -335,20 +324,18 @@ impl GeometryError {
             Problem::RootArcTooLarge { .. }
             | Problem::NothingBelowBase { .. }
             | Problem::NoSpace { .. }
-            | Problem::CutOff { .. } => return "outline.root",
-            Problem::TipBreakTooLarge { .. } => return "outline.tip",
-            Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return "outline.flank",
-            Problem::Pointed { tip_is_given, .. } if !tip_is_given => Parameter::ProfileShift,
+            | Problem::CutOff { .. } => return Subject::Root,
+            Problem::TipBreakTooLarge { .. } => return Subject::Tip,
+            Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return Subject::Flank,
+            Problem::Pointed { tip_is_given: false, .. } | Problem::ProfileShiftSum { .. } => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,
             Problem::Bore { .. } => Parameter::BoreRadius,
             Problem::CentreDistance { .. } => Parameter::CentreDistance,
-            Problem::ProfileShiftSum { .. } => return "pinion.profile_shift",
             Problem::ContactRatio { .. } => Parameter::RackAddendum,
-        };
-        parameter.field(self.side)
+        })
     }
 
-    /// The same error of the gear on a side, so that message and field name it.
+    /// The same error of the gear on a side, so that the message names it.
     #[must_use]
     pub fn on(mut self, side: Side) -> Self {
         self.side = Some(side);

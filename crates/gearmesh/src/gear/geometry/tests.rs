@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 
 use proptest::prelude::*;
 
-use super::error::{GeometryError, Problem};
+use super::error::{GeometryError, Parameter, Problem, Subject};
 use super::root::{Root, RootShape};
 use super::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
@@ -44,6 +44,10 @@ fn gear(teeth: u32, module_mm: f64, profile_shift: f64) -> Gear {
 
 fn refused(specification: &Specification) -> GeometryError {
     Gear::new(specification).unwrap_err()
+}
+
+fn about(error: &GeometryError) -> (Subject, Option<Side>) {
+    (error.subject(), error.side)
 }
 
 fn pair(pinion: u32, gear: u32) -> Result<GearPair, GeometryError> {
@@ -119,14 +123,14 @@ fn thresholds_of_the_rack() {
     assert!(Gear::new(&round).is_ok());
     round.rack.tip_radius = 0.472;
     let error = refused(&round);
-    assert_eq!(error.field(), "rack.tip_radius");
+    assert_eq!(error.subject(), Subject::Parameter(Parameter::RackTipRadius));
     assert_eq!(error.to_string(), "the rack's tip radius is 0.472 modules, but must be 0 to 0.471911 (full round)");
     let mut steep = specification(30, 3.0, 0.0);
     steep.rack.tip_radius = 0.0;
     steep.pressure_angle = 32.14 * DEGREE;
     assert!(Gear::new(&steep).is_ok());
     steep.pressure_angle = 32.15 * DEGREE;
-    assert_eq!(refused(&steep).field(), "pressure_angle");
+    assert_eq!(refused(&steep).subject(), Subject::Parameter(Parameter::PressureAngle));
 }
 
 #[test]
@@ -134,44 +138,41 @@ fn gears_that_cannot_be_are_refused_with_the_range() {
     for (teeth, shift) in [(15, 1.0), (8, 0.7)] {
         let error = refused(&specification(teeth, 3.0, shift));
         assert!(matches!(error.problem, Problem::Pointed { .. }), "z {teeth} x {shift}: {error}");
-        assert_eq!(error.field(), "profile_shift");
+        assert_eq!(error.subject(), Subject::Parameter(Parameter::ProfileShift));
         // The radius the message names is admissible, just.
         let Problem::Pointed { apex, .. } = error.problem else { unreachable!() };
         for (tip, pointed) in [(apex.0 * (1.0 - 1e-9), false), (apex.0 * (1.0 + 1e-9), true)] {
             let given = Specification { tip_radius: Some(tip), ..specification(teeth, 3.0, shift) };
             assert_eq!(Gear::new(&given).is_err(), pointed, "z {teeth} with tip radius {tip}");
-            assert!(!pointed || refused(&given).field() == "tip_radius");
+            assert!(!pointed || refused(&given).subject() == Subject::Parameter(Parameter::TipRadius));
         }
     }
     let base = specification(19, 3.0, 0.0);
     let rows = [
-        (Specification { bore_radius: 0.024_75, ..base }, "bore_radius"),
-        (Specification { bore_radius: 0.0, ..base }, "bore_radius"),
-        (Specification { bore_radius: f64::NAN, ..base }, "bore_radius"),
-        (Specification { face_width: -0.02, ..base }, "face_width"),
-        (Specification { face_width: f64::NAN, ..base }, "face_width"),
-        (Specification { teeth: 3, ..base }, "teeth"),
-        (Specification { module: 0.0, ..base }, "module"),
-        (Specification { pressure_angle: 1.5, ..base }, "pressure_angle"),
-        (Specification { profile_shift: f64::INFINITY, ..base }, "profile_shift"),
-        (Specification { rack: Rack { dedendum: 0.0, ..base.rack }, ..base }, "rack.dedendum"),
-        (Specification { rack: Rack { addendum: -1.0, ..base.rack }, ..base }, "rack.addendum"),
-        (Specification { rack: Rack { tip_radius: -0.1, ..base.rack }, ..base }, "rack.tip_radius"),
-        (Specification { tip_radius: Some(0.0267), ..base }, "teeth"),
-        (Specification { tip_radius: Some(f64::NAN), ..base }, "teeth"),
+        (Specification { bore_radius: 0.024_75, ..base }, Parameter::BoreRadius),
+        (Specification { bore_radius: 0.0, ..base }, Parameter::BoreRadius),
+        (Specification { bore_radius: f64::NAN, ..base }, Parameter::BoreRadius),
+        (Specification { face_width: -0.02, ..base }, Parameter::FaceWidth),
+        (Specification { face_width: f64::NAN, ..base }, Parameter::FaceWidth),
+        (Specification { teeth: 3, ..base }, Parameter::Teeth),
+        (Specification { module: 0.0, ..base }, Parameter::Module),
+        (Specification { pressure_angle: 1.5, ..base }, Parameter::PressureAngle),
+        (Specification { profile_shift: f64::INFINITY, ..base }, Parameter::ProfileShift),
+        (Specification { rack: Rack { dedendum: 0.0, ..base.rack }, ..base }, Parameter::RackDedendum),
+        (Specification { rack: Rack { addendum: -1.0, ..base.rack }, ..base }, Parameter::RackAddendum),
+        (Specification { rack: Rack { tip_radius: -0.1, ..base.rack }, ..base }, Parameter::RackTipRadius),
+        (Specification { tip_radius: Some(0.0267), ..base }, Parameter::Teeth),
+        (Specification { tip_radius: Some(f64::NAN), ..base }, Parameter::Teeth),
         (
             Specification { material: Material { youngs_modulus: 0.0, ..base.material }, ..base },
-            "material.youngs_modulus",
+            Parameter::YoungsModulus,
         ),
-        (
-            Specification { material: Material { poisson_ratio: 0.6, ..base.material }, ..base },
-            "material.poisson_ratio",
-        ),
-        (Specification { teeth: 4, profile_shift: -1.0, ..base }, "rack.dedendum"),
+        (Specification { material: Material { poisson_ratio: 0.6, ..base.material }, ..base }, Parameter::PoissonRatio),
+        (Specification { teeth: 4, profile_shift: -1.0, ..base }, Parameter::RackDedendum),
     ];
-    for (specification, field) in rows {
+    for (specification, parameter) in rows {
         let error = refused(&specification);
-        assert_eq!(error.field(), field, "{error}");
+        assert_eq!(error.subject(), Subject::Parameter(parameter), "{error}");
     }
     assert_eq!(
         refused(&Specification { face_width: -0.02, ..base }).to_string(),
@@ -187,7 +188,7 @@ fn gears_that_cannot_be_are_refused_with_the_range() {
 fn pairs_that_cannot_run_are_refused() {
     for (pinion, gear, inside) in [(12, 48, true), (14, 100, true)] {
         let error = pair(pinion, gear).unwrap_err();
-        assert_eq!((error.side, error.field()), (Some(Side::Pinion), "pinion.teeth"), "{error}");
+        assert_eq!(about(&error), (Subject::Parameter(Parameter::Teeth), Some(Side::Pinion)), "{error}");
         assert!(matches!(error.problem, Problem::Interference { .. }), "{error}");
         assert_eq!(error.to_string().contains("beyond the tangent point"), inside, "{error}");
         // The mate's tip radius that the message names runs.
@@ -197,7 +198,7 @@ fn pairs_that_cannot_run_are_refused() {
         assert!(GearPair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 + 1e-9)), None).is_err());
     }
     // The same the other way round is the gear's trouble.
-    assert_eq!(pair(48, 12).unwrap_err().field(), "gear.teeth");
+    assert_eq!(about(&pair(48, 12).unwrap_err()), (Subject::Parameter(Parameter::Teeth), Some(Side::Gear)));
 
     let short = |teeth| Specification {
         rack: Rack { addendum: 0.5, dedendum: 1.25, tip_radius: 0.38 },
@@ -208,18 +209,24 @@ fn pairs_that_cannot_run_are_refused() {
     assert!(error.to_string().starts_with("the contact ratio is 0.8"), "{error}");
 
     let far = |distance| GearPair::new(specification(19, 3.0, 0.0), specification(48, 3.0, 0.0), Some(distance));
-    assert_eq!(far(0.1).unwrap_err().field(), "centre_distance");
-    assert_eq!(far(0.05).unwrap_err().field(), "centre_distance");
-    assert_eq!(far(f64::NAN).unwrap_err().field(), "centre_distance");
+    assert_eq!(far(0.1).unwrap_err().subject(), Subject::Parameter(Parameter::CentreDistance));
+    assert_eq!(far(0.05).unwrap_err().subject(), Subject::Parameter(Parameter::CentreDistance));
+    assert_eq!(far(f64::NAN).unwrap_err().subject(), Subject::Parameter(Parameter::CentreDistance));
     assert!(matches!(far(0.2).unwrap_err().problem, Problem::ContactRatio { .. }));
     assert!(far(0.1005).is_ok() && far(0.1008).is_ok());
 
     let error = GearPair::new(specification(19, 3.0, 0.0), specification(48, 3.5, 0.0), None).unwrap_err();
     assert_eq!(error.to_string(), "the module differs: 3 mm on the pinion, 3.5 mm on the gear");
     let long = Specification { tip_radius: Some(0.0325), ..specification(19, 3.0, 0.0) };
-    assert_eq!(GearPair::new(long, specification(48, 3.0, 0.0), None).unwrap_err().field(), "pinion.tip_radius");
+    assert_eq!(
+        about(&GearPair::new(long, specification(48, 3.0, 0.0), None).unwrap_err()),
+        (Subject::Parameter(Parameter::TipRadius), Some(Side::Pinion))
+    );
     let deep = |teeth| specification(teeth, 3.0, -1.5);
-    assert_eq!(GearPair::new(deep(40), deep(48), None).unwrap_err().field(), "pinion.profile_shift");
+    assert_eq!(
+        GearPair::new(deep(40), deep(48), None).unwrap_err().subject(),
+        Subject::Parameter(Parameter::ProfileShift)
+    );
 }
 
 /// A tooth as deep as the space that is cut for it leaves a clearance of 0, whatever rounding makes of it.
@@ -394,7 +401,7 @@ fn the_circular_fillet_is_tangent() {
     let rack = Rack { addendum: 0.5, dedendum: 0.9, tip_radius: 0.65 };
     let crowded = Gear::new(&Specification { rack, bore_radius: 1e-3, ..specification(4, 3.0, -0.2) }).unwrap();
     let error = crowded.root(RootShape::CircularFillet).unwrap_err();
-    assert_eq!(error.field(), "rack.tip_radius");
+    assert_eq!(error.subject(), Subject::Parameter(Parameter::RackTipRadius));
     assert!(error.to_string().contains("would overlap by 0.1"), "{error}");
 }
 

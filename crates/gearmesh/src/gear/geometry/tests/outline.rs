@@ -50,7 +50,7 @@ pub(super) fn shaped(gear: &Gear, family: &str) -> Result<Outline, GeometryError
 
 fn refusal(gear: &Gear, family: &str) -> String {
     let error = shaped(gear, family).unwrap_err();
-    assert_eq!(error.field(), "outline.root");
+    assert_eq!(error.subject(), Subject::Root);
     error.to_string()
 }
 
@@ -335,7 +335,7 @@ fn tips_are_broken_as_asked() {
     }
     for tip in [Tip::Chamfer as fn(f64) -> Tip, Tip::Rounding] {
         let error = with(tip(5e-3)).unwrap_err();
-        assert_eq!(error.field(), "outline.tip");
+        assert_eq!(error.subject(), Subject::Tip);
         let Problem::TipBreakTooLarge { largest, .. } = error.problem else { panic!("{error}") };
         assert!(with(tip(largest.0 * (1.0 - 1e-6))).is_ok() && with(tip(largest.0 * (1.0 + 1e-6))).is_err(), "{error}");
     }

@@ -1,6 +1,5 @@
 //! What a refusal asks for: where the limit that it names really is.
 
-use super::super::error::{Parameter, Problem};
 use super::*;
 
 /// Tier: invariant; a limit that a refusal names is where it begins.
