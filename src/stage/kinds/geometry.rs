@@ -147,29 +147,27 @@ struct Geometry {
 /// Where the study states what an error is about.
 fn place_of(error: &GeometryError, record: &Record) -> Place {
     let (names, own) = (Stated::NAMES, StatedGear::NAMES);
-    let gear = record.inside(if error.side == Some(Side::Gear) { names.gear } else { names.pinion });
-    let (rack, material) =
-        (|field| record.inside(names.rack).place_of(field), |field| record.inside(names.material).place_of(field));
-    let outline = record.inside(names.outline);
+    let inside = |group, field| record.inside(group).place_of(field);
+    let gear = if error.side == Some(Side::Gear) { names.gear } else { names.pinion };
     match error.subject() {
         Subject::Parameter(parameter) => match parameter {
-            Parameter::Teeth => gear.place_of(own.teeth),
-            Parameter::ProfileShift => gear.place_of(own.profile_shift),
-            Parameter::TipRadius => gear.place_of(own.tip_radius),
-            Parameter::FaceWidth => gear.place_of(own.face_width),
-            Parameter::BoreRadius => gear.place_of(own.bore_radius),
+            Parameter::Teeth => inside(gear, own.teeth),
+            Parameter::ProfileShift => inside(gear, own.profile_shift),
+            Parameter::TipRadius => inside(gear, own.tip_radius),
+            Parameter::FaceWidth => inside(gear, own.face_width),
+            Parameter::BoreRadius => inside(gear, own.bore_radius),
             Parameter::Module => record.place_of(names.module),
             Parameter::PressureAngle => record.place_of(names.pressure_angle),
             Parameter::CentreDistance => record.place_of(names.centre_distance),
-            Parameter::RackAddendum => rack(Rack::NAMES.addendum),
-            Parameter::RackDedendum => rack(Rack::NAMES.dedendum),
-            Parameter::RackTipRadius => rack(Rack::NAMES.tip_radius),
-            Parameter::YoungsModulus => material(Material::NAMES.youngs_modulus),
-            Parameter::PoissonRatio => material(Material::NAMES.poisson_ratio),
+            Parameter::RackAddendum => inside(names.rack, Rack::NAMES.addendum),
+            Parameter::RackDedendum => inside(names.rack, Rack::NAMES.dedendum),
+            Parameter::RackTipRadius => inside(names.rack, Rack::NAMES.tip_radius),
+            Parameter::YoungsModulus => inside(names.material, Material::NAMES.youngs_modulus),
+            Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
         },
-        Subject::Root => outline.place_of(StatedOutline::NAMES.root),
-        Subject::Tip => outline.place_of(StatedOutline::NAMES.tip),
-        Subject::Flank => outline.place_of(StatedOutline::NAMES.flank),
+        Subject::Root => inside(names.outline, StatedOutline::NAMES.root),
+        Subject::Tip => inside(names.outline, StatedOutline::NAMES.tip),
+        Subject::Flank => inside(names.outline, StatedOutline::NAMES.flank),
     }
 }
 
