@@ -48,25 +48,6 @@ impl Rule {
         }
         Self { nodes, weights }
     }
-
-    /// Rows of the matrix that turns values at the nodes into derivatives at the nodes (with respect to `0..=1`).
-    #[must_use]
-    pub fn differentiation(&self) -> Vec<Vec<f64>> {
-        let nodes = &self.nodes;
-        let scale: Vec<f64> = nodes
-            .iter()
-            .enumerate()
-            .map(|(i, x)| nodes.iter().enumerate().filter(|(k, _)| *k != i).map(|(_, y)| x - y).product())
-            .collect();
-        (0..nodes.len())
-            .map(|i| {
-                let entry = |k: usize| scale[i] / (scale[k] * (nodes[i] - nodes[k]));
-                let mut row: Vec<f64> = (0..nodes.len()).map(|k| if k == i { 0.0 } else { entry(k) }).collect();
-                row[i] = -row.iter().sum::<f64>();
-                row
-            })
-            .collect()
-    }
 }
 
 /// Legendre's P_n and P_{n−1} at `x`, for n ≥ 1.
@@ -99,16 +80,6 @@ mod tests {
             }
             assert!(rule.nodes[0] == 0.0 && (rule.nodes[count - 1] - 1.0).abs() < f64::EPSILON);
             assert!(rule.nodes.windows(2).all(|pair| pair[0] < pair[1]));
-        }
-    }
-
-    #[test]
-    fn derivatives_of_polynomials_are_exact() {
-        let rule = Rule::new(8);
-        let values: Vec<f64> = rule.nodes.iter().map(|x| libm::pow(*x, 7.0) - x * x).collect();
-        for (row, x) in rule.differentiation().iter().zip(&rule.nodes) {
-            let slope: f64 = row.iter().zip(&values).map(|(d, v)| d * v).sum();
-            assert!((slope - (7.0 * libm::pow(*x, 6.0) - 2.0 * x)).abs() < 1e-13);
         }
     }
 }

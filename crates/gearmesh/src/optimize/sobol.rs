@@ -95,16 +95,23 @@ fn coordinate(directions: &[u32; BITS as usize], index: usize) -> f64 {
 mod tests {
     use super::*;
 
-    /// Tier: second method; SciPy 1.17, `qmc.Sobol(16, scramble=False)` after `fast_forward(0xAAAAA)`, times 2²⁰. The Gray
-    /// code of this number is twenty ones: the first twenty direction numbers of every variable are in its point.
+    /// Tier: second method; SciPy 1.17, `qmc.Sobol(16, scramble=False)` after `fast_forward(…)`, times 2²⁰. The Gray code of
+    /// the first number is twenty ones, so the first twenty direction numbers of every variable are in its point; that of the
+    /// second has every other one, so that what cancels in one does not in both.
     #[test]
-    fn a_point_far_on_is_that_of_joe_and_kuo() {
+    fn points_far_on_are_those_of_joe_and_kuo() {
         let expected = [
-            1_048_575, 65_553, 324_859, 774_285, 477_635, 327_961, 399_107, 888_303, 94_959, 377_517, 54_201, 65_591,
-            912_827, 610_221, 271_419, 296_243,
+            [
+                1_048_575, 65_553, 324_859, 774_285, 477_635, 327_961, 399_107, 888_303, 94_959, 377_517, 54_201,
+                65_591, 912_827, 610_221, 271_419, 296_243,
+            ],
+            [
+                349_525, 196_659, 826_517, 946_295, 194_369, 200_439, 687_361, 583_261, 1_003_941, 147_915, 209_479,
+                197_093, 464_773, 467_255, 380_041, 100_181,
+            ],
         ];
-        let found: Vec<f64> =
-            (0..16).map(|variable| coordinate(&directions(variable), 0xAAAAA) * 1_048_576.0).collect();
-        assert_eq!(found, expected.map(f64::from));
+        let found = [0xAAAAA, 0xCCCCC]
+            .map(|index| std::array::from_fn(|variable| coordinate(&directions(variable), index) * 1_048_576.0));
+        assert_eq!(found, expected.map(|point: [u32; 16]| point.map(f64::from)));
     }
 }
