@@ -1,6 +1,7 @@
 //! Every family by its definition, and what must be refused.
 
 mod tip_curve;
+mod typed;
 
 use super::flank::Flank;
 use super::relief::IsoAmount;
