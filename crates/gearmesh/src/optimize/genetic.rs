@@ -387,6 +387,10 @@ mod tests {
             (strike(1.0, MutationOf::Offspring).0, strike(1.0, MutationOf::Bit).1),
             (children, vec![children; length])
         );
+        // Ones become zeros as zeros become ones.
+        let mut ones = vec![true; length];
+        mutate(&mut ones, 1.0, MutationOf::Bit, &mut generator("mutate"));
+        assert_eq!(ones, vec![false; length]);
     }
 
     /// What a setting is for, seen from outside: without mutation only crossing makes a child that is no parent.

@@ -414,6 +414,15 @@ mod tests {
         ] {
             assert_eq!(Millimetres(value).to_string(), shown);
         }
-        assert_eq!(Plain(123_456_789.0).to_string(), "123456789");
+        // Five digits below one and nine above are written out.
+        for (value, shown) in [
+            (123_456_789.0, "123456789"),
+            (999_999_999.0, "999999999"),
+            (1e9, "1.00000e9"),
+            (1e-4, "0.0001"),
+            (0.999e-4, "9.99000e-5"),
+        ] {
+            assert_eq!(Plain(value).to_string(), shown);
+        }
     }
 }

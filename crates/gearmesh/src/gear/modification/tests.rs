@@ -1,5 +1,6 @@
 //! Every family by its definition, and what must be refused.
 
+mod outlines;
 mod tip_curve;
 mod typed;
 
@@ -193,7 +194,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     let message = refused("root_relief", &[amount.clone(), ("length", Quantity(14.6e-3))]);
     assert!(message.contains("14.574315 mm long") && message.contains("14.600000 mm"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("start_diameter", Quantity(53e-3))]);
-    assert!(message.contains("below the base circle, 53.562"), "{message}");
+    assert!(message.contains("diameter 53.000000 mm is below the base circle, 53.562"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("start_diameter", Quantity(64e-3))]);
     assert!(message.contains("diameters") && message.contains("63.000000 mm"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("curve", Choice("power"))]);
@@ -204,7 +205,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     let message = refused("tip_relief", &[amount.clone(), start, ("counted_from", Choice("single_zone"))]);
     assert!(message.contains("`counted_from: single_zone` goes with"), "{message}");
     let message = refused("end_relief", &[amount, ("length", Quantity(10.1e-3))]);
-    assert!(message.contains("0 to 10.000000 mm"), "{message}");
+    assert!(message.contains("10.100000 mm long") && message.contains("0 to 10.000000 mm"), "{message}");
 }
 
 /// Half of the tooth, with its end found independently: the flank's normal is followed point by point until the

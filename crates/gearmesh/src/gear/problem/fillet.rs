@@ -183,6 +183,7 @@ impl Problem for Fillet {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::gear::fixtures::pair_with_contact_ratio;
     use crate::gear::material::Material;
 
     fn pair(shift: f64) -> GearPair {
@@ -233,6 +234,73 @@ mod tests {
                 assert!(large.objective < small.objective, "{root:?} {minimize:?}: {small:?} {large:?}");
                 assert!(large.constraints.iter().zip(&small.constraints).all(|(a, b)| a < b), "{root:?}: {large:?}");
             }
+        }
+    }
+
+    /// Tier: closed form; a pitch before its end of single contact the pinion's tooth comes into contact, and the gear's a
+    /// pitch after it leaves. Where contact is never single, the tip carries alone.
+    #[test]
+    fn single_contact_ends_a_pitch_from_the_end_of_the_path() {
+        let pair = pair(0.0);
+        let s = single_contact(&pair, Side::Pinion) * pair.pinion.base_radius - pair.base_pitch;
+        assert!((s - pair.start_of_contact).abs() < 1e-16, "{s}");
+        let s = pair.tangent_length - single_contact(&pair, Side::Gear) * pair.gear.base_radius + pair.base_pitch;
+        assert!((s - pair.end_of_contact).abs() < 1e-16, "{s}");
+        for (ratio, single) in [(1.6, true), (1.99, true), (2.01, false), (2.3, false)] {
+            let pair = pair_with_contact_ratio(ratio);
+            let rolls =
+                [Side::Pinion, Side::Gear].map(|side| (single_contact(&pair, side), pair.side(side).tip_roll()));
+            assert!(rolls.iter().all(|(roll, tip)| (*roll < tip - 1e-6) == single), "{ratio}: {rolls:?}");
+        }
+    }
+
+    /// Tier: invariant; both bounds can be built, at the largest arc neighbours meet and at the largest round the rack has
+    /// no land. Stresses hardly know the plane state (Michell: not at all where nothing is held), compliances do, by about
+    /// 1 - ν² = 0.91.
+    #[test]
+    fn what_is_free_reaches_as_far_as_there_is_room() {
+        let pair = pair(0.0);
+        let teeth = f64::from(pair.pinion.specification.teeth);
+        for (root, name) in [(FreeRoot::Rack, "rack_tip_radius"), (FreeRoot::Arc, "radius")] {
+            for (minimize, ratio) in [(Objective::Stress, 0.97..1.03), (Objective::Compliance, 0.87..0.95)] {
+                let stated =
+                    |plane| FilletProblem { root, minimize, plane, elements_across: 6, ..FilletProblem::default() };
+                let on = |plane| stated(plane).on(&pair, Side::Pinion).unwrap();
+                let (problem, thin) = (on(Plane::Strain), on(Plane::Stress));
+                let [variable] = problem.variables()[..] else { panic!("one variable") };
+                assert_eq!(variable.name, name);
+                assert_eq!(stated(Plane::Strain).maximum(), [problem.variables().len(), problem.constraints().len()]);
+                for radius in [variable.minimum, variable.maximum] {
+                    let worth = problem.worth(&[radius]);
+                    let found = worth.objective / thin.worth(&[radius]).objective;
+                    assert!(ratio.contains(&found), "{root:?} {minimize:?} {radius}: {found}");
+                    assert_eq!(worth.constraints.len(), problem.constraints().len());
+                }
+                assert!(problem.worth(&[1.01 * variable.maximum]).objective.is_infinite(), "{root:?}");
+                if root == FreeRoot::Arc {
+                    let meet = pair.pinion.fillet(variable.maximum).unwrap();
+                    assert!((meet.half_angle * teeth / std::f64::consts::PI - 1.0).abs() < 1e-6);
+                } else {
+                    // ρ cos α = (c_land/2) of a rack whose tip is one arc: π/4 − h tan α = ρ (1 − sin α)/cos α.
+                    let (sine, cosine) = 20_f64.to_radians().sin_cos();
+                    let full = (std::f64::consts::FRAC_PI_4 - 1.25 * sine / cosine) * cosine / (1.0 - sine) * 3e-3;
+                    assert!((variable.maximum / full - 1.0).abs() < 1e-8, "{} {full}", variable.maximum);
+                }
+            }
+        }
+    }
+
+    /// Tier: second way; the flank begins where a gear that was made with this rack has it begin.
+    #[test]
+    fn the_radius_is_that_of_the_rack_s_tip() {
+        let pair = pair(0.0);
+        let problem = problem(&pair, Side::Pinion, FreeRoot::Rack, Objective::Compliance);
+        for tip_radius in [0.1, 0.3, 0.4] {
+            let rack = Rack { tip_radius, ..pair.pinion.specification.rack };
+            let made = Gear::new(&Specification { rack, ..pair.pinion.specification }).unwrap();
+            let active = pair.pinion.radius_at(pair.lowest_roll(Side::Pinion));
+            let deeper = problem.worth(&[tip_radius * 3e-3]).constraints[0];
+            assert!((deeper - (active - made.form_radius)).abs() < 1e-12, "{tip_radius}: {deeper}");
         }
     }
 }

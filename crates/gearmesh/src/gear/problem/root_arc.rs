@@ -262,4 +262,37 @@ mod tests {
             assert_eq!(arc.base.gap(optimum).abs() < 1e-15, touches, "{teeth}: {}", arc.base.gap(optimum));
         }
     }
+
+    /// Tier: published equation; centres of (30) as printed lie on a line through (-x_a, y_a) with the slope of A's angle,
+    /// which F of (28) shows; x_c may lie in the tooth and its space, r_c is at most two dedenda.
+    #[test]
+    fn the_printed_line_is_that_of_equation_30() {
+        for teeth in [17, 41] {
+            let (gear, problem) = (gear(teeth), problem(teeth, Formulas::Printed));
+            let arc = RootArc::new(&gear).unwrap();
+            let (sine, cosine) = arc.printed_angle().sin_cos();
+            let (x_a, y_a) = (gear.base_radius * sine, gear.base_radius * cosine);
+            for (x, radius) in [(0.0, 1e-3), (1e-3, 1e-3), (2.5e-3, 0.4e-3)] {
+                let y = ((gear.root_radius - x) * (gear.root_radius + x)).sqrt() + radius
+                    - problem.worth(&[x, radius]).objective;
+                assert!(((y - y_a) / (x + x_a) - sine / cosine).abs() < 1e-12, "{teeth} {x}: {y}");
+            }
+            let [x, radius] = problem.variables()[..] else { panic!("two variables") };
+            let pitch = std::f64::consts::TAU / f64::from(teeth);
+            assert!((x.maximum - gear.base_radius * pitch.sin()).abs() < 1e-15, "{x:?}");
+            assert!((radius.maximum - 2.0 * 1.25 * 1.5e-3).abs() < 1e-15, "{radius:?}");
+        }
+    }
+
+    /// Room for variables and constraints is kept as many as there are.
+    #[test]
+    fn as_many_are_foreseen_as_there_are() {
+        let count = |formulas| {
+            let problem = problem(23, formulas);
+            [problem.variables().len(), problem.constraints().len()]
+        };
+        let [derived, printed] = [Formulas::Derived, Formulas::Printed].map(count);
+        let most = RootArcProblem { formulas: Formulas::Derived }.maximum();
+        assert_eq!(most, [0, 1].map(|at: usize| derived[at].max(printed[at])));
+    }
 }

@@ -371,6 +371,13 @@ fn points_are_as_many_and_chords_as_near_as_asked() {
         })
         .sum();
     assert!(area > PI * gear.root_radius.powi(2) && area < PI * gear.tip_radius.powi(2), "{area}");
+    // Turned by a pitch it is itself, the last tooth's neighbour being the first.
+    let (tooth, (sine, cosine)) = (whole.len() / 19, (2.0 * PI / 19.0).sin_cos());
+    for (at, [x, y]) in whole.iter().enumerate() {
+        let next = whole[(at + tooth) % whole.len()];
+        let away = (next[0] - (cosine * x - sine * y)).hypot(next[1] - (sine * x + cosine * y));
+        assert!(away < 1e-15, "{at}: {away}");
+    }
 }
 
 fn segment_distance([x, y]: [f64; 2], [a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {

@@ -1,6 +1,7 @@
 //! What a refusal asks for: where the limit that it names really is.
 
 use super::*;
+use crate::gear::geometry::outline::roots::base_arc::Base;
 
 /// Tier: invariant; a limit that a refusal names is where it begins.
 #[test]
@@ -28,4 +29,24 @@ fn what_a_refusal_asks_for_is_just_enough() {
     let range = refused(-4.0).unwrap();
     let minimum: f64 = range.strip_prefix("above ").and_then(|rest| rest.split(' ').next()).unwrap().parse().unwrap();
     assert!(refused(minimum - 1e-3).is_some() && refused(minimum + 1e-3).is_none(), "x {range}");
+
+    // A rack so deep that the root circle would vanish.
+    let deep = |dedendum: f64| {
+        let rack = Rack { dedendum, ..specification(6, 3.0, -1.0).rack };
+        Gear::new(&Specification { rack, pressure_angle: 5.0 * DEGREE, ..specification(6, 3.0, -1.0) })
+    };
+    let refused = |dedendum: f64| match deep(dedendum).map_err(|error| error.problem) {
+        Err(Problem::OutOfRange { parameter: Parameter::RackDedendum, range, .. }) => Some(range),
+        _ => None,
+    };
+    assert_eq!(refused(2.0 + 1e-9).unwrap(), "below 2 modules, where the root circle vanishes");
+    assert!(refused(2.0 - 1e-9).is_none());
+    // Arcs down from the base circle: as many teeth as leave the root circle inside it, for this rack and shift.
+    let refused = |teeth: u32| match Base::new(&gear(teeth, 3.0, 0.3), "an arc").map_err(|error| error.problem) {
+        Err(Problem::NothingBelowBase { maximum, .. }) => Some(maximum.0),
+        _ => None,
+    };
+    let maximum = refused(60).unwrap();
+    let [below, above] = [maximum.floor(), maximum.ceil()].map(|teeth| refused(teeth as u32));
+    assert!(below.is_none() && above.is_some(), "z {maximum}");
 }
