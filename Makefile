@@ -20,7 +20,7 @@ BASE ?= HEAD
 RELEASE := target/release/gearstudy
 STUDIES := $(sort $(wildcard studies/*.yaml))
 
-.PHONY: help setup release studies study test bench results diff clean
+.PHONY: help setup packages release studies study test bench results diff clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -28,7 +28,10 @@ help:  ## list the targets
 setup:  ## install what the machine lacks: Debian packages, Python tools for the cross-checks
 	@scripts/setup
 
-release: setup  ## build the program with optimisation
+packages:
+	@scripts/setup packages
+
+release: packages  ## build the program with optimisation
 	cargo build --release --locked
 
 studies: release  ## run every study: tables, figures and reports in results/
@@ -39,16 +42,18 @@ study: release  ## run one study: make study STUDY=energy_ga
 		echo "make study STUDY=name, where name is one of: $(patsubst studies/%.yaml,%,$(STUDIES))" >&2; exit 2; fi
 	$(RELEASE) run "studies/$(STUDY).yaml"
 
-test: setup  ## format, lints, all tests, and the quick study run twice
+test: packages  ## format, lints, all tests, and the quick study run twice
 	cargo fmt --all --check
-	@# One build for lints and tests, benches too: a check of its own, or another set of features, would build most of the
-	@# dependencies again.
-	$(LINTED) cargo test --locked --workspace --features frames --all-targets --no-run
-	$(LINTED) cargo test --locked --workspace --features frames
+	@# One build for lints and tests, benches too: a check of its own would build most of the dependencies again. What
+	@# the cross-checks need of Python is installed meanwhile.
+	scripts/setup & python=$$!; status=0; \
+		$(LINTED) cargo test --locked --workspace --all-targets --no-run || status=$$?; \
+		wait $$python; exit $$status
+	$(LINTED) cargo test --locked --workspace
 	@# The program that the tests were built with: another build would differ in features and take a minute.
 	scripts/run-twice target/debug/gearstudy studies/quick.yaml
 
-bench: setup  ## measure the kernels and the program
+bench: packages  ## measure the kernels and the program
 	cargo bench --locked
 
 results: studies  ## refresh the results that are committed, and show what changed

@@ -4,7 +4,6 @@
 
 pub mod cli;
 pub mod program;
-#[cfg(feature = "frames")]
 pub mod query;
 pub mod report;
 pub mod rexs;

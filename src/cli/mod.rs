@@ -10,7 +10,6 @@ pub mod pages;
 mod plan;
 pub mod print;
 pub mod progress;
-#[cfg(feature = "frames")]
 mod query;
 mod rights;
 pub mod run;
@@ -155,14 +154,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             *format,
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
-        #[cfg(feature = "frames")]
         Command::Query(asked) => query::query(asked, places, quiet),
-        #[cfg(not(feature = "frames"))]
-        Command::Query(_) => Err(Ending::Usage(
-            "this program was built without `query`; `cargo build --release --features frames` builds it with it, in \
-             some minutes"
-                .to_owned(),
-        )),
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),

@@ -1,8 +1,7 @@
-//! The command `query`: SQL over tables, in a build that has the feature `frames`.
+//! The command `query`: SQL over tables.
 //!
 //! Must not know: how a query is answered.
 
-use std::panic;
 use std::path::Path;
 
 use super::Ending;
@@ -41,7 +40,7 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
         out(&list(&mut tables).map_err(Ending::Usage)?);
         return Ok(());
     };
-    let answer = quietly(|| ask(text, &mut tables)).map_err(Ending::Query)?;
+    let answer = ask(text, &mut tables).map_err(Ending::Query)?;
     match (asked.output.as_deref(), target) {
         (Some(path), Some(target)) => write(&answer, path, target, quiet),
         _ => {
@@ -49,15 +48,6 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
             Ok(())
         }
     }
-}
-
-/// What polars panics about, it also returns; nobody need read it twice.
-fn quietly<T>(work: impl FnOnce() -> T) -> T {
-    let hook = panic::take_hook();
-    panic::set_hook(Box::new(|_| {}));
-    let result = work();
-    panic::set_hook(hook);
-    result
 }
 
 /// Every table and its columns with their units, since an answer has none.

@@ -1,11 +1,9 @@
 //! SQL over the tables of any studies and commits.
 //!
-//! `names` finds the tables in the text, `tables` reads them, `frame` hands both to polars and takes the rows back, in as
-//! much memory as `memory` grants. Behind
-//! the feature `frames`. Must not know: how the answer is shown; what the tables mean.
+//! `names` finds the tables in the text, `tables` reads them, `database` hands both to SQLite and takes the rows back. Must
+//! not know: how the answer is shown; what the tables mean.
 
-mod frame;
-mod memory;
+mod database;
 mod names;
 pub mod tables;
 
@@ -30,10 +28,11 @@ pub struct Column {
 /// Answers one query.
 ///
 /// # Errors
-/// One sentence: what is wrong with the text, a table or column that is not there, or what polars cannot do.
+/// One sentence: what is wrong with the text, a table or column that is not there, or what SQLite cannot do.
 pub fn ask(text: &str, tables: &mut Tables<'_>) -> Result<Answer, String> {
     let query = names::parse(text)?;
     let found = query.tables.iter().map(|name| Ok((name.as_str(), tables.read(name)?)));
     let found = found.collect::<Result<Vec<_>, String>>()?;
-    frame::answer(&query, &found)
+    names::check_kinds(&query, &found)?;
+    database::answer(&query, &found)
 }

@@ -1,29 +1,27 @@
-//! The tables that a query names, and the query as polars takes it.
+//! The tables that a query names, and the query as SQLite takes it.
 //!
-//! A table's name has parts, `energy_ga.ste.summary`, with or without quotes; polars knows names of one part. So a name
-//! is put into one pair of quotes wherever it stands: behind FROM and JOIN, and before a column. Must not know: which
-//! tables there are.
+//! A table's name has parts, `energy_ga.ste.summary`, with or without quotes; SQLite knows names of one part. So a name
+//! is put into one pair of quotes wherever it stands: behind FROM and JOIN, and before a column. Where SQLite would give
+//! another number than a reader expects (7 / 2 is 3, 5.5 % 2 is 1, 'a' + 1 is 1), the query is changed or refused. Must not
+//! know: which tables there are, but what their columns hold.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use sqlparser::ast::{
-    Expr, GroupByExpr, Ident, ObjectName, ObjectNamePart, Query, SelectItemQualifiedWildcardKind, SetExpr, Statement,
-    TableFactor, VisitMut, VisitorMut,
+    BinaryOperator, CastKind, DataType, Expr, Function, FunctionArg, FunctionArgExpr, FunctionArgumentList,
+    FunctionArguments, GroupByExpr, Ident, ObjectName, ObjectNamePart, Query, Select, SelectItem,
+    SelectItemQualifiedWildcardKind, SetExpr, Statement, TableFactor, Value, VisitMut, VisitorMut,
 };
 use sqlparser::dialect::GenericDialect;
 use sqlparser::parser::{Parser, ParserOptions};
 
+use studygraph::table::data::{Data, Table};
+
 /// A longer text is no query somebody wrote.
 const MOST_BYTES: usize = 16 << 10;
 /// Terms within terms; every link of a chain of ANDs is one.
-pub(super) const MOST_DEPTH: usize = 200;
-
-/// SELECTs in one query: polars plans a chain of UNIONs in a time that grows with its square.
-pub(super) const MOST_SELECTS: usize = 64;
-
-/// CASEs within each other: polars copies all that is within for each of them.
-pub(super) const MOST_CASES: usize = 8;
+const MOST_DEPTH: usize = 200;
 
 /// A query that was read.
 pub(super) struct Parsed {
@@ -33,6 +31,10 @@ pub(super) struct Parsed {
     pub tables: Vec<String>,
     /// Whether the rows have an order: that of ORDER BY, or of the one table they are taken from.
     pub ordered: bool,
+    /// Columns that something is done to which only numbers allow.
+    numbers: BTreeSet<String>,
+    /// Columns that are compared with a text.
+    texts: BTreeSet<String>,
 }
 
 /// Reads one SELECT.
@@ -60,7 +62,29 @@ pub(super) fn parse(text: &str) -> Result<Parsed, String> {
         }
     }
     let ordered = query.order_by.is_some() || is_part_of_one_table(query);
-    Ok(Parsed { text: query.to_string(), tables: names.tables, ordered })
+    let Names { tables, mut numbers, mut texts, given, .. } = names;
+    // What the query calls so itself may hold anything.
+    numbers.retain(|name| !given.contains(name));
+    texts.retain(|name| !given.contains(name));
+    Ok(Parsed { text: query.to_string(), tables, ordered, numbers, texts })
+}
+
+/// Whether the columns hold what the query takes them for.
+///
+/// # Errors
+/// One sentence, which names the first that does not in any table.
+pub(super) fn check_kinds(query: &Parsed, tables: &[(&str, Table)]) -> Result<(), String> {
+    let all = |name: &str, wanted: fn(&Data) -> bool| {
+        let mut found = tables.iter().filter_map(|(_, table)| table.column(name)).map(wanted).peekable();
+        found.peek().is_some() && found.all(|found| found)
+    };
+    if let Some(name) = query.numbers.iter().find(|name| all(name, |data| matches!(data, Data::Text(_)))) {
+        return Err(format!("`{name}` holds text, and the query takes it for numbers"));
+    }
+    match query.texts.iter().find(|name| all(name, |data| !matches!(data, Data::Text(_)))) {
+        None => Ok(()),
+        Some(name) => Err(format!("`{name}` holds no text: compare it with a value without quotes")),
+    }
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -76,9 +100,11 @@ struct Names {
     tables: Vec<String>,
     /// Names that the query gives to its own parts: `WITH name AS`.
     own: BTreeSet<String>,
+    /// Names that it gives to columns.
+    given: BTreeSet<String>,
+    numbers: BTreeSet<String>,
+    texts: BTreeSet<String>,
     depth: usize,
-    cases: usize,
-    selects: usize,
 }
 
 impl VisitorMut for Names {
@@ -87,21 +113,28 @@ impl VisitorMut for Names {
     fn pre_visit_query(&mut self, query: &mut Query) -> ControlFlow<String> {
         let with = query.with.iter().flat_map(|with| &with.cte_tables);
         self.own.extend(with.map(|table| table.alias.name.value.clone()));
-        if self.pass == Pass::Tables {
-            self.selects += selects(query);
-            if self.selects > MOST_SELECTS {
-                return ControlFlow::Break(format!("the query has more than {MOST_SELECTS} SELECTs"));
+        ControlFlow::Continue(())
+    }
+
+    fn pre_visit_select(&mut self, select: &mut Select) -> ControlFlow<String> {
+        for item in &mut select.projection {
+            match item {
+                SelectItem::QualifiedWildcard(SelectItemQualifiedWildcardKind::ObjectName(name), _) => self.join(name),
+                SelectItem::ExprWithAlias { alias, .. } => drop(self.given.insert(alias.value.clone())),
+                _ => {}
             }
         }
-        if let SetExpr::Select(select) = &mut *query.body
-            && self.pass == Pass::Columns
-        {
-            for item in &mut select.projection {
-                if let sqlparser::ast::SelectItem::QualifiedWildcard(kind, _) = item
-                    && let SelectItemQualifiedWildcardKind::ObjectName(name) = kind
-                {
-                    self.join(name);
-                }
+        ControlFlow::Continue(())
+    }
+
+    /// What has no name is called as it was written, not as it is changed: given here, where it is known not to be too deep.
+    fn post_visit_select(&mut self, select: &mut Select) -> ControlFlow<String> {
+        for item in select.projection.iter_mut().filter(|_| self.pass == Pass::Tables) {
+            if let SelectItem::UnnamedExpr(term) = item
+                && column(term).is_none()
+            {
+                let alias = Ident::with_quote('"', term.to_string());
+                *item = SelectItem::ExprWithAlias { expr: term.clone(), alias };
             }
         }
         ControlFlow::Continue(())
@@ -129,17 +162,8 @@ impl VisitorMut for Names {
         if self.depth > MOST_DEPTH {
             return ControlFlow::Break(format!("the query has more than {MOST_DEPTH} terms within each other"));
         }
-        match term {
-            Expr::Case { .. } => {
-                self.cases += 1;
-                if self.cases > MOST_CASES {
-                    return ControlFlow::Break(format!("the query has more than {MOST_CASES} CASEs within each other"));
-                }
-            }
-            Expr::Exists { .. } => {
-                return ControlFlow::Break("EXISTS is not known here: write IN (SELECT …) or a JOIN".to_owned());
-            }
-            _ => {}
+        if self.pass == Pass::Tables {
+            self.note_kinds(term);
         }
         if let (Pass::Columns, Expr::CompoundIdentifier(parts)) = (self.pass, term)
             && parts.len() > 2
@@ -155,18 +179,90 @@ impl VisitorMut for Names {
 
     fn post_visit_expr(&mut self, term: &mut Expr) -> ControlFlow<String> {
         self.depth -= 1;
-        self.cases -= usize::from(matches!(term, Expr::Case { .. }));
+        if let (Pass::Columns, Expr::BinaryOp { left, op, right }) = (self.pass, &mut *term) {
+            match op {
+                BinaryOperator::Divide => {
+                    let expr = std::mem::replace(left, nothing());
+                    let (kind, data_type) = (CastKind::Cast, DataType::Real);
+                    **left = Expr::Cast { kind, expr, data_type, array: false, format: None };
+                }
+                BinaryOperator::Modulo => {
+                    let (left, right) = (std::mem::replace(left, nothing()), std::mem::replace(right, nothing()));
+                    *term = call("mod", [*left, *right]);
+                }
+                _ => {}
+            }
+        }
         ControlFlow::Continue(())
     }
 }
 
 impl Names {
+    /// Notes the columns that are taken for numbers, and those that are compared with a text.
+    fn note_kinds(&mut self, term: &Expr) {
+        use BinaryOperator::{Divide, Eq, Gt, GtEq, Lt, LtEq, Minus, Modulo, Multiply, NotEq, Plus};
+        match term {
+            Expr::BinaryOp { left, op: Plus | Minus | Multiply | Divide | Modulo, right } => {
+                self.numbers.extend([left, right].into_iter().filter_map(|side| column(side)));
+            }
+            Expr::BinaryOp { left, op: Eq | NotEq | Lt | LtEq | Gt | GtEq, right } => {
+                for (name, other) in [(column(left), right), (column(right), left)] {
+                    let Expr::Value(value) = &**other else { continue };
+                    match value.value {
+                        Value::Number(..) => self.numbers.extend(name),
+                        Value::SingleQuotedString(_) => self.texts.extend(name),
+                        _ => {}
+                    }
+                }
+            }
+            Expr::Function(function) if OF_NUMBERS.contains(&function.name.to_string().to_lowercase().as_str()) => {
+                let FunctionArguments::List(given) = &function.args else { return };
+                let given = given.args.iter().filter_map(|argument| match argument {
+                    FunctionArg::Unnamed(FunctionArgExpr::Expr(term)) => column(term),
+                    _ => None,
+                });
+                self.numbers.extend(given);
+            }
+            _ => {}
+        }
+    }
+
     /// Puts a table's name into one pair of quotes.
     fn join(&self, name: &mut ObjectName) {
         if let Some(whole) = whole(name).filter(|whole| self.tables.contains(whole)) {
             name.0 = vec![ObjectNamePart::Identifier(Ident::with_quote('"', whole))];
         }
     }
+}
+
+/// Functions that give a number for a text, too.
+const OF_NUMBERS: [&str; 8] = ["sum", "avg", "total", "abs", "round", "median", "stddev", "variance"];
+
+/// The name of a column, without its table's.
+fn column(term: &Expr) -> Option<String> {
+    match term {
+        Expr::Identifier(name) => Some(name.value.clone()),
+        Expr::CompoundIdentifier(parts) => parts.last().map(|name| name.value.clone()),
+        _ => None,
+    }
+}
+
+fn nothing() -> Box<Expr> {
+    Box::new(Expr::Value(Value::Null.with_empty_span()))
+}
+
+fn call(name: &str, given: [Expr; 2]) -> Expr {
+    let args = given.map(|term| FunctionArg::Unnamed(FunctionArgExpr::Expr(term))).to_vec();
+    Expr::Function(Function {
+        name: ObjectName(vec![ObjectNamePart::Identifier(Ident::new(name))]),
+        uses_odbc_syntax: false,
+        parameters: FunctionArguments::None,
+        args: FunctionArguments::List(FunctionArgumentList { duplicate_treatment: None, args, clauses: Vec::new() }),
+        filter: None,
+        null_treatment: None,
+        over: None,
+        within_group: Vec::new(),
+    })
 }
 
 fn joined(parts: &[Ident]) -> String {
@@ -177,18 +273,6 @@ fn joined(parts: &[Ident]) -> String {
 fn whole(name: &ObjectName) -> Option<String> {
     let parts: Option<Vec<&str>> = name.0.iter().map(|part| Some(part.as_ident()?.value.as_str())).collect();
     Some(parts?.join("."))
-}
-
-/// Those side by side, by UNION and the like.
-fn selects(query: &Query) -> usize {
-    let (mut open, mut count) = (vec![&*query.body], 0);
-    while let Some(part) = open.pop() {
-        match part {
-            SetExpr::SetOperation { left, right, .. } => open.extend([&**left, &**right]),
-            _ => count += 1,
-        }
-    }
-    count
 }
 
 /// Whether the rows are some of those of one table, and so in its order.

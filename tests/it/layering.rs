@@ -138,7 +138,7 @@ const OWNERS: &[(&str, &[&str])] = &[
     ("roxmltree", &["src/rexs"]),
     ("serde_saphyr", &["crates/studygraph/src/study/"]),
     ("clap", &["src/cli/"]),
-    ("polars", &["src/query/frame.rs"]),
+    ("rusqlite", &["src/query/database.rs"]),
     ("sqlparser", &["src/query/names.rs"]),
     ("signal_hook", &["src/cli/"]),
     ("sha2", &["crates/studygraph/src/store/archive.rs"]),

@@ -18,6 +18,7 @@ mod numbers;
 mod optimize;
 mod properties;
 mod python;
+mod query;
 mod reference;
 mod registry;
 mod reliability;

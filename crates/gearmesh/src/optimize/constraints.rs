@@ -155,9 +155,10 @@ mod tests {
     /// Nothing is known of an objective's size where it is zero or no number at first: the penalty is that of 1.
     #[test]
     fn a_first_value_without_a_size_gives_the_penalty_of_one() {
-        let penalty = |value| Multipliers::new(&evaluation(value, &[-0.5])).penalty;
-        let of_one = penalty(1.0);
-        assert!(of_one > 0.0 && [0.0, -0.0, f64::INFINITY, f64::NAN].iter().all(|value| penalty(*value) == of_one));
-        assert!((penalty(-4e-6) / of_one - 4e-6).abs() < 1e-20);
+        let penalty = |value| {
+            Multipliers::new(&evaluation(value, &[-0.5])).penalty / Multipliers::new(&evaluation(1.0, &[-0.5])).penalty
+        };
+        assert!([0.0, -0.0, f64::INFINITY, f64::NAN].iter().all(|value| (penalty(*value) - 1.0).abs() < 1e-15));
+        assert!((penalty(-4e-6) - 4e-6).abs() < 1e-20);
     }
 }

@@ -1,0 +1,281 @@
+//! A query, asked of SQLite; the only file that names it.
+//!
+//! The tables are copied into a database in memory, in which numbers that do not apply (NaN in a table) are NULL, so that
+//! sums and means leave them out. Must not know: where tables come from.
+
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
+use rusqlite::config::DbConfig;
+use rusqlite::functions::{Aggregate, Context, FunctionFlags};
+use rusqlite::types::ValueRef;
+use rusqlite::{Connection, Error, ErrorCode, params_from_iter};
+
+use super::names::Parsed;
+use super::{Answer, Column};
+use declare::error::suggest;
+use studygraph::table::data::{Cell, Data, Table};
+
+/// Bytes that a query may hold: joins of large tables have more rows than any machine can.
+const MOST_MEMORY: u64 = 2 << 30;
+/// Values of an answer; each takes some thirty bytes until it is written.
+const MOST_VALUES: usize = 20_000_000;
+/// Bytes of what SQLite says; what is longer repeats the query.
+const LONGEST_SENTENCE: usize = 240;
+/// How the type of a flag is called; SQLite has none of its own and keeps 0 and 1.
+const FLAG: &str = "BOOLEAN";
+
+/// Asks the query of tables under the names it calls them by.
+///
+/// # Errors
+/// One sentence.
+pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)]) -> Result<Answer, String> {
+    let failed = |error| failed(&error, tables);
+    let database = filled(tables).map_err(failed)?;
+    let mut statement = database.prepare(&query.text).map_err(failed)?;
+    let mut columns = Vec::new();
+    for column in statement.columns() {
+        let kind = column.decl_type().unwrap_or_default();
+        let is_number = ["REAL", "INTEGER"].contains(&kind);
+        columns.push((Column { name: column.name().to_owned(), is_number, cells: Vec::new() }, kind == FLAG));
+    }
+    let mut names = BTreeSet::new();
+    if let Some((twice, _)) = columns.iter().find(|(column, _)| !names.insert(&column.name)) {
+        return Err(format!("two columns of the answer are called `{}`; give one another name with AS", twice.name));
+    }
+    let mut rows = statement.query([]).map_err(failed)?;
+    let (mut height, width) = (0, columns.len());
+    while let Some(row) = rows.next().map_err(failed)? {
+        height += 1;
+        if height * width > MOST_VALUES {
+            return Err(format!(
+                "the answer has more than {MOST_VALUES} values, in rows of {width} columns: choose fewer with WHERE or LIMIT, \
+                 or sum up with GROUP BY"
+            ));
+        }
+        for (at, (column, is_flag)) in columns.iter_mut().enumerate() {
+            column.cells.push(cell(row.get_ref(at).map_err(failed)?, *is_flag));
+        }
+    }
+    let mut columns: Vec<Column> = columns.into_iter().map(|(column, _)| of_one_kind(column)).collect();
+    if !query.ordered {
+        sort(&mut columns, height);
+    }
+    Ok(Answer { columns })
+}
+
+fn filled(tables: &[(&str, Table)]) -> Result<Connection, Error> {
+    let mut database = Connection::open_in_memory()?;
+    // A name in quotes is a name: SQLite would take one that it does not know for a text.
+    database.set_db_config(DbConfig::SQLITE_DBCONFIG_DQS_DML, false)?;
+    database.query_row(&format!("PRAGMA hard_heap_limit = {MOST_MEMORY}"), [], |_| Ok(()))?;
+    database.execute_batch("PRAGMA temp_store = MEMORY")?;
+    add_functions(&database)?;
+    let filling = database.transaction()?;
+    for (name, table) in tables {
+        let columns = table.columns();
+        let kind = |data: &Data| match data {
+            Data::Float(_) => "REAL",
+            Data::Integer(_) => "INTEGER",
+            Data::Text(_) => "TEXT",
+            Data::Flag(_) => FLAG,
+        };
+        let names = table.schema().columns.iter().zip(columns);
+        let declared: Vec<String> =
+            names.map(|(column, data)| format!("{} {}", quoted(&column.name), kind(data))).collect();
+        filling.execute_batch(&format!("CREATE TABLE {} ({})", quoted(name), declared.join(", ")))?;
+        let places = vec!["?"; columns.len()].join(", ");
+        let mut insert = filling.prepare(&format!("INSERT INTO {} VALUES ({places})", quoted(name)))?;
+        for row in 0..table.rows() {
+            insert.execute(params_from_iter(columns.iter().map(|data| stored(data, row))))?;
+        }
+    }
+    filling.commit()?;
+    Ok(database)
+}
+
+fn quoted(name: &str) -> String {
+    format!("\"{}\"", name.replace('"', "\"\""))
+}
+
+fn stored(data: &Data, row: usize) -> rusqlite::types::ToSqlOutput<'_> {
+    match data {
+        // SQLite takes NaN for NULL.
+        Data::Float(values) => values[row].into(),
+        Data::Integer(values) => values[row].into(),
+        Data::Text(values) => values[row].as_str().into(),
+        Data::Flag(values) => values[row].into(),
+    }
+}
+
+/// What the tables of numbers are asked for beside SQLite's own functions.
+fn add_functions(database: &Connection) -> Result<(), Error> {
+    type Of = fn(f64) -> f64;
+    type OfTwo = fn(f64, f64) -> f64;
+    let flags = FunctionFlags::SQLITE_UTF8 | FunctionFlags::SQLITE_DETERMINISTIC;
+    let of_one: [(&str, Of); 16] = [
+        ("acos", libm::acos),
+        ("asin", libm::asin),
+        ("atan", libm::atan),
+        ("ceil", libm::ceil),
+        ("cos", libm::cos),
+        ("degrees", f64::to_degrees),
+        ("exp", libm::exp),
+        ("floor", libm::floor),
+        ("ln", libm::log),
+        ("log10", libm::log10),
+        ("log2", libm::log2),
+        ("radians", f64::to_radians),
+        ("sin", libm::sin),
+        ("sqrt", f64::sqrt),
+        ("tan", libm::tan),
+        ("trunc", libm::trunc),
+    ];
+    let of_two: [(&str, OfTwo); 4] =
+        [("atan2", libm::atan2), ("mod", libm::fmod), ("pow", libm::pow), ("power", libm::pow)];
+    for (name, function) in of_one {
+        database.create_scalar_function(name, 1, flags, move |given| Ok(number(given, 0)?.map(function)))?;
+    }
+    for (name, function) in of_two {
+        database.create_scalar_function(name, 2, flags, move |given| {
+            Ok(number(given, 0)?.zip(number(given, 1)?).map(|(a, b)| function(a, b)))
+        })?;
+    }
+    let of_many: [(&str, OfMany); 3] =
+        [("median", median), ("stddev", |values| variance(values).map(f64::sqrt)), ("variance", variance)];
+    for (name, of) in of_many {
+        database.create_aggregate_function(name, 1, flags, Sample(of))?;
+    }
+    Ok(())
+}
+
+/// NULL stays NULL.
+fn number(given: &Context<'_>, at: usize) -> Result<Option<f64>, Error> {
+    Ok(match given.get_raw(at) {
+        ValueRef::Null => None,
+        #[allow(clippy::cast_precision_loss)]
+        ValueRef::Integer(value) => Some(value as f64),
+        _ => Some(given.get(at)?),
+    })
+}
+
+/// NULL where it is not defined.
+type OfMany = fn(&mut [f64]) -> Option<f64>;
+
+/// A function of all values of a group that are there.
+struct Sample(OfMany);
+
+impl Aggregate<Vec<f64>, Option<f64>> for Sample {
+    fn init(&self, _: &mut Context<'_>) -> Result<Vec<f64>, Error> {
+        Ok(Vec::new())
+    }
+
+    fn step(&self, given: &mut Context<'_>, values: &mut Vec<f64>) -> Result<(), Error> {
+        values.extend(number(given, 0)?);
+        Ok(())
+    }
+
+    fn finalize(&self, _: &mut Context<'_>, values: Option<Vec<f64>>) -> Result<Option<f64>, Error> {
+        Ok(values.and_then(|mut values| self.0(&mut values)))
+    }
+}
+
+fn median(values: &mut [f64]) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    let (low, high) = (values.get(values.len().checked_sub(1)? / 2)?, values.get(values.len() / 2)?);
+    Some(0.5 * low + 0.5 * high)
+}
+
+/// Of a sample: the sum of squares from the mean over one less than their number.
+fn variance(values: &mut [f64]) -> Option<f64> {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.len() > 1).then(|| values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0))
+}
+
+fn cell(value: ValueRef<'_>, is_flag: bool) -> Option<Cell> {
+    match value {
+        ValueRef::Null => None,
+        ValueRef::Integer(number @ 0..=1) if is_flag => Some(Cell::Flag(number == 1)),
+        ValueRef::Integer(number) => Some(Cell::Integer(number)),
+        ValueRef::Real(number) => Some(Cell::Float(number)),
+        ValueRef::Text(text) | ValueRef::Blob(text) => Some(Cell::Text(String::from_utf8_lossy(text).into_owned())),
+    }
+}
+
+/// SQLite has a kind for each value, a table one for each column.
+fn of_one_kind(mut column: Column) -> Column {
+    let kinds = column.cells.iter().flatten();
+    let (mut whole, mut others) = (false, [false; 3]);
+    for cell in kinds {
+        match cell {
+            Cell::Integer(_) => whole = true,
+            Cell::Float(_) => others[0] = true,
+            Cell::Text(_) => others[1] = true,
+            Cell::Flag(_) => others[2] = true,
+        }
+    }
+    let [float, text, flag] = others;
+    if text && (whole || float || flag) || flag && (whole || float) {
+        column.cells.iter_mut().flatten().for_each(|cell| *cell = Cell::Text(cell.to_string()));
+    } else if whole && float {
+        for cell in column.cells.iter_mut().flatten() {
+            if let Cell::Integer(number) = cell {
+                *cell = Cell::Float(*number as f64);
+            }
+        }
+    }
+    if whole || float || text || flag {
+        column.is_number = !text && !flag;
+    }
+    column
+}
+
+/// Groups come in no order: by their values they come in one.
+fn sort(columns: &mut [Column], height: usize) {
+    let mut rows: Vec<usize> = (0..height).collect();
+    rows.sort_by(|&a, &b| {
+        let orders = columns.iter().map(|column| order(column.cells[a].as_ref(), column.cells[b].as_ref()));
+        orders.into_iter().find(|order| order.is_ne()).unwrap_or(Ordering::Equal)
+    });
+    for column in columns {
+        column.cells = rows.iter().map(|&row| column.cells[row].clone()).collect();
+    }
+}
+
+/// NULL behind everything else.
+fn order(a: Option<&Cell>, b: Option<&Cell>) -> Ordering {
+    match (a, b) {
+        (Some(Cell::Float(a)), Some(Cell::Float(b))) => a.total_cmp(b),
+        (Some(Cell::Integer(a)), Some(Cell::Integer(b))) => a.cmp(b),
+        (Some(Cell::Text(a)), Some(Cell::Text(b))) => a.cmp(b),
+        (Some(Cell::Flag(a)), Some(Cell::Flag(b))) => a.cmp(b),
+        (a, b) => a.is_none().cmp(&b.is_none()),
+    }
+}
+
+/// What SQLite says of a query that it will not do, with the nearest column where it misses one.
+fn failed(error: &Error, tables: &[(&str, Table)]) -> String {
+    if error.sqlite_error_code() == Some(ErrorCode::OutOfMemory) {
+        let size = MOST_MEMORY >> 20;
+        return format!(
+            "the query takes more than {size} MiB of memory: join on more columns, or choose fewer rows with WHERE"
+        );
+    }
+    let said = match error {
+        Error::SqlInputError { msg, .. } | Error::SqliteFailure(_, Some(msg)) => msg.clone(),
+        other => other.to_string(),
+    };
+    if let Some(name) = said.strip_prefix("no such column: ") {
+        // Behind the table's name, which may have points too; of one in quotes SQLite asks whether it should be a text.
+        let name = name.split(" - should").next().unwrap_or(name).rsplit('.').next().unwrap_or(name).trim_matches('"');
+        let columns = tables.iter().flat_map(|(_, table)| &table.schema().columns);
+        let known: BTreeSet<&str> = columns.map(|column| column.name.as_str()).collect();
+        return format!("there is no column `{name}`; {}", suggest(name, known));
+    }
+    let line = said.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().trim();
+    if line.is_empty() || line.len() > LONGEST_SENTENCE {
+        return "the query cannot be answered: it has a part that is SQL, but not known here".to_owned();
+    }
+    format!("the query cannot be answered: {line}")
+}
