@@ -266,3 +266,145 @@ impl Point {
         (along(0) + along(1) - tangent) / (PI * cosine)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::tests::{base, model};
+    use super::*;
+    use crate::gear::geometry::trochoid;
+
+    type Read = fn(&Point) -> f64;
+
+    fn point() -> Point {
+        let (torque, relief, relief_length, crowning) = (50.0, 8e-6, 3e-3, 12e-6);
+        Point { torque, relief, relief_length, crowning, ..Point::of(&base().pair().unwrap()) }
+    }
+
+    fn near(found: f64, wanted: f64, what: &str) {
+        assert!((found - wanted).abs() <= 1e-12 * wanted.abs(), "{what}: {found} for {wanted}");
+    }
+
+    /// Tier: closed form; a coordinate goes from one end of its axis to the other, evenly over the value or its logarithm,
+    /// where it does not leave the pair's own value; and changes nothing else of the axes.
+    #[test]
+    fn every_axis_goes_from_end_to_end() {
+        let reads: [(&str, Read); 15] = [
+            ("torque", |point| point.torque),
+            ("youngs_modulus", |point| point.material[1].youngs_modulus),
+            ("stiffness_ratio", |point| point.material[0].youngs_modulus / point.material[1].youngs_modulus),
+            ("module", |point| point.module),
+            ("pinion_teeth", |point| point.teeth[0]),
+            ("gear_teeth", |point| point.teeth[1]),
+            ("pinion_shift", |point| point.shift[0]),
+            ("gear_shift", |point| point.shift[1]),
+            ("pressure_angle", |point| point.pressure_angle),
+            ("face_width", |point| point.face_width[0]),
+            ("relief", |point| point.relief),
+            ("relief_length", |point| point.relief_length),
+            ("crowning", |point| point.crowning),
+            ("bore", |point| point.bore[1]),
+            ("contact_ratio", |point| point.contact_ratio.unwrap_or(0.0)),
+        ];
+        assert_eq!(AXES.len(), reads.len());
+        for (at, (name, read)) in reads.into_iter().enumerate() {
+            let axis = axis(name).unwrap();
+            assert_eq!(axis.name, AXES[at].name);
+            let with = |coordinate: f64| {
+                // The others at their ends below, which leaves most of them as they are.
+                let mut coordinates = [0.0; 15];
+                coordinates[at] = coordinate;
+                read(&sample(&point(), &coordinates))
+            };
+            let inside = |share: f64| axis.absent + share * (1.0 - axis.absent);
+            let (minimum, maximum) = (axis.minimum, axis.maximum);
+            near(with(inside(0.0)), minimum, name);
+            near(with(inside(1.0)), maximum, name);
+            let half = if axis.logarithmic { (minimum * maximum).sqrt() } else { 0.5 * (minimum + maximum) };
+            // The number of teeth is rounded to a whole one.
+            let rounded = if name.ends_with("teeth") { half.round() } else { half };
+            near(with(inside(0.5)), rounded, name);
+            if axis.absent > 0.0 {
+                let own = if name == "stiffness_ratio" { 1.0 } else { read(&sample(&point(), &[0.0; 15])) };
+                near(with(0.99 * axis.absent), own, name);
+            }
+        }
+        let degrees = axis("pressure_angle").unwrap();
+        assert!((degrees.minimum - 10_f64.to_radians()).abs() < 1e-15);
+        assert!((degrees.maximum - 35_f64.to_radians()).abs() < 1e-15);
+    }
+
+    /// Tier: invariant; both moduli move apart about their mean, until one comes to the end of its range: then the ratio
+    /// stays.
+    #[test]
+    fn a_ratio_of_stiffnesses_is_kept_at_the_ends_of_the_range() {
+        for (modulus, ratio, mean_stays) in [
+            (2e11, 100.0, true),
+            (2e11, 0.01, true),
+            (2e11, 1e12, false),
+            (2e11, 1e-12, false),
+            (10.0, 1e6, false),
+            (1e14, 1e3, false),
+        ] {
+            let mut point = point();
+            (point.material[0].youngs_modulus, point.material[1].youngs_modulus) = (2.0 * modulus, 0.5 * modulus);
+            point.set_stiffness_ratio(ratio);
+            let [a, b] = point.material.map(|material| material.youngs_modulus);
+            near(a / b, ratio, "ratio");
+            assert!(a.min(b) >= 1.0 && a.max(b) <= 1e15, "{a} {b}");
+            assert_eq!(((a * b).sqrt() / modulus - 1.0).abs() < 1e-12, mean_stays, "{modulus} {ratio}");
+            // No more than needed.
+            assert!(mean_stays || a.min(b) < 1.0 + 1e-9 || a.max(b) > 1e15 * (1.0 - 1e-9), "{a} {b}");
+        }
+    }
+
+    /// Tier: invariant; the module is a scale.
+    #[test]
+    fn lengths_go_with_the_module() {
+        let (before, mut after) = (point(), point());
+        after.set_module(7.0 * before.module);
+        let lengths = |point: &Point| {
+            [point.module, point.face_width[0], point.face_width[1], point.relief, point.relief_length, point.crowning]
+        };
+        for (before, after) in lengths(&before).into_iter().zip(lengths(&after)) {
+            near(after, 7.0 * before, "length");
+        }
+    }
+
+    /// Tier: second way; the case of a pair's point is that pair, and a contact ratio asked for is that of the pair.
+    #[test]
+    fn a_case_is_the_pair_it_stands_for() {
+        let higher = |side: usize| {
+            let mut gears = base().gears;
+            gears[side].tip_radius = Some(3e-3 * (0.5 * f64::from(gears[side].teeth) + 1.03 + 0.05 * side as f64));
+            (gears[0].profile_shift, gears[1].profile_shift) = (0.1, -0.05);
+            gears
+        };
+        for gears in [base().gears, higher(0), higher(1)] {
+            let pair = GearPair::new(gears[0], gears[1], None).unwrap();
+            let case = Point::of(&pair).case("", "trap", 0.0, &model());
+            for (found, wanted) in case.gears.iter().zip(gears) {
+                assert_eq!(
+                    (found.teeth, found.material, found.face_width),
+                    (wanted.teeth, wanted.material, wanted.face_width)
+                );
+                near(found.profile_shift, wanted.profile_shift, "shift");
+                near(found.bore_radius, wanted.bore_radius, "bore");
+                assert_eq!(found.tip_radius.is_some(), wanted.tip_radius.is_some());
+                near(found.tip_radius.unwrap_or(1.0), wanted.tip_radius.unwrap_or(1.0), "tip");
+            }
+        }
+        for (teeth, shift, ratio) in [([60.0, 100.0], [0.0; 2], 2.3), ([30.0, 45.0], [0.3, -0.1], 1.4)] {
+            let point = Point { teeth, shift, contact_ratio: Some(ratio), ..point() };
+            let case = point.case("", "trap", 0.0, &model());
+            let pair = case.pair().unwrap();
+            assert!((pair.contact_ratio - ratio).abs() < 1e-12, "{} for {ratio}", pair.contact_ratio);
+            let rack = case.gears[0].rack;
+            assert!(rack.dedendum - rack.addendum >= 0.25 - 1e-12 && rack.dedendum >= 1.25);
+            // Not rounder than round, and as round as before where there is room.
+            let full = trochoid::full_round(&case.gears[0]);
+            near(rack.tip_radius, point.rack.tip_radius.min(full), "round");
+        }
+        // No pressure angle works with so much shift taken off.
+        assert!(Point { shift: [-30.0; 2], ..point() }.contact_ratio_with(1.0) <= 0.0);
+    }
+}

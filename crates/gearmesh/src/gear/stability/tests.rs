@@ -260,3 +260,17 @@ fn traps_are_refused_with_their_reason_or_hold() {
         );
     }
 }
+
+/// Tier: invariant; at a whole contact ratio the mean goes on. The limit is what a change of the contact ratio by 2e-6 (at 1,
+/// where it cannot be less, by 1e-6) allows, with peak-to-peaks below the mean, and the check sees more than rounding.
+#[test]
+fn the_mean_is_continuous_at_whole_contact_ratios() {
+    let point = Point { torque: 50.0, relief: 9e-6, crowning: 5e-6, ..Point::of(&base().pair().unwrap()) };
+    for (whole, step) in [(1.0, 1e-6), (2.0, 2e-6), (3.0, 2e-6)] {
+        let Continuity { name, finding } = continuity(&point, &model(), whole);
+        assert!(name.ends_with(&format!("of {whole}")));
+        assert_eq!(finding.verdict, Verdict::Holds, "{finding:?}");
+        assert!(finding.limit > 10.0 * TABLE && finding.limit < step, "{finding:?}");
+        assert!(finding.value > 100.0 * TABLE, "{finding:?}");
+    }
+}
