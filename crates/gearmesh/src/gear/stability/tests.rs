@@ -252,7 +252,15 @@ fn traps_are_refused_with_their_reason_or_hold() {
             "{name}: {findings:?}"
         );
     }
-    for name in ["without a root", "no length", "crowning 1e-300", "elastic ring", "contact ratio 2.3"] {
+    for name in [
+        "without a root",
+        "no length",
+        "crowning 1e-300",
+        "elastic ring",
+        "contact ratio 2.3",
+        "law at 1e0",
+        "law at 1e9",
+    ] {
         let findings = of(name);
         assert!(
             findings.len() > 10 && findings.iter().all(|found| found.verdict != Verdict::Broken),

@@ -138,8 +138,18 @@ impl<'a> Sliced<'a> {
     /// The load over the force that a slice carries and its penetration, recomputed from loads, gaps and influences, does
     /// not explain, and how much of it rounding of what is subtracted is worth: of the slice where most of that is used up.
     pub(super) fn unexplained(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> [f64; 2] {
+        self.unexplained_in(cycle, reach, force, &self.slices(cycle, reach, [force, above]))
+    }
+
+    /// The same in a balance whose smallest gap is given with it.
+    fn unexplained_in(
+        &self,
+        cycle: &MeshCycle,
+        reach: &WithinReach,
+        force: f64,
+        (found, smallest): &(many_springs::Balance, f64),
+    ) -> [f64; 2] {
         let size = reach.gaps().len() * self.count();
-        let (found, smallest) = self.slices(cycle, reach, [force, above]);
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());
         let strips = self.deviations(reach.positions());
         let behind = strips.behind(reach.gaps(), self.count());

@@ -191,6 +191,17 @@ fn loads_balance_and_slices_fulfil_complementarity() {
                 let given = [loading.force, 10.0 * torque / TORQUE * 1e-5 + 1e-5];
                 let (found, smallest) = sliced.slices(&cycle, &reach, given);
                 let (matrix, _) = sliced.matrix(&cycle, &springs, &positions);
+                // The check of it finds nothing, and just the part of a load that is moved on purpose, with what the others
+                // give way to it.
+                let [value, scale] = sliced.unexplained(&cycle, &reach, given);
+                assert!(value < 1e-12 * scale, "{value:e} {scale:e}");
+                let loaded = (0..found.loads.len()).max_by(|a, b| found.loads[*a].total_cmp(&found.loads[*b])).unwrap();
+                let mut moved = found.clone();
+                moved.loads[loaded] *= 1.0 + 1e-3;
+                let force = loading.force;
+                let [value, _] = sliced.unexplained_in(&cycle, &reach, force, &(moved, smallest));
+                let by = 1e-3 * found.loads[loaded] / force;
+                assert!(value > 0.9 * by && value < 3.0 * by, "{value:e} {by:e}");
                 let (count, size) = (sliced.count(), 3 * sliced.count());
                 assert_eq!(count, if slope == 0.0 { 6 } else { 11 }, "mirror images are one");
                 for (slice, &load) in found.loads.iter().enumerate() {
