@@ -199,7 +199,8 @@ fn cell(value: ValueRef<'_>, is_flag: bool) -> Option<Cell> {
         ValueRef::Integer(number @ 0..=1) if is_flag => Some(Cell::Flag(number == 1)),
         ValueRef::Integer(number) => Some(Cell::Integer(number)),
         ValueRef::Real(number) => Some(Cell::Float(number)),
-        ValueRef::Text(text) | ValueRef::Blob(text) => Some(Cell::Text(String::from_utf8_lossy(text).into_owned())),
+        ValueRef::Text(text) => Some(Cell::Text(String::from_utf8_lossy(text).into_owned())),
+        ValueRef::Blob(bytes) => Some(Cell::Text(format!("{bytes:02X?}"))),
     }
 }
 

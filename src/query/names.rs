@@ -163,7 +163,7 @@ impl VisitorMut for Names {
             return ControlFlow::Break(format!("the query has more than {MOST_DEPTH} terms within each other"));
         }
         if self.pass == Pass::Tables {
-            self.note_kinds(term);
+            self.note_kinds(term)?;
         }
         if let (Pass::Columns, Expr::CompoundIdentifier(parts)) = (self.pass, term)
             && parts.len() > 2
@@ -199,11 +199,18 @@ impl VisitorMut for Names {
 
 impl Names {
     /// Notes the columns that are taken for numbers, and those that are compared with a text.
-    fn note_kinds(&mut self, term: &Expr) {
+    fn note_kinds(&mut self, term: &Expr) -> ControlFlow<String> {
         use BinaryOperator::{Divide, Eq, Gt, GtEq, Lt, LtEq, Minus, Modulo, Multiply, NotEq, Plus};
         match term {
             Expr::BinaryOp { left, op: Plus | Minus | Multiply | Divide | Modulo, right } => {
-                self.numbers.extend([left, right].into_iter().filter_map(|side| column(side)));
+                for side in [left, right] {
+                    if let Expr::Value(value) = &**side
+                        && let Value::SingleQuotedString(_) = value.value
+                    {
+                        return ControlFlow::Break(format!("{side} is text, and the query takes it for a number"));
+                    }
+                    self.numbers.extend(column(side));
+                }
             }
             Expr::BinaryOp { left, op: Eq | NotEq | Lt | LtEq | Gt | GtEq, right } => {
                 for (name, other) in [(column(left), right), (column(right), left)] {
@@ -216,7 +223,7 @@ impl Names {
                 }
             }
             Expr::Function(function) if OF_NUMBERS.contains(&function.name.to_string().to_lowercase().as_str()) => {
-                let FunctionArguments::List(given) = &function.args else { return };
+                let FunctionArguments::List(given) = &function.args else { return ControlFlow::Continue(()) };
                 let given = given.args.iter().filter_map(|argument| match argument {
                     FunctionArg::Unnamed(FunctionArgExpr::Expr(term)) => column(term),
                     _ => None,
@@ -225,6 +232,7 @@ impl Names {
             }
             _ => {}
         }
+        ControlFlow::Continue(())
     }
 
     /// Puts a table's name into one pair of quotes.

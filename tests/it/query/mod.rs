@@ -167,6 +167,7 @@ fn answers_are_those_counted_by_hand() {
     // By hand: 1, 2, 0.3 and −4.5 have the median 0.65, 1 and 2 the variance 1/2; one value has none.
     check("SELECT ROUND(MEDIAN(x), 12), MEDIAN(point) FROM s.rows", &["0.65 2"]);
     check("SELECT VARIANCE(x), ROUND(STDDEV(x), 9) FROM s.rows WHERE design = 'b'", &["0.5 0.707106781"]);
+    check("SELECT x'00ff', -7 % 3, 1 / 0 FROM s.more LIMIT 1", &["[00, FF] -1 -"]);
     check("SELECT STDDEV(x) FROM s.rows WHERE x > 1.5", &["-"]);
     check("SELECT SQRT(POW(3, 2) + 16), ROUND(COS(RADIANS(60)), 12), LN(-1) FROM s.more", &["5 0.5 -", "5 0.5 -"]);
     let rank = "SELECT design, point, ROW_NUMBER() OVER (PARTITION BY design ORDER BY point DESC) AS n FROM s.rows";
@@ -221,6 +222,7 @@ fn what_is_wrong_is_said_in_one_sentence_with_the_nearest_name() {
         ("SELECT * FROM read_csv('/etc/passwd')", "`read_csv` cannot be called"),
         ("SELECT * FROM read_parquet('x.parquet')", "`read_parquet` cannot be called"),
         ("SELECT design + 1 FROM s.rows", "`design` holds text, and the query takes it for numbers"),
+        ("SELECT 'a' + 1", "'a' is text, and the query takes it for a number"),
         ("SELECT AVG(r.design) FROM s.rows AS r", "`design` holds text, and the query takes it for numbers"),
         ("SELECT * FROM s.rows WHERE design > 1", "`design` holds text, and the query takes it for numbers"),
         (

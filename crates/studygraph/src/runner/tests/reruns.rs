@@ -10,6 +10,7 @@ use crate::store::results::{Changes, Folder};
 fn nothing_runs_the_second_time() {
     let mut bench = Bench::new();
     assert_eq!(bench.planned(&diamond()), ["a: run: never ran", "b: wait for a", "c: wait for a", "d: wait for b, c"]);
+    assert!(!bench.plan(&diamond()).is_up_to_date());
     let first = bench.run(&diamond());
     assert_eq!(bench.computed(), ["a", "b", "c", "d"]);
     assert_eq!(values(&bench, &first, "d"), [1112.0]);
