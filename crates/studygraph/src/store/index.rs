@@ -8,6 +8,8 @@
 use std::fs::{self, File, Metadata};
 use std::io::{self, Read};
 use std::path::Path;
+use std::thread;
+use std::time::Duration;
 
 use serde::{Deserialize, Serialize};
 
@@ -19,6 +21,8 @@ pub const INDEX: &str = "files.json";
 const FORMAT: u32 = 1;
 /// Bytes that are read at once: enough for BLAKE3 to use all of a processor's lanes.
 const PIECE: usize = 1 << 18;
+/// Longer than a system's clock stands still for its files: 10 ms at most on Linux.
+const TICK: Duration = Duration::from_millis(12);
 
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Index {
@@ -74,7 +78,7 @@ impl Index {
         let path = folder.join(INDEX);
         let written = Stamp::of(&fs::metadata(&path).ok()?);
         let index = Self::parse(&file::read(&path, file::MOST_MANIFEST).ok()?)?;
-        Some((index, written.modified.min(written.changed)))
+        Some((index, written.earlier()))
     }
 
     /// None for what is no index.
@@ -92,10 +96,22 @@ impl Index {
         Ok(bytes)
     }
 
+    /// Once more after a moment, where a file was written in the same moment: its stamp would tell nothing, and a run with
+    /// nothing to do would read the file and write the index.
+    ///
     /// # Errors
     /// When it cannot be written.
     pub fn write(&self, folder: &Path) -> Result<(), StoreError> {
-        file::write(&folder.join(INDEX), &self.bytes()?, Durability::Lazy)
+        let path = folder.join(INDEX);
+        let bytes = self.bytes()?;
+        file::write(&path, &bytes, Durability::Lazy)?;
+        let moment = fs::metadata(&path).map(|metadata| Stamp::of(&metadata).earlier());
+        let tells = |moment: i64| self.files.iter().filter_map(|seen| seen.stamp).all(|stamp| stamp.is_before(moment));
+        if moment.is_ok_and(|moment| !tells(moment)) {
+            thread::sleep(TICK);
+            file::write(&path, &bytes, Durability::Lazy)?;
+        }
+        Ok(())
     }
 
     #[must_use]
@@ -129,6 +145,10 @@ impl Stamp {
             let modified = since.and_then(|since| i64::try_from(since.as_nanos()).ok()).unwrap_or(0);
             Self { modified, changed: modified, inode: 0 }
         }
+    }
+
+    fn earlier(&self) -> i64 {
+        self.modified.min(self.changed)
     }
 
     /// Whether the file was touched before this moment.
@@ -210,6 +230,20 @@ mod tests {
         fs::write(folder.path().join(INDEX), "{}").unwrap();
         assert!(Index::read(folder.path()).is_none());
         assert!(Index::parse(br#"{"format":2,"manifest":"","files":[]}"#).is_none());
+    }
+
+    /// The clock of files stands still for milliseconds: a file that was written while it did is told all the same.
+    #[test]
+    fn stamps_of_the_same_moment_tell() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        fs::write(&path, "abc").unwrap();
+        let mut seen = look(&path, "a").unwrap();
+        // As if it had been touched a tick later than it was: not before an index that is written at once.
+        seen.stamp.as_mut().unwrap().changed += 9_000_000;
+        Index::new("m".to_owned(), "p".to_owned(), vec![seen]).write(folder.path()).unwrap();
+        let (index, moment) = Index::read(folder.path()).unwrap();
+        assert!(index.files[0].stamp.unwrap().is_before(moment), "{index:?} {moment}");
     }
 
     /// Pieces of a large file give the digest of the whole.
