@@ -285,7 +285,7 @@ fn words<'a>(code: &str, wanted: &[&'a str]) -> Vec<(usize, &'a str)> {
     found
 }
 
-fn rust_files(folder: &Path) -> Vec<PathBuf> {
+pub(crate) fn rust_files(folder: &Path) -> Vec<PathBuf> {
     let mut files = Vec::new();
     let Ok(entries) = fs::read_dir(folder) else { return files };
     for entry in entries {

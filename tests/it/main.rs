@@ -15,7 +15,6 @@ mod extremes;
 mod fuzz;
 mod layering;
 mod numbers;
-mod optimize;
 mod properties;
 mod python;
 mod query;

@@ -10,6 +10,8 @@ use clap::error::ErrorKind;
 use gearstudy::cli::arguments::Arguments;
 use gearstudy::program;
 
+use crate::layering::rust_files;
+
 fn documents() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut paths = vec![root.join("README.md"), root.join("ARCHITECTURE.md")];
@@ -96,6 +98,27 @@ fn every_study_in_the_documents_loads() {
         }
     }
     assert!(count >= 1);
+}
+
+#[test]
+fn every_source_file_that_is_named_exists() {
+    let top = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let folders = ["src", "crates", "tests", "benches"].iter().flat_map(|folder| rust_files(&top.join(folder)));
+    let sources: Vec<_> = folders.chain([top.join("build.rs")]).collect();
+    let comments = sources.iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap()));
+    let mut missing = Vec::new();
+    let mut count = 0;
+    for (path, text) in documents().into_iter().chain(comments) {
+        let names = text.split('`').filter(|name| !name.contains(['<', '\n', ' ', '{']));
+        for name in names.map(Path::new).filter(|name| name.extension().is_some_and(|end| end == "rs")) {
+            count += 1;
+            if !sources.iter().any(|source| source.ends_with(name)) {
+                missing.push(format!("{}: {}", path.display(), name.display()));
+            }
+        }
+    }
+    assert!(missing.is_empty(), "{}", missing.join("\n"));
+    assert!(count >= 100, "only {count} names were found");
 }
 
 #[test]

@@ -135,36 +135,4 @@ fn points_held(count: usize, dimension: usize) -> usize {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-    use declare::error::Failure;
-    use genetic::{Genetic, Selection};
-
-    /// What a study would read, and what somebody writes in Rust, are one search.
-    #[test]
-    fn a_method_can_be_made_without_a_study() {
-        let settings =
-            Genetic { population: 20, generations: 5, selection: Selection::Tournament, ..Genetic::default() };
-        let seed = || Seed::of_stage(7, "optimum");
-        let bounds = || Bounds::new(vec![(-1.0, 2.0)]).unwrap();
-        let best = |mut search: Optimizer| {
-            search.run(|points| Ok::<_, Failure>(points.iter().map(|point| point[0] * point[0]).collect())).unwrap();
-            search.best().cloned()
-        };
-        let read = read("genetic", &settings.record()).unwrap();
-        let typed = best(optimizer(&settings, bounds(), seed()).unwrap());
-        assert!(typed.is_some() && typed == best(search(&*read, bounds(), seed()).unwrap()));
-        let wrong = Genetic { crossover: 1.5, ..settings.clone() };
-        assert!(optimizer(&wrong, bounds(), seed()).is_err_and(|error| error.message == "`crossover` is 1.5"));
-        let elite = Genetic { elite: 20, ..settings };
-        assert!(optimizer(&elite, bounds(), seed()).is_err_and(|error| error.field == Some("elite")));
-    }
-
-    #[test]
-    fn every_method_and_its_record_say_the_same() {
-        for method in METHODS {
-            let record = declare::declared::record_of(method.member.fields, &[]);
-            assert!((method.read)(&record).foresee(3).is_ok(), "{}", method.member.name);
-        }
-    }
-}
+mod tests;

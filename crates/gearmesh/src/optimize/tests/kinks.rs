@@ -6,7 +6,7 @@
 //! 2, Rosen-Suzuki, with starts and minima given there.
 
 use super::{choice, integer, run, search};
-use gearmesh::optimize::search::{Optimizer, Reason};
+use crate::optimize::search::{Optimizer, Reason};
 
 struct Kinked {
     name: &'static str,

@@ -1,6 +1,6 @@
-"""Values that tests/it/optimize/reference.rs compares with, from SciPy and from an independent genetic algorithm.
+"""Values that `reference.rs` beside this compares with, from SciPy and from an independent genetic algorithm.
 
-    pip install scipy==1.17.1 && python tests/reference/optimize.py > tests/reference/optimize.json
+    pip install scipy==1.17.1 && python reference.py > reference.json
 """
 
 import json

@@ -1,14 +1,14 @@
 //! Second method: SciPy's Nelder–Mead step for step, its differential evolution and an independent genetic algorithm by
-//! their statistics, its Sobol points. The values come from `tests/reference/optimize.py`.
+//! their statistics, its Sobol points. The values come from `reference.py`.
 
 use serde_json::Value as Json;
 
 use super::{integer, run, search};
+use crate::optimize::search::Optimizer;
 use declare::record::Value;
-use gearmesh::optimize::search::Optimizer;
 
 fn reference(part: &str) -> Vec<Json> {
-    let all: Json = serde_json::from_str(include_str!("../../reference/optimize.json")).unwrap();
+    let all: Json = serde_json::from_str(include_str!("reference.json")).unwrap();
     all[part].as_array().unwrap().clone()
 }
 

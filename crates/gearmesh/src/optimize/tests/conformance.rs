@@ -7,13 +7,13 @@ use proptest::prelude::*;
 use rayon::prelude::*;
 
 use super::{choice, integer, run, search, with};
+use crate::optimize::bounds::Bounds;
+use crate::optimize::search::{Optimizer, Reason};
+use crate::optimize::{self, METHODS, members};
 use declare::declared::{entry, record_of};
 use declare::error::Failure;
 use declare::record::Value;
 use declare::seed::Seed;
-use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::search::{Optimizer, Reason};
-use gearmesh::optimize::{self, METHODS, members};
 
 /// Short runs of every method, and of the variants that take another path.
 fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {

@@ -4,10 +4,10 @@
 //! Nonlinear Programming Codes (Springer 1981); bounds that they do not have are wide of the minimum.
 
 use super::{choice, integer, search};
+use crate::optimize::constraints::{Evaluation, KEPT};
+use crate::optimize::search::Optimizer;
 use declare::error::Failure;
 use declare::record::Value;
-use gearmesh::optimize::constraints::{Evaluation, KEPT};
-use gearmesh::optimize::search::Optimizer;
 
 struct Problem {
     number: u32,

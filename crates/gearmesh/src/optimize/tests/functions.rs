@@ -2,8 +2,8 @@
 //! stated too: a local search may end in any of several minima, a genetic algorithm with ten bits near one.
 
 use super::{choice, integer, run, search};
+use crate::optimize::search::{Optimizer, Reason};
 use declare::record::Value;
-use gearmesh::optimize::search::{Optimizer, Reason};
 
 const SEEDS: std::ops::Range<u64> = 0..20;
 
