@@ -254,22 +254,39 @@ fn reflect(coordinate: f64) -> f64 {
 mod tests {
     use super::*;
 
-    #[test]
-    fn a_trial_replaces_its_parent_unless_it_is_worse() {
-        let mut search = EvolutionSearch {
-            settings: DifferentialEvolution::default(),
+    /// A search of one variable, with a tolerance of 1 %.
+    fn search(population: [f64; 3], values: [f64; 3], trials: [f64; 3]) -> EvolutionSearch {
+        EvolutionSearch {
+            settings: DifferentialEvolution { tolerance: 0.01, ..DifferentialEvolution::default() },
             seed: Seed::of_stage(1, "select"),
-            population: vec![vec![0.1], vec![0.2], vec![0.3]],
-            values: vec![1.0, 2.0, 3.0],
-            trials: vec![vec![0.4], vec![0.5], vec![0.6]],
+            population: population.map(|x| vec![x]).to_vec(),
+            values: values.to_vec(),
+            trials: trials.map(|x| vec![x]).to_vec(),
             told: 1,
             ended: None,
             polishing: None,
-        };
+        }
+    }
+
+    #[test]
+    fn a_trial_replaces_its_parent_unless_it_is_worse() {
+        let mut search = search([0.1, 0.2, 0.3], [1.0, 2.0, 3.0], [0.4, 0.5, 0.6]);
+        assert_eq!(search.best(), 0);
         search.select(&[1.5, 2.0, 0.5]);
         assert_eq!(search.population, [[0.1], [0.5], [0.6]]);
         assert_eq!(search.values, [1.0, 2.0, 0.5]);
         assert_eq!(search.best(), 2);
+    }
+
+    #[test]
+    fn it_has_converged_where_all_values_or_all_places_are_one() {
+        let (apart, alike) = ([0.1, 0.5, 0.9], [2.0, 2.019, 2.001]);
+        let converged = |population, values| search(population, values, [0.0; 3]).converged();
+        assert!(converged(apart, alike) && converged(apart, alike.map(|value| value - 4.03)));
+        assert!(!converged(apart, [2.0, 2.021, 2.001]) && !converged(apart, [-2.0, -1.979, -2.0]));
+        let (near, far) = ([0.5, 0.5 + 4e-11, 0.5 - 9e-11], [0.5, 0.5 + 4e-11, 0.5 - 1.1e-10]);
+        let unlike = [1.0, 2.0, 3.0];
+        assert!(converged(near, unlike) && !converged(far, unlike));
     }
 
     #[test]

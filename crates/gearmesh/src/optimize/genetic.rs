@@ -411,6 +411,23 @@ mod tests {
     }
 
     #[test]
+    fn a_gain_counts_as_a_share_of_the_best_value() {
+        let gains = |from: f64, to: f64| {
+            let (selection, converged_after) = (Selection::Tournament, Some(1));
+            let settings =
+                Genetic { population: 2, least_improvement: 0.1, selection, converged_after, ..Genetic::default() };
+            let mut search = settings.strategy(1, Seed::of_stage(11, "gain"));
+            search.learn(&[from, from]).unwrap();
+            assert_eq!(search.finished(), None);
+            search.learn(&[to, from]).unwrap();
+            search.finished().is_none()
+        };
+        for scale in [1e-3, 1.0, 1e3, -1e3] {
+            assert!(gains(scale, scale - 0.101 * scale.abs()) && !gains(scale, scale - 0.099 * scale.abs()), "{scale}");
+        }
+    }
+
+    #[test]
     fn codes_end_on_the_bounds_and_gray_neighbours_differ_in_one_bit() {
         for bits in [1, 10, 32] {
             assert_eq!(decode(&vec![false; bits], bits, Coding::Binary), [0.0]);

@@ -2,6 +2,7 @@
 
 mod accuracy;
 mod reference;
+mod scaling;
 
 use super::energy::{Beam, Energy, GearBody};
 use super::ring::Ring;
@@ -168,22 +169,6 @@ fn tables_equal_direct_integration() {
                     assert!(difference.abs() < 1e-12, "{shape:?} {side:?} {what} at {roll}: off by {difference:e}");
                 }
             }
-        }
-    }
-}
-
-/// Tier: invariant; compliances of gears k times as large in every direction are 1/k as large.
-#[test]
-fn stiffness_scales_with_the_module() {
-    let coupled = Assumptions { coupled: true, ..SUMMED };
-    let small = pair(1.75);
-    let base = extremes(&small, &energy(&small, coupled).unwrap());
-    for factor in [1e-3, 0.1, 7.0, 1000.0] {
-        let [pinion, gear] = specifications(3e-3 * factor, 1.75);
-        let large = GearPair::new(pinion, gear, None).unwrap();
-        let scaled = extremes(&large, &energy(&large, coupled).unwrap());
-        for (one, many) in base.into_iter().zip(scaled) {
-            assert!((many / (factor * one) - 1.0).abs() < 1e-11, "{many} for {factor} times {one}");
         }
     }
 }

@@ -202,8 +202,10 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("exponent", Number(2.0))]);
     assert!(message.contains("`curve: power` only"), "{message}");
     let start = ("start_roll_angle", Quantity(0.5));
-    let message = refused("tip_relief", &[amount.clone(), start, ("counted_from", Choice("single_zone"))]);
-    assert!(message.contains("`counted_from: single_zone` goes with"), "{message}");
+    for family in ["tip_relief", "root_relief"] {
+        let message = refused(family, &[amount.clone(), start.clone(), ("counted_from", Choice("single_zone"))]);
+        assert!(message.contains("`counted_from: single_zone` goes with"), "{family}: {message}");
+    }
     let message = refused("end_relief", &[amount, ("length", Quantity(10.1e-3))]);
     assert!(message.contains("10.100000 mm long") && message.contains("0 to 10.000000 mm"), "{message}");
 }

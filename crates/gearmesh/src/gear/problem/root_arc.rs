@@ -284,6 +284,32 @@ mod tests {
         }
     }
 
+    /// Tier: closed form; angles count from the middle of the tooth, that of the space is at π/z, A's image as far behind it,
+    /// so (x_a + x_a1)/2 = r_b sin(π/z) cos(π/z − angle). Equation 26 puts A at π/z + inv(α)/2, inv(20°) = 0.014904.
+    #[test]
+    fn inequalities_are_those_of_a_and_its_image() {
+        for teeth in [17, 41] {
+            let gear = gear(teeth);
+            let arc = RootArc::new(&gear).unwrap();
+            let half_pitch = std::f64::consts::PI / f64::from(teeth);
+            assert!((arc.printed_angle() - half_pitch - 0.5 * 0.014_904_383_867_336_45).abs() < 1e-15);
+            let circle = Circle { centre: [2e-3, 12e-3], radius: 1.1e-3 };
+            for (angle, found) in [
+                (gear.half_base_angle, arc.inequalities_derived(circle)),
+                (arc.printed_angle(), arc.inequalities_printed(circle)),
+            ] {
+                let middle = gear.base_radius * half_pitch.sin() * (half_pitch - angle).cos();
+                let expected = [
+                    circle.radius - 1.875e-3,
+                    middle - circle.centre[0],
+                    circle.centre[0] - gear.base_radius * angle.sin(),
+                ];
+                let near = found.iter().zip(expected).all(|(found, expected)| (found - expected).abs() < 1e-16);
+                assert!(near, "{teeth}: {found:?}, {expected:?}");
+            }
+        }
+    }
+
     /// Room for variables and constraints is kept as many as there are.
     #[test]
     fn as_many_are_foreseen_as_there_are() {

@@ -141,3 +141,26 @@ fn least_shifts_and_missing_clearance_are_those_of_iso_21771() {
         }
     }
 }
+
+/// Tier: closed form; below the mate's tip the flank goes on for √(r_a² − r_b²) − √(r_F² − r_b²) over r_b in roll angle,
+/// negative where a space ends above it; a space that is cut down to the root circle has no gap there.
+#[test]
+fn reserve_and_gap_are_those_of_the_radii() {
+    for (teeth, shift) in [([17, 30], [0.4, 0.3]), ([24, 36], [0.0, 0.0]), ([20, 60], [0.0, 0.0])] {
+        let [z1, z2] = teeth;
+        let pair = GearPair::new(specification(z1, 3.0, shift[0]), specification(z2, 3.0, shift[1]), None).unwrap();
+        let outlines = [&pair.pinion, &pair.gear].map(|gear| shaped(gear, "trochoid").unwrap());
+        for (side, [own, mate]) in [(Side::Pinion, [0, 1]), (Side::Gear, [1, 0])] {
+            let gear = pair.side(side);
+            let mating = Mating::new(&pair, side, &outlines[own], &outlines[mate]);
+            let alone = Validity::new(gear, &outlines[own]);
+            let other = pair.side(side.other());
+            // The mate's tip on the line of action: from there to the gear's own foot of the tangent.
+            let beyond = (other.tip_radius.powi(2) - other.base_radius.powi(2)).sqrt();
+            let active = (pair.tangent_length - beyond) / gear.base_radius;
+            let form = (alone.form_radius.powi(2) - gear.base_radius.powi(2)).max(0.0).sqrt() / gear.base_radius;
+            assert_near(mating.contact_reserve, active - form, 1e-9, "reserve");
+            assert_near(alone.root_gap, 0.0, 1e-15, "gap");
+        }
+    }
+}
