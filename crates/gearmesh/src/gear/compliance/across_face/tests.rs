@@ -1,9 +1,13 @@
 //! Lengths against another program, closed forms, scales, and how many sections they take.
 
 use super::*;
-use crate::gear::compliance::weber_banaschek::Body;
-use crate::gear::geometry::{Rack, Specification};
+use crate::gear::compliance::weber_banaschek::{Body, WeberBanaschek};
+use crate::gear::compliance::{Assumptions, ContactLaw, Method};
+use crate::gear::geometry::{GearPair, Rack, Specification};
 use crate::gear::material::Material;
+
+const PLAIN: Assumptions =
+    Assumptions { root: RootShape::Trochoid, contact: ContactLaw::Linear, coupled: true, torque: None, accuracy: None };
 
 fn gear(teeth: u32, module: f64, ratio: f64) -> Gear {
     Gear::new(&Specification {
@@ -96,5 +100,67 @@ fn sections_suffice() {
     let fine = SectionedTooth { gear: &gear, sections, clamped: shape.clamped, moved: shape.moved };
     for roll in [0.1, 0.3, 0.5] {
         assert!((fine.reach(roll) / shape.reach(roll) - 1.0).abs() < 2e-3, "{}", fine.reach(roll) / shape.reach(roll));
+    }
+}
+
+/// Tier: closed form. A tooth as thick everywhere bends and shears as a beam: the rotations are polynomials of the height,
+/// and so is what their squares sum up to. How far the root gives way comes from Weber's compliance of a clamped tooth, a
+/// square in the arm of the load: by Castigliano its slope is twice the tilt, and what is left of it the shift.
+#[test]
+fn a_tooth_of_even_thickness_twists_as_a_beam() {
+    let gear = gear(19, 1.0, 1.75);
+    let (height, chord, thickness, moved) = (8.0, 2.2, 1.7, 0.7);
+    // At this roll angle the load is across the tooth.
+    let upright = gear.half_base_angle;
+    assert!(gear.load_angle(upright).abs() < 1e-15);
+    let clamp = |arm: f64| {
+        let body = Body { height: gear.base_radius - arm * chord, chord, wind_up: 0.0 };
+        body.compliance(&gear, upright) * gear.specification.face_width
+    };
+    let count = 20_000;
+    let extent = 3.0 / f64::from(count);
+    let sections =
+        (0..count).map(|index| [height + extent * (f64::from(index) + 0.5), extent, thickness]).collect::<Vec<_>>();
+    let clamped = Body { height, chord, wind_up: 0.0 };
+    let tooth = SectionedTooth { gear: &gear, sections, clamped, moved };
+    let (nu, modulus) = (0.3, 1.0 / 2.6);
+    for roll in [0.3, 0.5] {
+        let cosine = gear.load_angle(roll).cos();
+        let length = gear.base_radius / cosine - height;
+        assert!(length > 0.5 && length < 3.0, "{length}");
+        let arm = length / chord;
+        let slope = 0.25 * (clamp(arm + 1.0) - clamp(arm - 1.0));
+        let (tilt, shift) = (cosine * slope / chord, cosine * (clamp(arm) - slope * arm));
+        let bending = 12.0 * (1.0 - nu * nu) * cosine / thickness.powi(3);
+        // Under the load, ω = tilt + γ/2 + k (L s − s²/2); above it what the beam has turned to.
+        let first = tilt + 0.5 * 1.2 * cosine / (modulus * thickness);
+        let below = first * first * length
+            + 2.0 / 3.0 * first * bending * length.powi(3)
+            + 2.0 / 15.0 * bending * bending * length.powi(5);
+        let above = (tilt + 0.5 * bending * length * length).powi(2) * (3.0 - length);
+        let exact = modulus * (thickness.powi(3) / 3.0 * (below + above) + moved * shift * shift);
+        let found = tooth.reach(roll);
+        assert!((found / exact - 1.0).abs() < 1e-6, "{roll}: {found} for {exact}");
+    }
+}
+
+/// The body moves down to the bore, and no deeper than the face is wide; the wind-up is that of the plane table.
+#[test]
+fn the_body_moves_to_the_bore_or_as_deep_as_the_face_is_wide() {
+    let specification = |teeth| gear(teeth, 2e-3, 3.0).specification;
+    let pair = GearPair::new(specification(19), specification(48), None).unwrap();
+    let tables = WeberBanaschek {}.tabulate(&pair, PLAIN).unwrap().compliance;
+    for (gear, table) in [(&pair.pinion, &tables.pinion), (&pair.gear, &tables.gear)] {
+        let body = Body::new(gear, &gear.root(RootShape::Trochoid).unwrap());
+        let deep = gear.root_radius - gear.specification.bore_radius;
+        for (face_width, depth) in [(100.0, deep), (deep, deep), (1e-3, 1e-3)] {
+            let tooth = SectionedTooth::new(gear, face_width);
+            assert!((tooth.moved / (body.chord * depth / 3.0) - 1.0).abs() < 1e-14, "{face_width}: {}", tooth.moved);
+        }
+        let layers = Layers::new(gear, table, gear.specification.face_width);
+        assert!((layers.wind_up / body.wind_up - 1.0).abs() < 1e-12, "{}", layers.wind_up);
+        let stiff = table.body.value(gear.tip_roll());
+        let most = Layers::new(gear, table, 1e-3 * gear.specification.face_width).wind_up;
+        assert!(most > 0.0 && most <= stiff, "no more than the body has: {most} of {stiff}");
     }
 }

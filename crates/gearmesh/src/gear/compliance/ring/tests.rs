@@ -253,3 +253,23 @@ fn the_published_fit_is_reproduced_inside_its_range() {
         }
     }
 }
+
+/// Tier: closed form, Lamé: a ring held at its bore a, of outer radius 1, under an even pull moves outwards by
+/// (1 − ν²)(1 − a²)/E over (1 + a²) + ν(1 − a²), and under an even shear turns as far as μ du/dr − μ u/r = 1/r² says.
+#[test]
+fn an_even_load_is_lame_s() {
+    for bore_ratio in [1.05, 1.4, 4.0, 50.0] {
+        let gear = gear(30, bore_ratio);
+        let ring = Ring::new(&gear, root_angle(&gear));
+        let nu = gear.specification.material.poisson_ratio;
+        let (hole, shear_modulus) = (1.0 / bore_ratio / bore_ratio, 0.5 / (1.0 + nu));
+        let [radial, _, _, tangential] = ring.mean();
+        let pulled = (1.0 - nu * nu) * (1.0 - hole) / ((1.0 + hole) + nu * (1.0 - hole));
+        assert!((radial / (pulled * shear_modulus) - 1.0).abs() < 1e-13, "{bore_ratio}: {radial}");
+        // Steps along the radius: ∫ of r dω with dω/dr = 1/(μ r³).
+        let (count, bore) = (20_000, 1.0 / bore_ratio);
+        let step = libm::log(bore_ratio) / f64::from(count);
+        let turned: f64 = (0..count).map(|at| step / (bore * libm::exp(step * (f64::from(at) + 0.5))).powi(2)).sum();
+        assert!((tangential / turned - 1.0).abs() < 1e-6, "{bore_ratio}: {tangential} for {turned}");
+    }
+}
