@@ -1,8 +1,9 @@
-//! What compliances must do where gears are larger, wider or stiffer.
+//! What compliances must do where gears are larger, wider or stiffer; how many teeth they know, and how far formulas go.
 
 use super::{Energy, GearBody, SUMMED, WeberBanaschek, energy, energy_on, extremes, pair, specifications};
 use crate::gear::compliance::finite_element::FiniteElement;
-use crate::gear::compliance::{Assumptions, Method};
+use crate::gear::compliance::{Assumptions, Method, neighbours, sainsot};
+use crate::gear::fixtures::pair_with_contact_ratio;
 use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::material::Material;
 
@@ -57,4 +58,28 @@ fn compliance_is_inverse_to_width_and_modulus() {
             }
         }
     }
+}
+
+/// As many neighbours on a side as pairs can be loaded with a tooth, one more for corner contact; no more than springs are
+/// kept for, and than there are teeth.
+#[test]
+fn as_many_neighbours_are_known_as_can_be_loaded() {
+    for (ratio, count) in [(1.0, 2), (1.6, 3), (2.0, 3), (2.3, 4), (9.0, 5)] {
+        let mut pair = pair_with_contact_ratio(ratio);
+        assert_eq!(neighbours(&pair, Side::Gear), count, "{ratio}");
+        pair.gear.specification.teeth = 3;
+        assert_eq!(neighbours(&pair, Side::Gear), 2, "{ratio}");
+    }
+}
+
+/// Tier: published value; Sainsot, Velex and Duverger fitted 0.01 to 0.12 rad and 1.4 to 7.
+#[test]
+fn the_fitted_range_is_the_published_one() {
+    let warned = |half_angle: f64, ratio: f64| sainsot::Body::new(half_angle, ratio).range_warning().is_some();
+    let (inside, outside) = (1.0 + 1e-4, 1.0 - 1e-4);
+    for (low, high) in [(0.01, 7.0), (0.01, 1.4 * inside * inside), (0.12 * outside * outside, 7.0)] {
+        assert!(!warned(low * inside, high * outside), "{low} {high}");
+    }
+    assert!(warned(0.01 * outside, 3.0) && warned(0.12 * inside, 3.0));
+    assert!(warned(0.05, 1.4 * outside) && warned(0.05, 7.0 * inside));
 }
