@@ -155,3 +155,75 @@ impl Panel {
         above / below
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rules() -> Rule {
+        Rule::new(32, 12)
+    }
+
+    fn power(x: Double, exponent: usize) -> Double {
+        (0..exponent).fold(Double::ONE, |product, _| product * x)
+    }
+
+    /// Tier: closed form; n points are exact for x^k up to k = 2n − 1, and no further.
+    #[test]
+    fn legendre_rules_are_exact_as_far_as_they_must_be() {
+        let (from, to) = (Double::from(-1.0), Double::from(2.0));
+        for (short, last) in [(false, 63), (true, 31)] {
+            for exponent in [0, 1, 2, 5, 16, last - 1, last, last + 1] {
+                let mut sum = [Double::ZERO];
+                let function = |x: Double| [power(x, exponent)];
+                if short {
+                    rules().short(from, to, &mut sum, function);
+                } else {
+                    rules().integrate(from, to, &mut sum, function);
+                }
+                let exact = (power(to, exponent + 1) - power(from, exponent + 1)) / (exponent + 1) as f64;
+                let error = ((sum[0] - exact) / exact).high.abs();
+                assert_eq!(error < 1e-27, exponent <= last, "x^{exponent}: {error:e}");
+            }
+        }
+    }
+
+    /// Tier: closed form; powers of 3/2 at either end by the one, the logarithm by the other.
+    #[test]
+    fn unit_rules_integrate_what_is_not_smooth_at_the_ends() {
+        let error = |singular: bool, function: fn(Double) -> Double, exact: f64| {
+            let sum = rules().unit(singular).into_iter().fold(Double::ZERO, |sum, (x, w)| sum + w * function(x));
+            (sum - exact).high.abs()
+        };
+        let rooted = |x: Double| x * x.sqrt() * 2.5;
+        assert!(error(false, |_| Double::ONE, 1.0) < 1e-29);
+        assert!(error(false, rooted, 1.0) < 1e-25, "{:e}", error(false, rooted, 1.0));
+        let mirrored = |x: Double| (Double::ONE - x) * (Double::ONE - x).sqrt() * 2.5;
+        assert!(error(false, mirrored, 1.0) < 1e-25, "{:e}", error(false, mirrored, 1.0));
+        // The last step is 1e-20 from the end, where the logarithm is −46.
+        for (function, exact) in [
+            ((|_| Double::ONE) as fn(Double) -> Double, 1.0),
+            (|x| x.logarithm(), -1.0),
+            (|x| x * x.logarithm(), -0.25),
+            (|x| x.sqrt() * 1.5, 1.0),
+        ] {
+            assert!(error(true, function, exact) < 1e-17, "{exact}: {:e}", error(true, function, exact));
+        }
+    }
+
+    /// Tier: closed form; n nodes carry every polynomial of degree n − 1, at the nodes and between.
+    #[test]
+    fn a_panel_is_the_polynomial_through_its_nodes() {
+        let rule = rules();
+        let (from, to) = (Double::from(0.5), Double::from(0.8));
+        let nodes = Panel::nodes(from, to, &rule);
+        assert!(nodes.windows(2).all(|pair| pair[0].high < pair[1].high) && nodes.len() == 12);
+        let values = nodes.iter().map(|x| power(*x, 11)).collect();
+        let panel = Panel::new(to, nodes.clone(), values, &rule);
+        let between = (0..=10).map(|part| from + (to - from) * (0.1 * f64::from(part)));
+        for x in between.chain(nodes) {
+            let error = (panel.value(x) / power(x, 11) - 1.0).high.abs();
+            assert!(error < 1e-26, "{}: {error:e}", x.high);
+        }
+    }
+}
