@@ -164,6 +164,19 @@ fn shortest(vectors: &[Vec<f64>]) -> Vec<f64> {
 mod tests {
     use super::*;
 
+    /// Tier: closed form, by hand.
+    #[test]
+    fn halton_points_are_mirrored_digits_in_prime_bases() {
+        assert_eq!(primes().take(10).collect::<Vec<_>>(), [2, 3, 5, 7, 11, 13, 17, 19, 23, 29]);
+        let of = |base: usize, count: usize| (1..=count).map(|index| halton(index, base)).collect::<Vec<_>>();
+        assert_eq!(of(2, 7), [0.5, 0.25, 0.75, 0.125, 0.625, 0.375, 0.875]);
+        for (found, ninths) in of(3, 9).into_iter().zip([3.0, 6.0, 1.0, 4.0, 7.0, 2.0, 5.0, 8.0, 1.0 / 3.0]) {
+            assert!((found - ninths / 9.0).abs() < 1e-15, "{found} {ninths}");
+        }
+        // The axes reflected by the point itself: that along (0, −1/3) keeps the first and turns the second.
+        assert_eq!(basis(0, 2), [[1.0, 0.0], [0.0, -1.0]]);
+    }
+
     #[test]
     fn bases_are_orthonormal_and_turn() {
         for dimension in 2..=6 {

@@ -209,6 +209,28 @@ mod tests {
         }
     }
 
+    /// Tier: second implementation; Brent's method of SciPy 1.17.1 (`minimize_scalar`, bracket 0 and 0.1, the same tolerance)
+    /// takes this many values, the one at 0 included. Ours starts from three other places, so it may take one more.
+    #[test]
+    fn smooth_minima_take_as_few_values_as_scipy_s() {
+        type Function = fn(f64) -> f64;
+        let cases: [(Function, f64, [usize; 3]); 5] = [
+            (|t| (3.0 * t).exp() - 5.0 * t, (5.0_f64 / 3.0).ln() / 3.0, [9, 11, 12]),
+            (|t| (2.0 * (t - 0.45)).cosh(), 0.45, [10, 12, 12]),
+            (|t| -1.0 / (1.0 + 25.0 * (t - 0.35).powi(2)), 0.35, [11, 12, 13]),
+            (|t| (t - 0.5).powi(2) - 0.05 * (9.0 * (t - 0.5)).cos(), 0.5, [12, 12, 13]),
+            (|t| t + 0.6 - (t + 1.05).ln(), -0.05, [9, 11, 12]),
+        ];
+        for (index, (function, minimum, scipy)) in cases.into_iter().enumerate() {
+            for (tolerance, values) in [1e-4, 1e-6, 1e-8].into_iter().zip(scipy) {
+                let (found, count) = search(function, (-1.0, 2.0), 0.1, tolerance);
+                // Below 1e-8 values no longer tell places apart.
+                assert!((found - minimum).abs() <= tolerance.max(2e-8), "{index}: {found}");
+                assert!(count < values + 1, "{index}, {tolerance}: {} for {values}", count + 1);
+            }
+        }
+    }
+
     #[test]
     fn kinks_and_flat_minima_are_met_to_the_tolerance() {
         for tolerance in [1e-3, 1e-6, 1e-10] {
