@@ -271,10 +271,10 @@ pub struct Question {
     /// The study whose tables may be called `stage.table`; not needed where there is one alone.
     #[arg(long, value_name = "NAME")]
     pub study: Option<String>,
-    #[arg(long, value_enum, default_value_t = Format::Pretty)]
+    #[arg(long, value_enum, default_value_t = Format::Pretty, requires = "sql")]
     pub format: Format,
     /// Write to this file, as its name ends: .csv, .json, .md or .parquet.
-    #[arg(long, short, value_name = "FILE", conflicts_with = "format")]
+    #[arg(long, short, value_name = "FILE", conflicts_with = "format", requires = "sql")]
     pub output: Option<PathBuf>,
 }
 

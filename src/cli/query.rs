@@ -10,7 +10,7 @@ use super::diff::{side, study_name, working_tree};
 use super::print::{Grid, Heading};
 use super::progress::out;
 use crate::query::tables::Tables;
-use crate::query::{Answer, ask};
+use crate::query::{Answer, Kind, ask};
 use studygraph::history::git::Repository;
 use studygraph::store::cache::Cache;
 use studygraph::store::file::{self, Durability};
@@ -54,7 +54,8 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
 fn list(tables: &mut Tables<'_>) -> Result<String, String> {
     let mut text = String::new();
     for (name, record) in tables.list()? {
-        text += &format!("{name}  {} rows\n", record.rows);
+        let rows = record.rows;
+        text += &format!("{name}  {rows} {}\n", if rows == 1 { "row" } else { "rows" });
         for column in &record.columns {
             let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
             text += &format!("  {}{unit}: {}\n", column.name, column.description);
@@ -66,7 +67,7 @@ fn list(tables: &mut Tables<'_>) -> Result<String, String> {
 fn grid(answer: &Answer) -> Grid<'_> {
     let heading = |column: &crate::query::Column| {
         let name = column.name.clone();
-        Heading { shown: name.clone(), name, is_number: column.is_number }
+        Heading { shown: name.clone(), name, is_number: column.is_number() }
     };
     Grid {
         columns: answer.columns.iter().map(heading).collect(),
@@ -122,27 +123,32 @@ fn table(answer: &Answer) -> Result<Table, String> {
             )
         };
         let cells = &column.cells;
-        let first = cells.iter().flatten().next();
-        let (own, values) = match first {
-            None | Some(Cell::Float(_)) => {
+        let (own, values) = match column.kind {
+            None | Some(Kind::Float) => {
                 let values = cells.iter().map(|cell| match cell {
-                    Some(Cell::Float(value)) => *value,
-                    _ => f64::NAN,
+                    Some(Cell::Float(value)) if value.is_infinite() => Err(format!(
+                        "`{}` has {value}, which a Parquet file of this program does not hold: write another kind of \
+                         file, or leave it out with WHERE",
+                        column.name
+                    )),
+                    Some(Cell::Float(value)) => Ok(*value),
+                    _ => Ok(f64::NAN),
                 });
-                (Column::float(&column.name, "", "").allows_nan(), Data::Float(values.collect()))
+                let values = values.collect::<Result<_, _>>()?;
+                (Column::float(&column.name, "", "").allows_nan(), Data::Float(values))
             }
-            Some(Cell::Integer(_)) => {
+            Some(Kind::Integer) => {
                 let value = |cell: &Option<Cell>| match cell {
                     Some(Cell::Integer(value)) => Ok(*value),
                     _ => Err(empty()),
                 };
                 (Column::integer(&column.name, ""), Data::Integer(cells.iter().map(value).collect::<Result<_, _>>()?))
             }
-            Some(Cell::Text(_)) => {
+            Some(Kind::Text) => {
                 let value = |cell: &Option<Cell>| cell.as_ref().map(Cell::to_string).ok_or_else(empty);
                 (Column::text(&column.name, ""), Data::Text(cells.iter().map(value).collect::<Result<_, _>>()?))
             }
-            Some(Cell::Flag(_)) => {
+            Some(Kind::Flag) => {
                 let value = |cell: &Option<Cell>| match cell {
                     Some(Cell::Flag(value)) => Ok(*value),
                     _ => Err(empty()),

@@ -77,7 +77,12 @@ pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
     };
     let Some(kind) = stage::kind(name) else {
         let known = KINDS.iter().map(|kind| kind.name);
-        return Err(Ending::Usage(format!("there is no kind `{name}`; {}", suggest(name, known))));
+        let within: Vec<_> = KINDS.iter().filter(|kind| describe::mentions(kind, name)).map(|kind| kind.name).collect();
+        let help = match within[..] {
+            [] => suggest(name, known),
+            [first, ..] => format!("it belongs to {}: `gearstudy kinds {first}` shows it", within.join(", ")),
+        };
+        return Err(Ending::Usage(format!("there is no kind `{name}`; {help}")));
     };
     out(&describe::kind(kind));
     Ok(())

@@ -5,23 +5,34 @@
 
 use std::cmp::Ordering;
 use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering::Relaxed};
 
 use rusqlite::config::DbConfig;
 use rusqlite::functions::{Aggregate, Context, FunctionFlags};
+use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, Error, ErrorCode, params_from_iter};
 
+use super::kinds::{COMPARED, IS_NUMBER, LIKE_KIND};
 use super::names::Parsed;
-use super::{Answer, Column};
+use super::{Answer, Column, Kind};
 use declare::error::suggest;
 use studygraph::table::data::{Cell, Data, Table};
 
-/// Bytes that a query may hold: joins of large tables have more rows than any machine can.
-const MOST_MEMORY: u64 = 2 << 30;
+/// Bytes that SQLite may hold, that an answer may, and that medians may: joins of large tables have more rows than any
+/// machine can.
+const MOST_MEMORY: usize = 2 << 30;
 /// Values of an answer; each takes some thirty bytes until it is written.
 const MOST_VALUES: usize = 20_000_000;
+/// Bytes of one text.
+const LONGEST_TEXT: i32 = 16 << 20;
 /// Bytes of what SQLite says; what is longer repeats the query.
 const LONGEST_SENTENCE: usize = 240;
+/// How the sentences of our own functions begin, among those of SQLite.
+const OURS: &str = "gearstudy: ";
+/// Characters of a text that is shown.
+const SHOWN: usize = 40;
 /// How the type of a flag is called; SQLite has none of its own and keeps 0 and 1.
 const FLAG: &str = "BOOLEAN";
 
@@ -35,16 +46,21 @@ pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)]) -> Result<Answer,
     let mut statement = database.prepare(&query.text).map_err(failed)?;
     let mut columns = Vec::new();
     for column in statement.columns() {
-        let kind = column.decl_type().unwrap_or_default();
-        let is_number = ["REAL", "INTEGER"].contains(&kind);
-        columns.push((Column { name: column.name().to_owned(), is_number, cells: Vec::new() }, kind == FLAG));
+        let kind = match column.decl_type().unwrap_or_default() {
+            "REAL" => Some(Kind::Float),
+            "INTEGER" => Some(Kind::Integer),
+            "TEXT" => Some(Kind::Text),
+            FLAG => Some(Kind::Flag),
+            _ => None,
+        };
+        columns.push(Column { name: column.name().to_owned(), kind, cells: Vec::new() });
     }
     let mut names = BTreeSet::new();
-    if let Some((twice, _)) = columns.iter().find(|(column, _)| !names.insert(&column.name)) {
+    if let Some(twice) = columns.iter().find(|column| !names.insert(&column.name)) {
         return Err(format!("two columns of the answer are called `{}`; give one another name with AS", twice.name));
     }
     let mut rows = statement.query([]).map_err(failed)?;
-    let (mut height, width) = (0, columns.len());
+    let (mut height, width, mut held) = (0, columns.len(), 0);
     while let Some(row) = rows.next().map_err(failed)? {
         height += 1;
         if height * width > MOST_VALUES {
@@ -53,11 +69,16 @@ pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)]) -> Result<Answer,
                  or sum up with GROUP BY"
             ));
         }
-        for (at, (column, is_flag)) in columns.iter_mut().enumerate() {
-            column.cells.push(cell(row.get_ref(at).map_err(failed)?, *is_flag));
+        for (at, column) in columns.iter_mut().enumerate() {
+            let cell = cell(row.get_ref(at).map_err(failed)?, column.kind == Some(Kind::Flag));
+            held += if let Some(Cell::Text(text)) = &cell { text.len() } else { 0 };
+            column.cells.push(cell);
+        }
+        if held > MOST_MEMORY {
+            return Err(too_large("the answer"));
         }
     }
-    let mut columns: Vec<Column> = columns.into_iter().map(|(column, _)| of_one_kind(column)).collect();
+    let mut columns: Vec<Column> = columns.into_iter().map(of_one_kind).collect();
     if !query.ordered {
         sort(&mut columns, height);
     }
@@ -70,6 +91,7 @@ fn filled(tables: &[(&str, Table)]) -> Result<Connection, Error> {
     database.set_db_config(DbConfig::SQLITE_DBCONFIG_DQS_DML, false)?;
     database.query_row(&format!("PRAGMA hard_heap_limit = {MOST_MEMORY}"), [], |_| Ok(()))?;
     database.execute_batch("PRAGMA temp_store = MEMORY")?;
+    database.set_limit(Limit::SQLITE_LIMIT_LENGTH, LONGEST_TEXT)?;
     add_functions(&database)?;
     let filling = database.transaction()?;
     for (name, table) in tables {
@@ -143,10 +165,59 @@ fn add_functions(database: &Connection) -> Result<(), Error> {
     }
     let of_many: [(&str, OfMany); 3] =
         [("median", median), ("stddev", |values| variance(values).map(f64::sqrt)), ("variance", variance)];
+    let kept = Arc::new(AtomicUsize::new(0));
     for (name, of) in of_many {
-        database.create_aggregate_function(name, 1, flags, Sample(of))?;
+        database.create_aggregate_function(name, 1, flags, Sample { of, kept: Arc::clone(&kept) })?;
     }
+    database.create_scalar_function(IS_NUMBER, 2, flags, |given| match given.get_raw(0) {
+        value @ (ValueRef::Text(_) | ValueRef::Blob(_)) => Err(no_number(value, given.get_raw(1))),
+        value => Ok(rusqlite::types::Value::try_from(value)?),
+    })?;
+    database
+        .create_scalar_function(COMPARED, 4, flags, |given| Ok(compared(given, [0, 1])?.map(|order| order as i64)))?;
+    database.create_scalar_function(LIKE_KIND, 4, flags, |given| {
+        compared(given, [0, 1])?;
+        Ok(rusqlite::types::Value::try_from(given.get_raw(0))?)
+    })?;
     Ok(())
+}
+
+fn ours(sentence: &str) -> Error {
+    Error::UserFunctionError((OURS.to_owned() + sentence).into())
+}
+
+/// A value, behind the name of its column if it has one.
+fn shown(value: ValueRef<'_>, name: ValueRef<'_>) -> String {
+    let value = match cell(value, false) {
+        Some(Cell::Text(text)) if text.chars().count() > SHOWN => text.chars().take(SHOWN).collect::<String>() + "…",
+        Some(cell) => cell.to_string(),
+        None => String::new(),
+    };
+    match name.as_str() {
+        Ok(name) if !name.is_empty() => format!("`{name}` (`{value}`)"),
+        _ => format!("`{value}`"),
+    }
+}
+
+fn no_number(value: ValueRef<'_>, name: ValueRef<'_>) -> Error {
+    ours(&format!("{} is text, and the query takes it for a number", shown(value, name)))
+}
+
+/// How two values stand to each other; their names come two places behind them. NULL stands to nothing.
+fn compared(given: &Context<'_>, [one, two]: [usize; 2]) -> Result<Option<Ordering>, Error> {
+    let (a, b) = (given.get_raw(one), given.get_raw(two));
+    Ok(match (a, b) {
+        (ValueRef::Null, _) | (_, ValueRef::Null) => None,
+        (ValueRef::Integer(a), ValueRef::Integer(b)) => Some(a.cmp(&b)),
+        (ValueRef::Text(a), ValueRef::Text(b)) | (ValueRef::Blob(a), ValueRef::Blob(b)) => Some(a.cmp(b)),
+        (ValueRef::Text(_) | ValueRef::Blob(_), _) | (_, ValueRef::Text(_) | ValueRef::Blob(_)) => {
+            let [a, b] = [shown(a, given.get_raw(one + 2)), shown(b, given.get_raw(two + 2))];
+            let is_text = matches!(given.get_raw(one), ValueRef::Text(_) | ValueRef::Blob(_));
+            let (text, number) = if is_text { (a, b) } else { (b, a) };
+            return Err(ours(&format!("{text} is text and {number} a number: they cannot be compared")));
+        }
+        _ => number(given, one)?.zip(number(given, two)?).map(|(a, b)| a.total_cmp(&b)),
+    })
 }
 
 /// NULL stays NULL.
@@ -155,7 +226,8 @@ fn number(given: &Context<'_>, at: usize) -> Result<Option<f64>, Error> {
         ValueRef::Null => None,
         #[allow(clippy::cast_precision_loss)]
         ValueRef::Integer(value) => Some(value as f64),
-        _ => Some(given.get(at)?),
+        ValueRef::Real(value) => Some(value),
+        value => return Err(no_number(value, ValueRef::Null)),
     })
 }
 
@@ -163,7 +235,11 @@ fn number(given: &Context<'_>, at: usize) -> Result<Option<f64>, Error> {
 type OfMany = fn(&mut [f64]) -> Option<f64>;
 
 /// A function of all values of a group that are there.
-struct Sample(OfMany);
+struct Sample {
+    of: OfMany,
+    /// How many values all groups of all such functions keep.
+    kept: Arc<AtomicUsize>,
+}
 
 impl Aggregate<Vec<f64>, Option<f64>> for Sample {
     fn init(&self, _: &mut Context<'_>) -> Result<Vec<f64>, Error> {
@@ -172,11 +248,14 @@ impl Aggregate<Vec<f64>, Option<f64>> for Sample {
 
     fn step(&self, given: &mut Context<'_>, values: &mut Vec<f64>) -> Result<(), Error> {
         values.extend(number(given, 0)?);
+        if self.kept.fetch_add(1, Relaxed) > MOST_MEMORY / size_of::<f64>() {
+            return Err(ours(&too_large("a median or variance")));
+        }
         Ok(())
     }
 
     fn finalize(&self, _: &mut Context<'_>, values: Option<Vec<f64>>) -> Result<Option<f64>, Error> {
-        Ok(values.and_then(|mut values| self.0(&mut values)))
+        Ok(values.and_then(|mut values| (self.of)(&mut values)))
     }
 }
 
@@ -226,9 +305,13 @@ fn of_one_kind(mut column: Column) -> Column {
             }
         }
     }
-    if whole || float || text || flag {
-        column.is_number = !text && !flag;
-    }
+    column.kind = match (text, flag, float, whole) {
+        (true, ..) => Some(Kind::Text),
+        (_, true, ..) => Some(if whole || float { Kind::Text } else { Kind::Flag }),
+        (_, _, true, _) => Some(Kind::Float),
+        (_, _, _, true) => Some(Kind::Integer),
+        _ => column.kind,
+    };
     column
 }
 
@@ -258,25 +341,39 @@ fn order(a: Option<&Cell>, b: Option<&Cell>) -> Ordering {
 /// What SQLite says of a query that it will not do, with the nearest column where it misses one.
 fn failed(error: &Error, tables: &[(&str, Table)]) -> String {
     if error.sqlite_error_code() == Some(ErrorCode::OutOfMemory) {
-        let size = MOST_MEMORY >> 20;
-        return format!(
-            "the query takes more than {size} MiB of memory: join on more columns, or choose fewer rows with WHERE"
-        );
+        return too_large("the query");
     }
     let said = match error {
         Error::SqlInputError { msg, .. } | Error::SqliteFailure(_, Some(msg)) => msg.clone(),
         other => other.to_string(),
     };
+    if let Some((_, sentence)) = said.split_once(OURS) {
+        return sentence.to_owned();
+    }
     if let Some(name) = said.strip_prefix("no such column: ") {
         // Behind the table's name, which may have points too; of one in quotes SQLite asks whether it should be a text.
-        let name = name.split(" - should").next().unwrap_or(name).rsplit('.').next().unwrap_or(name).trim_matches('"');
+        let name = name.split(" - should").next().unwrap_or(name).trim_matches('"');
         let columns = tables.iter().flat_map(|(_, table)| &table.schema().columns);
         let known: BTreeSet<&str> = columns.map(|column| column.name.as_str()).collect();
-        return format!("there is no column `{name}`; {}", suggest(name, known));
+        return match name.rsplit_once('.') {
+            Some((table, column)) if known.contains(column) => {
+                let help = suggest(table, tables.iter().map(|(name, _)| *name));
+                format!("`{table}` is no table of this query that has a column `{column}`; {help}")
+            }
+            of_table => {
+                let name = of_table.map_or(name, |(_, column)| column);
+                format!("there is no column `{name}`; {}", suggest(name, known))
+            }
+        };
     }
     let line = said.lines().find(|line| !line.trim().is_empty()).unwrap_or_default().trim();
     if line.is_empty() || line.len() > LONGEST_SENTENCE {
         return "the query cannot be answered: it has a part that is SQL, but not known here".to_owned();
     }
     format!("the query cannot be answered: {line}")
+}
+
+fn too_large(what: &str) -> String {
+    let size = MOST_MEMORY >> 20;
+    format!("{what} takes more than {size} MiB of memory: join on more columns, or choose fewer rows with WHERE")
 }

@@ -1,27 +1,28 @@
 //! The tables that a query names, and the query as SQLite takes it.
 //!
 //! A table's name has parts, `energy_ga.ste.summary`, with or without quotes; SQLite knows names of one part. So a name
-//! is put into one pair of quotes wherever it stands: behind FROM and JOIN, and before a column. Where SQLite would give
-//! another number than a reader expects (7 / 2 is 3, 5.5 % 2 is 1, 'a' + 1 is 1), the query is changed or refused. Must not
-//! know: which tables there are, but what their columns hold.
+//! is put into one pair of quotes wherever it stands: behind FROM and JOIN, and before a column. Names of columns are put
+//! in quotes too, since some are words of SQL. Must not know: which tables there are, and what their columns hold.
 
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 
 use sqlparser::ast::{
-    BinaryOperator, CastKind, DataType, Expr, Function, FunctionArg, FunctionArgExpr, FunctionArgumentList,
-    FunctionArguments, GroupByExpr, Ident, ObjectName, ObjectNamePart, Query, Select, SelectItem,
-    SelectItemQualifiedWildcardKind, SetExpr, Statement, TableFactor, Value, VisitMut, VisitorMut,
+    Expr, GroupByExpr, Ident, ObjectName, ObjectNamePart, Query, Select, SelectItem, SelectItemQualifiedWildcardKind,
+    SetExpr, Statement, TableFactor, Value, VisitMut, VisitorMut,
 };
 use sqlparser::dialect::GenericDialect;
 use sqlparser::parser::{Parser, ParserOptions};
 
-use studygraph::table::data::{Data, Table};
+use super::kinds::Kinds;
+use declare::error::suggest;
 
 /// A longer text is no query somebody wrote.
 const MOST_BYTES: usize = 16 << 10;
 /// Terms within terms; every link of a chain of ANDs is one.
 const MOST_DEPTH: usize = 200;
+
+const ONE_SELECT: &str = "a query is one SELECT, and changes nothing";
 
 /// A query that was read.
 pub(super) struct Parsed {
@@ -31,10 +32,6 @@ pub(super) struct Parsed {
     pub tables: Vec<String>,
     /// Whether the rows have an order: that of ORDER BY, or of the one table they are taken from.
     pub ordered: bool,
-    /// Columns that something is done to which only numbers allow.
-    numbers: BTreeSet<String>,
-    /// Columns that are compared with a text.
-    texts: BTreeSet<String>,
 }
 
 /// Reads one SELECT.
@@ -51,7 +48,7 @@ pub(super) fn parse(text: &str) -> Result<Parsed, String> {
         format!("the query is no SQL: {}", error.to_string().trim_start_matches("sql parser error: "))
     })?;
     let [Statement::Query(query)] = &mut statements[..] else {
-        return Err("a query is one SELECT, and changes nothing".to_owned());
+        return Err(ONE_SELECT.to_owned());
     };
     let mut names = Names::default();
     // Tables before columns: `a.b.c` before a column is a table only if a table is called so.
@@ -62,29 +59,11 @@ pub(super) fn parse(text: &str) -> Result<Parsed, String> {
         }
     }
     let ordered = query.order_by.is_some() || is_part_of_one_table(query);
-    let Names { tables, mut numbers, mut texts, given, .. } = names;
-    // What the query calls so itself may hold anything.
-    numbers.retain(|name| !given.contains(name));
-    texts.retain(|name| !given.contains(name));
-    Ok(Parsed { text: query.to_string(), tables, ordered, numbers, texts })
-}
-
-/// Whether the columns hold what the query takes them for.
-///
-/// # Errors
-/// One sentence, which names the first that does not in any table.
-pub(super) fn check_kinds(query: &Parsed, tables: &[(&str, Table)]) -> Result<(), String> {
-    let all = |name: &str, wanted: fn(&Data) -> bool| {
-        let mut found = tables.iter().filter_map(|(_, table)| table.column(name)).map(wanted).peekable();
-        found.peek().is_some() && found.all(|found| found)
-    };
-    if let Some(name) = query.numbers.iter().find(|name| all(name, |data| matches!(data, Data::Text(_)))) {
-        return Err(format!("`{name}` holds text, and the query takes it for numbers"));
+    // Names are found, and no term is too deep.
+    if let ControlFlow::Break(problem) = query.visit(&mut Kinds) {
+        return Err(problem);
     }
-    match query.texts.iter().find(|name| all(name, |data| !matches!(data, Data::Text(_)))) {
-        None => Ok(()),
-        Some(name) => Err(format!("`{name}` holds no text: compare it with a value without quotes")),
-    }
+    Ok(Parsed { text: query.to_string(), tables: names.tables, ordered })
 }
 
 #[derive(Clone, Copy, Default, PartialEq, Eq)]
@@ -98,12 +77,8 @@ enum Pass {
 struct Names {
     pass: Pass,
     tables: Vec<String>,
-    /// Names that the query gives to its own parts: `WITH name AS`.
+    /// Names that the query gives to its own parts, `WITH name AS`, in lower case: SQLite tells no case apart.
     own: BTreeSet<String>,
-    /// Names that it gives to columns.
-    given: BTreeSet<String>,
-    numbers: BTreeSet<String>,
-    texts: BTreeSet<String>,
     depth: usize,
 }
 
@@ -111,8 +86,11 @@ impl VisitorMut for Names {
     type Break = String;
 
     fn pre_visit_query(&mut self, query: &mut Query) -> ControlFlow<String> {
+        if changes(&query.body) {
+            return ControlFlow::Break(ONE_SELECT.to_owned());
+        }
         let with = query.with.iter().flat_map(|with| &with.cte_tables);
-        self.own.extend(with.map(|table| table.alias.name.value.clone()));
+        self.own.extend(with.map(|table| table.alias.name.value.to_lowercase()));
         ControlFlow::Continue(())
     }
 
@@ -120,7 +98,7 @@ impl VisitorMut for Names {
         for item in &mut select.projection {
             match item {
                 SelectItem::QualifiedWildcard(SelectItemQualifiedWildcardKind::ObjectName(name), _) => self.join(name),
-                SelectItem::ExprWithAlias { alias, .. } => drop(self.given.insert(alias.value.clone())),
+                SelectItem::ExprWithAlias { alias, .. } => quote(alias),
                 _ => {}
             }
         }
@@ -131,7 +109,7 @@ impl VisitorMut for Names {
     fn post_visit_select(&mut self, select: &mut Select) -> ControlFlow<String> {
         for item in select.projection.iter_mut().filter(|_| self.pass == Pass::Tables) {
             if let SelectItem::UnnamedExpr(term) = item
-                && column(term).is_none()
+                && !matches!(term, Expr::Identifier(_) | Expr::CompoundIdentifier(_))
             {
                 let alias = Ident::with_quote('"', term.to_string());
                 *item = SelectItem::ExprWithAlias { expr: term.clone(), alias };
@@ -149,7 +127,7 @@ impl VisitorMut for Names {
             let Some(whole) = whole(name) else {
                 return ControlFlow::Break(format!("`{name}` is no name of a table"));
             };
-            if !self.own.contains(&whole) && !self.tables.contains(&whole) {
+            if !self.own.contains(&whole.to_lowercase()) && !self.tables.contains(&whole) {
                 self.tables.push(whole);
             }
             self.join(name);
@@ -162,115 +140,64 @@ impl VisitorMut for Names {
         if self.depth > MOST_DEPTH {
             return ControlFlow::Break(format!("the query has more than {MOST_DEPTH} terms within each other"));
         }
-        if self.pass == Pass::Tables {
-            self.note_kinds(term)?;
-        }
-        if let (Pass::Columns, Expr::CompoundIdentifier(parts)) = (self.pass, term)
-            && parts.len() > 2
-            && let Some((column, table)) = parts.split_last()
-        {
-            let whole = joined(table);
-            if self.tables.contains(&whole) {
-                *parts = vec![Ident::with_quote('"', whole), column.clone()];
-            }
-        }
-        ControlFlow::Continue(())
-    }
-
-    fn post_visit_expr(&mut self, term: &mut Expr) -> ControlFlow<String> {
-        self.depth -= 1;
-        if let (Pass::Columns, Expr::BinaryOp { left, op, right }) = (self.pass, &mut *term) {
-            match op {
-                BinaryOperator::Divide => {
-                    let expr = std::mem::replace(left, nothing());
-                    let (kind, data_type) = (CastKind::Cast, DataType::Real);
-                    **left = Expr::Cast { kind, expr, data_type, array: false, format: None };
-                }
-                BinaryOperator::Modulo => {
-                    let (left, right) = (std::mem::replace(left, nothing()), std::mem::replace(right, nothing()));
-                    *term = call("mod", [*left, *right]);
-                }
-                _ => {}
-            }
-        }
-        ControlFlow::Continue(())
-    }
-}
-
-impl Names {
-    /// Notes the columns that are taken for numbers, and those that are compared with a text.
-    fn note_kinds(&mut self, term: &Expr) -> ControlFlow<String> {
-        use BinaryOperator::{Divide, Eq, Gt, GtEq, Lt, LtEq, Minus, Modulo, Multiply, NotEq, Plus};
-        match term {
-            Expr::BinaryOp { left, op: Plus | Minus | Multiply | Divide | Modulo, right } => {
-                for side in [left, right] {
-                    if let Expr::Value(value) = &**side
-                        && let Value::SingleQuotedString(_) = value.value
-                    {
-                        return ControlFlow::Break(format!("{side} is text, and the query takes it for a number"));
+        match (self.pass, term) {
+            (Pass::Columns, Expr::CompoundIdentifier(parts)) => {
+                if let Some((column, table)) = parts.split_last().filter(|(_, table)| table.len() > 1) {
+                    let whole = joined(table);
+                    if !self.is_table(&whole) {
+                        let help = suggest(&whole, self.tables.iter().map(String::as_str));
+                        return ControlFlow::Break(format!("`{whole}` is no table of this query; {help}"));
                     }
-                    self.numbers.extend(column(side));
+                    *parts = vec![Ident::new(whole), column.clone()];
                 }
+                parts.iter_mut().for_each(quote);
             }
-            Expr::BinaryOp { left, op: Eq | NotEq | Lt | LtEq | Gt | GtEq, right } => {
-                for (name, other) in [(column(left), right), (column(right), left)] {
-                    let Expr::Value(value) = &**other else { continue };
-                    match value.value {
-                        Value::Number(..) => self.numbers.extend(name),
-                        Value::SingleQuotedString(_) => self.texts.extend(name),
-                        _ => {}
-                    }
-                }
-            }
-            Expr::Function(function) if OF_NUMBERS.contains(&function.name.to_string().to_lowercase().as_str()) => {
-                let FunctionArguments::List(given) = &function.args else { return ControlFlow::Continue(()) };
-                let given = given.args.iter().filter_map(|argument| match argument {
-                    FunctionArg::Unnamed(FunctionArgExpr::Expr(term)) => column(term),
-                    _ => None,
-                });
-                self.numbers.extend(given);
-            }
+            (Pass::Columns, Expr::Identifier(name)) => quote(name),
             _ => {}
         }
         ControlFlow::Continue(())
     }
 
+    fn post_visit_expr(&mut self, _: &mut Expr) -> ControlFlow<String> {
+        self.depth -= 1;
+        ControlFlow::Continue(())
+    }
+
+    fn pre_visit_value(&mut self, value: &mut sqlparser::ast::ValueWithSpan) -> ControlFlow<String> {
+        match &value.value {
+            Value::Placeholder(sign) => ControlFlow::Break(format!("`{sign}` stands for a value that nobody gives")),
+            Value::HexStringLiteral(digits) => {
+                ControlFlow::Break(format!("`{digits}` is hexadecimal: write the number with the digits 0 to 9"))
+            }
+            _ => ControlFlow::Continue(()),
+        }
+    }
+}
+
+impl Names {
+    fn is_table(&self, name: &str) -> bool {
+        self.tables.iter().any(|table| table == name) || self.own.contains(&name.to_lowercase())
+    }
+
     /// Puts a table's name into one pair of quotes.
     fn join(&self, name: &mut ObjectName) {
-        if let Some(whole) = whole(name).filter(|whole| self.tables.contains(whole)) {
+        if let Some(whole) = whole(name).filter(|whole| self.is_table(whole)) {
             name.0 = vec![ObjectNamePart::Identifier(Ident::with_quote('"', whole))];
         }
     }
 }
 
-/// Functions that give a number for a text, too.
-const OF_NUMBERS: [&str; 8] = ["sum", "avg", "total", "abs", "round", "median", "stddev", "variance"];
-
-/// The name of a column, without its table's.
-fn column(term: &Expr) -> Option<String> {
-    match term {
-        Expr::Identifier(name) => Some(name.value.clone()),
-        Expr::CompoundIdentifier(parts) => parts.last().map(|name| name.value.clone()),
-        _ => None,
+/// Whether the body of a query is more than a question: `WITH … DELETE`.
+fn changes(body: &SetExpr) -> bool {
+    match body {
+        SetExpr::Select(_) | SetExpr::Query(_) | SetExpr::Values(_) => false,
+        SetExpr::SetOperation { left, right, .. } => changes(left) || changes(right),
+        _ => true,
     }
 }
 
-fn nothing() -> Box<Expr> {
-    Box::new(Expr::Value(Value::Null.with_empty_span()))
-}
-
-fn call(name: &str, given: [Expr; 2]) -> Expr {
-    let args = given.map(|term| FunctionArg::Unnamed(FunctionArgExpr::Expr(term))).to_vec();
-    Expr::Function(Function {
-        name: ObjectName(vec![ObjectNamePart::Identifier(Ident::new(name))]),
-        uses_odbc_syntax: false,
-        parameters: FunctionArguments::None,
-        args: FunctionArguments::List(FunctionArgumentList { duplicate_treatment: None, args, clauses: Vec::new() }),
-        filter: None,
-        null_treatment: None,
-        over: None,
-        within_group: Vec::new(),
-    })
+fn quote(name: &mut Ident) {
+    name.quote_style = Some('"');
 }
 
 fn joined(parts: &[Ident]) -> String {

@@ -95,7 +95,10 @@ struct Missed {
 
 fn table(side: &Side, study: Option<&str>, cache: Option<&Cache>, name: &str) -> Result<Result<Table, Missed>, String> {
     let studies = studies(side)?;
-    known_study(&studies, study, side)?;
+    let is_short = name.matches('.').count() < 2;
+    if is_short {
+        known_study(&studies, study, side)?;
+    }
     let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
     let Some((of, stage, record)) = find(&studies, only, name) else {
         let known = known(&studies, only, name.matches('.').count());

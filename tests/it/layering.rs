@@ -139,7 +139,7 @@ const OWNERS: &[(&str, &[&str])] = &[
     ("serde_saphyr", &["crates/studygraph/src/study/"]),
     ("clap", &["src/cli/"]),
     ("rusqlite", &["src/query/database.rs"]),
-    ("sqlparser", &["src/query/names.rs"]),
+    ("sqlparser", &["src/query/names.rs", "src/query/kinds.rs"]),
     ("signal_hook", &["src/cli/"]),
     ("sha2", &["crates/studygraph/src/store/archive.rs"]),
     ("spdx", &["src/cli/rights.rs"]),

@@ -11,7 +11,7 @@ pub struct Place {
     pub length: usize,
 }
 
-/// What is wrong with a study, found before anything runs (exit code 2).
+/// What is wrong with what somebody stated, found before anything is computed. Of a study it ends the program with code 2.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{message}{}", .help.as_ref().map_or_else(String::new, |help| format!("; {help}")))]
 pub struct Diagnostic {

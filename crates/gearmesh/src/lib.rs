@@ -13,35 +13,35 @@
 //!
 //! ```
 //! use gearmesh::prelude::*;
-//!
-//! # fn main() -> Result<(), Box<dyn std::error::Error>> {
-//! let gear = |teeth: u32, bore_radius: f64| Specification {
-//!     teeth,
-//!     module: 3e-3,
-//!     pressure_angle: 20_f64.to_radians(),
-//!     profile_shift: 0.0,
-//!     rack: Rack::ISO_53_A,
-//!     tip_radius: None,
-//!     face_width: 20e-3,
-//!     bore_radius,
-//!     material: Material::STEEL,
-//! };
-//! let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
-//! let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
-//! let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
-//!
-//! let (amount, start) = (Amount::Depth(14e-6), Start::Fraction(0.8));
-//! let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
-//! let mut design = Design::default();
-//! design.add(Gears::Both, &relief, &pair)?;
-//! for point in LoadCase::new(&cycle, &design, 150.0).curve(Wanted::default()) {
-//!     println!("{:.4} mm: {:.3} um", point.cycle_position * 1e3, point.transmission_error * 1e6);
+//! fn main() -> Result<(), Box<dyn std::error::Error>> {
+//!     let gear = |teeth: u32, bore_radius: f64| Specification {
+//!         teeth,
+//!         module: 3e-3,
+//!         pressure_angle: 20_f64.to_radians(),
+//!         profile_shift: 0.0,
+//!         rack: Rack::ISO_53_A,
+//!         tip_radius: None,
+//!         face_width: 20e-3,
+//!         bore_radius,
+//!         material: Material::STEEL,
+//!     };
+//!     let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None)?;
+//!     let compliance = Energy::default().tabulate(&pair, Assumptions::default())?.compliance;
+//!     let cycle = MeshCycle::new(&pair, &compliance, Settings::default())?;
+//!     let (amount, start) = (Amount::Depth(14e-6), Start::Fraction(0.8));
+//!     let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Linear };
+//!     let mut design = Design::default();
+//!     design.add(Gears::Both, &relief, &pair)?;
+//!     for point in LoadCase::new(&cycle, &design, 150.0).curve_and_summary(Wanted::default()).0 {
+//!         println!("{:.4} mm: {:.3} um", point.cycle_position * 1e3, point.transmission_error * 1e6);
+//!     }
+//! #   let error = |design: &Design| LoadCase::new(&cycle, design, 150.0).peak_to_peak();
+//! #   assert!(error(&design) < 0.2 * error(&Design::default()));
+//!     Ok(())
 //! }
-//! # let error = |design: &Design| LoadCase::new(&cycle, design, 150.0).peak_to_peak();
-//! # assert!(error(&design) < 0.2 * error(&Design::default()));
-//! # Ok(())
-//! # }
 //! ```
+//!
+//! The summary beside the curve has the peak-to-peak, which the curve spans, mean, variance and harmonics.
 //!
 //! # The best relief for a torque
 //!
@@ -89,7 +89,8 @@
 //!
 //! What a drawing states is a struct that declares itself ([`gear::modification::Specified`]); what it comes to on a gear is
 //! a depth over the roll angle, a deviation across the face, or what is no sum of both, a surface over roll angle and face
-//! ([`gear::modification::Modification`]), with any number of breaks. Solver and optimisers know it then. The derive needs the crate `declare` beside this one.
+//! ([`gear::modification::Modification`]), with any number of breaks. Solver and optimisers know it then; studies know
+//! those of [`gear::modification::FAMILIES`]. The derive needs the crate `declare` beside this one.
 //!
 //! ```
 //! use std::sync::Arc;

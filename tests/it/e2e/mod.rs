@@ -177,6 +177,8 @@ fn what_a_user_asks_about_the_program_is_answered() {
         let (about, _) = desk.run(&["kinds", kind], 0);
         assert!(about.contains("kind:") && about.lines().count() > 5, "{about}");
     }
+    let (_, error) = desk.run(&["kinds", "tip_relief"], 1);
+    assert!(error.contains("it belongs to geometry, modification, ") && error.contains("` shows it"), "{error}");
     let (_, error) = desk.run(&["kinds", "geometri"], 1);
     assert!(error.contains("did you mean `geometry`"), "{error}");
     let (schema, _) = desk.run(&["schema"], 0);

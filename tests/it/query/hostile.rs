@@ -98,11 +98,13 @@ fn no_query_takes_all_memory() {
     };
     let columns: Vec<String> = (1..=300).map(|at| format!("t1.x AS x{at}")).collect();
     let wide = format!("SELECT {} FROM {{}}", columns.join(", "));
+    let long = "SELECT PRINTF('%.1000000c', 'x') AS a FROM {}".to_owned();
     let held = "SELECT t1.x FROM {} ORDER BY HEX(ZEROBLOB(500000)) || t1.point || t2.point".to_owned();
     for (query, times, wanted) in [
         (&wide, 12, "more than 20000000 values"),
         (&wide, 24, "more than 20000000 values"),
         (&held, 9, "takes more than 2048 MiB"),
+        (&long, 6, "the answer takes more than 2048 MiB"),
     ] {
         let (code, said) = command(&query.replace("{}", &joined(times)));
         assert_eq!(code, Some(2), "{query} {times}: {said}");

@@ -168,7 +168,7 @@ mod tests {
     #[test]
     fn a_smooth_function_is_reproduced_and_integrated() {
         let series = Series::fit(0.5, 3.0, 30, libm::exp);
-        assert_eq!([series.lower(), series.upper()], [0.5, 3.0]);
+        assert_eq!([series.lower(), series.upper()].map(f64::to_bits), [0.5, 3.0].map(f64::to_bits));
         let integral = series.integral();
         for x in [0.5, 0.7, 1.9, 3.0] {
             assert!((series.value(x) / libm::exp(x) - 1.0).abs() < 4e-14, "value at {x}");

@@ -31,6 +31,14 @@ pub fn kind(kind: &'static Kind) -> String {
     text
 }
 
+/// Whether a field, a word or a member of a family of a kind is called so.
+#[must_use]
+pub fn mentions(described: &'static Kind, name: &str) -> bool {
+    let text = kind(described);
+    let mut names = text.lines().filter_map(|line| line.trim_start_matches([' ', '-']).split_once(": "));
+    names.any(|(found, _)| found == name)
+}
+
 fn fields(text: &mut String, fields: &'static [Field], level: usize, families: &mut Vec<Vec<&'static str>>) {
     let indent = "  ".repeat(level);
     for field in fields {

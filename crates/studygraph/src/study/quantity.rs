@@ -73,7 +73,10 @@ impl Measure<'_> {
         match self.dimension {
             None if read.has_unit => {
                 let message = format!("{shown} has a unit; {} is a plain number", quote(self.name));
-                return Err(Diagnostic::new(message).help(format!("write `{}`", split_quantity(text).0)));
+                // 5 % is 0.05; of another unit the number alone is what was most likely meant.
+                let number = split_quantity(text).0;
+                let plain = if read.dimension == RATIO { read.value.to_string() } else { number.to_owned() };
+                return Err(Diagnostic::new(message).help(format!("write `{plain}`")));
             }
             Some(dimension) if dimension != RATIO && !read.has_unit => {
                 let example = words::example_like(split_quantity(text).0, dimension, self.minimum, self.maximum);

@@ -270,8 +270,10 @@ impl Design {
         stated: &T,
         pair: &GearPair,
     ) -> Result<(), Diagnostic> {
-        self.put(gears, stated, pair)?;
-        self.check_rooms(gears, pair)
+        self.attempt(|design| {
+            design.put(gears, stated, pair)?;
+            design.check_rooms(gears, pair)
+        })
     }
 
     /// The same, as `family: { fields }` of a study states it.
@@ -280,8 +282,21 @@ impl Design {
     /// As [`Design::add`], with places.
     pub fn add_record(&mut self, family: &'static Family, record: &Record, pair: &GearPair) -> Result<(), Diagnostic> {
         (family.check)(record)?;
-        (family.put)(self, record, pair)?;
-        self.check_rooms(Where::read(record).gear, pair).map_err(|error| error.or_at(record.place))
+        self.attempt(|design| {
+            (family.put)(design, record, pair)?;
+            design.check_rooms(Where::read(record).gear, pair).map_err(|error| error.or_at(record.place))
+        })
+    }
+
+    /// Makes a change, and takes back what was added where it is refused.
+    fn attempt(&mut self, change: impl FnOnce(&mut Self) -> Result<(), Diagnostic>) -> Result<(), Diagnostic> {
+        let before = [self.pinion.len(), self.gear.len()];
+        let changed = change(self);
+        if changed.is_err() {
+            self.pinion.truncate(before[0]);
+            self.gear.truncate(before[1]);
+        }
+        changed
     }
 
     fn put<T: Specified>(&mut self, gears: Gears, stated: &T, pair: &GearPair) -> Result<(), Diagnostic> {

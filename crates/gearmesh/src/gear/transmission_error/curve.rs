@@ -159,7 +159,7 @@ impl LoadCase<'_> {
     /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        self.between(self.for_extrema().extremes())
+        if self.force.is_finite() { self.between(self.for_extrema().extremes()) } else { f64::INFINITY }
     }
 
     /// The largest and the smallest transmission error.
@@ -198,6 +198,9 @@ impl LoadCase<'_> {
     /// the lean path for optimisers.
     #[must_use]
     pub fn variance(&self) -> f64 {
+        if !self.force.is_finite() {
+            return f64::INFINITY;
+        }
         let trace = self.trace();
         if !trace.spans.iter().flat_map(|(_, values)| values).all(|value| self.holds(*value)) {
             return f64::INFINITY;

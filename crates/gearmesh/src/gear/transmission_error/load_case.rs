@@ -87,7 +87,8 @@ impl Equilibrium {
 }
 
 impl<'a> LoadCase<'a> {
-    /// `torque` acts on the pinion \[N m\], 0 or more; without torque the nearest pair just touches.
+    /// `torque` acts on the pinion \[N m\], finite and 0 or more; without torque the nearest pair just touches. Below 0 it
+    /// counts as 0; what is no finite number is beyond the model.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
         let flanks = Arc::new(Flanks::new(cycle, design));

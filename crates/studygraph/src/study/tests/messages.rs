@@ -72,6 +72,11 @@ const CHANGES: &[(&str, &str, &str)] = &[
     ),
     (
         "{ addendum: 1.25 }",
+        "{ addendum: 12.5 % }",
+        "9:23: `12.5 %` has a unit; `addendum` is a plain number\n  help: write `0.125`",
+    ),
+    (
+        "{ addendum: 1.25 }",
         "{ addendum: '1.25' }",
         "9:23: `1.25` is text in quotes; a plain number is expected\n  help: write the number without quotes",
     ),

@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
-use crate::gear::fixtures::pair;
+use crate::gear::fixtures::{pair, record};
 use crate::gear::geometry::Side;
+use crate::gear::modification::curve::Curve;
 use crate::gear::modification::lead_crowning::LeadCrowning;
-use crate::gear::modification::{Design, Gears, Modification, NamedModification};
+use crate::gear::modification::relief::{Amount, FromTip, Start};
+use crate::gear::modification::tip_relief::TipRelief;
+use crate::gear::modification::{Design, Gears, Modification, NamedModification, family};
+use declare::record::Value::{Choice, Number, Quantity};
 
 /// So much over the whole flank, as a surface and as a lead.
 #[derive(Debug)]
@@ -50,6 +54,29 @@ fn a_value_out_of_its_range_is_refused() {
         let said = refused(amount).unwrap().to_string();
         assert_eq!(said, format!("`amount` is {amount}; it may be 0 to 0.005"));
     }
+}
+
+/// What is refused, by a check, by a field or for want of room, leaves the design as it was.
+#[test]
+fn a_refused_modification_is_not_kept() {
+    let pair = pair();
+    let relief = |amount: f64, start: Start| TipRelief {
+        amount: Amount::Depth(amount),
+        start,
+        counted_from: FromTip::Tip,
+        curve: Curve::Linear,
+    };
+    let mut design = Design::default();
+    design.add(Gears::Both, &relief(9e-6, Start::Fraction(0.8)), &pair).unwrap();
+    // Too much; too long for the flank; out of range.
+    for (amount, start) in [(3e-3, Start::Fraction(1.0)), (9e-6, Start::Length(0.05)), (-1e-6, Start::Fraction(1.0))] {
+        assert!(design.add(Gears::Both, &relief(amount, start), &pair).is_err(), "{amount}");
+        assert_eq!([design.pinion.len(), design.gear.len()], [1, 1], "{amount}");
+    }
+    let record =
+        record("tip_relief", &[("gear", Choice("both")), ("amount", Quantity(3e-3)), ("fraction", Number(1.0))]);
+    assert!(design.add_record(family("tip_relief").unwrap(), &record, &pair).is_err());
+    assert_eq!([design.pinion.len(), design.gear.len()], [1, 1]);
 }
 
 /// Tier: closed form; what a surface takes off and a lead leaves on comes to nothing, and the other way round; the outline

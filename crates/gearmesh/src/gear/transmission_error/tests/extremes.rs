@@ -214,3 +214,17 @@ fn gaps_that_are_equal_but_for_rounding_are_walked_once() {
         assert!(visits < 1000, "{visits} spans");
     }
 }
+
+/// A minimiser may come upon them: neither is the best of all designs.
+#[test]
+fn a_torque_that_is_no_number_is_beyond_the_model() {
+    let pair = pair();
+    let cycle = cycle(&pair, &varying());
+    let design = relief(&pair, 9e-6, 0.8);
+    for torque in [f64::NAN, f64::INFINITY] {
+        let load_case = LoadCase::new(&cycle, &design, torque);
+        assert_eq!([load_case.peak_to_peak(), load_case.variance()], [f64::INFINITY; 2], "{torque}");
+    }
+    let unloaded = |torque: f64| LoadCase::new(&cycle, &design, torque).peak_to_peak();
+    assert_eq!(unloaded(-150.0), unloaded(0.0));
+}
