@@ -213,9 +213,10 @@ impl Ramp {
         if !(from >= 0.0 && from <= longest * (1.0 + 1e-12)) {
             let (lower, upper) = (first.min(last), first.max(last));
             return Err(Diagnostic::new(format!(
-                "the relief starts {:.6} mm from the end of the flank; the active flank is {:.6} mm long (roll angles \
-                 {:.6} to {:.6} deg, diameters {:.6} to {:.6} mm)",
-                from * 1e3,
+                "the relief starts {:.6} mm {} the end of the flank; the active flank is {:.6} mm long (roll angles {:.6} \
+                 to {:.6} deg, diameters {:.6} to {:.6} mm)",
+                from.abs() * 1e3,
+                if from < 0.0 { "beyond" } else { "from" },
                 longest * 1e3,
                 lower.to_degrees(),
                 upper.to_degrees(),

@@ -197,6 +197,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     assert!(message.contains("diameter 53.000000 mm is below the base circle, 53.562"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("start_diameter", Quantity(64e-3))]);
     assert!(message.contains("diameters") && message.contains("63.000000 mm"), "{message}");
+    assert!(message.contains("mm beyond the end of the flank"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("curve", Choice("power"))]);
     assert!(message.contains("needs its `exponent`"), "{message}");
     let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("exponent", Number(2.0))]);
