@@ -370,6 +370,22 @@ mod tests {
         assert!(Double::ONE + 1e-25 > Double::ONE && Double::ONE.max(Double::PI) == Double::PI);
     }
 
+    /// Tier: exact; products of whole numbers of 53 bits, counted in 128.
+    #[test]
+    #[allow(clippy::cast_possible_truncation)]
+    fn a_product_is_split_without_rest() {
+        let mut bits = 0x9e37_79b9_7f4a_7c15_u64;
+        let mut whole = || {
+            bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (bits >> 11) | 1 << 52 | 1
+        };
+        for _ in 0..10_000 {
+            let (a, b) = (whole(), whole());
+            let Double { high, low } = exact_product(a as f64, b as f64);
+            assert_eq!(high as i128 + low as i128, i128::from(a) * i128::from(b), "{a} {b}");
+        }
+    }
+
     #[test]
     fn every_quadrant_is_met() {
         for quarter in -9_i32..=9 {

@@ -73,11 +73,22 @@ mod tests {
         assert!((mean - (high * share + low * (1.0 - share))).abs() < 1e-20);
         let exact = (high - low) * (high - low) * share * (1.0 - share);
         assert!((variance / exact - 1.0).abs() < 1e-14);
+        assert_eq!(amplitudes(3.0, &nodes, 5).len(), 5);
         for (order, amplitude) in (1..).zip(amplitudes(3.0, &nodes, 5)) {
             let angle = std::f64::consts::PI * f64::from(order) * share;
             let exact = 2.0 * (high - low) * libm::sin(angle).abs() / (std::f64::consts::PI * f64::from(order));
             assert!((amplitude / exact - 1.0).abs() < 1e-9, "{order}");
         }
+    }
+
+    /// On a mean a billion times as large: what rounding of the values leaves, and no more is lost.
+    #[test]
+    fn a_small_variation_on_a_large_mean_keeps_its_digits() {
+        let (high, low, share) = (1.0 + f64::powi(2.0, -30), 1.0, 0.354);
+        let (mean, variance) = mean_and_variance(3.0, &wave(high, low, share, 6));
+        assert!((mean - (low + share * (high - low))).abs() < 1e-15);
+        let exact = (high - low) * (high - low) * share * (1.0 - share);
+        assert!((variance / exact - 1.0).abs() < 1e-13, "{variance:e} for {exact:e}");
     }
 
     /// Turning from order to order against the angle of each order by itself.

@@ -73,6 +73,9 @@ fn a_refused_modification_is_not_kept() {
         assert!(design.add(Gears::Both, &relief(amount, start), &pair).is_err(), "{amount}");
         assert_eq!([design.pinion.len(), design.gear.len()], [1, 1], "{amount}");
     }
+    // What its fields say against each other.
+    let against = TipRelief { counted_from: FromTip::SingleZone, ..relief(9e-6, Start::RollAngle(0.5)) };
+    assert!(design.add(Gears::Both, &against, &pair).is_err_and(|error| error.field == Some("counted_from")));
     let record =
         record("tip_relief", &[("gear", Choice("both")), ("amount", Quantity(3e-3)), ("fraction", Number(1.0))]);
     assert!(design.add_record(family("tip_relief").unwrap(), &record, &pair).is_err());
@@ -83,7 +86,14 @@ fn a_refused_modification_is_not_kept() {
 /// has the surface in the middle of the face.
 #[test]
 fn a_surface_takes_room_as_a_lead_does() {
-    for (surface, lead, fits) in [(3e-3, 0.0, false), (3e-3, -3e-3, true), (0.0, 3e-3, false), (1e-5, 1e-5, true)] {
+    for (surface, lead, fits) in [
+        (3e-3, 0.0, false),
+        (8e-4, 8e-4, false),
+        (8e-4, -8e-4, true),
+        (3e-3, -3e-3, true),
+        (0.0, 3e-3, false),
+        (1e-5, 1e-5, true),
+    ] {
         let design = with(surface, lead);
         assert_eq!(design.check_rooms(Gears::Both, &pair()).is_ok(), fits, "{surface} {lead}");
         let relief = design.relief(Side::Pinion).unwrap();
