@@ -121,6 +121,8 @@ fn polygons_overlap_where_the_mate_s_tip_cuts_into_the_root() {
         let distance = one.root_distance.min(other.root_distance);
         let what = format!("{z1}/{z2} {family}: {depth:e} for {distance:e}");
         assert!((distance < 0.0) == cuts && (depth > 1e-8) == cuts, "{what}");
+        let module = pair.pinion.specification.module;
+        assert_eq!([&one, &other].map(|mating| mating.cuts_root(module)).contains(&true), cuts, "{what}");
         assert!(depth >= -0.98 * distance && (!cuts || depth < -2.5 * distance), "{what}");
     }
 }
@@ -160,6 +162,8 @@ fn reserve_and_gap_are_those_of_the_radii() {
             let active = (pair.tangent_length - beyond) / gear.base_radius;
             let form = (alone.form_radius.powi(2) - gear.base_radius.powi(2)).max(0.0).sqrt() / gear.base_radius;
             assert_near(mating.contact_reserve, active - form, 1e-9, "reserve");
+            assert!(!mating.interferes() && Mating { contact_reserve: -1e-9, ..mating }.interferes());
+            assert!(!Mating { contact_reserve: -1e-13, ..mating }.interferes(), "rounding");
             assert_near(alone.root_gap, 0.0, 1e-15, "gap");
         }
     }
