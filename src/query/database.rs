@@ -14,7 +14,7 @@ use rusqlite::limits::Limit;
 use rusqlite::types::ValueRef;
 use rusqlite::{Connection, Error, ErrorCode, params_from_iter};
 
-use super::kinds::{COMPARED, IS_NUMBER, LIKE_KIND};
+use super::kinds::{COMPARED, IS_AMONG, IS_BETWEEN, IS_NUMBER};
 use super::names::Parsed;
 use super::{Answer, Column, Kind};
 use declare::error::suggest;
@@ -175,9 +175,23 @@ fn add_functions(database: &Connection) -> Result<(), Error> {
     })?;
     database
         .create_scalar_function(COMPARED, 4, flags, |given| Ok(compared(given, [0, 1])?.map(|order| order as i64)))?;
-    database.create_scalar_function(LIKE_KIND, 4, flags, |given| {
-        compared(given, [0, 1])?;
-        Ok(rusqlite::types::Value::try_from(given.get_raw(0))?)
+    database.create_scalar_function(IS_BETWEEN, 6, flags, |given| {
+        let low = compared(given, [0, 1])?.map(Ordering::is_ge);
+        let high = compared(given, [0, 2])?.map(Ordering::is_le);
+        // One that is missed decides, whatever is NULL.
+        Ok(if [low, high].contains(&Some(false)) { Some(false) } else { low.and(high) })
+    })?;
+    database.create_scalar_function(IS_AMONG, -1, flags, |given| {
+        let mut found = Some(false);
+        for at in 1..given.len() / 2 {
+            // One that is met decides, whatever is NULL.
+            found = match compared(given, [0, at])? {
+                Some(Ordering::Equal) => Some(true),
+                None if found == Some(false) => None,
+                _ => found,
+            };
+        }
+        Ok(found)
     })?;
     Ok(())
 }
@@ -203,7 +217,7 @@ fn no_number(value: ValueRef<'_>, name: ValueRef<'_>) -> Error {
     ours(&format!("{} is text, and the query takes it for a number", shown(value, name)))
 }
 
-/// How two values stand to each other; their names come two places behind them. NULL stands to nothing.
+/// How two values stand to each other; the names of all follow in the second half. NULL stands to nothing.
 fn compared(given: &Context<'_>, [one, two]: [usize; 2]) -> Result<Option<Ordering>, Error> {
     let (a, b) = (given.get_raw(one), given.get_raw(two));
     Ok(match (a, b) {
@@ -211,7 +225,7 @@ fn compared(given: &Context<'_>, [one, two]: [usize; 2]) -> Result<Option<Orderi
         (ValueRef::Integer(a), ValueRef::Integer(b)) => Some(a.cmp(&b)),
         (ValueRef::Text(a), ValueRef::Text(b)) | (ValueRef::Blob(a), ValueRef::Blob(b)) => Some(a.cmp(b)),
         (ValueRef::Text(_) | ValueRef::Blob(_), _) | (_, ValueRef::Text(_) | ValueRef::Blob(_)) => {
-            let [a, b] = [shown(a, given.get_raw(one + 2)), shown(b, given.get_raw(two + 2))];
+            let [a, b] = [one, two].map(|at| shown(given.get_raw(at), given.get_raw(at + given.len() / 2)));
             let is_text = matches!(given.get_raw(one), ValueRef::Text(_) | ValueRef::Blob(_));
             let (text, number) = if is_text { (a, b) } else { (b, a) };
             return Err(ours(&format!("{text} is text and {number} a number: they cannot be compared")));

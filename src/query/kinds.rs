@@ -16,8 +16,12 @@ use sqlparser::ast::{
 pub(super) const IS_NUMBER: &str = "is_number";
 /// `compared(x, y, name, name)`: −1, 0 or 1 of two values of one kind.
 pub(super) const COMPARED: &str = "compared";
-/// `like_kind(x, y, name, name)`: x, which is of the kind of y.
-pub(super) const LIKE_KIND: &str = "like_kind";
+/// `is_between(x, low, high, names)`: 0 or 1 of three values of one kind.
+pub(super) const IS_BETWEEN: &str = "is_between";
+/// `is_among(x, a, b, …, names)`: 0 or 1 of values of one kind.
+pub(super) const IS_AMONG: &str = "is_among";
+/// Values of an IN that are looked at: functions of SQLite take a few hundred arguments.
+const MOST_AMONG: usize = 100;
 
 /// Functions of SQLite that give a number for a text, too.
 const OF_NUMBERS: [&str; 6] = ["sum", "avg", "total", "abs", "round", "sign"];
@@ -45,16 +49,14 @@ impl VisitorMut for Kinds {
                     let (kind, data_type, expr) = (CastKind::Cast, DataType::Real, taken(left));
                     **left = Expr::Cast { kind, expr, data_type, array: false, format: None };
                 }
-                Modulo => *term = call("mod", [*taken(left), *taken(right)]),
+                Modulo => *term = call("mod", vec![*taken(left), *taken(right)]),
                 And | Or => {
                     take_for_truth(left);
                     take_for_truth(right);
                 }
                 Eq | NotEq if is_column(left) && is_column(right) => {}
                 Eq | NotEq | Lt | LtEq | Gt | GtEq if !is_row(left) && !is_row(right) => {
-                    let names = [name(left), name(right)];
-                    let [first, second] = names.map(text);
-                    **left = call(COMPARED, [*taken(left), *taken(right), first, second]);
+                    **left = named(COMPARED, vec![*taken(left), *taken(right)]);
                     **right = Expr::Value(Value::Number("0".to_owned(), false).with_empty_span());
                 }
                 _ => {}
@@ -63,15 +65,14 @@ impl VisitorMut for Kinds {
                 take_for_number(expr);
             }
             Expr::UnaryOp { op: UnaryOperator::Not, expr } => take_for_truth(expr),
-            Expr::Between { expr, low, high, .. } if !is_row(expr) => {
-                for limit in [low, high] {
-                    make_like(limit, expr);
-                }
+            // The term itself is given once: written out for each limit, terms within each other would have no end.
+            Expr::Between { expr, negated, low, high } if !is_row(expr) => {
+                let given = vec![*taken(expr), *taken(low), *taken(high)];
+                *term = unless(*negated, named(IS_BETWEEN, given));
             }
-            Expr::InList { expr, list, .. } if !is_row(expr) => {
-                for value in list {
-                    make_like(value, expr);
-                }
+            Expr::InList { expr, list, negated } if !is_row(expr) && list.len() <= MOST_AMONG => {
+                let given = std::iter::once(*taken(expr)).chain(std::mem::take(list)).collect();
+                *term = unless(*negated, named(IS_AMONG, given));
             }
             Expr::Function(function) if OF_NUMBERS.contains(&function.name.to_string().to_lowercase().as_str()) => {
                 if let FunctionArguments::List(given) = &mut function.args {
@@ -96,8 +97,7 @@ fn take_for_number(term: &mut Expr) {
         _ => false,
     };
     if !is_one {
-        let name = text(name(term));
-        *term = call(IS_NUMBER, [std::mem::replace(term, nothing()), name]);
+        *term = named(IS_NUMBER, vec![std::mem::replace(term, nothing())]);
     }
 }
 
@@ -108,10 +108,19 @@ fn take_for_truth(term: &mut Expr) {
     }
 }
 
-fn make_like(term: &mut Expr, other: &Expr) {
-    let names = [name(term), name(other)];
-    let [first, second] = names.map(text);
-    *term = call(LIKE_KIND, [std::mem::replace(term, nothing()), other.clone(), first, second]);
+/// A function of these terms, with their names behind them.
+fn named(function: &str, mut given: Vec<Expr>) -> Expr {
+    let names: Vec<Expr> = given.iter().map(|term| text(name(term))).collect();
+    given.extend(names);
+    call(function, given)
+}
+
+fn unless(negated: bool, term: Expr) -> Expr {
+    if !negated {
+        return term;
+    }
+    // In brackets, since NOT takes in more of what follows than NOT IN does.
+    Expr::Nested(Box::new(Expr::UnaryOp { op: UnaryOperator::Not, expr: Box::new(term) }))
 }
 
 /// What stands in brackets.
@@ -151,8 +160,8 @@ fn taken(term: &mut Box<Expr>) -> Box<Expr> {
     std::mem::replace(term, Box::new(nothing()))
 }
 
-fn call<const N: usize>(name: &str, given: [Expr; N]) -> Expr {
-    let args = given.map(|term| FunctionArg::Unnamed(FunctionArgExpr::Expr(term))).to_vec();
+fn call(name: &str, given: Vec<Expr>) -> Expr {
+    let args = given.into_iter().map(|term| FunctionArg::Unnamed(FunctionArgExpr::Expr(term))).collect();
     Expr::Function(Function {
         name: ObjectName(vec![ObjectNamePart::Identifier(Ident::new(name))]),
         uses_odbc_syntax: false,

@@ -282,6 +282,7 @@ fn text_is_never_taken_for_a_number() {
         ("design BETWEEN 1 AND 5", kinds),
         ("design IN (1, 2)", kinds),
         ("point IN ('1')", kinds),
+        ("MAX(x) NOT IN (1, 'a')", kinds),
     ] {
         let problem = shop.ask(&format!("SELECT {term} AS n FROM s.rows AS r")).expect_err(term);
         assert!(problem.ends_with(wanted) && problem.contains(" is text"), "{term}: {problem}");
@@ -305,6 +306,12 @@ fn text_is_never_taken_for_a_number() {
     check("SELECT point FROM s.rows WHERE design IN ('a', 'c') AND x IN (-4.5, 7) AND NOT inside", &["3"]);
     check("SELECT COUNT(*) FROM s.rows WHERE design < 'b' AND point > 1.5 AND inside = 1", &["1"]);
     check("SELECT COUNT(*) FROM s.rows WHERE x = NULL OR x <> x", &["0"]);
+    // NULL, where it matters: neither in nor out.
+    check("SELECT 1 IN (1, NULL), 2 IN (1, NULL), 2 NOT IN (1, 3), NULL IN (1)", &["1 - 1 -"]);
+    check("SELECT 1 BETWEEN 2 AND NULL, 3 BETWEEN 2 AND NULL, 3 NOT BETWEEN 1 AND 2, 3 BETWEEN 3 AND 3", &["0 - 1 1"]);
+    check("SELECT 2 NOT IN (1) IS NULL, 1 NOT BETWEEN 0 AND 2 IS NULL", &["0 0"]);
+    let many = format!("SELECT COUNT(*) FROM s.rows WHERE point IN ({}3)", "7, ".repeat(500));
+    check(&many, &["1"]);
     check("SELECT 9007199254740993 > 9007199254740992, 'a' < 'B', 2 < 2.5", &["1 0 1"]);
     check("SELECT COUNT(*) FROM s.rows WHERE (design, point) = ('a', 3)", &["1"]);
     check("SELECT SUM(inside), SUM(DISTINCT point), COUNT(DISTINCT design) FROM s.rows", &["3 6 2"]);

@@ -83,31 +83,20 @@ fn the_second_evaluation_meets_published_values() {
     assert!((peak_to_peak / 3.000_883_377e-6 - 1.0).abs() < 2e-10, "{peak_to_peak:e}");
 }
 
-/// What is checked of a case without plates or corners.
-const CHECKED: [&str; 23] = [
-    "no NaN, no infinity",
-    "load balance",
-    "no negative load",
-    "complementarity",
-    "deflection grows with the load",
-    "deflection grows no faster than the load",
-    "continuous at the ends of zones",
-    "condition of the compliance matrix",
-    "form radius",
-    "form roll angle",
-    "tip roll angle",
-    "tip thickness",
-    "centre distance",
-    "start of contact",
-    "contact ratio",
-    "compliance at the form point",
-    "compliance at the tip",
-    "stiffness, fewest pairs",
-    "stiffness, most pairs",
-    "mean transmission error",
-    "peak-to-peak transmission error",
-    "scale",
-    "which gear drives",
+/// What is checked of a case without plates or corners, before and behind what is evaluated a second time.
+const CHECKED: [&[&str]; 3] = [
+    &[
+        "no NaN, no infinity",
+        "load balance",
+        "no negative load",
+        "complementarity",
+        "deflection grows with the load",
+        "deflection grows no faster than the load",
+        "continuous at the ends of zones",
+        "condition of the compliance matrix",
+    ],
+    &NAMES,
+    &["scale", "which gear drives"],
 ];
 
 #[test]
@@ -118,7 +107,7 @@ fn the_base_case_holds() {
         (case.relief, case.relief_length, case.crowning, case.torque) = (relief, 4e-3, crowning, torque);
         let report = check(&case, &rules);
         // None is left out where nothing is wrong.
-        assert_eq!(report.findings.iter().map(|finding| finding.invariant).collect::<Vec<_>>(), CHECKED);
+        assert_eq!(report.findings.iter().map(|finding| finding.invariant).collect::<Vec<_>>(), CHECKED.concat());
         assert!(report.findings.iter().all(|finding| finding.verdict == Verdict::Holds));
     }
 }
