@@ -5,6 +5,7 @@
 mod accuracy;
 mod corner;
 mod extremes;
+mod sampling;
 mod surface;
 mod work;
 
