@@ -2,9 +2,10 @@
 
 use super::super::energy::{Energy, GearBody};
 use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStresses, Tabulated};
-use super::FiniteElement;
+use super::{FiniteElement, difference};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::finite_elements::element::Plane;
+use crate::gear::finite_elements::gear_model::Influences;
 use crate::gear::fixtures::{STEEL, standard};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{GearPair, Side, Specification};
@@ -74,6 +75,71 @@ fn an_accuracy_is_reached_and_named() {
     assert!(found.warnings.is_empty() && found.error_estimate <= 2e-3);
     for mesh in &found.meshes {
         assert!(mesh.error_estimate <= 2e-3 && mesh.elements_across > 6, "{mesh:?}");
+    }
+}
+
+/// Tier: closed form. An error that is to fall to 1/f takes ∛f times as many elements, twice as many at most, at least two
+/// more, and an even number; what is met already is not refined. Where that is not enough, the same follows again.
+#[test]
+fn elements_are_added_as_the_error_asks() {
+    let pair = pair([24, 24], 1.4);
+    let solved = |accuracy| {
+        let found = finite_element(&pair, 8, Assumptions { accuracy, coupled: false, ..COUPLED }).unwrap();
+        (found.meshes[0].elements_across, found.meshes[0].error_estimate)
+    };
+    let (across, error) = solved(None);
+    assert_eq!(across, 8);
+    // ∛12 is 2.3: with 16 elements it is not enough yet, and 20 would be, which are not tried at once.
+    for (factor, expected) in [(1.0, 8), (1.0001, 10), (1.9, 10), (2.0, 12), (3.0, 12), (3.2, 14), (12.0, 22)] {
+        let (across, reached) = solved(Some(error / factor));
+        assert_eq!(across, expected, "{factor}: {error} to {reached}");
+        assert!(reached <= error / factor);
+    }
+}
+
+/// Tier: invariant. The influences are told in units of the teeth's own: a difference is the same whatever the unit, and
+/// that of a tooth's neighbours counts as that of its own.
+#[test]
+fn differences_are_relative() {
+    let influences = |own: [f64; 2], further: [[f64; 2]; 2]| Influences {
+        own: own.to_vec(),
+        further: vec![further.map(Vec::from).to_vec()],
+    };
+    let fine = influences([4.0, 9.0], [[1.0, 2.0], [2.0, 1.0]]);
+    let to = |own, further| difference(&fine, &influences(own, further));
+    let same = [[1.0, 2.0], [2.0, 1.0]];
+    // Of 4 and 9 the mean is 6.
+    let found = [
+        to([4.0, 9.0], same),
+        to([5.0, 9.0], same),
+        to([4.0, 4.5], same),
+        to([4.0, 9.0], [[1.0, 5.0], [2.0, 1.0]]),
+        to([4.0, 9.0], [[1.0, 2.0], [2.0, -8.0]]),
+    ];
+    assert_eq!(found.map(f64::to_bits), [0.0, 0.25, 0.5, 0.5, 1.0].map(f64::to_bits), "{found:?}");
+}
+
+/// Tier: invariant. What a method counts is what it says beforehand; an accuracy may take less. Twice the elements take four
+/// times as long, as an ordering of a plane mesh by dissection does, and no more neighbours are tabulated than foreseen.
+#[test]
+fn work_is_foreseen() {
+    for coupled in [false, true] {
+        let told = Assumptions { coupled, ..COUPLED };
+        let [coarse, fine] = [8, 16].map(|across| method(Plane::Strain, across).foresee(told));
+        let found = finite_element(&pair([24, 36], 1.4), 8, told).unwrap();
+        assert_eq!(found.work, coarse.work);
+        assert!((fine.times / coarse.times - 4.0).abs() < 1e-12);
+        let neighbours =
+            [&found.compliance.pinion, &found.compliance.gear].iter().flat_map(|tooth| &tooth.neighbours).count();
+        let nodes = neighbours * found.compliance.pinion.body.node_values().len().pow(2);
+        assert!(nodes <= coarse.neighbours && coarse.neighbours <= 3 * nodes, "{nodes} of {}", coarse.neighbours);
+        let wish = Assumptions { accuracy: Some(1e-2), ..told };
+        let (wished, found) =
+            (method(Plane::Strain, 8).foresee(wish), finite_element(&pair([24, 36], 1.4), 8, wish).unwrap());
+        for counter in [&MESH_FACTORISATIONS, &COMPLIANCE_EVALUATIONS] {
+            assert!(found.work.count(counter) <= wished.work.count(counter));
+            assert_eq!(wished.work.count(counter), 2 * coarse.work.count(counter), "two rounds");
+        }
     }
 }
 

@@ -110,14 +110,14 @@ fn the_coarsest_sampling_is_the_coarsest() {
     }
 }
 
-/// Tier: invariant. What is known is not computed again, and slices that hold each other are not compared with samplings
-/// that would cost eight times as much.
+/// Tier: invariant. Each sampling is computed once, what is known not at all, and slices that hold each other are not compared
+/// with samplings that would cost eight times as much, or that are too many. (positions, slices) in order.
 #[test]
 fn nothing_is_computed_twice_or_for_nothing() {
-    let made = |coupling, slices, known: bool| {
+    let made = |against, coupling, slices, known: bool| {
         let asked = RefCell::new(Vec::new());
         let at = settings(64, slices, coupling);
-        let mut sampled = Sampled::new(true, Against::Coarser, |at: Settings| {
+        let mut sampled = Sampled::new(true, against, |at: Settings| {
             asked.borrow_mut().push((at.positions, at.slices));
             1.0 + by_slices(at)
         });
@@ -131,14 +131,18 @@ fn nothing_is_computed_twice_or_for_nothing() {
         asked.sort_unstable();
         asked
     };
-    let coarser = [(16, 5), (16, 9), (16, 17), (16, 33)];
-    assert_eq!(
-        made(SliceCoupling::None, 33, true),
-        [&[(16, 5), (16, 9), (16, 17), (16, 33), (16, 65)][..], &[(32, 33)]].concat()
-    );
-    assert_eq!(made(SliceCoupling::Plate, 33, true), [&coarser[..], &[(32, 33)]].concat());
-    assert_eq!(made(SliceCoupling::Plate, 33, false), [&coarser[..], &[(32, 33), (64, 33)]].concat());
-    assert_eq!(made(SliceCoupling::Plate, 9, true), [(16, 3), (16, 5), (16, 9), (16, 17), (32, 9)]);
+    let (none, plate) = (SliceCoupling::None, SliceCoupling::Plate);
+    assert_eq!(made(Against::Coarser, none, 33, true), [(16, 5), (16, 9), (16, 17), (16, 33), (16, 65), (32, 33)]);
+    assert_eq!(made(Against::Coarser, plate, 33, true), [(16, 5), (16, 9), (16, 17), (16, 33), (32, 33)]);
+    assert_eq!(made(Against::Coarser, plate, 33, false), [(16, 5), (16, 9), (16, 17), (16, 33), (32, 33), (64, 33)]);
+    assert_eq!(made(Against::Coarser, plate, 9, true), [(16, 3), (16, 5), (16, 9), (16, 17), (32, 9)]);
+    assert_eq!(made(Against::Coarser, none, 8, true), [(16, 8), (16, 15), (16, 29), (32, 8)]);
+    assert_eq!(made(Against::Coarser, none, 2, true), [(16, 2), (16, 3), (16, 9), (32, 2)]);
+    assert_eq!(made(Against::Finer, none, 17, true), [(16, 17), (16, 33), (16, 65), (256, 17)]);
+    assert_eq!(made(Against::Finer, none, 257, true), [(16, 257), (16, 513), (16, 1025), (256, 257)]);
+    // 4 · 50 − 3 = 197 are few enough, 201 not.
+    assert_eq!(made(Against::Finer, plate, 50, true), [(16, 50), (16, 99), (16, 197), (256, 50)]);
+    assert_eq!(made(Against::Finer, plate, 51, true), [(16, 7), (16, 13), (16, 26), (16, 51), (256, 51)]);
 }
 
 /// Tier: invariant. Numbers that are equal have no error but rounding, those that have nothing in common one of 1.
