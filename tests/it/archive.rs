@@ -120,6 +120,7 @@ fn verify_says_what_came_out_other_than_archived() {
     let mut entries = entries(&desk.path("a.zip"));
     let mut manifest = manifest(&entries);
     manifest.program.version = "0.0.9".to_owned();
+    manifest.program.dependencies = "other".to_owned();
     // Two archived tables are made to differ, consistently: by less and by more than the tolerance of 1e-9.
     for (name, column, by) in [("ste.summary", "mean", 1e-12), ("stiffness.summary", "single_max", 1e-3)] {
         let record = manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables).find(|table| table.name == name);
@@ -139,6 +140,7 @@ fn verify_says_what_came_out_other_than_archived() {
     let (out, error) = desk.run(&["verify", "b.zip"], 4);
     assert!(error.contains("quick: 1 of "), "{error}");
     assert!(out.contains("made with another version of gearstudy: 0.0.9"), "{out}");
+    assert!(out.contains("made with other versions of libraries"), "{out}");
     let line = |name: &str| out.lines().find(|line| line.trim_start().starts_with(name)).unwrap().to_owned();
     let within = line("ste.summary");
     assert!(within.contains("within tolerance") && within.contains("worst in mean at design="), "{within}");

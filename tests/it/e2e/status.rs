@@ -34,6 +34,12 @@ fn status_says_what_is_up_to_date_stale_and_missing() {
     assert!(said[1..].iter().all(|(_, state, _)| state == "waits"), "{said:?}");
     assert!(said.iter().any(|(name, _, why)| name == "stiffness" && why == "for pair"), "{said:?}");
     assert!(!desk.path(".gearstudy").exists(), "status makes no cache");
+    // A stage under another name: the old one is gone, the new one never ran.
+    let renamed = text.replace("\n  ste:", "\n  loaded:").replace("ste.", "loaded.");
+    fs::write(desk.path("quick.yaml"), renamed).unwrap();
+    let (out, _) = desk.run(&["status", "quick.yaml"], 0);
+    assert!(out.contains("the results have stages that the study has not: ste"), "{out}");
+    assert!(states(&["quick.yaml"]).contains(&("loaded".into(), "missing".into(), "never ran".into())));
     // Without names: those in the folder `studies`.
     fs::write(desk.path("quick.yaml"), &text).unwrap();
     assert!(desk.run(&["status"], 1).1.contains("no studies in `studies`"));
