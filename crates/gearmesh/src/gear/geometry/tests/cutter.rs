@@ -48,7 +48,8 @@ pub(super) fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
     let steps = 1200;
     let centre = x.atan2(y);
     let scan = |k: i32| centre + reach * (2.0 * f64::from(k) / f64::from(steps) - 1.0);
-    let nearest = (0..=steps).min_by(|a, b| at(scan(*a)).total_cmp(&at(scan(*b)))).unwrap();
+    let scanned = (0..=steps).map(|k| (at(scan(k)), k));
+    let (_, nearest) = scanned.min_by(|(one, _), (other, _)| one.total_cmp(other)).unwrap();
     let (mut lower, mut upper) = (scan(nearest - 1), scan(nearest + 1));
     for _ in 0..60 {
         let (left, right) = (lower + 0.381_966 * (upper - lower), upper - 0.381_966 * (upper - lower));

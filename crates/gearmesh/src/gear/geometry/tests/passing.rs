@@ -29,6 +29,53 @@ fn seen(pair: &GearPair, side: Side, [x, y]: [f64; 2], angle: f64) -> [f64; 2] {
     [x * back.cos() - y * back.sin(), x * back.sin() + y * back.cos()]
 }
 
+/// Vertices of a polyline that lie together: those from `first` to `last` are within `radius` of `centre`.
+struct Stretch {
+    first: usize,
+    last: usize,
+    centre: [f64; 2],
+    radius: f64,
+}
+
+impl Stretch {
+    fn of(path: &[[f64; 2]]) -> Vec<Self> {
+        let step = 48;
+        let starts = (0..path.len() - 1).step_by(step);
+        let stretch = |first: usize| {
+            let last = (first + step).min(path.len() - 1);
+            let centre = path[usize::midpoint(first, last)];
+            let radius = path[first..=last].iter().map(|&vertex| between(vertex, centre)).fold(0.0, f64::max);
+            Self { first, last, centre, radius }
+        };
+        starts.map(stretch).collect()
+    }
+}
+
+fn between([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+    (c - a).hypot(d - b)
+}
+
+/// Signed distance of a point from a polyline: positive to the left of its direction. What is surely farther away than the
+/// nearest so far is not looked at.
+fn distance_to(path: &[[f64; 2]], stretches: &[Stretch], [x, y]: [f64; 2]) -> f64 {
+    let (mut nearest, mut sign) = (f64::INFINITY, 0.0);
+    for stretch in stretches {
+        if between([x, y], stretch.centre) - stretch.radius > nearest {
+            continue;
+        }
+        for segment in path[stretch.first..=stretch.last].windows(2) {
+            let ([a, b], [c, d]) = (segment[0], segment[1]);
+            let (dx, dy) = (c - a, d - b);
+            let along = (((x - a) * dx + (y - b) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
+            let distance = (x - a - along * dx).hypot(y - b - along * dy);
+            if distance < nearest {
+                (nearest, sign) = (distance, (dx * (y - b) - dy * (x - a)).signum());
+            }
+        }
+    }
+    sign * nearest
+}
+
 /// The least distance of the root's points from the polylines that the tip's points draw, by brute force.
 fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 {
     let fine = Density { points: 600, chord_error: None };
@@ -53,18 +100,9 @@ fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 
     for point in tip {
         // At its lowest the path runs to the left, so what lies to the left of its direction is outside.
         let path: Vec<_> = (-800..=1600).map(|step| seen(pair, side, point, f64::from(step) * 5e-4)).collect();
+        let stretches = Stretch::of(&path);
         for place in root {
-            let [x, y] = place.local.position;
-            let near = |at: usize| {
-                let ([a, b], [c, d]) = (path[at], path[at + 1]);
-                let (dx, dy) = (c - a, d - b);
-                let along = (((x - a) * dx + (y - b) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-                let distance = (x - a - along * dx).hypot(y - b - along * dy);
-                (distance, (dx * (y - b) - dy * (x - a)).signum())
-            };
-            let (distance, sign) =
-                (0..path.len() - 1).map(near).min_by(|one, other| one.0.total_cmp(&other.0)).unwrap();
-            minimum = minimum.min(sign * distance);
+            minimum = minimum.min(distance_to(&path, &stretches, place.local.position));
         }
     }
     minimum

@@ -240,18 +240,23 @@ fn crowned_pair(crown: f64, accuracy: [f64; 2]) {
     let across = cycle.across.as_ref().unwrap();
     let s = cycle.path_position(0.4 * cycle.period(), 0);
     let width = cycle.face_width / slices as f64;
+    let orders = || (1..4000).map(f64::from);
+    let place = |slice: usize| std::f64::consts::PI * (slice as f64 + 0.5) / slices as f64;
+    let cosines: Vec<Vec<f64>> =
+        (0..slices).map(|slice| orders().map(|n| libm::cos(n * place(slice))).collect()).collect();
+    let weights = across.lengths.each_ref().map(|length| -> Vec<f64> {
+        let length = length.value(s) * std::f64::consts::PI;
+        let mean = |n: f64| {
+            let half = 0.5 * n * std::f64::consts::PI / slices as f64;
+            (libm::sin(half) / half).powi(2)
+        };
+        orders().map(|n| 2.0 * mean(n) / (1.0 + n * n * length * length)).collect()
+    });
     let influence = |one: usize, two: usize| {
         let mut sum = across.wind_up;
-        let place = |slice: usize| std::f64::consts::PI * (slice as f64 + 0.5) / slices as f64;
-        for (tooth, length) in across.teeth.iter().zip(&across.lengths) {
-            let mut share = 1.0;
-            for n in 1..4000 {
-                let (n, length) = (f64::from(n), length.value(s) * std::f64::consts::PI);
-                let half = 0.5 * n * std::f64::consts::PI / slices as f64;
-                let means = (libm::sin(half) / half).powi(2) * libm::cos(n * place(one)) * libm::cos(n * place(two));
-                share += 2.0 * means / (1.0 + n * n * length * length);
-            }
-            sum += tooth.value(s) * share;
+        for (tooth, weights) in across.teeth.iter().zip(&weights) {
+            let waves = cosines[one].iter().zip(&cosines[two]).zip(weights);
+            sum += tooth.value(s) * (1.0 + waves.map(|((one, two), weight)| weight * one * two).sum::<f64>());
         }
         sum + if one == two { across.contact / width } else { 0.0 }
     };
