@@ -164,7 +164,28 @@ fn reserve_and_gap_are_those_of_the_radii() {
             assert_near(mating.contact_reserve, active - form, 1e-9, "reserve");
             assert!(!mating.interferes() && Mating { contact_reserve: -1e-9, ..mating }.interferes());
             assert!(!Mating { contact_reserve: -1e-13, ..mating }.interferes(), "rounding");
+            // Of the root, rounding is that of the module, 3 mm.
+            for (root_distance, cuts) in [(1e-16, false), (-1e-15, false), (-1e-14, true)] {
+                assert_eq!(Mating { root_distance, ..mating }.cuts_root(3e-3), cuts, "{root_distance:e}");
+            }
             assert_near(alone.root_gap, 0.0, 1e-15, "gap");
         }
     }
+}
+
+/// Tier: definition; the gap is that of the outline's lowest point, also where a root's first piece already rises.
+#[test]
+fn the_gap_is_at_the_lowest_point() {
+    let mut open = 0;
+    for (teeth, family) in [(17, "arc"), (17, "trochoid"), (30, "arc"), (30, "tangent_arc"), (24, "optimised_arc")] {
+        let gear = gear(teeth, 3.0, 0.0);
+        let outline = shaped(&gear, family).unwrap();
+        let lowest = outline.half(Density { points: 2_000, chord_error: None }).into_iter();
+        let lowest =
+            lowest.map(|point| point.local.position[0].hypot(point.local.position[1])).fold(f64::MAX, f64::min);
+        let gap = Validity::new(&gear, &outline).root_gap;
+        assert_near(gap, lowest - gear.root_radius, 1e-12, &format!("{teeth} {family}"));
+        open += usize::from(gap > 1e-6);
+    }
+    assert!(open > 0, "some root stays above the root circle");
 }
