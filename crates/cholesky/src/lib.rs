@@ -12,7 +12,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::sparse::linalg::{SupernodalThreshold, amd};
-use faer::sparse::{SparseColMat, Triplet};
+use faer::sparse::{SparseColMat, SymbolicSparseColMat, SymbolicSparseColMatRef, Triplet};
 use faer::{Conj, MatMut, Par, Side, Spec};
 
 /// In which order the sums of a factorisation are made. [`Order::Blocks`] is the quick one; the others show by how much
@@ -61,13 +61,12 @@ impl Factor {
     /// When the matrix is too large, or not positive definite to rounding.
     pub fn new(Entries(triplets): &Entries, inside: usize, size: usize, order: Order) -> Result<Self, CholeskyError> {
         let matrix = SparseColMat::try_new_from_triplets(size, size, triplets).map_err(|_| CholeskyError::Memory)?;
-        let inner: Vec<_> = triplets.iter().filter(|entry| entry.row < inside).copied().collect();
-        let inner = SparseColMat::try_new_from_triplets(inside, inside, &inner).map_err(|_| CholeskyError::Memory)?;
+        let inner = first_unknowns(matrix.symbolic(), inside);
         let (mut forward, mut inverse) = (vec![0; inside], vec![0; inside]);
         let scratch = amd::order_maybe_unsorted_scratch::<usize>(inside, inner.compute_nnz());
         let mut memory = MemBuffer::new(scratch);
         let stack = MemStack::new(&mut memory);
-        amd::order_maybe_unsorted(&mut forward, &mut inverse, inner.symbolic(), amd::Control::default(), stack)
+        amd::order_maybe_unsorted(&mut forward, &mut inverse, inner.as_ref(), amd::Control::default(), stack)
             .map_err(|_| CholeskyError::Memory)?;
         for direction in [&mut forward, &mut inverse] {
             if order == Order::Numbered {
@@ -154,4 +153,15 @@ impl Factor {
             MemStack::new(&mut memory),
         );
     }
+}
+
+/// Which entries there are between the first `count` unknowns, in a lower half whose rows are sorted.
+fn first_unknowns(lower: SymbolicSparseColMatRef<'_, usize>, count: usize) -> SymbolicSparseColMat<usize> {
+    let mut starts = vec![0];
+    let mut rows = Vec::with_capacity(lower.row_idx().len());
+    for column in 0..count {
+        rows.extend(lower.row_idx_of_col(column).take_while(|row| *row < count));
+        starts.push(rows.len());
+    }
+    SymbolicSparseColMat::new_checked(count, count, starts, None, rows)
 }

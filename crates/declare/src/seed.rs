@@ -3,7 +3,7 @@
 //! `ChaCha8`, keyed by a digest of (study seed, stage name), one stream per row: no order of execution and no thread
 //! count can enter. Must not know: what the numbers are used for.
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::SeedableRng;
 
 use super::digest::{Digest, Writer};
@@ -50,6 +50,16 @@ mod tests {
     use rand_core::Rng;
 
     use super::*;
+
+    /// J. Strombergson, Test Vectors for the Stream Cipher ChaCha (2013), TC1, 256 bits, 8 rounds.
+    #[test]
+    fn the_generator_is_chacha8() {
+        let mut block = [0; 64];
+        Seed(Digest([0; 32])).generator(0).fill_bytes(&mut block);
+        let expected = "3e00ef2f895f40d67f5bb8e81f09a5a12c840ec3ce9a7f3b181be188ef711a1e\
+                        984ce172b9216f419f445367456d5619314a42a3da86b001387bfdb80e0cfe42";
+        assert_eq!(block.map(|byte| format!("{byte:02x}")).concat(), expected);
+    }
 
     #[test]
     fn streams_and_stages_are_apart_and_repeat() {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io::Cursor;
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde_json::{Value, json};
 

@@ -1,6 +1,6 @@
 //! Queries made to break something: an answer or one sentence, never a crash.
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 use super::Shop;

@@ -2,7 +2,7 @@
 //!
 //! Must not know: what is tested with them.
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
 use super::fixtures::{NamedModification, STEEL, design};

@@ -9,6 +9,7 @@ pub mod double_double;
 pub mod extremum;
 pub mod graded;
 pub mod harmonics;
+pub mod lambert;
 pub mod layer;
 pub mod lobatto;
 pub mod many_springs;

@@ -10,7 +10,7 @@
 //!
 //! Must not know: what the variables mean.
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 
 use super::random::{below, chance, uniform};
 use super::search::Reason;

@@ -149,11 +149,10 @@ impl Ring {
     /// Displacement amplitudes of the outer rim by traction amplitudes of harmonic n ≥ 1:
     /// [radial by normal, radial by shear, tangential by normal, tangential by shear].
     fn flexibility_of(&self, n: usize) -> [f64; 4] {
-        let outer = self.fields(n, 1.0);
         let order = n as f64;
         if n > 1 && libm::pow(self.bore, order - 1.0) < UNFELT {
             // A full disc: only the two fields that are finite inside.
-            let [a, c] = [outer[0], outer[1]];
+            let [a, c] = self.growing(n, 1.0);
             let determinant = a.normal_stress * c.shear_stress - c.normal_stress * a.shear_stress;
             let solve = |normal: f64, shear: f64| {
                 let x = (normal * c.shear_stress - c.normal_stress * shear) / determinant;
@@ -163,7 +162,7 @@ impl Ring {
             let ([rr, tr], [rt, tt]) = (solve(1.0, 0.0), solve(0.0, 1.0));
             return [rr, rt, tr, tt];
         }
-        let inner = self.fields(n, self.bore);
+        let [outer, inner] = [1.0, self.bore].map(|r| self.fields(n, r));
         // Stresses grow with n; bringing the rows to one size keeps the pivots meaningful.
         let scale = 1.0 / order;
         let row = |fields: [Field; 4], part: fn(Field) -> f64, normal: f64, shear: f64| {
@@ -187,20 +186,23 @@ impl Ring {
         ]
     }
 
-    /// The four fields of harmonic n at radius r: two that grow outwards, then two that decay, each 1 in size at its rim.
+    /// The four fields of harmonic n at radius r: two that grow outwards, then two that decay.
     fn fields(&self, n: usize, r: f64) -> [Field; 4] {
+        let ([a, b], [c, d]) = (self.growing(n, r), self.decaying(n, r));
+        [a, b, c, d]
+    }
+
+    /// The two fields of harmonic n at radius r that grow outwards, each 1 in size at the outer rim.
+    fn growing(&self, n: usize, r: f64) -> [Field; 2] {
         let (kappa, order) = (self.kappa, n as f64);
-        let power = |radial: f64, tangential: f64, exponent: f64, rim: f64| {
-            let size = libm::pow(r / rim, exponent);
-            let stretch = (kappa + 1.0) * exponent * radial + (3.0 - kappa) * (radial + order * tangential);
-            Field {
-                radial: radial * size,
-                tangential: tangential * size,
-                normal_stress: stretch / (kappa - 1.0) * size / r,
-                shear_stress: ((exponent - 1.0) * tangential - order * radial) * size / r,
-            }
-        };
-        let third = if n == 1 {
+        let first = [kappa - order - 1.0, kappa + order + 1.0];
+        [self.power(n, r, first, order + 1.0, 1.0), self.power(n, r, [-1.0, 1.0], order - 1.0, 1.0)]
+    }
+
+    /// The two that decay, each 1 in size at the bore.
+    fn decaying(&self, n: usize, r: f64) -> [Field; 2] {
+        let (kappa, order) = (self.kappa, n as f64);
+        let first = if n == 1 {
             // The two potentials of a rigid shift coincide; the logarithm carries the resultant force instead.
             let logarithm = 2.0 * kappa * libm::log(r);
             Field {
@@ -210,14 +212,22 @@ impl Ring {
                 shear_stress: 2.0 * (1.0 - kappa) / r,
             }
         } else {
-            power(kappa + order - 1.0, order - 1.0 - kappa, 1.0 - order, self.bore)
+            self.power(n, r, [kappa + order - 1.0, order - 1.0 - kappa], 1.0 - order, self.bore)
         };
-        [
-            power(kappa - order - 1.0, kappa + order + 1.0, order + 1.0, 1.0),
-            power(-1.0, 1.0, order - 1.0, 1.0),
-            third,
-            power(-1.0, -1.0, -order - 1.0, self.bore),
-        ]
+        [first, self.power(n, r, [-1.0, -1.0], -order - 1.0, self.bore)]
+    }
+
+    /// The field of harmonic n at radius r whose displacements are `radial` and `tangential` times (r/`rim`)^`exponent`.
+    fn power(&self, n: usize, r: f64, [radial, tangential]: [f64; 2], exponent: f64, rim: f64) -> Field {
+        let (kappa, order) = (self.kappa, n as f64);
+        let size = libm::pow(r / rim, exponent);
+        let stretch = (kappa + 1.0) * exponent * radial + (3.0 - kappa) * (radial + order * tangential);
+        Field {
+            radial: radial * size,
+            tangential: tangential * size,
+            normal_stress: stretch / (kappa - 1.0) * size / r,
+            shear_stress: ((exponent - 1.0) * tangential - order * radial) * size / r,
+        }
     }
 }
 

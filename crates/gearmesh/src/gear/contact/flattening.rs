@@ -7,6 +7,7 @@
 use std::f64::consts::PI;
 
 use crate::gear::material::Material;
+use crate::numeric::lambert::larger_root;
 
 /// (1 − ν²)/E \[1/Pa\].
 #[must_use]
@@ -71,7 +72,8 @@ impl Logarithmic {
     #[must_use]
     pub fn in_series(self, compliance: f64) -> InSeries {
         let last = libm::exp(self.constant / self.rate - 1.0);
-        InSeries { law: self, compliance, last, start: libm::log(compliance + self.rate) }
+        let start = (compliance + self.constant) / self.rate + libm::log(self.rate) - 1.0;
+        InSeries { law: self, compliance, last, start }
     }
 
     /// The approach of the flanks at the load per width p.
@@ -92,7 +94,7 @@ pub struct InSeries {
     pub compliance: f64,
     /// The load per width above which the flanks' approach is constant.
     last: f64,
-    /// ln(c + β).
+    /// (c + α) / β + ln β − 1.
     start: f64,
 }
 
@@ -110,23 +112,12 @@ impl InSeries {
     /// Load per width p and dp/dw at the penetration w > 0.
     #[must_use]
     pub fn load(&self, penetration: f64) -> (f64, f64) {
-        let Self { law: Logarithmic { constant, rate }, compliance, last, start } = *self;
+        let Self { law: Logarithmic { rate, .. }, compliance, last, start } = *self;
         if penetration >= (compliance + rate) * last {
             return ((penetration - rate * last) / compliance, 1.0 / compliance);
         }
-        // Newton on ln p: ln p + ln(c + α − β ln p) = ln w is almost straight, with a slope between 0 and 1.
-        let target = libm::log(penetration);
-        let mut logarithm = target - start;
-        for _ in 0..50 {
-            let total = compliance + constant - rate * logarithm;
-            let step = (logarithm + libm::log(total) - target) / (1.0 - rate / total);
-            logarithm -= step;
-            // Converging quadratically, so the step after this one is below rounding.
-            if step.abs() <= 1e-7 {
-                break;
-            }
-        }
-        let total = compliance + constant - rate * logarithm;
+        // w = p (c + α − β ln p) in u = w / (β p): u − ln u = (c + α) / β + ln β − ln w.
+        let total = rate * larger_root(start - libm::log(penetration));
         (penetration / total, 1.0 / (total - rate))
     }
 }
@@ -174,7 +165,7 @@ mod tests {
             assert!(penetration > before, "monotonic at {load}");
             before = penetration;
             let (found, slope) = series.load(penetration);
-            assert!((found / load - 1.0).abs() < 1e-12, "{load} {found}");
+            assert!((found / load - 1.0).abs() < 5e-14, "{load} {found}");
             let step = 1e-5 * penetration;
             let difference = series.load(penetration + step).0 - series.load(penetration - step).0;
             assert!((difference / (2.0 * step) / slope - 1.0).abs() < 1e-5, "slope at {load}");

@@ -11,6 +11,9 @@ use super::MeshError;
 /// What presses on the edges of one sector: left, right; radial and clockwise alternate.
 pub type Pressed = [Vec<f64>; 2];
 
+/// Real and imaginary part, freedom by freedom.
+type Wave = Vec<[f64; 2]>;
+
 /// A ring of `sectors`, each with a stiffness (by columns, left edge before right edge).
 pub struct Wheel<'a> {
     /// z: one sector per tooth.
@@ -50,15 +53,12 @@ impl Wheel<'_> {
     }
 
     /// A pressure's harmonic, real and imaginary: left + e^(−iφ) right, tangential parts over i.
-    fn wave([cosine, sine]: [f64; 2], [left, right]: &Pressed) -> [Vec<f64>; 2] {
-        let mut wave = [Vec::with_capacity(left.len()), Vec::with_capacity(left.len())];
-        for (place, (left, right)) in left.iter().zip(right).enumerate() {
+    fn wave([cosine, sine]: [f64; 2], [left, right]: &Pressed) -> Wave {
+        let part = |(place, (left, right)): (usize, (&f64, &f64))| {
             let (real, imaginary) = (left + cosine * right, -sine * right);
-            let [first, second] = if place % 2 == 0 { [real, imaginary] } else { [imaginary, -real] };
-            wave[0].push(first);
-            wave[1].push(second);
-        }
-        wave
+            if place % 2 == 0 { [real, imaginary] } else { [imaginary, -real] }
+        };
+        left.iter().zip(right).enumerate().map(part).collect()
     }
 
     /// Work \[affected, load\] of the pressures `affected`, on a sector k pitches clockwise, on what the `loads` do, for
@@ -76,16 +76,16 @@ impl Wheel<'_> {
         for harmonic in 0..=self.sectors / 2 {
             let turn = self.turn(harmonic, 1);
             let factor = cholesky(self.matrix(turn)).ok_or(MeshError::Singular)?;
-            let solved = |pressed: &&Pressed| Self::wave(turn, pressed).map(|part| forward(&factor, part));
-            let affected: Vec<[Vec<f64>; 2]> = affected.iter().map(solved).collect();
-            let loads: Vec<[Vec<f64>; 2]> = loads.iter().map(solved).collect();
+            let solved = |pressed: &&Pressed| forward(&factor, Self::wave(turn, pressed));
+            let affected: Vec<Wave> = affected.iter().map(solved).collect();
+            let loads: Vec<Wave> = loads.iter().map(solved).collect();
             let twice = if harmonic == 0 || 2 * harmonic == self.sectors { 1.0 } else { 2.0 };
             let weight = twice / f64::from(self.sectors);
-            for (row, [a, b]) in affected.iter().enumerate() {
-                for (column, [c, d]) in loads.iter().enumerate() {
-                    let (real, imaginary) = (dot(a, c) + dot(b, d), dot(a, d) - dot(b, c));
-                    for (&step, matrix) in steps.iter().zip(&mut result) {
-                        let [cosine, sine] = self.turn(harmonic, step);
+            let turns: Vec<[f64; 2]> = steps.iter().map(|&step| self.turn(harmonic, step)).collect();
+            for (row, affected) in affected.iter().enumerate() {
+                for (column, load) in loads.iter().enumerate() {
+                    let [real, imaginary] = work(affected, load);
+                    for ([cosine, sine], matrix) in turns.iter().zip(&mut result) {
                         matrix[row][column] += weight * (cosine * real - sine * imaginary);
                     }
                 }
@@ -133,11 +133,22 @@ fn cholesky(mut rows: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
     Some(rows)
 }
 
-/// L⁻¹ b.
-fn forward(factor: &[Vec<f64>], mut values: Vec<f64>) -> Vec<f64> {
+/// L⁻¹ b. Both parts side by side: a processor adds to several sums in the time of one.
+fn forward(factor: &[Vec<f64>], mut values: Wave) -> Wave {
     for (row, entries) in factor.iter().enumerate() {
-        let known = dot(&entries[..row], &values[..row]);
-        values[row] = (values[row] - known) / entries[row];
+        let known = entries[..row].iter().zip(&values).fold([0.0; 2], |[real, imaginary], (entry, value)| {
+            [real + entry * value[0], imaginary + entry * value[1]]
+        });
+        values[row] = [0, 1].map(|part| (values[row][part] - known[part]) / entries[row]);
     }
     values
+}
+
+/// Real and imaginary part of the sum of conj(one) other.
+fn work(one: &Wave, other: &Wave) -> [f64; 2] {
+    let products = one
+        .iter()
+        .zip(other)
+        .fold([0.0; 4], |sums, ([a, b], [c, d])| [sums[0] + a * c, sums[1] + b * d, sums[2] + a * d, sums[3] + b * c]);
+    [products[0] + products[1], products[2] - products[3]]
 }

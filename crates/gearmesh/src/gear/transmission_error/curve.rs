@@ -96,11 +96,11 @@ impl Point {
 }
 
 impl LoadCase<'_> {
-    /// The curve at the positions of the spans only.
+    /// The curve at the positions of the spans only, without those that only integrals need.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
         let mut points = self.no_points(wanted);
-        self.walk(self.span_length(wanted.harmonics), |span, states| {
+        self.for_values().walk(self.span_length(wanted.harmonics), |span, states| {
             extend(&mut points, span, &self.points(span, states, wanted.pressure));
         });
         points
@@ -159,7 +159,7 @@ impl LoadCase<'_> {
     /// The peak-to-peak transmission error \[m\], infinite beyond the model: the lean path for optimisers.
     #[must_use]
     pub fn peak_to_peak(&self) -> f64 {
-        if self.force.is_finite() { self.between(self.for_extrema().extremes()) } else { f64::INFINITY }
+        if self.force.is_finite() { self.between(self.for_values().extremes()) } else { f64::INFINITY }
     }
 
     /// The largest and the smallest transmission error.
@@ -215,7 +215,7 @@ impl LoadCase<'_> {
         Vec::with_capacity(spans as usize * NODES)
     }
 
-    fn points(&self, span: &Span, states: &[Equilibrium; NODES], pressure: bool) -> [Point; NODES] {
+    pub(super) fn points(&self, span: &Span, states: &[Equilibrium; NODES], pressure: bool) -> [Point; NODES] {
         std::array::from_fn(|node| {
             self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], pressure)
         })
@@ -267,7 +267,7 @@ fn insert(points: &mut Vec<Point>, new: Point) {
 
 /// Where two spans join smoothly their common point is taken once.
 #[allow(clippy::float_cmp)] // the end of one span is the very number that starts the next
-fn extend(points: &mut Vec<Point>, span: &Span, here: &[Point; NODES]) {
+pub(super) fn extend(points: &mut Vec<Point>, span: &Span, here: &[Point; NODES]) {
     #[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
     let joined = points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
     points.extend_from_slice(&here[usize::from(joined)..]);

@@ -183,9 +183,10 @@ impl<'a> LoadCase<'a> {
         if let Regime::CoupledSlices(slices) = &self.regime { Some(slices) } else { None }
     }
 
-    /// The same without the cuts that only integrals need, since extrema are refined on the function itself.
+    /// The same without the cuts that only integrals need: for values at points, and for extrema, which are refined on the
+    /// function itself.
     #[must_use]
-    pub fn for_extrema(&self) -> Self {
+    pub fn for_values(&self) -> Self {
         Self { levels: Vec::new(), refines: false, ..self.clone() }
     }
 

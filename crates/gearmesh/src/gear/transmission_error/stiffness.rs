@@ -3,7 +3,7 @@
 //! Stiffness is F/δ \[N/m\]: with the linear contact law and no coupling the sum of the pairs' stiffnesses, whatever the
 //! load. Must not know: tables.
 
-use super::curve::{Point, Wanted};
+use super::curve::{Point, extend};
 use super::cycle::MeshCycle;
 use super::load_case::LoadCase;
 use super::trace::{NODES, Trace};
@@ -38,7 +38,9 @@ pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummar
     let loading = LoadCase::new(cycle, &design, torque);
     let secant = |position: f64, pairs: usize| loading.force / loading.state(position, pairs).balance.approach;
     let mut trace = Trace::default();
+    let mut points = Vec::new();
     loading.walk(loading.span_length(0), |span, states| {
+        extend(&mut points, span, &loading.points(span, states, false));
         let values: [f64; NODES] = states.map(|state| loading.force / state.balance.approach);
         trace.spans.push((*span, values));
     });
@@ -51,5 +53,5 @@ pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummar
     let nodes = trace.nodes(&cycle.rows);
     let mean = nodes.iter().map(|node| node.weight * node.value).sum::<f64>() / cycle.period();
     let most_pairs = (cycle.zones.len() > 1).then(|| of(fewest + 1));
-    (loading.curve(Wanted::default()), StiffnessSummary { fewest_pairs: of(fewest), most_pairs, mean })
+    (points, StiffnessSummary { fewest_pairs: of(fewest), most_pairs, mean })
 }

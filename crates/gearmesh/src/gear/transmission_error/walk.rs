@@ -62,9 +62,10 @@ impl LoadCase<'_> {
         cuts: &mut usize,
         visit: &mut impl FnMut(&Span, &[Equilibrium; NODES]),
     ) {
-        let (position, pair) = match self.nodes(span, ends, *cuts > 0) {
-            Ok(states) => return visit(span, &states),
-            Err(cut) => cut,
+        let mut states = [ends[0]; NODES];
+        states[NODES - 1] = ends[1];
+        let Some((position, pair)) = self.fill(span, &mut states, *cuts > 0) else {
+            return visit(span, &states);
         };
         *cuts -= 1;
         let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
@@ -74,23 +75,21 @@ impl LoadCase<'_> {
         self.smooth(&after, &[middle, ends[1]], cuts, visit);
     }
 
-    /// The states at the nodes of a span, or where it is to be cut, if that is still allowed.
-    fn nodes(&self, span: &Span, ends: &[Equilibrium; 2], may_cut: bool) -> Result<[Equilibrium; NODES], Cut> {
+    /// Fills in the states between both ends of a span; where it is to be cut, if that is still allowed.
+    fn fill(&self, span: &Span, states: &mut [Equilibrium; NODES], may_cut: bool) -> Option<Cut> {
         let rows = &self.cycle.rows;
-        let mut states = [ends[0]; NODES];
-        states[NODES - 1] = ends[1];
         for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        if may_cut && let Some(cut) = self.change(span, &states) {
-            return Err(cut);
+        if may_cut && let Some(cut) = self.change(span, states) {
+            return Some(cut);
         }
         let bent = || rows.tail(&states.each_ref().map(Equilibrium::transmission_error)) > TAIL;
         if self.refines && may_cut && bent() {
-            return Err((0.5 * (span.start + span.end), None));
+            return Some((0.5 * (span.start + span.end), None));
         }
-        self.settle(span, &mut states);
-        Ok(states)
+        self.settle(span, states);
+        None
     }
 
     /// The transmission error over the cycle.

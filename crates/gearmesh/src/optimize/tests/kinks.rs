@@ -5,8 +5,6 @@
 //! report V-798, Academy of Sciences of the Czech Republic (2000), chapters 2 and 3: CB2, CB3, DEM, QL, LQ, Mifflin 1 and
 //! 2, Rosen-Suzuki, with starts and minima given there.
 
-use rayon::prelude::*;
-
 use super::{choice, integer, run, search};
 use crate::optimize::search::{Optimizer, Reason};
 
@@ -112,7 +110,7 @@ fn local_searches_follow_kinks_and_claim_no_convergence_on_them() {
     let hard = ["Mifflin 1", "Rosen-Suzuki"];
     for method in ["powell", "nelder_mead"] {
         for kinked in FUNCTIONS {
-            (0..20).into_par_iter().for_each(|seed| {
+            for seed in 0..20 {
                 let found = found(method, kinked, 30, seed);
                 let missed = found.best().unwrap().value - kinked.minimum;
                 let reason = found.finished();
@@ -121,7 +119,7 @@ fn local_searches_follow_kinks_and_claim_no_convergence_on_them() {
                     assert!(missed < 1e-5, "{method}, {}, seed {seed}: {missed:e}", kinked.name);
                     assert_eq!(reason, Some(Reason::Converged), "{method}, {}, seed {seed}: {missed:e}", kinked.name);
                 }
-            });
+            }
         }
     }
 }

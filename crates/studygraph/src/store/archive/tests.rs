@@ -2,7 +2,7 @@
 
 use std::io::{Cursor, Write};
 
-use rand_chacha::ChaCha8Rng;
+use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 use serde_json::json;
 use zip::ZipWriter;

@@ -58,22 +58,23 @@ fn between([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 /// Signed distance of a point from a polyline: positive to the left of its direction. What is surely farther away than the
 /// nearest so far is not looked at.
 fn distance_to(path: &[[f64; 2]], stretches: &[Stretch], [x, y]: [f64; 2]) -> f64 {
-    let (mut nearest, mut sign) = (f64::INFINITY, 0.0);
+    // The square of the distance.
+    let (mut nearest, mut sign) = (f64::INFINITY, 0.0_f64);
     for stretch in stretches {
-        if between([x, y], stretch.centre) - stretch.radius > nearest {
+        if between([x, y], stretch.centre) - stretch.radius > nearest.sqrt() {
             continue;
         }
         for segment in path[stretch.first..=stretch.last].windows(2) {
             let ([a, b], [c, d]) = (segment[0], segment[1]);
             let (dx, dy) = (c - a, d - b);
             let along = (((x - a) * dx + (y - b) * dy) / (dx * dx + dy * dy)).clamp(0.0, 1.0);
-            let distance = (x - a - along * dx).hypot(y - b - along * dy);
-            if distance < nearest {
-                (nearest, sign) = (distance, (dx * (y - b) - dy * (x - a)).signum());
+            let square = (x - a - along * dx).powi(2) + (y - b - along * dy).powi(2);
+            if square < nearest {
+                (nearest, sign) = (square, (dx * (y - b) - dy * (x - a)).signum());
             }
         }
     }
-    sign * nearest
+    sign * nearest.sqrt()
 }
 
 /// The least distance of the root's points from the polylines that the tip's points draw, by brute force.

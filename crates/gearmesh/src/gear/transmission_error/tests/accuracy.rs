@@ -164,7 +164,9 @@ fn a_curve_spans_its_summary_s_peak_to_peak() {
         for point in &points {
             assert!(point.loads.iter().all(|load| *load <= point.load()), "{}: {point:?}", case.0);
         }
-        added += usize::from(points.len() > loading.curve(Wanted::default()).len());
+        let nodes = loading.trace().nodes(&loading.cycle.rows);
+        let is_node = |point: &Point| nodes.iter().any(|node| node.position.total_cmp(&point.cycle_position).is_eq());
+        added += usize::from(!points.iter().all(is_node));
     }
     assert!(added > 100, "extrema between nodes: {added}");
 }
