@@ -183,8 +183,12 @@ pub fn state(stage: &StageDiff) -> String {
 
 /// Long texts of a study, cut.
 fn short(text: &str) -> String {
-    const MOST: usize = 120;
-    if text.chars().count() <= MOST { text.to_owned() } else { text.chars().take(MOST - 1).chain(['…']).collect() }
+    const LONGEST: usize = 120;
+    if text.chars().count() <= LONGEST {
+        text.to_owned()
+    } else {
+        text.chars().take(LONGEST - 1).chain(['…']).collect()
+    }
 }
 
 /// `reproduced → unexplained`.

@@ -13,14 +13,14 @@ pub struct Allocator;
 static COUNTS: AtomicBool = AtomicBool::new(false);
 /// Bytes held, from where counting began; less than none where older memory was given back.
 static HELD: AtomicIsize = AtomicIsize::new(0);
-static MOST: AtomicIsize = AtomicIsize::new(0);
+static PEAK: AtomicIsize = AtomicIsize::new(0);
 
 fn count(more: usize, less: usize) {
     if COUNTS.load(Ordering::Relaxed) {
         // The sizes of allocations fit isize: `Layout` refuses others.
         let change = more.cast_signed() - less.cast_signed();
         let held = HELD.fetch_add(change, Ordering::Relaxed) + change;
-        MOST.fetch_max(held, Ordering::Relaxed);
+        PEAK.fetch_max(held, Ordering::Relaxed);
     }
 }
 
@@ -62,11 +62,11 @@ pub fn most_during<T>(work: impl FnOnce() -> T) -> (T, Option<usize>) {
         return (work(), None);
     }
     HELD.store(0, Ordering::Relaxed);
-    MOST.store(0, Ordering::Relaxed);
+    PEAK.store(0, Ordering::Relaxed);
     let counting = Counting;
     let result = work();
     drop(counting);
-    let maximum = usize::try_from(MOST.load(Ordering::Relaxed)).ok();
+    let maximum = usize::try_from(PEAK.load(Ordering::Relaxed)).ok();
     // Nothing that is worth measuring does without memory: no allocator counted.
     (result, maximum.filter(|maximum| *maximum > 0))
 }

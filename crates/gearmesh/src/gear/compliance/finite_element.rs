@@ -193,7 +193,7 @@ impl<'a> Task<'a> {
                 return Ok((found, facts));
             }
             let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST_ELEMENTS
             let next = libm::ceil(across as f64 * factor) as usize;
             across = even(next.max(across + 2)).min(MOST_ELEMENTS);
         }

@@ -131,9 +131,13 @@ mod tests {
     const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25 };
 
     #[test]
-    fn the_linear_law_is_the_articles_for_equal_materials() {
-        let article = 4.0 * (1.0 - 0.09) / (PI * 206e9);
-        assert!((linear([&STEEL, &STEEL]) / article - 1.0).abs() < 1e-15);
+    fn the_linear_law_is_the_articles_for_equal_materials_and_the_mean_of_two() {
+        let article = |nu: f64, modulus: f64| 4.0 * (1.0 - nu * nu) / (PI * modulus);
+        assert!((linear([&STEEL, &STEEL]) / article(0.3, 206e9) - 1.0).abs() < 1e-15);
+        let mean = 0.5 * (article(0.3, 206e9) + article(0.25, 100e9));
+        for materials in [[&STEEL, &SOFT], [&SOFT, &STEEL]] {
+            assert!((linear(materials) / mean - 1.0).abs() < 1e-15);
+        }
     }
 
     /// 19/48, module 3 mm, 18 mm wide, 50 N·m: the least pressure of the single-contact zone is known to be 709 MPa.

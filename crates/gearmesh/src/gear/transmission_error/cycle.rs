@@ -251,7 +251,7 @@ fn most_pairs(ratio: f64) -> usize {
 /// ⌊ε⌋ + 1 pairs as long as the newest one shares the contact with the oldest, ⌊ε⌋ after that.
 fn zones(ratio: f64, period: f64) -> Vec<Zone> {
     let whole = (ratio + SHORTEST_ZONE).floor();
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the ratio was checked to be 1 to MOST
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // the ratio was checked to be 1 to MOST_SPRINGS
     let fewest = whole as usize;
     let shared = (ratio - whole) * period;
     if shared < SHORTEST_ZONE * period {

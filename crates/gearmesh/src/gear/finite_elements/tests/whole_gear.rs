@@ -48,12 +48,15 @@ fn further_teeth_stand_where_roll_angles_grow() {
 }
 
 /// Tier: second method; all sectors assembled into one matrix with Cartesian freedoms: the same displacements
-/// to 1e-9.
+/// to 1e-9. An even number of sectors has a harmonic that changes sign from each to the next.
 #[test]
 fn the_ring_of_sectors_is_the_gear_assembled_whole() {
-    let teeth = 5;
+    [5, 6].into_iter().for_each(assembled_whole);
+}
+
+fn assembled_whole(teeth: u32) {
     let mut specification = super::shifted(teeth, 0.3, 1.6);
-    specification.tip_radius = Some(3.4);
+    specification.tip_radius = Some(0.5 * f64::from(teeth) + 0.9);
     let (gear, root) = gear(&specification, RootShape::Trochoid);
     let model = model(&gear, &root, 4).unwrap();
     let mesh = &model.mesh;
@@ -112,7 +115,7 @@ fn the_ring_of_sectors_is_the_gear_assembled_whole() {
     };
     let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
     let rolls = nodes(root.form_roll, gear.tip_roll(), 3);
-    let found = model.influences(&rolls, 4).unwrap();
+    let found = model.influences(&rolls, teeth - 1).unwrap();
     let stresses = model.root_stresses(&rolls).unwrap();
     for (by, &roll) in rolls.iter().enumerate() {
         let mut moved = vector(&model.load(roll), 0);
@@ -134,6 +137,6 @@ fn the_ring_of_sectors_is_the_gear_assembled_whole() {
         for (value, exact) in stresses[by].iter().zip(&direct) {
             assert!((value.stress - exact.stress).abs() < 1e-8 * (1.0 + exact.stress.abs()));
         }
-        assert!(stresses[by].len() > 4);
+        assert!(stresses[by].len() >= 4);
     }
 }
