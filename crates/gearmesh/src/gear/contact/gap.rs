@@ -12,6 +12,12 @@ use crate::numeric::extremum::maximum;
 
 /// Samples of each smooth piece of a profile, which say how deep it can get and whether it bends back.
 const SAMPLES: usize = 8;
+/// Samples of a piece that may be a wave: enough for sixteen humps.
+const WAVE_SAMPLES: usize = 64;
+/// How often a piece may turn that is not cut there: twice is a hump with a valley beside it.
+const MOST_TURNS: usize = 2;
+/// By how much of the largest depth a profile must turn between two samples, so that it is no rounding.
+const TURN: f64 = 1e-9;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
@@ -340,6 +346,11 @@ impl<'a> Outline<'a> {
             }
         }
         outline.cuts.sort_by(f64::total_cmp);
+        for index in 1..outline.cuts.len() {
+            let turns = outline.turns([outline.cuts[index - 1], outline.cuts[index]]);
+            outline.cuts.extend(turns);
+        }
+        outline.cuts.sort_by(f64::total_cmp);
         // Nearer than this two cuts are one.
         let closest = 1e-9 * (facing.end - facing.start);
         outline.cuts.dedup_by(|next, kept| *next - *kept <= closest);
@@ -375,6 +386,22 @@ impl<'a> Outline<'a> {
         }
         outline.minimum = samples;
         outline
+    }
+
+    /// About where a smooth piece turns, if it does so more often than a search in a few parts can follow.
+    fn turns(&self, [from, to]: [f64; 2]) -> Vec<f64> {
+        let place = |index: usize| from + (to - from) * index as f64 / WAVE_SAMPLES as f64;
+        let depths: [f64; WAVE_SAMPLES + 1] = std::array::from_fn(|index| self.depth(place(index)));
+        let least = TURN * depths.iter().fold(0.0_f64, |largest, depth| largest.max(depth.abs()));
+        let rises = |index: usize| depths[index] - depths[index - 1];
+        let (mut turns, mut last) = (Vec::new(), 0.0_f64);
+        for index in (1..=WAVE_SAMPLES).filter(|index| rises(*index).abs() > least) {
+            if last * rises(index) < 0.0 {
+                turns.push(place(index - 1));
+            }
+            last = rises(index);
+        }
+        if turns.len() > MOST_TURNS { turns } else { Vec::new() }
     }
 
     fn depth(&self, position: f64) -> f64 {

@@ -167,7 +167,8 @@ pub trait Modification: Debug + Send + Sync {
         0.0
     }
 
-    /// Roll angles at which the depth, or the surface, is not smooth; any number of them.
+    /// Roll angles at which the depth, or the surface, is not smooth; any number of them. Where a smooth stretch bends back
+    /// more than sixteen times, corner contact needs breaks at every turn too.
     fn profile_breaks(&self) -> &[f64] {
         &[]
     }

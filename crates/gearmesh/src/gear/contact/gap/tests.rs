@@ -2,9 +2,13 @@
 
 mod outlines;
 
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
 use super::*;
 use crate::gear::fixtures::{NamedModification, design, pair, swapped};
-use crate::gear::modification::Design;
+use crate::gear::modification::flank::Flank;
+use crate::gear::modification::{Design, Modification};
 use declare::record::Value::{Choice, Number, Quantity};
 
 fn ramp(amount: f64, length: f64, curve: &'static str) -> [(&'static str, declare::record::Value); 3] {
@@ -92,6 +96,55 @@ fn the_gap_is_the_least_of_a_fine_scan() {
             assert!(
                 found < scanned + 1e-15 && found > scanned - step * 0.3 - 1e-13,
                 "{index} {s}: {found:e} {scanned:e}"
+            );
+        }
+    }
+}
+
+/// Waves over the flank, smooth all along it.
+#[derive(Debug)]
+struct Waves {
+    amount: f64,
+    number: f64,
+    flank: [f64; 2],
+}
+
+impl Modification for Waves {
+    fn depth(&self, roll: f64) -> f64 {
+        let [from, to] = self.flank;
+        0.5 * self.amount * (1.0 - libm::cos(TAU * self.number * (roll - from) / (to - from)))
+    }
+
+    fn varies_along_profile(&self) -> bool {
+        true
+    }
+
+    fn resolved(&self) -> Vec<(&'static str, f64)> {
+        Vec::new()
+    }
+}
+
+/// Tier: second method; the fine scan again. A smooth profile may bend back many times without a break.
+#[test]
+fn the_gap_of_waves_is_the_least_of_a_fine_scan() {
+    let pair = pair();
+    let flank = Flank::new(&pair, Side::Pinion);
+    for (amount, number) in [(5e-6, 1.0), (5e-6, 4.0), (5e-6, 6.3), (3e-6, 8.0), (10e-6, 16.0), (2e-6, 20.0)] {
+        let waves = Waves { amount, number, flank: [flank.root_roll, flank.tip_roll] };
+        let modification =
+            crate::gear::modification::NamedModification { family: "waves", modification: Arc::new(waves) };
+        let design = Design { pinion: vec![modification], gear: Vec::new() };
+        let profiles = design.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        for s in positions(&pair, 30) {
+            let (found, scanned) = (gaps.at(s).unwrap(), brute(&pair, &design, s, false));
+            // Between two points of the scan a wave turns by its bend times the square of their distance.
+            let bend = 0.5 * amount * (TAU * number / 10e-3).powi(2);
+            let step = 2.5e-7;
+            // Slopes are those of parabolas through three points of a piece, so that a minimum is a little beside its place.
+            assert!(
+                found < scanned + 3e-6 * amount && found > scanned - (60.0 + bend) * step * step - 1e-13,
+                "{number} {s}: {found:e} {scanned:e}"
             );
         }
     }
