@@ -108,9 +108,13 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     Ok(Box::new(ste))
 }
 
-/// One design under one torque.
+/// Tasks of which a thread keeps all points, until they are rows: no more than fit its caches.
+const MOST_AT_ONCE: usize = 16;
+/// Shares of each thread, at least, where there are as many tasks: they take unlike times.
+const SHARES: usize = 16;
+
+/// One design under one torque; its points are in the table `curve`.
 struct Answer {
-    points: Vec<Point>,
     summary: Summary,
     settings: Settings,
     error: f64,
@@ -128,7 +132,7 @@ impl Ste {
         (design, name): (&Design, &str),
         torque: f64,
         wanted: Wanted,
-    ) -> Result<Answer, Failure> {
+    ) -> Result<(Answer, Vec<Point>), Failure> {
         let began = Instant::now();
         let sliced = LoadCase::new(base, design, torque).uses_slices();
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
@@ -150,9 +154,38 @@ impl Ste {
         }
         let error = sampled.error(settings);
         let seconds = began.elapsed().as_secs_f64();
-        Ok(Answer { points, summary, settings, error, seconds })
+        Ok((Answer { summary, settings, error, seconds }, points))
+    }
+
+    /// Of approaches that no linear model is for, and of accuracies that were not reached.
+    fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
+        for (name, torque, answer) in answers {
+            let (largest, reached) = (answer.summary.largest.value, answer.error);
+            if largest > LARGE_APPROACH * module {
+                (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the \
+                     module of {:.6} mm; teeth that bend so far are no longer linear, and the numbers are those of a linear \
+                     model",
+                    largest * 1e3,
+                    module * 1e3,
+                ));
+            }
+            match self.accuracy {
+                Some(accuracy) if reached > accuracy => (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
+                )),
+                None if reached > POOR => (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e} only; take more \
+                     `slices` or `positions`, or ask for an `accuracy`"
+                )),
+                _ => (),
+            }
+        }
     }
 }
+
+/// A design and its name.
+type Named = (Design, String);
 
 impl Stage for Ste {
     fn inputs(&self) -> Vec<Port> {
@@ -215,7 +248,7 @@ impl Stage for Ste {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings())?;
-        let mut designs: Vec<(Design, String)> = Vec::new();
+        let mut designs: Vec<Named> = Vec::new();
         let mut givers: BTreeMap<String, &str> = BTreeMap::new();
         for (index, Placed { value: giver, .. }) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
@@ -232,61 +265,43 @@ impl Stage for Ste {
         let summary_pressure = context.demand.column(summary::TABLE, summary::LARGEST_PRESSURE);
         let curve_pressure = context.demand.column(curve::TABLE, curve::PRESSURE);
         let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
-        let tasks: Vec<(usize, f64)> =
-            (0..designs.len()).flat_map(|design| self.torque.iter().map(move |torque| (design, *torque))).collect();
+        let mut tasks: Vec<(&Named, f64)> =
+            designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
+        // Sorted while they are few: a table sorts by comparing the texts of every row.
+        tasks.sort_by(|a, b| a.0.1.cmp(&b.0.1).then(a.1.total_cmp(&b.1)));
         // Equidistant samples alone need no curve.
         let of_curves = OF_CURVES.iter().any(|table| context.demand.table(table));
         let answered = if of_curves { tasks.as_slice() } else { &[] };
-        let steps = Steps::new(context, answered.len());
-        let answers: Vec<Answer> = answered
-            .par_iter()
-            .map(|&(design, torque)| {
-                context.check_stop()?;
-                let (design, name) = &designs[design];
-                let answer = self.answer(&base, (design, name.as_str()), torque, wanted);
-                steps.done();
-                answer
-            })
-            .collect::<Result<_, Failure>>()?;
-
-        for (&(design, torque), answer) in answered.iter().zip(&answers) {
-            let (largest, module) = (answer.summary.largest.value, pair.pinion.specification.module);
-            if largest > LARGE_APPROACH * module {
-                (context.warn)(format!(
-                    "design `{}` at {torque} N m: the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the module of \
-                     {:.6} mm; teeth that bend so far are no longer linear, and the numbers are those of a linear model",
-                    designs[design].1,
-                    largest * 1e3,
-                    module * 1e3,
-                ));
-            }
-            let (name, reached) = (&designs[design].1, answer.error);
-            match self.accuracy {
-                Some(accuracy) if reached > accuracy => (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
-                )),
-                None if reached > POOR => (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e} only; take more \
-                     `slices` or `positions`, or ask for an `accuracy`"
-                )),
-                _ => (),
-            }
-        }
-        // Sorted while they are few: a table sorts by comparing the texts of every row.
-        let mut keyed: Vec<Keyed> = (answered.iter().zip(&answers))
-            .map(|(&(design, torque), answer)| (designs[design].1.as_str(), torque, answer))
-            .collect();
-        keyed.sort_by(|a, b| a.0.cmp(b.0).then(a.1.total_cmp(&b.1)));
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
-        let (curves, harmonics) = rayon::join(
-            || curve().only(&narrowed(curve().schema())).table_of(&points(&keyed)),
-            || harmonics().only(&narrowed(harmonics().schema())).table_of(&amplitudes(&keyed)),
-        );
+        let of_curve = narrowed(curve().schema());
+        let steps = Steps::new(context, answered.len());
+        let at_once = (answered.len() / (SHARES * rayon::current_num_threads())).clamp(1, MOST_AT_ONCE);
+        let parts: Vec<(Vec<Keyed>, Table)> = answered
+            .par_chunks(at_once)
+            .map(|tasks| {
+                let mut answers = Vec::with_capacity(tasks.len());
+                let mut found = Vec::with_capacity(tasks.len());
+                for &((design, name), torque) in tasks {
+                    context.check_stop()?;
+                    let (answer, points) = self.answer(&base, (design, name), torque, wanted)?;
+                    answers.push((name.as_str(), torque, answer));
+                    found.push((name.as_str(), torque, points));
+                    steps.done();
+                }
+                let rows = curve().only(&of_curve).table_of(&points(&found)).map_err(failed)?;
+                Ok((answers, rows))
+            })
+            .collect::<Result<_, Failure>>()?;
+        let (answers, parts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
+        let keyed: Vec<Keyed> = answers.into_iter().flatten().collect();
+        self.warn(context, &keyed, pair.pinion.specification.module);
+        let none = || Table::from_rows(of_curve, Vec::new());
+        let curves = Table::concatenated(parts).and_then(|curves| curves.map_or_else(none, Ok));
         let mut tables = vec![
             summary().only(&narrowed(summary().schema())).table(&keyed).map_err(failed)?,
             curves.map_err(failed)?,
-            harmonics.map_err(failed)?,
+            harmonics().only(&narrowed(harmonics().schema())).table_of(&amplitudes(&keyed)).map_err(failed)?,
         ];
         if context.demand.table(tables::COST) {
             tables.push(cost().table(&keyed).map_err(failed)?);
@@ -294,9 +309,9 @@ impl Stage for Ste {
         let [each, of_each] = [samples::TABLE, samples::SUMMARY].map(|table| context.demand.table(table));
         if each || of_each {
             let (mut rows, mut sums): (Vec<Keyed<Sample>>, Vec<Keyed<Samples>>) = Default::default();
-            for &(design, torque) in &tasks {
+            for &((design, name), torque) in &tasks {
                 context.check_stop()?;
-                let (design, name) = (&designs[design].0, designs[design].1.as_str());
+                let name = name.as_str();
                 let loading = LoadCase::new(&base, design, torque);
                 let (taken, sum) = samples::taken(&loading, self.first_sample, self.samples);
                 rows.extend(taken.into_iter().map(|sample| (name, torque, sample)));

@@ -266,6 +266,6 @@ fn pointer(bytes: &[u8]) -> Option<&'static str> {
 fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
     let part = |key: &str| cache?.table(Digest::from_hex(key)?, record.table()).ok();
     let parts: Vec<Table> = stage.keys.iter().map(|record| part(&record.key)).collect::<Option<_>>()?;
-    let table = Table::concatenated(&parts.iter().collect::<Vec<_>>()).ok()??;
+    let table = Table::concatenated(parts).ok()??;
     (table.content_hash().to_string() == record.content).then_some(table)
 }

@@ -203,13 +203,11 @@ impl StageOutcome {
 ///
 /// # Errors
 /// When they do not fit together: a table of a stage that is cut must have the axis in its key.
-pub fn together(name: &str, mut parts: Vec<Table>) -> Result<Table, StoreError> {
-    if parts.len() == 1 {
-        return Ok(parts.remove(0));
-    }
+pub fn together(name: &str, parts: Vec<Table>) -> Result<Table, StoreError> {
     let failed = |problem: String| StoreError::Format { table: name.to_owned(), problem };
-    let joined = Table::concatenated(&parts.iter().collect::<Vec<_>>());
-    joined.map_err(|error| failed(error.to_string()))?.ok_or_else(|| failed("there is no such table".to_owned()))
+    Table::concatenated(parts)
+        .map_err(|error| failed(error.to_string()))?
+        .ok_or_else(|| failed("there is no such table".to_owned()))
 }
 
 fn forget_damaged<T>(cache: &Cache, key: Digest, read: Result<T, StoreError>) -> Result<T, StoreError> {

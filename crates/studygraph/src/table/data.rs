@@ -88,12 +88,13 @@ impl Data {
         Ok(())
     }
 
-    fn append(&mut self, other: &Self) {
+    /// Moves all values of the other to the end of these.
+    fn append(&mut self, other: &mut Self) {
         match (self, other) {
-            (Self::Float(values), Self::Float(more)) => values.extend_from_slice(more),
-            (Self::Integer(values), Self::Integer(more)) => values.extend_from_slice(more),
-            (Self::Text(values), Self::Text(more)) => values.extend_from_slice(more),
-            (Self::Flag(values), Self::Flag(more)) => values.extend_from_slice(more),
+            (Self::Float(values), Self::Float(more)) => values.append(more),
+            (Self::Integer(values), Self::Integer(more)) => values.append(more),
+            (Self::Text(values), Self::Text(more)) => values.append(more),
+            (Self::Flag(values), Self::Flag(more)) => values.append(more),
             _ => unreachable!("tables of one schema have columns of one type"),
         }
     }
@@ -227,21 +228,19 @@ impl Table {
                 return Err(TableError::Column { column: column.name.clone(), table: schema.name.clone(), problem });
             }
         }
-        Self { schema, columns, rows }.sorted()
+        Self { schema, columns, rows }.sorted(1..rows)
     }
 
-    fn sorted(mut self) -> Result<Self, TableError> {
+    /// By key; `unsure` are the rows that may not come after the one before.
+    fn sorted(mut self, mut unsure: impl Iterator<Item = usize>) -> Result<Self, TableError> {
         let keys: Vec<usize> = self.schema.key_columns().collect();
-        if keys.is_empty() {
-            return Ok(self);
-        }
         let compare = |a: usize, b: usize| {
             keys.iter()
                 .map(|&key| self.columns[key].compare(a, b))
                 .find(|order| order.is_ne())
                 .unwrap_or(Ordering::Equal)
         };
-        if !(1..self.rows).all(|row| compare(row - 1, row).is_lt()) {
+        if !keys.is_empty() && !unsure.all(|row| compare(row - 1, row).is_lt()) {
             let mut order: Vec<usize> = (0..self.rows).collect();
             order.sort_by(|&a, &b| compare(a, b));
             if let Some(pair) = order.windows(2).find(|pair| compare(pair[0], pair[1]).is_eq()) {
@@ -260,22 +259,32 @@ impl Table {
     ///
     /// # Errors
     /// When the schemas differ, or a key repeats.
-    pub fn concatenated(parts: &[&Self]) -> Result<Option<Self>, TableError> {
-        let Some((first, rest)) = parts.split_first() else { return Ok(None) };
-        let mut columns = first.columns.clone();
-        for part in rest {
-            if part.schema != first.schema {
-                return Err(TableError::Column {
-                    table: first.schema.name.clone(),
-                    column: String::new(),
-                    problem: "two chunks have different columns".to_owned(),
-                });
-            }
-            for (column, more) in columns.iter_mut().zip(&part.columns) {
-                column.append(more);
-            }
+    pub fn concatenated(mut parts: Vec<Self>) -> Result<Option<Self>, TableError> {
+        if parts.len() < 2 {
+            return Ok(parts.pop());
         }
-        Self::from_columns(first.schema.clone(), columns).map(Some)
+        let schema = parts[0].schema.clone();
+        if parts.iter().any(|part| part.schema != schema) {
+            return Err(TableError::Column {
+                table: schema.name,
+                column: String::new(),
+                problem: "two chunks have different columns".to_owned(),
+            });
+        }
+        let rows = parts.iter().map(|part| part.rows).sum();
+        // Only where two parts meet can rows be out of order.
+        let starts = parts.iter().scan(0, |end, part| Some(std::mem::replace(end, *end + part.rows)));
+        let borders: Vec<usize> = starts.filter(|&row| row > 0 && row < rows).collect();
+        // One after the other: what is held twice is a column, not the table.
+        let mut columns = Vec::with_capacity(schema.columns.len());
+        for (index, column) in schema.columns.iter().enumerate() {
+            let mut whole = Data::with_room(column.kind, rows);
+            for part in &mut parts {
+                whole.append(&mut std::mem::replace(&mut part.columns[index], Data::empty(column.kind)));
+            }
+            columns.push(whole);
+        }
+        Self { schema, columns, rows }.sorted(borders.into_iter()).map(Some)
     }
 
     #[must_use]
@@ -363,72 +372,4 @@ impl Table {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::schema::Column;
-    use super::*;
-
-    fn table(name: &str, columns: Vec<Column>, rows: Vec<Row>) -> Table {
-        Table::from_rows(Schema::new(name, "", columns), rows).unwrap()
-    }
-
-    fn columns() -> Vec<Column> {
-        vec![
-            Column::text("design", "").key(),
-            Column::float("torque", "N m", ""),
-            Column::integer("teeth", ""),
-            Column::flag("fits", ""),
-            Column::float("seconds", "s", "").volatile(),
-        ]
-    }
-
-    fn rows() -> Vec<Row> {
-        vec![
-            vec!["iso".into(), 50.0.into(), Cell::Integer(19), Cell::Flag(true), 3.0.into()],
-            vec!["none".into(), 25.0.into(), Cell::Integer(48), Cell::Flag(false), 4.0.into()],
-        ]
-    }
-
-    /// Tier: invariant; the cache takes tables of one digest for the same: all that tells two apart must be in it, and nothing
-    /// that a run of the same study may change.
-    #[test]
-    fn the_digest_tells_tables_apart_by_all_they_say() {
-        let base = table("summary", columns(), rows()).content_hash();
-        let mut others = vec![table("curve", columns(), rows())];
-        let changes: [fn(&mut Vec<Column>); 4] = [
-            |columns| columns[1].name = "force".to_owned(),
-            |columns| columns[1].unit = "kN m".to_owned(),
-            |columns| columns[1].key = true,
-            |columns| columns.swap(2, 3),
-        ];
-        for (index, change) in changes.into_iter().enumerate() {
-            let (mut columns, mut rows) = (columns(), rows());
-            change(&mut columns);
-            if index == 3 {
-                for row in &mut rows {
-                    row.swap(2, 3);
-                }
-            }
-            others.push(table("summary", columns, rows));
-        }
-        let cells: [(usize, Cell); 4] =
-            [(0, "is".into()), (1, 50.5.into()), (2, Cell::Integer(20)), (3, Cell::Flag(false))];
-        for (at, cell) in cells {
-            let mut rows = rows();
-            rows[0][at] = cell;
-            others.push(table("summary", columns(), rows));
-        }
-        others.push(table("summary", columns(), rows()[..1].to_vec()));
-        let mut digests: Vec<Digest> = others.iter().map(Table::content_hash).collect();
-        digests.push(base);
-        for (at, digest) in digests.iter().enumerate() {
-            assert!(!digests[..at].contains(digest), "table {at} has the digest of another");
-        }
-        // Neither what is volatile nor prose.
-        let (mut later, mut described) = (rows(), columns());
-        for row in &mut later {
-            row[4] = 9.0.into();
-        }
-        described[1].description = "at the pinion".to_owned();
-        assert_eq!(table("summary", described, later).content_hash(), base);
-    }
-}
+mod tests;

@@ -3,7 +3,7 @@
 //! Must not know: how a curve is found.
 
 use super::tables::{cost, curve, harmonics, summary};
-use super::{OF_CURVES, Ste, samples};
+use super::{MOST_AT_ONCE, OF_CURVES, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
@@ -13,6 +13,8 @@ use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
 const SOLVES_PER_ROW: f64 = 2.3;
 /// Bytes of a pair with its compliances, ready to be loaded.
 const CYCLE: u64 = 1 << 20;
+/// Of a large machine: each holds the points of some curves, before they are rows.
+const THREADS: usize = 64;
 
 impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -22,6 +24,7 @@ impl Ste {
         let of_each = common::curve_rows(self.settings(), self.harmonics);
         let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
         let rows = curves.times(RowCount::about(if of_curves { of_each } else { 0 }));
+        let points = rows.count.min((THREADS * MOST_AT_ONCE).saturating_mul(of_each) as u64);
         let pressures = demand.column(names::summary::TABLE, names::summary::LARGEST_PRESSURE)
             || demand.column(names::curve::TABLE, names::curve::PRESSURE);
         let samples = if demand.table(samples::TABLE) || demand.table(samples::SUMMARY) { self.samples } else { 0 };
@@ -33,8 +36,8 @@ impl Ste {
             .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 });
         Estimate::new(true)
             .work(&work, common::solve_times(self.settings()))
-            // The points of all curves are there before the table is; their room is as large again.
-            .holding(CYCLE.saturating_add(rows.count.saturating_mul(2 * size_of::<Point>() as u64)))
+            // Room for as many points again as there are.
+            .holding(CYCLE.saturating_add(points.saturating_mul(2 * size_of::<Point>() as u64)))
             .rows(demand, summary().schema(), curves)
             .columns(demand, curve().schema(), rows)
             .rows(demand, harmonics().schema(), curves.times(RowCount::exact(self.harmonics)))

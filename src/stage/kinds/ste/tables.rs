@@ -12,7 +12,7 @@ pub const HARMONICS: &str = "harmonics";
 pub const COST: &str = "cost";
 
 /// Design, torque, and what they gave.
-pub type Keyed<'a, T = &'a Answer> = (&'a str, f64, T);
+pub type Keyed<'a, T = Answer> = (&'a str, f64, T);
 
 /// The columns that say which curve a row is of.
 pub fn keyed<'a, T>(name: &str, description: &str) -> Columns<Keyed<'a, T>> {
@@ -119,9 +119,9 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
 }
 
 /// The points of curves, in the order of the keys, or the table sorts every row.
-pub fn points<'a>(answers: &'a [Keyed<'a>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
-    answers.iter().flat_map(|(design, torque, answer)| {
-        (1..).zip(&answer.points).map(move |(index, point)| (*design, *torque, (index, point)))
+pub fn points<'a>(curves: &'a [Keyed<'a, Vec<Point>>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
+    curves.iter().flat_map(|(design, torque, points)| {
+        (1..).zip(points).map(move |(index, point)| (*design, *torque, (index, point)))
     })
 }
 
