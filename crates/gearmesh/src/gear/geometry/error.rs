@@ -193,16 +193,6 @@ pub enum Problem {
         /// The number of teeth at which r_f = r_b with this rack and profile shift; a real number.
         maximum: Plain,
     },
-    /// On the base circle the tooth is at least as wide as the pitch, so no arc can lie beside it.
-    #[error(
-        "no centre of an arc lies between tooth and space: on the base circle the tooth takes up {angle} deg on either side of its centreline, but must take up less than {maximum} deg"
-    )]
-    NoSpace {
-        /// ψ_b \[deg\].
-        angle: Plain,
-        /// Half the angle of the pitch, π/z \[deg\].
-        maximum: Plain,
-    },
     /// Undercut is so deep that no thickness is left at the tooth's neck.
     #[error(
         "the root curve cuts the tooth off at a radius of {height}; {teeth} teeth need a profile shift of at least {minimum} modules not to be undercut"
@@ -321,10 +311,9 @@ impl GeometryError {
             Problem::NoTipLand { .. } => Parameter::PressureAngle,
             Problem::TipRoundTooLarge { .. } | Problem::FilletDoesNotFit { .. } => Parameter::RackTipRadius,
             Problem::NoFlank { .. } | Problem::Interference { .. } => Parameter::Teeth,
-            Problem::RootArcTooLarge { .. }
-            | Problem::NothingBelowBase { .. }
-            | Problem::NoSpace { .. }
-            | Problem::CutOff { .. } => return Subject::Root,
+            Problem::RootArcTooLarge { .. } | Problem::NothingBelowBase { .. } | Problem::CutOff { .. } => {
+                return Subject::Root;
+            }
             Problem::TipBreakTooLarge { .. } => return Subject::Tip,
             Problem::ReliefTooDeep { .. } | Problem::TipTakenOff { .. } => return Subject::Flank,
             Problem::Pointed { tip_is_given: false, .. } | Problem::ProfileShiftSum { .. } => Parameter::ProfileShift,

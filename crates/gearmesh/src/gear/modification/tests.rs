@@ -144,6 +144,16 @@ fn crowning_and_slopes_have_their_ends() {
         close(crowned.lead(9e-3), edge * AMOUNT);
         close(crowned.lead(0.0), 0.0);
     }
+    // On the pinion, with the places that they are laid out from.
+    let middle = pair.roll(Side::Pinion, 0.5 * (start + end));
+    for (family, name, place) in
+        [("profile_crowning", "middle_roll_angle", middle), ("helix_slope", "face_width", 20e-3)]
+    {
+        let design = design(&pair, &[(family, "pinion", &amount(AMOUNT))]).unwrap();
+        let found = |wanted: &str| design.resolved().into_iter().find(|(_, _, name, _)| *name == wanted).unwrap().3;
+        close(found("amount"), AMOUNT);
+        assert!((found(name) / place - 1.0).abs() < 1e-12, "{family}: {name} {}", found(name));
+    }
 }
 
 #[test]
@@ -160,6 +170,8 @@ fn end_relief_starts_on_the_face_and_its_quadratic_is_its_lead() {
             ];
             let design = design(&pair, &[("end_relief", "gear", &values)]).unwrap();
             let part = &design.gear[0].modification;
+            assert_eq!(part.resolved(), [("amount", AMOUNT), ("length", length)]);
+            assert_eq!(part.lead_is_even(), end == "both");
             for step in -90..=90 {
                 let z = f64::from(step) * 1e-4;
                 let relieved = if z > 0.0 { end != "I" } else { end != "II" };
@@ -169,6 +181,9 @@ fn end_relief_starts_on_the_face_and_its_quadratic_is_its_lead() {
                 close(constant + slope * z + bend * z * z, design.lead(z));
             }
         }
+        // Nothing is alike on both sides.
+        let values = [("amount", Quantity(0.0)), ("length", Quantity(8e-3)), ("end", Choice(end))];
+        assert!(design(&pair, &[("end_relief", "gear", &values)]).unwrap().lead_is_even());
     }
 }
 

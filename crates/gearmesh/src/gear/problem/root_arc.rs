@@ -76,7 +76,7 @@ impl RootArc {
     /// When the root circle does not lie inside the base circle, or no space is left there.
     pub fn new(gear: &Gear) -> Result<Self, GeometryError> {
         let base = Base::new(gear, "the arc of zhai2020")?;
-        let best = base.tangent_circle(optimised_arc::radius(&base)?);
+        let best = base.tangent_circle(optimised_arc::radius(&base));
         let dedendum = gear.reference_radius - gear.root_radius;
         let printed_angle = base.half_pitch + 0.5 * involute(gear.specification.pressure_angle);
         Ok(Self { base, best, dedendum, printed_angle })

@@ -134,15 +134,23 @@ fn alone_a_direction_set_stops_on_kinks() {
     assert_eq!(names, ["CB2", "CB3", "QL", "LQ", "Mifflin 1", "Rosen-Suzuki"]);
 }
 
-/// A valley that falls so gently that no search here follows it to its end within its restarts: that is not convergence.
+/// A valley that falls so gently that no search here follows it to its end within its restarts: that is not convergence,
+/// and it is said of a local search, whose point nobody else looked for.
 #[test]
 fn what_is_used_up_is_no_convergence() {
+    let said =
+        |search: &mut Optimizer| (search.finished(), search.doubt().map(|doubt| doubt.contains("the search stalled")));
     let hard = FUNCTIONS.iter().find(|kinked| kinked.name == "Mifflin 1").unwrap();
-    let reasons: Vec<_> = (0..20).map(|seed| found("powell", hard, 3, seed).finished()).collect();
-    assert!(reasons.iter().filter(|reason| **reason == Some(Reason::Stalled)).count() > 15, "{reasons:?}");
+    let reasons: Vec<_> = (0..20).map(|seed| said(&mut found("powell", hard, 3, seed))).collect();
+    let stalled = reasons.iter().filter(|said| **said == (Some(Reason::Stalled), Some(true)));
+    assert!(stalled.count() > 15, "{reasons:?}");
     let given = [("evaluations", integer(50))];
-    let short = run(search("powell", &given, hard.bounds, 1), hard.function);
-    assert_eq!(short.finished(), Some(Reason::Evaluations));
+    let mut short = run(search("powell", &given, hard.bounds, 1), hard.function);
+    assert_eq!(said(&mut short), (Some(Reason::Evaluations), Some(false)));
+    let easy = FUNCTIONS.iter().find(|kinked| kinked.name == "CB2").unwrap();
+    assert_eq!(said(&mut found("powell", easy, 30, 0)), (Some(Reason::Converged), None));
+    let mut whole = run(search("sobol", &[("points", integer(20))], hard.bounds, 1), hard.function);
+    assert_eq!(said(&mut whole), (Some(Reason::Complete), None));
 }
 
 /// A minimum on a kink is one: nothing is doubted where all sides rise, on a bound or within.

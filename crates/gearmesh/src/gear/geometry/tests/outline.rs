@@ -137,6 +137,7 @@ proptest! {
                 for junction in outline.junctions() {
                     prop_assert!(junction.position_jump() < 1e-12 * r, "{} at {:?}: {:e} m", family.member.name, junction.place, junction.position_jump());
                 }
+                check_curves(&outline, r).map_err(TestCaseError::fail)?;
                 let last = outline.segments.last().unwrap();
                 prop_assert!(last.end()[0].abs() < 1e-15 * r.max(1.0));
                 for segment in &outline.segments {
@@ -144,6 +145,24 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// That the curves of a tooth, one after the other, are the tooth, of as many points as foreseen.
+fn check_curves(outline: &Outline, r: f64) -> Result<(), String> {
+    let (curves, tooth) = (outline.tooth_by_curves(SPARSE), outline.tooth(SPARSE));
+    let numbers = [curves.len(), curves.iter().map(Vec::len).sum(), outline.half(SPARSE).len()];
+    let foreseen = [2 * outline.segments.len() - 1, outline.points_by_curves(SPARSE), outline.points_of_half(SPARSE)];
+    let joined = curves.iter().enumerate().flat_map(|(index, curve)| &curve[usize::from(index > 0)..]);
+    let apart = joined.zip(&tooth).map(|(a, b)| {
+        let ([x, y], [across, up]) = (a.local.position, b.local.position);
+        (x - across).hypot(y - up)
+    });
+    let (count, farthest) = apart.fold((0, 0.0_f64), |(count, farthest), apart| (count + 1, farthest.max(apart)));
+    if numbers == foreseen && count == tooth.len() && farthest < 1e-12 * r {
+        Ok(())
+    } else {
+        Err(format!("{numbers:?} for {foreseen:?}, {count} for {} points, {farthest:e} m apart", tooth.len()))
     }
 }
 

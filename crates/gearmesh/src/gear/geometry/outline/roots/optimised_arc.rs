@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 use super::base_arc::Base;
 use super::{Root, Toe};
 use crate::gear::geometry::Gear;
-use crate::gear::geometry::error::{GeometryError, Plain, Problem};
+use crate::gear::geometry::error::GeometryError;
 use declare::Declared;
 
 /// Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).
@@ -19,23 +19,18 @@ use declare::Declared;
 #[declared(name = "optimised_arc")]
 pub struct OptimisedArc {}
 
-/// The best radius.
-///
-/// # Errors
-/// When the tooth is as wide as the pitch on the base circle, so that no centre lies between tooth and space.
-pub fn radius(base: &Base) -> Result<f64, GeometryError> {
-    let middle = base.middle_radius();
-    if middle <= 0.0 {
-        let [angle, maximum] = [base.angle, base.half_pitch].map(|angle| Plain(angle * 180.0 / PI));
-        return Err(Problem::NoSpace { angle, maximum }.into());
-    }
-    Ok(base.touching_radius().min(middle))
+/// The best radius; positive, since no tooth fills its pitch on the base circle. What rolls a tip land along the root,
+/// h_f < π/(4 tan α), and leaves something below the base circle, h_f − x > z (1 − cos α)/2, has ψ_b = π/(2z) + 2x tan α/z
+/// + inv α < π/z − (α − sin α), whatever its teeth.
+#[must_use]
+pub fn radius(base: &Base) -> f64 {
+    base.touching_radius().min(base.middle_radius())
 }
 
 impl Root for OptimisedArc {
     fn toe(&self, gear: &Gear) -> Result<Toe, GeometryError> {
         let base = Base::new(gear, "the optimised arc")?;
-        let circle = base.tangent_circle(radius(&base)?);
+        let circle = base.tangent_circle(radius(&base));
         let lowest = libm::atan2(circle.centre[1], circle.centre[0]) + PI;
         Ok(Toe { segments: base.segments(circle, lowest), form_roll: 0.0 })
     }
