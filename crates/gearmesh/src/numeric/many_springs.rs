@@ -242,7 +242,9 @@ mod tests {
             let springs = Bent((0..count).map(|i| 0.5 / (own[i] + entry(i, i))).collect());
             let above = 2.0 + 4.0 * total;
             let exact = complementarity::balance_coupled(&springs, &gaps, &few, total, above);
-            for found in [balance(&springs, &gaps, &coupling, total, above), relaxed(&springs, &gaps, &coupling, total, above)] {
+            // The last from an approach under which the springs carry next to nothing of the load.
+            let slow = [above, 1e-4 * total].map(|above| relaxed(&springs, &gaps, &coupling, total, above));
+            for found in slow.into_iter().chain([balance(&springs, &gaps, &coupling, total, above)]) {
                 prop_assert!((found.approach / exact.approach - 1.0).abs() < 1e-9);
                 prop_assert!((found.slope / exact.slope - 1.0).abs() < 1e-6 || found.penetration.iter().any(|w| w.abs() < 1e-6 || (w - 0.5).abs() < 1e-6));
                 for spring in 0..count {
