@@ -200,7 +200,7 @@ impl<'a> Model<'a> {
         };
         let stages: Vec<Node<'a, 'a>> = self.inside("relations", "relation").filter(is_cylindrical).collect();
         let ids: Vec<&str> = stages.iter().filter_map(|relation| in_role(*relation, "stage")).collect();
-        // A message is no list of a whole factory.
+        // A message is not a list of a whole factory.
         let named = ids[..ids.len().min(MOST_NAMED)].join(", ") + if ids.len() > MOST_NAMED { ", …" } else { "" };
         match (wanted, stages.as_slice()) {
             (_, []) => refuse(self.root, "it has no stage of two cylindrical gears"),
@@ -252,7 +252,7 @@ impl<'a> Component<'a> {
             ),
             _ => {
                 let shown: String = text.escape_debug().take(40).collect();
-                refuse(attribute, format!("`{name}` of the {kind} {id} is `{shown}`, which is no number"))
+                refuse(attribute, format!("`{name}` of the {kind} {id} is `{shown}`, which is not a number"))
             }
         }
     }

@@ -85,7 +85,8 @@ pub(super) fn archive(
     Ok(())
 }
 
-/// An archive replaces an archive of before and nothing else: neither the study, nor its results, nor what is no zip.
+/// An archive replaces an archive of before and nothing else: neither the study, nor its results, nor what is not a
+/// zip.
 fn refuse_to_lose(output: &Path, study: &Study, places: &Places) -> Result<(), String> {
     let refused = |why: &str| Err(format!("{} is {why}; name another file with -o", output.display()));
     let full = |path: &Path| fs::canonicalize(path).ok();

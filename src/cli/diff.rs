@@ -140,7 +140,7 @@ fn of_revision(word: &str, places: &Places, repository: &Result<Repository, Stri
     Side::commit(repository, &commit, &repository.inside(&places.results)?)
 }
 
-/// The study that a word means which is no revision and no folder.
+/// The study that a word means which is neither a revision nor a folder.
 fn named(
     word: &str,
     sides: &[Side],

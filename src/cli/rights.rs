@@ -34,10 +34,10 @@ pub(super) fn author(given: &str) -> Result<Author, String> {
     };
     if let Some(character) = name.chars().find(|c| text::is_unfit(*c) || matches!(c, '\n' | '\t')) {
         let number = text::number(character);
-        return Err(format!("`{given}` is no author: a name is one line without the character {number}"));
+        return Err(format!("`{given}` is not an author: a name is one line without the character {number}"));
     }
     if name.is_empty() || looks_like_orcid(name) {
-        return Err(format!("`{given}` is no author; write a name, or a name and an ORCID iD"));
+        return Err(format!("`{given}` is not an author; write a name, or a name and an ORCID iD"));
     }
     if let Some(orcid) = orcid.as_ref().filter(|orcid| !is_orcid(orcid)) {
         return Err(format!("`{orcid}` is no ORCID iD: its last digit does not fit the others; is one mistyped?"));

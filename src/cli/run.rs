@@ -63,7 +63,9 @@ fn wanted(name: &str) -> Result<Wanted, Ending> {
         (Some(stage), Some(table), column, None) => {
             Ok(Wanted { stage, want: Want { table, columns: column.into_iter().collect() } })
         }
-        _ => Err(Ending::Usage(format!("`{name}` is no table or column; write `stage.table` or `stage.table.column`"))),
+        _ => Err(Ending::Usage(format!(
+            "`{name}` is not a table or column; write `stage.table` or `stage.table.column`"
+        ))),
     }
 }
 
@@ -258,7 +260,7 @@ pub(super) fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending
         megabytes(removed.kept_bytes)
     ));
     for path in &removed.foreign {
-        progress::told(&format!("left alone, since it is no file of the cache: {}", path.display()));
+        progress::told(&format!("left alone, since it is not a file of the cache: {}", path.display()));
     }
     Ok(())
 }

@@ -67,7 +67,7 @@ pub(super) fn verify(
     Err(Ending::Differs(format!("{}: {}", verification.study, parts.join("; "))))
 }
 
-/// Identical, made otherwise, different: how many files that are no tables.
+/// Identical, made otherwise, different: how many files that are not tables.
 fn of_files(verification: &Verification) -> [usize; 3] {
     let mut counts = [0; 3];
     for file in &verification.files {
@@ -80,7 +80,7 @@ fn of_files(verification: &Verification) -> [usize; 3] {
     counts
 }
 
-/// One word for a file that is no table, and why it is not identical.
+/// One word for a file that is not a table, and why it is not identical.
 fn word_of(file: &VerifiedFile) -> (&'static str, &str) {
     match &file.agreement {
         Agreement::Identical => ("identical", ""),

@@ -372,7 +372,7 @@ fn failed(error: &Error, tables: &[(&str, Table)]) -> String {
         return match name.rsplit_once('.') {
             Some((table, column)) if known.contains(column) => {
                 let help = suggest(table, tables.iter().map(|(name, _)| *name));
-                format!("`{table}` is no table of this query that has a column `{column}`; {help}")
+                format!("`{table}` is not a table of this query that has a column `{column}`; {help}")
             }
             of_table => {
                 let name = of_table.map_or(name, |(_, column)| column);

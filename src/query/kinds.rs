@@ -12,7 +12,7 @@ use sqlparser::ast::{
     FunctionArguments, Ident, ObjectName, ObjectNamePart, UnaryOperator, Value, VisitorMut,
 };
 
-/// `is_number(x, name)`: x, which is no text.
+/// `is_number(x, name)`: x, which is not a text.
 pub(super) const IS_NUMBER: &str = "is_number";
 /// `compared(x, y, name, name)`: −1, 0 or 1 of two values of one kind.
 pub(super) const COMPARED: &str = "compared";

@@ -17,7 +17,7 @@ use sqlparser::parser::{Parser, ParserOptions};
 use super::kinds::Kinds;
 use declare::error::suggest;
 
-/// A longer text is no query somebody wrote.
+/// A longer text is not a query somebody wrote.
 const MOST_BYTES: usize = 16 << 10;
 /// Terms within terms; every link of a chain of ANDs is one.
 const MOST_DEPTH: usize = 200;
@@ -125,7 +125,7 @@ impl VisitorMut for Names {
         }
         if self.pass == Pass::Tables {
             let Some(whole) = whole(name) else {
-                return ControlFlow::Break(format!("`{name}` is no name of a table"));
+                return ControlFlow::Break(format!("`{name}` is not a name of a table"));
             };
             if !self.own.contains(&whole.to_lowercase()) && !self.tables.contains(&whole) {
                 self.tables.push(whole);
@@ -146,7 +146,7 @@ impl VisitorMut for Names {
                     let whole = joined(table);
                     if !self.is_table(&whole) {
                         let help = suggest(&whole, self.tables.iter().map(String::as_str));
-                        return ControlFlow::Break(format!("`{whole}` is no table of this query; {help}"));
+                        return ControlFlow::Break(format!("`{whole}` is not a table of this query; {help}"));
                     }
                     *parts = vec![Ident::new(whole), column.clone()];
                 }

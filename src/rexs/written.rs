@@ -72,7 +72,7 @@ impl RexsPair {
     /// The study.
     ///
     /// # Errors
-    /// Where the gears are no pair, or a value is one that no study takes.
+    /// Where the gears are not a pair, or a value is one that no study takes.
     pub(super) fn text(&self, version: &str) -> Result<String, Refusal> {
         let text = self.body()?;
         self.check(&text)?;

@@ -297,7 +297,7 @@ fn rebuilt_value<'a>(
         }
         (Shape::Choice(choices), Some((_, word))) => {
             let choice = choices.iter().find(|choice| choice.name == word);
-            let choice = choice.ok_or_else(|| Failure::new(format!("`{word}` is no value of `{name}`")))?;
+            let choice = choice.ok_or_else(|| Failure::new(format!("`{word}` is not a value of `{name}`")))?;
             Some(Value::Choice(choice.name))
         }
         (Shape::Quantity { .. }, Some((value, _))) => Some(Value::Quantity(value)),

@@ -212,7 +212,7 @@ fn imports(path: &str, code: &str, shipped: &str, faults: &mut Vec<String>) {
     let allowed: BTreeSet<&str> =
         if is_main { MAIN_MAY_IMPORT.iter().copied().collect() } else { reach(layers, layer) };
     if !is_main && allowed.is_empty() {
-        faults.push(format!("1: `{layer}` is no layer; add it to the table and to ARCHITECTURE.md"));
+        faults.push(format!("1: `{layer}` is not a layer; add it to the table and to ARCHITECTURE.md"));
         return;
     }
     let own = kind_of(path);
@@ -376,7 +376,7 @@ mod planted {
         // Tests import as their layer does.
         let tests = "#[cfg(test)]\nmod tests { use crate::gear::Pair; }";
         found("crates/gearmesh/src/numeric/x.rs", tests, &["may not import `gear`"]);
-        found("src/colour/mod.rs", "", &["`colour` is no layer"]);
+        found("src/colour/mod.rs", "", &["`colour` is not a layer"]);
         found("crates/colour/src/mod.rs", "", &["it belongs to no crate"]);
         let main = "fn main() { gearstudy::stage::run(); gearstudy::cli::main(); }";
         found("src/main.rs", main, &["may not import `stage`"]);

@@ -130,7 +130,7 @@ fn every_column_leads_to_its_method_its_bar_and_its_test() {
         assert!(!line.columns.is_empty() || line.bar.is_empty() || !line.tests.is_empty(), "{}", line.kinds_and_table);
         assert!(line.bar.is_empty() || !line.tests.is_empty(), "{} names no test", line.kinds_and_table);
         for test in &line.tests {
-            assert!(known.contains(test), "docs/numbers.md names `{test}`, which is no test");
+            assert!(known.contains(test), "docs/numbers.md names `{test}`, which is not a test");
         }
     }
 }
@@ -159,7 +159,7 @@ fn pages_name_tests_and_sections_that_exist() {
         let shown = file.display();
         // `file.rs: function`, as methods are held by.
         for name in quoted(&text).iter().filter_map(|quote| quote.split_once(".rs: ")).map(|(_, name)| name.trim()) {
-            assert!(known.contains(name) || !name.contains('_'), "{shown} names `{name}`, which is no test");
+            assert!(known.contains(name) || !name.contains('_'), "{shown} names `{name}`, which is not a test");
         }
         for link in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
             if link.contains("://") {

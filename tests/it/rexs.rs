@@ -145,8 +145,8 @@ fn what_a_pair_here_cannot_have_is_refused() {
     for (from, to, says) in [
         ("°\">0.0", "°\">15.0", "a helix angle of 15°; only spur gears"),
         ("\"mm\">3.0", "\"in\">3.0", "`normal_module` of the cylindrical_gear 2 is in `in`, not in mm"),
-        ("\"mm\">3.0", "\"mm\">three", "is `three`, which is no number"),
-        ("\"mm\">3.0", "\"mm\">inf", "is `inf`, which is no number"),
+        ("\"mm\">3.0", "\"mm\">three", "is `three`, which is not a number"),
+        ("\"mm\">3.0", "\"mm\">inf", "is `inf`, which is not a number"),
         ("\"mm\">3.0", "\"mm\">-3.0", "a module of -3 mm"),
         ("\"mm\">3.0", "\"mm\">1e308", "`normal_module` of the cylindrical_gear 2 is 1e308; it must be -1e9 to 1e9"),
         ("id=\"5\" type", "id=\"4\" type", "the component 4 is given twice, first in line 3"),
@@ -211,7 +211,7 @@ fn no_part_of_a_file_takes_more_than_its_share() {
     let wide = file().replacen("<component id=\"2\"", &format!("<component{attributes} id=\"2\""), 1);
     let says = "an element has more than 100 attributes; those of REXS have a few";
     assert_eq!(refused(&wide), format!("16:5: {says}"));
-    // A sign in a value, in a comment or in a text is no attribute, and 100 are not too many.
+    // A sign in a value, in a comment or in a text is not an attribute, and 100 are not too many.
     let values = "=".repeat(200);
     let quoted = format!("<component note='{values}<' ").replace('<', "&lt;").replacen("&lt;", "<", 1);
     let text = file().replacen("<component ", &quoted, 1).replace("two gears", &values);

@@ -65,7 +65,7 @@ impl Dimension {
     }
 }
 
-/// A unit as a power of ten, a factor that is no power of ten, and its dimension: `SI = value · 10^ten · factor`.
+/// A unit as a power of ten, a factor that is not a power of ten, and its dimension: `SI = value · 10^ten · factor`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     pub ten: i32,
@@ -110,7 +110,7 @@ pub fn symbols() -> impl Iterator<Item = &'static str> + Clone {
     UNITS.iter().map(|unit| unit.0)
 }
 
-/// Why a text is no quantity of the wanted dimension.
+/// Why a text is not a quantity of the wanted dimension.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum UnitError {
     #[error("`{0}` is not a number followed by a unit")]
@@ -199,7 +199,7 @@ fn shifted(number: &str, ten: i32) -> Result<f64, UnitError> {
 /// `si` expressed in `unit` (a text such as `um`); used wherever a number is shown.
 ///
 /// # Panics
-/// When `unit` is no unit. Units of columns are literals of this program, and a test reads every one of them.
+/// When `unit` is not a unit. Units of columns are literals of this program, and a test reads every one of them.
 #[must_use]
 pub fn in_unit(si: f64, unit: &str) -> f64 {
     showing(unit)(si)

@@ -88,9 +88,9 @@
 //! # A modification of your own
 //!
 //! What a drawing states is a struct that declares itself ([`gear::modification::Specified`]); what it comes to on a gear is
-//! a depth over the roll angle, a deviation across the face, or what is no sum of both, a surface over roll angle and face
-//! ([`gear::modification::Modification`]), with any number of breaks. Solver and optimisers know it then; studies know
-//! those of [`gear::modification::FAMILIES`]. The derive needs the crate `declare` beside this one.
+//! a depth over the roll angle, a deviation across the face, or what is not a sum of both, a surface over roll angle
+//! and face ([`gear::modification::Modification`]), with any number of breaks. Solver and optimisers know it then;
+//! studies know those of [`gear::modification::FAMILIES`]. The derive needs the crate `declare` beside this one.
 //!
 //! ```
 //! use std::sync::Arc;

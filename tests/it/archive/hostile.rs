@@ -71,7 +71,7 @@ fn what_does_not_belong_together_is_refused() {
         put_manifest(entries, &manifest);
     });
     fs::write(desk.path("b.zip"), "a letter").unwrap();
-    assert!(desk.run(&["verify", "b.zip"], 1).1.contains("`b.zip` is no archive"));
+    assert!(desk.run(&["verify", "b.zip"], 1).1.contains("`b.zip` is not an archive"));
     assert!(desk.run(&["verify", "absent.zip"], 1).1.contains("cannot read `absent.zip`"));
 }
 

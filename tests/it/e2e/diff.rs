@@ -215,7 +215,7 @@ fn tolerances_of_the_command_line_come_before_those_of_the_study() {
         (["--tolerance", "meen=1"], "there is no column `meen`; did you mean `mean`?"),
         (["--tolerance", "stiffness.summary.mean=1 mm"], "does not fit `stiffness.summary.mean`, which is in N/m"),
         (["--tolerance", "ste.summary.design=1"], "it has no tolerance"),
-        (["--tolerance", "mean"], "is no tolerance; write"),
+        (["--tolerance", "mean"], "is not a tolerance; write"),
     ] {
         let (_, error) = desk.run(&[&["diff"][..], &words].concat(), 1);
         assert!(error.contains(said), "{error}");

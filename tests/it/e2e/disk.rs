@@ -1,4 +1,4 @@
-//! `gearstudy diff` where the files are not what the manifests say, or are no files.
+//! `gearstudy diff` where the files are not what the manifests say, or are not files.
 
 use std::fs;
 
@@ -46,13 +46,13 @@ fn files_that_are_not_what_their_manifest_says_are_told_first() {
     assert_eq!(told(&["results", "results"]).len(), 2);
     git(&desk, &["commit", "-qam", "edited"]);
     assert_eq!(told(&["HEAD~1", "HEAD"]).len(), 1);
-    // Truncated, absent, no table at all, another size of what is no table.
+    // Truncated, absent, no table at all, another size of what is not a table.
     fs::write(file(name), &summary[..summary.len() / 2]).unwrap();
     assert!(told(&["HEAD~1"])[0].1.starts_with("is damaged"), "{:?}", told(&["HEAD~1"]));
     fs::remove_file(file(name)).unwrap();
     assert!(told(&["HEAD~1"])[0].1.starts_with("is not there; HEAD~1 ("), "{:?}", told(&["HEAD~1"]));
     fs::create_dir(file(name)).unwrap();
-    assert_eq!(told(&["HEAD~1"])[0].1, "cannot be read: it is no regular file");
+    assert_eq!(told(&["HEAD~1"])[0].1, "cannot be read: it is not a regular file");
     fs::remove_dir(file(name)).unwrap();
     fs::write(file(name), &summary).unwrap();
     fs::write(file(hdf5), &all[1..]).unwrap();

@@ -1,4 +1,4 @@
-//! `gearstudy status` as a user asks it: after runs, in a clone, of several studies, of what is no file.
+//! `gearstudy status` as a user asks it: after runs, in a clone, of several studies, of what is not a file.
 
 use std::fs;
 use std::path::Path;
@@ -51,14 +51,14 @@ fn status_says_what_is_up_to_date_stale_and_missing() {
     assert_eq!(out, "quick: the report is not that of the last run; next: gearstudy report studies/quick.yaml\n");
 }
 
-/// A clone has what git keeps: that is no fault, and what a run does there is what `status` says it does.
+/// A clone has what git keeps: that is not a fault, and what a run does there is what `status` says it does.
 #[test]
 fn tables_that_git_does_not_keep_are_not_missing() {
     let desk = committed();
     let kept = git(&desk, &["ls-files", "results/quick"]);
     let listed = desk.manifest("quick")["files"].as_array().unwrap().clone();
     let absent = listed.iter().filter(|file| !kept.contains(file["file"].as_str().unwrap())).count();
-    // Those that are no tables, HDF5, page and figures, are not of a stage.
+    // Those that are not tables, HDF5, page and figures, are not of a stage.
     let others = listed.iter().filter(|file| !file["file"].as_str().unwrap().ends_with(".parquet")).count();
     let tables = absent - others;
     git(&desk, &["clone", "-q", ".", "clone"]);
@@ -162,7 +162,7 @@ fn what_is_no_file_is_refused_at_once() {
         replace(&table, &rows);
     }
     pipe(&desk.path("a.zip"));
-    refused(&["verify", "a.zip"], 1, "it is no file");
+    refused(&["verify", "a.zip"], 1, "it is not a file");
     fs::create_dir(desk.path("studies")).unwrap();
     pipe(&desk.path("studies/pipe.yaml"));
     refused(&["status"], 1, "there are no studies");

@@ -1,4 +1,4 @@
-//! The chain under parameters from end to end of their ranges, and specifications that are no numbers at all.
+//! The chain under parameters from end to end of their ranges, and specifications that are not numbers at all.
 
 use rand_core::Rng;
 

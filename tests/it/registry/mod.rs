@@ -110,7 +110,7 @@ fn every_table_is_declared_in_full() {
                     assert!(is_sentence(&column.description), "{place}: {:?}", column.description);
                     assert!(
                         column.unit.is_empty() || column.kind == Type::Float,
-                        "{place} is no number and has a unit"
+                        "{place} is not a number and has a unit"
                     );
                     assert!(column.unit.is_empty() || parse_unit(&column.unit).is_ok(), "{place}: {}", column.unit);
                     assert!(

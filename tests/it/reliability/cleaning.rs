@@ -71,7 +71,7 @@ fn a_cache_that_cannot_be_read_is_an_error() {
     fs::write(&entries, "no folder").unwrap();
     let (out, error) = desk.run(&["gc"], 1);
     assert!(out.is_empty() && error.contains("entries"), "{out}{error}");
-    // A folder that is no cache has nothing to clean, whatever lies in it.
+    // A folder that is not a cache has nothing to clean, whatever lies in it.
     fs::create_dir_all(desk.path("mine/entries/ab")).unwrap();
     fs::write(desk.path("mine/entries/ab/cd"), "mine").unwrap();
     desk.run(&["gc", "--cache", "mine", "--days", "0"], 0);

@@ -14,7 +14,7 @@ const FACTS: &str = "<!-- run:";
 /// Every published file by name.
 pub type Published = BTreeMap<String, Vec<u8>>;
 
-/// Names that begin with a dot are no results: locks, and leftovers of killed runs; nor is the index, which has times.
+/// Names that begin with a dot are not results: locks, and leftovers of killed runs; nor is the index, which has times.
 pub fn published(folder: &Path) -> Published {
     let mut files = Published::new();
     collect(folder, "", &mut files);

@@ -5,7 +5,7 @@
 
 use super::{Dimension, RATIO, UNITS, Unit, UnitError};
 
-/// Characters of a unit that a message offers instead; a longer one is no help to read.
+/// Characters of a unit that a message offers instead; a longer one does not help the reader.
 const LONGEST_OFFER: usize = 40;
 const POWERS: &str = "a power is a whole number from 1 to 9 or from -9 to -1";
 

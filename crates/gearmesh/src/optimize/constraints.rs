@@ -34,7 +34,7 @@ impl From<f64> for Evaluation {
 }
 
 impl Evaluation {
-    /// Without a value, or with a constraint that is no number, a point is inadmissible.
+    /// Without a value, or with a constraint that is not a number, a point is inadmissible.
     pub(super) fn admissible(&self) -> bool {
         self.value < f64::INFINITY && self.constraints.iter().all(|constraint| constraint.is_finite())
     }

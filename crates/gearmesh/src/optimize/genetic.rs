@@ -53,7 +53,7 @@ pub struct Genetic {
     /// ends after this many generations without improvement
     #[declared(minimum = 1, maximum = 1_000_000)]
     pub converged_after: Option<usize>,
-    /// share of the best value below which a gain is no improvement
+    /// share of the best value below which a gain is not an improvement
     #[declared(minimum = 0.0, maximum = 1.0, default = "0")]
     pub least_improvement: f64,
 }
@@ -393,7 +393,7 @@ mod tests {
         assert_eq!(ones, vec![false; length]);
     }
 
-    /// What a setting is for, seen from outside: without mutation only crossing makes a child that is no parent.
+    /// What a setting is for, seen from outside: without mutation only crossing makes a child that is not a parent.
     #[test]
     fn the_probability_of_crossing_is_the_one_that_was_set() {
         let unlike_parents = |crossover| {

@@ -105,7 +105,7 @@ impl<S: Search> Restarted<S> {
     }
 
     fn gained(&self) -> bool {
-        // Where nothing is admissible nothing is gained: ∞ − ∞ is no number.
+        // Where nothing is admissible nothing is gained: ∞ − ∞ is not a number.
         let value = self.search.best().1;
         self.before - value > self.limits.tolerance * value.abs()
     }

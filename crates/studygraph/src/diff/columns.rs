@@ -20,7 +20,7 @@ pub struct Differences {
     pub largest_absolute: Option<(f64, usize)>,
     /// Size over the larger of the two, and where.
     pub largest_relative: Option<(f64, usize)>,
-    /// Size over what the tolerance allows, infinite for what is no number, and where.
+    /// Size over what the tolerance allows, infinite for what is not a number, and where.
     pub largest_over: Option<(f64, usize)>,
     /// The furthest apart beyond tolerance: how far, as a share of the column's largest value, and where.
     pub worst: Vec<(f64, usize)>,

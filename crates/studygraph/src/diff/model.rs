@@ -226,7 +226,7 @@ pub struct ColumnDiff {
     pub largest_absolute: Option<Extreme>,
     /// Relative to the larger of the two values.
     pub largest_relative: Option<Extreme>,
-    /// As a multiple of what the tolerance allows: beyond it above 1, infinite for what is no number.
+    /// As a multiple of what the tolerance allows: beyond it above 1, infinite for what is not a number.
     pub largest_over: Option<Extreme>,
 }
 

@@ -135,7 +135,7 @@ fn schema_changes(before: &[ColumnRecord], after: &[ColumnRecord]) -> Vec<Schema
             change(new, "type", old.kind.clone(), new.kind.clone(), true);
         }
         if old.unit != new.unit {
-            // Two spellings of one unit are no difference; millimetres for metres are one a reader must know of.
+            // Two spellings of one unit are not a difference; millimetres for metres are one a reader must know of.
             let same = parse_unit(&old.unit).is_ok_and(|unit| parse_unit(&new.unit) == Ok(unit));
             change(new, "unit", old.unit.clone(), new.unit.clone(), !same);
         }

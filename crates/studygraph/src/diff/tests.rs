@@ -215,7 +215,7 @@ fn columns_that_came_went_or_changed_are_told() {
     let told: Vec<_> = found.schema.iter().map(|change| (change.column.as_str(), change.what)).collect();
     assert_eq!(told, [("b", "type"), ("c", "removed"), ("d", "added")]);
     assert_eq!((found.state, found.columns.len()), (Difference::Changed, 0));
-    // A tolerance that was changed is told, but is no difference; a volatile column is not told at all.
+    // A tolerance that was changed is told, but is not a difference; a volatile column is not told at all.
     let loose = one(
         vec![
             Column::text("a", "").key(),

@@ -177,7 +177,7 @@ impl Repository {
             let text = String::from_utf8_lossy(entry);
             let Some((about, path)) = text.split_once('\t') else { continue };
             let about: Vec<&str> = about.split(' ').collect();
-            // A link or a submodule is no file.
+            // A link or a submodule is not a file.
             if let ["100644" | "100755", "blob", id] = about[..]
                 && let Ok(inside) = Path::new(path).strip_prefix(folder)
             {

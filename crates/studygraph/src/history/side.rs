@@ -111,7 +111,7 @@ impl Side {
                     Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
                     other => other.map_err(|error| format!("cannot read `{}`: {error}", folder.display()))?,
                 };
-                // Whatever it is: what is no file is told when it is read.
+                // Whatever it is: what is not a file is told when it is read.
                 let with_manifest = entries.flatten().filter(|entry| entry.path().join(MANIFEST).exists());
                 with_manifest.map(|entry| entry.file_name().to_string_lossy().into_owned()).collect()
             }

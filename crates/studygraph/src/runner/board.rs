@@ -137,7 +137,7 @@ pub struct Board<'a> {
 
 impl<'a> Board<'a> {
     /// # Errors
-    /// As [`Graph::new`]; a name in the options that is no stage.
+    /// As [`Graph::new`]; a name in the options that is not a stage.
     pub fn new(
         study: &'a Study,
         cache: &'a Cache,

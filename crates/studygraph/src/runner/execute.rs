@@ -105,8 +105,8 @@ pub fn warnings(cache: &Cache, outcome: &Outcome) -> Vec<String> {
 /// Runs a study.
 ///
 /// # Errors
-/// What is wrong with its graph or the options. Stages that fail are no error here: the outcome tells; nor is a cache that
-/// takes nothing.
+/// What is wrong with its graph or the options. Stages that fail are not an error here: the outcome tells; nor is a
+/// cache that takes nothing.
 pub fn execute(
     study: &Study,
     cache: &Cache,

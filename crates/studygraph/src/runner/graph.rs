@@ -92,7 +92,7 @@ impl Graph {
     /// Which nodes are needed for these.
     ///
     /// # Errors
-    /// A name that is no stage.
+    /// A name that is not a stage.
     pub fn needed(&self, study: &Study, only: &[String]) -> Result<Vec<bool>, Diagnostic> {
         let mut needed = vec![only.is_empty(); study.nodes.len()];
         for name in only {

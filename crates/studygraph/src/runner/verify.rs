@@ -28,7 +28,7 @@ use crate::store::results::{Draw, MANIFEST};
 use crate::study::{self, LoadError};
 use crate::table::data::Table;
 
-/// Why an archive could not be verified; a difference is no error.
+/// Why an archive could not be verified; a difference is not an error.
 #[derive(Debug, thiserror::Error)]
 pub enum VerifyError {
     #[error(transparent)]
@@ -55,7 +55,7 @@ pub struct Verification {
     /// What is not the same about the program, a sentence each.
     pub notes: Vec<String>,
     pub tables: Vec<Verified>,
-    /// All files of the results that are no tables.
+    /// All files of the results that are not tables.
     pub files: Vec<VerifiedFile>,
 }
 
@@ -281,7 +281,7 @@ mod tests {
         let archived = table(0.1, 0.0, "um", "");
         let against = |computed: Table| (compared(&archived, &computed).state, compared(&archived, &computed).note);
         assert_eq!(against(table(0.1, 0.0, "um", "")), (Difference::Same, String::new()));
-        assert_eq!(against(table(0.1, -0.0, "um", "")).0, Difference::Same, "a sign of zero is no content");
+        assert_eq!(against(table(0.1, -0.0, "um", "")).0, Difference::Same, "a sign of zero is not content");
         assert_eq!(against(table(0.1_f64.next_up(), 0.0, "um", "")).0, Difference::WithinTolerance);
         assert_eq!(against(table(0.1, 1.0, "um", "")).0, Difference::Changed);
         assert_eq!(against(table(0.1, 0.0, "mm", "")).0, Difference::Changed);

@@ -44,7 +44,7 @@ pub fn sha256(bytes: &[u8]) -> String {
 pub enum ArchiveError {
     #[error("cannot read `{path}`: {problem}")]
     Unreadable { path: String, problem: String },
-    #[error("`{path}` is no archive: {problem}")]
+    #[error("`{path}` is not an archive: {problem}")]
     NoArchive { path: String, problem: String },
     #[error("`{path}` is damaged: {problem}")]
     Damaged { path: String, problem: String },

@@ -80,7 +80,7 @@ impl Cache {
             // To open a pipe would wait for somebody at its other end. Nothing is lost with it, nor with an empty folder.
             Ok(metadata) => {
                 let removed = if metadata.is_dir() { fs::remove_dir(&path) } else { fs::remove_file(&path) };
-                removed.map_err(StoreError::io("remove what is no file,", &path))?;
+                removed.map_err(StoreError::io("remove what is not a file,", &path))?;
                 Self::create(root, &path)?
             }
             Err(error) if error.kind() == ErrorKind::NotFound => Self::create(root, &path)?,

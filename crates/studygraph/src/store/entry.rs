@@ -86,7 +86,7 @@ impl StoredTable {
     /// Describes a table; its body is stored elsewhere.
     ///
     /// # Errors
-    /// When a part of the table is no table, which cannot be: it has fewer columns of the same rows.
+    /// When a part of the table is not a table, which cannot be: it has fewer columns of the same rows.
     pub fn describe(table: &Table) -> Result<Self, StoreError> {
         let content = table.content_hash();
         let on_demand: Vec<&Column> = table.schema().columns.iter().filter(|column| column.on_demand).collect();
@@ -227,14 +227,14 @@ impl CacheEntry {
 
 /// Opens and reads the entry at `path`; `None` when there is no such file.
 ///
-/// What is no file is not opened: a pipe would be waited for.
+/// What is not a file is not opened: a pipe would be waited for.
 ///
 /// # Errors
 /// A sentence that says what is damaged.
 pub fn open(path: &Path, key: Digest) -> Result<Option<(CacheEntry, File)>, String> {
     match fs::metadata(path) {
         Ok(metadata) if metadata.is_file() => {}
-        Ok(_) => return Err("it is no regular file".to_owned()),
+        Ok(_) => return Err("it is not a regular file".to_owned()),
         Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
         Err(error) => return Err(error.to_string()),
     }

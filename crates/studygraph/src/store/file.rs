@@ -67,15 +67,15 @@ pub const MOST_TABLE: u64 = 4 << 30;
 
 /// Reads a whole file of at most `maximum` bytes.
 ///
-/// A pipe nobody writes to would be waited for and a device has no end, so what is no file is not opened.
+/// A pipe nobody writes to would be waited for and a device has no end, so what is not a file is not opened.
 ///
 /// # Errors
-/// What the system says; that it is no regular file; that it is larger.
+/// What the system says; that it is not a regular file; that it is larger.
 pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
     let wrong = |problem: String| Err(io::Error::new(io::ErrorKind::InvalidData, problem));
     let metadata = fs::metadata(path)?;
     if !metadata.is_file() {
-        return wrong("it is no regular file".to_owned());
+        return wrong("it is not a regular file".to_owned());
     }
     if metadata.len() > maximum {
         return wrong(format!("it has {} bytes, more than {} MiB", metadata.len(), maximum >> 20));
@@ -137,7 +137,7 @@ mod tests {
         let pipe = folder.path().join("pipe");
         assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
         for path in [&pipe, Path::new("/dev/zero"), folder.path()] {
-            assert_eq!(said(path, 1), "it is no regular file");
+            assert_eq!(said(path, 1), "it is not a regular file");
         }
         let large = folder.path().join("large");
         File::create(&large).unwrap().set_len(MOST_MANIFEST + 1).unwrap();

@@ -81,7 +81,7 @@ impl Index {
         Some((index, written.earlier()))
     }
 
-    /// None for what is no index.
+    /// None for what is not an index.
     #[must_use]
     pub fn parse(bytes: &[u8]) -> Option<Self> {
         serde_json::from_slice(bytes).ok().filter(|index: &Self| index.format == FORMAT)
@@ -167,11 +167,11 @@ pub fn digest(bytes: &[u8]) -> String {
 /// Reads a file and notes what it is now.
 ///
 /// # Errors
-/// What the system says; that it is no regular file.
+/// What the system says; that it is not a regular file.
 pub fn look(path: &Path, name: &str) -> io::Result<Seen> {
     // A pipe nobody writes to would be waited for.
     if !fs::metadata(path)?.is_file() {
-        return Err(io::Error::new(io::ErrorKind::InvalidData, "it is no regular file"));
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "it is not a regular file"));
     }
     let mut file = File::open(path)?;
     // From before it is read: what is changed meanwhile has another stamp.

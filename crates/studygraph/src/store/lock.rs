@@ -80,7 +80,7 @@ impl Owner {
     fn is_gone(&self, me: &Self, held: bool) -> bool {
         let same_computer = self.host == me.host && self.machine == me.machine;
         if self.boot != me.boot {
-            // A boot that is not known is no other one.
+            // A boot that is not known is not another one.
             return same_computer && !self.boot.is_empty() && !me.boot.is_empty();
         }
         if self.boot.is_empty() {

@@ -79,7 +79,7 @@ fn encode(table: &Table) -> Result<Vec<u8>, String> {
 }
 
 /// # Errors
-/// A sentence, when the bytes are no table written by [`write()`].
+/// A sentence, when the bytes are not a table written by [`write()`].
 pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
     guarded(|| decode(bytes))
 }
@@ -204,7 +204,7 @@ fn table_column(field: &Field) -> Result<Column, String> {
     let set = |name: &str| metadata.contains_key(name);
     let number = |name: &str| {
         let parsed = metadata.get(name).map_or(Ok(0.0), |text| text.parse());
-        parsed.map_err(|_| format!("column `{}`: {name} is no number", field.name()))
+        parsed.map_err(|_| format!("column `{}`: {name} is not a number", field.name()))
     };
     Ok(Column {
         name: field.name().clone(),

@@ -80,7 +80,7 @@ impl Folder {
     /// The manifest of the last run; none when there is none.
     ///
     /// # Errors
-    /// When it is no file, too large, damaged, or of another format.
+    /// When it is not a file, too large, damaged, or of another format.
     pub fn read_manifest(&self) -> Result<Option<Manifest>, StoreError> {
         Ok(self.read()?.map(|(manifest, _)| manifest))
     }

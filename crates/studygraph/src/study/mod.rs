@@ -68,7 +68,7 @@ pub struct Node {
     pub stage: Box<dyn Stage>,
 }
 
-/// Why a file is no study. Shown as `file:line:column: message`, with the help on a line of its own.
+/// Why a file is not a study. Shown as `file:line:column: message`, with the help on a line of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadError {
     pub path: PathBuf,

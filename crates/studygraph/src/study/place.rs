@@ -8,7 +8,7 @@ use declare::error::Place;
 pub fn place_at(text: &str, offset: usize, length: usize) -> Place {
     let before = &text[..offset];
     let line = before.rfind(['\n', '\r']).map_or(0, |at| at + 1);
-    // A line may end in LF, CR or both; a byte order mark at the start is no character of the first.
+    // A line may end in LF, CR or both; a byte order mark at the start is not a character of the first.
     let breaks = before.matches('\n').count() + before.matches('\r').count() - before.matches("\r\n").count();
     let marks = usize::from(line == 0 && before.starts_with('\u{feff}'));
     let column = before[line..].chars().count() + 1 - marks;

@@ -14,7 +14,7 @@ const LARGEST: u64 = 1 << 20;
 /// Reads a whole file of UTF-8.
 ///
 /// # Errors
-/// When it cannot be read, is no file, is too large or is not UTF-8.
+/// When it cannot be read, is not a file, is too large or is not UTF-8.
 pub fn read(path: &Path) -> Result<String, LoadError> {
     let refused = |diagnostic: Diagnostic| LoadError::new(path, String::new(), diagnostic);
     if path.is_dir() {

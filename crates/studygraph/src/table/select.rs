@@ -22,7 +22,7 @@ impl CellName {
     /// # Errors
     /// A sentence that says what was expected.
     pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = || format!("`{text}` is no cell; write `stage.table[key=value, …].column`");
+        let expected = || format!("`{text}` is not a cell; write `stage.table[key=value, …].column`");
         let (head, conditions, tail) = match text.split_once('[') {
             Some((head, rest)) => {
                 let (inside, tail) = rest.split_once(']').ok_or_else(expected)?;
@@ -56,7 +56,7 @@ pub fn parse_conditions(text: &str) -> Result<Vec<(String, String)>, String> {
         .map(|part| {
             part.split_once('=')
                 .map(|(key, value)| (key.trim().to_owned(), value.trim().to_owned()))
-                .ok_or_else(|| format!("`{}` is no condition; write `column=value`", part.trim()))
+                .ok_or_else(|| format!("`{}` is not a condition; write `column=value`", part.trim()))
         })
         .collect()
 }

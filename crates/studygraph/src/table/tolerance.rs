@@ -53,7 +53,7 @@ impl Allowance {
     /// # Errors
     /// As [`Allowance::new`].
     pub fn parse(text: &str) -> Result<Self, String> {
-        let expected = || format!("`{text}` is no tolerance; write `column=1e-6` or `stage.table.column=0.01 um`");
+        let expected = || format!("`{text}` is not a tolerance; write `column=1e-6` or `stage.table.column=0.01 um`");
         let (name, value) = text.split_once('=').ok_or_else(expected)?;
         Self::new(name, value)
     }

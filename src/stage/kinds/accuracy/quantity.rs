@@ -62,7 +62,7 @@ impl Quantity {
     pub fn read(text: &str) -> Result<Self, String> {
         let name = text.trim().to_owned();
         let cell = CellName::parse(&format!("stage.{name}"))
-            .map_err(|_| format!("`{name}` is no column; write `table.column` or `table[key=value, …].column`"))?;
+            .map_err(|_| format!("`{name}` is not a column; write `table.column` or `table[key=value, …].column`"))?;
         Ok(Self { name, cell })
     }
 

@@ -21,7 +21,7 @@ fn the_row_farthest_off_counts() {
     let found = distance(&rows(&[("a=1", 101.0), ("a=2", 0.98), ("a=3", f64::NAN)]), &reference).unwrap();
     assert_eq!(found.row, "a=2");
     assert!((found.relative() - 0.02).abs() < 1e-15 && (found.absolute() - 0.02).abs() < 1e-15);
-    // What is missing on one side only is no agreement.
+    // What is missing on one side only is not agreement.
     let found = distance(&rows(&[("a=1", 101.0), ("a=2", 0.98), ("a=3", 5.0)]), &reference).unwrap();
     assert!(found.row == "a=3" && found.rank().is_infinite());
     let found = distance(&rows(&[("", 1e-9)]), &rows(&[("", 0.0)])).unwrap();

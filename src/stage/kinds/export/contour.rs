@@ -62,7 +62,7 @@ const NOTHING: f64 = 1e-12;
 /// The contours in a table of points, gear by gear.
 ///
 /// # Errors
-/// When a gear has no bore in the other table, or a curve is no arc although the table says so.
+/// When a gear has no bore in the other table, or a curve is not an arc although the table says so.
 pub fn contours(outline: &Table, gears: &Table) -> Result<Vec<Contour>, Failure> {
     let mut contours: Vec<Contour> = Vec::new();
     let mut stretch = None;

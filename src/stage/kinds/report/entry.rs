@@ -348,7 +348,7 @@ fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnost
         return if operand.cell().is_some() {
             Ok(Subject::Cell(operand))
         } else {
-            Err(wrong(format!("`{text}` is no cell; write `stage.table[key=value, …].column`")))
+            Err(wrong(format!("`{text}` is not a cell; write `stage.table[key=value, …].column`")))
         };
     }
     let with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;

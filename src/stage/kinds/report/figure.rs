@@ -137,11 +137,11 @@ impl Figure {
         let name = text(&stated.name);
         let fits = |character: char| character.is_ascii_alphanumeric() || matches!(character, '-' | '_');
         if name.is_empty() || name.len() > 60 || !name.chars().all(fits) {
-            let message = format!("`{name}` is no name for a file; use up to 60 letters, digits, - and _");
+            let message = format!("`{name}` is not a name for a file; use up to 60 letters, digits, - and _");
             return Err(Diagnostic::new(message).at(record.place_of(NAMES.name)));
         }
         if is_device(&name) {
-            let message = format!("`{name}` is no name for a file: Windows keeps it for a device");
+            let message = format!("`{name}` is not a name for a file: Windows keeps it for a device");
             let help = format!("for example `{name}-figure`");
             return Err(Diagnostic::new(message).at(record.place_of(NAMES.name)).help(help));
         }
@@ -314,7 +314,7 @@ fn read_table(Placed { value, place }: &Placed<String>) -> Result<(String, Strin
     text.split_once('.')
         .filter(|(stage, table)| !stage.is_empty() && !table.is_empty())
         .map(|(stage, table)| (stage.to_owned(), table.to_owned()))
-        .ok_or_else(|| Diagnostic::new(format!("`{text}` is no table; write `stage.table`")).at(*place))
+        .ok_or_else(|| Diagnostic::new(format!("`{text}` is not a table; write `stage.table`")).at(*place))
 }
 
 fn numbers(column: &Column) -> Result<(), String> {
@@ -334,7 +334,7 @@ impl Place {
         }
         let (number, written) = split_quantity(&self.text);
         if parse_unit(written).ok() == parse_unit(unit).ok() {
-            return number.parse().map_err(|_| format!("`{}` is no number", self.text));
+            return number.parse().map_err(|_| format!("`{}` is not a number", self.text));
         }
         let si = parse_quantity(&self.text).map_err(|error| error.to_string())?.value;
         Ok(in_unit(si, unit))

@@ -232,7 +232,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
         if si.is_finite() {
             Ok(Outcome::Number(Number { si, dimension }))
         } else {
-            Err(format!("`{}` gives {si}, which is no finite number", node.operator().to_string().trim()))
+            Err(format!("`{}` gives {si}, which is not a finite number", node.operator().to_string().trim()))
         }
     };
     match node.operator() {
@@ -253,7 +253,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
         },
         operator if comparison(operator).is_some() => {
             let (a, b) = alike(comparison(operator).unwrap_or(""))?;
-            let order = a.si.partial_cmp(&b.si).ok_or("a value is no number")?;
+            let order = a.si.partial_cmp(&b.si).ok_or("a value is not a number")?;
             Ok(Outcome::Truth(match operator {
                 Operator::Gt => order.is_gt(),
                 Operator::Lt => order.is_lt(),

@@ -109,7 +109,7 @@ pub fn read_target(
     }
     let (number, unit) = split_quantity(text);
     let (Ok(number), Some(printed)) = (number.parse::<f64>(), Printed::read(text)) else {
-        return Err(wrong(format!("`{text}` is no number followed by a unit")));
+        return Err(wrong(format!("`{text}` is not a number followed by a unit")));
     };
     let stated =
         Stated { text: text.to_owned(), number, unit: unit.to_owned(), dimension: quantity.dimension, printed };
@@ -136,7 +136,7 @@ fn read_tolerance(tolerance: &Placed<String>, stated: &Stated) -> Result<f64, Di
         }
         return Ok(quantity.value * stated.number.abs());
     }
-    // A bare number is in the value's unit, where that is no unit; beside a `%` it could mean two things.
+    // A bare number is in the value's unit, where that is not a unit; beside a `%` it could mean two things.
     let fits =
         if quantity.has_unit { same_dimension(quantity.dimension, stated.dimension) } else { stated.unit.is_empty() };
     if !fits {

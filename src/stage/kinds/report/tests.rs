@@ -293,7 +293,7 @@ fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
         (vec![("cell", text(ISO)), ("claim", text("1 < 2"))], "found `cell` and `claim`"),
         (vec![("cell", text(ISO))], "the published `value` is missing"),
         (vec![("claim", text("1 < 2")), value.clone()], "it has no `value`"),
-        (vec![("cell", text("3 um")), value.clone()], "is no cell"),
+        (vec![("cell", text("3 um")), value.clone()], "is not a cell"),
         (vec![("cell", text("ste.summary")), value.clone()], "neither a quantity"),
         (vec![("formula", text("1 < 2")), value.clone()], "call it `claim`"),
         (vec![("claim", text("1 + 2"))], "a claim compares"),
@@ -366,9 +366,9 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         ),
         (("published", list(vec![group::<StatedMark>(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
         (("name", text("../x")), "no name for a file"),
-        (("name", text("NUL")), "`NUL` is no name for a file: Windows keeps it for a device"),
-        (("table", list(vec![text("ste")])), "is no table"),
-        (("reference", text("ste")), "is no table"),
+        (("name", text("NUL")), "`NUL` is not a name for a file: Windows keeps it for a device"),
+        (("table", list(vec![text("ste")])), "is not a table"),
+        (("reference", text("ste")), "is not a table"),
         (("reference", text("ste.summary")), "the reference must be one row; table `summary` has"),
     ] {
         let error = run(vec![], vec![figure(&[changes])]).unwrap_err();

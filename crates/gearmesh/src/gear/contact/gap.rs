@@ -16,7 +16,7 @@ const SAMPLES: usize = 8;
 const WAVE_SAMPLES: usize = 64;
 /// How often a piece may turn that is not cut there: twice is a hump with a valley beside it.
 const MOST_TURNS: usize = 2;
-/// By how much of the largest depth a profile must turn between two samples, so that it is no rounding.
+/// By how much of the largest depth a profile must turn between two samples, so that it is not rounding.
 const TURN: f64 = 1e-9;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;

@@ -178,8 +178,9 @@ pub trait Modification: Debug + Send + Sync {
         false
     }
 
-    /// What is taken off at a roll angle and z beside the depth and the lead: for what is no sum of both, such as a twist;
-    /// continuous. It may be broken where [`Modification::profile_breaks`] and [`Modification::lead_breaks`] say.
+    /// What is taken off at a roll angle and z beside the depth and the lead: for what is not a sum of both, such as a
+    /// twist; continuous. It may be broken where [`Modification::profile_breaks`] and [`Modification::lead_breaks`]
+    /// say.
     fn surface(&self, _roll: f64, _z: f64) -> f64 {
         0.0
     }

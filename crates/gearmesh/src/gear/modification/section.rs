@@ -50,7 +50,7 @@ impl Design {
         })
     }
 
-    /// Whether anything is no sum of a profile and a lead.
+    /// Whether anything is not a sum of a profile and a lead.
     #[must_use]
     pub fn varies_over_surface(&self) -> bool {
         self.pinion.iter().chain(&self.gear).any(|part| part.modification.varies_over_surface())

@@ -291,7 +291,7 @@ impl TipCurve {
                 return Some(format!("the curve would take off more than half of the tooth {}", at(roll)));
             }
         }
-        // What rounding makes of a curve that coincides with the flank is no material.
+        // What rounding makes of a curve that coincides with the flank is not material.
         if worst.0 < -reach * 1e-3 {
             return Some(format!("the curve would add {:.4} um of material {}", -worst.0 * 1e6, at(worst.1)));
         }

@@ -88,13 +88,13 @@ impl Equilibrium {
 
 impl<'a> LoadCase<'a> {
     /// `torque` acts on the pinion \[N m\], finite and 0 or more; without torque the nearest pair just touches. Below 0 it
-    /// counts as 0; what is no finite number is beyond the model.
+    /// counts as 0; what is not a finite number is beyond the model.
     #[must_use]
     pub fn new(cycle: &'a MeshCycle, design: &'a Design, torque: f64) -> Self {
         let flanks = Arc::new(Flanks::new(cycle, design));
         let face = &flanks.face;
         let sliced = Sliced::new(&flanks, design).map(Arc::new);
-        // Where slices hold each other, the load of a pair is no function of its penetration alone.
+        // Where slices hold each other, the load of a pair is not a function of its penetration alone.
         let levels = if sliced.is_some() { Vec::new() } else { face.levels() };
         let uncoupled = match cycle.elasticity {
             Elasticity::Linear(_) => face.slices_passed(),

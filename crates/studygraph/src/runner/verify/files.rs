@@ -1,4 +1,4 @@
-//! Files of an archive that are no tables: page, figures, drawings, HDF5. Each is made again from the archived tables.
+//! Files of an archive that are not tables: page, figures, drawings, HDF5. Each is made again from the archived tables.
 //!
 //! Nothing runs: what is asked is whether the archive shows what its tables hold. Must not know: how anything is drawn.
 
@@ -26,7 +26,8 @@ struct Files<'a, R> {
     bytes: BTreeMap<String, Vec<u8>>,
 }
 
-/// Compares digests with those in the manifest and the index, then makes every file that is no table again, with `draw`, whose code has a digest.
+/// Compares digests with those in the manifest and the index, then makes every file that is not a table again, with
+/// `draw`, whose code has a digest.
 ///
 /// # Errors
 /// A file that is not there, or not the one that is listed.

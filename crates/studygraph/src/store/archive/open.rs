@@ -49,7 +49,7 @@ pub fn open(path: &Path) -> Result<Archive<BufReader<File>>, ArchiveError> {
         |error: std::io::Error| ArchiveError::Unreadable { path: name.clone(), problem: error.to_string() };
     // Not opened yet: a pipe nobody writes to would be waited for.
     if !std::fs::metadata(path).map_err(unreadable)?.is_file() {
-        return Err(ArchiveError::NoArchive { path: name, problem: "it is no file".to_owned() });
+        return Err(ArchiveError::NoArchive { path: name, problem: "it is not a file".to_owned() });
     }
     Archive::check(BufReader::new(File::open(path).map_err(unreadable)?), &name)
 }
@@ -262,7 +262,7 @@ fn copy(entry: &mut impl Read, size: u64, into: &mut impl Write) -> Result<(), S
 }
 
 fn no_archive(path: &str, error: &ZipError) -> ArchiveError {
-    ArchiveError::NoArchive { path: path.to_owned(), problem: format!("it is no zip file, or cut off ({error})") }
+    ArchiveError::NoArchive { path: path.to_owned(), problem: format!("it is not a zip file, or cut off ({error})") }
 }
 
 fn damaged(path: &str, error: &ZipError) -> ArchiveError {

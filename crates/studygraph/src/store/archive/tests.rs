@@ -190,7 +190,7 @@ fn damage_is_found_wherever_it_is() {
     }
     refused(&patched(&bytes, &[7; 300], &[8; 300]), "`results/a/t.parquet`: ");
     assert!(open(std::path::Path::new("/no/such/file")).is_err_and(|error| error.to_string().contains("cannot read")));
-    assert!(open(std::path::Path::new("/")).is_err_and(|error| error.to_string().contains("it is no file")));
+    assert!(open(std::path::Path::new("/")).is_err_and(|error| error.to_string().contains("it is not a file")));
 }
 
 #[test]

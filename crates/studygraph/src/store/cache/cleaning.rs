@@ -88,7 +88,7 @@ impl Cache {
         let lock_path = root.join("lock");
         let lock = match fs::metadata(&lock_path) {
             Ok(metadata) if metadata.is_file() => File::open(&lock_path).map_err(StoreError::io("open", &lock_path))?,
-            Ok(_) => return Err(StoreError::io("lock", &lock_path)(io::Error::other("it is no regular file"))),
+            Ok(_) => return Err(StoreError::io("lock", &lock_path)(io::Error::other("it is not a regular file"))),
             // No cache: there is none, or the folder is something else.
             Err(error) if error.kind() == ErrorKind::NotFound => return Ok(Removed::default()),
             Err(error) => return Err(StoreError::io("open", &lock_path)(error)),
@@ -140,7 +140,7 @@ fn there<T>(result: io::Result<T>) -> io::Result<Option<T>> {
 fn referenced(root: &Path) -> Result<BTreeSet<Digest>, StoreError> {
     let mut keys = BTreeSet::new();
     for (path, _) in list(&root.join("journals"))? {
-        // What is no journal names nothing.
+        // What is not a journal names nothing.
         let bytes = file::read(&path, file::MOST_MANIFEST).unwrap_or_default();
         let journal: Journal = serde_json::from_slice(&bytes).unwrap_or_default();
         for stage in journal.stages {

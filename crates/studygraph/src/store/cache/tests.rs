@@ -147,7 +147,7 @@ fn what_the_disk_does_not_take_is_there_all_the_same() {
         assert!(cache.is_unkept(key("a")) && cache.problems().0.is_some());
         cache.forget(key("a"));
         assert_eq!(entry(&cache), on_disk);
-        // Still an error: it is no fault of the disk.
+        // Still an error: it is not a fault of the disk.
         assert!(matches!(put(&cache, 21), Err(StoreError::NotDeterministic { .. })));
         assert_eq!(cache.journal("study"), Journal::default());
         cache.put_journal("study", &Journal::default());
@@ -155,7 +155,7 @@ fn what_the_disk_does_not_take_is_there_all_the_same() {
     // A folder in the place of an entry: an empty one goes, another one stays.
     fs::remove_file(&path).unwrap();
     fs::create_dir(&path).unwrap();
-    assert_eq!(kept.look_up(key("a")), Lookup::Damaged("it is no regular file".to_owned()));
+    assert_eq!(kept.look_up(key("a")), Lookup::Damaged("it is not a regular file".to_owned()));
     put(&kept, 20).unwrap();
     assert!(!kept.is_unkept(key("a")) && fs::read(&path).unwrap() == bytes);
     fs::remove_file(&path).unwrap();

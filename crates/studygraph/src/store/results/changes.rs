@@ -114,7 +114,7 @@ fn essence(manifest: &Manifest) -> impl PartialEq {
 fn essence_of_stage(stage: &StageRecord) -> impl PartialEq {
     let StageRecord { name, kind, version, keys, config, status, why, seconds: _, work, warnings, left_out, tables } =
         stage;
-    // What a finished stage did this time is no part of what it gave.
+    // What a finished stage did this time is not part of what it gave.
     let ended = (!complete(stage)).then_some((status, why));
     let left_out: Vec<_> = left_out.iter().map(|OmissionRecord { what, why, saved_seconds: _ }| (what, why)).collect();
     (name, kind, version, keys, config, ended, work, warnings, left_out, tables)

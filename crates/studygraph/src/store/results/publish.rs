@@ -326,8 +326,8 @@ impl Folder {
         [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
     }
 
-    /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is no fault,
-    /// and nobody who publishes is waited for.
+    /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is not a
+    /// fault, and nobody who publishes is waited for.
     fn refresh(&self, known: &Known) {
         if self.path().join(lock::NAME).exists() {
             return;

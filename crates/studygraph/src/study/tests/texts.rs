@@ -1,4 +1,4 @@
-//! Texts that are no study at all, each with its whole message.
+//! Texts that are not a study at all, each with its whole message.
 
 use super::refused;
 

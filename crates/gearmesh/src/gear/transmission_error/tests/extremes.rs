@@ -171,7 +171,7 @@ fn root_relief_is_the_other_gears_tip_relief() {
     }
 }
 
-/// A relief of vanishing length is no relief, and lengths near it lead there.
+/// A relief of vanishing length is not a relief, and lengths near it lead there.
 #[test]
 fn relief_of_no_length_is_the_limit_of_short_ones() {
     let pair = pair();

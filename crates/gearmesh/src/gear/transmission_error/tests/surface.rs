@@ -1,4 +1,4 @@
-//! Modifications that are no sum of a profile and a lead.
+//! Modifications that are not a sum of a profile and a lead.
 
 use std::sync::Arc;
 
