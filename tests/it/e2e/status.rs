@@ -146,7 +146,7 @@ fn what_is_no_file_is_refused_at_once() {
         fs::write(path, bytes).unwrap();
     };
     for what in ["pipe", "device", "folder", "large"] {
-        let wanted = if what == "large" { "more than 64 MiB" } else { "no regular file" };
+        let wanted = if what == "large" { "more than 64 MiB" } else { "not a regular file" };
         fs::remove_file(&manifest).unwrap();
         make(&manifest, what);
         refused(&["status", "quick.yaml"], 1, wanted);

@@ -254,6 +254,6 @@ mod tests {
         let bytes: Vec<u8> = (0..=250_u8).cycle().take(3 * PIECE + 7).collect();
         fs::write(&path, &bytes).unwrap();
         assert_eq!(look(&path, "a").unwrap().digest, digest(&bytes));
-        assert!(look(folder.path(), "a").unwrap_err().to_string().contains("no regular file"));
+        assert!(look(folder.path(), "a").unwrap_err().to_string().contains("not a regular file"));
     }
 }

@@ -365,7 +365,7 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
             "`5 um` is a length, but the axis shows a torque",
         ),
         (("published", list(vec![group::<StatedMark>(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
-        (("name", text("../x")), "no name for a file"),
+        (("name", text("../x")), "not a name for a file"),
         (("name", text("NUL")), "`NUL` is not a name for a file: Windows keeps it for a device"),
         (("table", list(vec![text("ste")])), "is not a table"),
         (("reference", text("ste")), "is not a table"),

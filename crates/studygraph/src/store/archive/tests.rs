@@ -183,8 +183,8 @@ fn bombs_are_refused() {
 #[test]
 fn damage_is_found_wherever_it_is() {
     let bytes = pack(&entries()).unwrap();
-    refused(b"", "no archive");
-    refused(b"PK no, this is a letter", "no archive");
+    refused(b"", "not an archive");
+    refused(b"PK no, this is a letter", "not an archive");
     for length in 0..bytes.len() {
         assert!(check(&bytes[..length]).is_err(), "cut off after {length} bytes");
     }

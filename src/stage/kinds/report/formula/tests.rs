@@ -102,8 +102,8 @@ fn units_that_do_not_go_together_are_refused() {
         ("2 ^ F", "an exponent is a plain number, not a force"),
         ("sqrt(F)", "to the power 0.5 has no unit"),
         ("sin(F)", "`sin` needs an angle or a plain number, not a force"),
-        ("F / (k1 - k1)", "no finite number"),
-        ("sqrt(-1)", "no finite number"),
+        ("F / (k1 - k1)", "not a finite number"),
+        ("sqrt(-1)", "not a finite number"),
         ("b > 0 || F > b", "a force and a length"),
     ] {
         let error = value(text).unwrap_err();
