@@ -24,6 +24,31 @@ fn angle(k: usize, count: usize) -> f64 {
     PI * (2 * k + 1) as f64 / (2 * count) as f64
 }
 
+/// From values at so many [`nodes`] to coefficients; the same for any interval.
+pub(super) struct Transform {
+    /// Those of the multiples of π/2n: one turn of them serves every order.
+    cosines: Vec<f64>,
+}
+
+impl Transform {
+    pub(super) fn new(count: usize) -> Self {
+        Self { cosines: (0..4 * count).map(|j| libm::cos(PI * j as f64 / (2 * count) as f64)).collect() }
+    }
+
+    pub(super) fn coefficients(&self, values: &[f64]) -> Vec<f64> {
+        let turn = self.cosines.len();
+        let coefficient = |order: usize| {
+            // Of angle π order (2k + 1)/2n. Ascending nodes are cos(π − θ): the last value belongs to the smallest angle.
+            let further =
+                |angle: usize| if angle + 2 * order < turn { angle + 2 * order } else { angle + 2 * order - turn };
+            let angles = std::iter::successors(Some(order), |angle| Some(further(*angle)));
+            let sum: f64 = values.iter().rev().zip(angles).map(|(value, angle)| value * self.cosines[angle]).sum();
+            sum * if order == 0 { 1.0 } else { 2.0 } / values.len() as f64
+        };
+        (0..values.len()).map(coefficient).collect()
+    }
+}
+
 impl Series {
     /// The polynomial of degree `count` − 1 that equals `function` at the [`nodes`].
     pub fn fit(lower: f64, upper: f64, count: usize, function: impl FnMut(f64) -> f64) -> Self {
@@ -34,19 +59,7 @@ impl Series {
     /// The polynomial through `values` at the [`nodes`].
     #[must_use]
     pub fn from_values(lower: f64, upper: f64, values: &[f64]) -> Self {
-        let count = values.len();
-        // All angles are multiples of π/2n, so one turn of cosines serves every order.
-        let turn = 4 * count;
-        let cosines: Vec<f64> = (0..turn).map(|j| libm::cos(PI * j as f64 / (2 * count) as f64)).collect();
-        let coefficients = (0..count)
-            .map(|order| {
-                // Ascending nodes are cos(π − θ): the last value belongs to the smallest angle.
-                let sum: f64 =
-                    values.iter().rev().enumerate().map(|(k, value)| value * cosines[order * (2 * k + 1) % turn]).sum();
-                sum * if order == 0 { 1.0 } else { 2.0 } / count as f64
-            })
-            .collect();
-        Self { lower, upper, coefficients }
+        Self { lower, upper, coefficients: Transform::new(values.len()).coefficients(values) }
     }
 
     /// Several functions of one argument, fitted together with as many nodes as they need: the count is doubled from
@@ -62,8 +75,10 @@ impl Series {
         let mut before = f64::INFINITY;
         while count <= 512 {
             let values: Vec<[f64; N]> = nodes(lower, upper, count).into_iter().map(&mut function).collect();
+            let transform = Transform::new(count);
             let series: [Self; N] = std::array::from_fn(|index| {
-                Self::from_values(lower, upper, &values.iter().map(|row| row[index]).collect::<Vec<_>>())
+                let values: Vec<f64> = values.iter().map(|row| row[index]).collect();
+                Self { lower, upper, coefficients: transform.coefficients(&values) }
             });
             let tail = series.iter().map(|one| one.tail(count / 8)).fold(0.0, f64::max);
             if tail <= 1e-14 || (tail <= 1e-11 && tail > 0.1 * before) {

@@ -110,16 +110,9 @@ impl Double {
         let rest = self - quarter * turns;
         let small = rest.times_power_of_two(0.015_625);
         let square = small.square();
-        // sin x and 1 − cos x, so that doubling the angle loses nothing.
-        let (mut sine, mut versine) = (small, Self::ZERO);
-        let (mut odd, mut even) = (small, Self::ONE);
-        for k in 1..9 {
-            let k = 2.0 * f64::from(k);
-            even = -(even * square) / ((k - 1.0) * k);
-            odd = -(odd * square) / (k * (k + 1.0));
-            versine -= even;
-            sine += odd;
-        }
+        // sin x and 1 − cos x, so that doubling the angle loses nothing; the last terms are those of x¹⁷ and x¹⁶.
+        let mut sine = small * series(-square, 9, |k| (2 * k + 2) * (2 * k + 3));
+        let mut versine = square.half() * series(-square, 8, |k| (2 * k + 3) * (2 * k + 4));
         for _ in 0..HALVINGS {
             (sine, versine) =
                 (sine.times_power_of_two(2.0) * (Self::ONE - versine), sine.square().times_power_of_two(2.0));
@@ -154,12 +147,8 @@ impl Double {
     pub fn exponential(self) -> Self {
         let power = (self.high / Self::LN_2.high).round();
         let small = (self - Self::LN_2 * power).times_power_of_two(0.015_625);
-        // e^x − 1, so that squaring loses nothing.
-        let (mut excess, mut term) = (small, small);
-        for k in 2..16 {
-            term = term * small / f64::from(k);
-            excess += term;
-        }
+        // e^x − 1, so that squaring loses nothing; the last term is that of x¹⁵.
+        let mut excess = small * series(small, 15, |k| k + 2);
         for _ in 0..HALVINGS {
             excess = excess.times_power_of_two(2.0) + excess.square();
         }
@@ -175,6 +164,17 @@ impl Double {
         let rest = self * (-guess).exponential() - Self::ONE;
         guess + rest - rest.square().half()
     }
+}
+
+/// 1 + x/q₀ + x²/(q₀ q₁) + …, `terms` of them, with q of the index and the product of all q below 2⁵³: brought to one
+/// denominator, since a quotient takes as long as five products.
+fn series(x: Double, terms: u32, q: impl Fn(u32) -> u32) -> Double {
+    let (mut sum, mut denominator) = (Double::ONE, 1.0);
+    for index in (0..terms - 1).rev() {
+        denominator *= f64::from(q(index));
+        sum = sum * x + denominator;
+    }
+    sum / denominator
 }
 
 impl From<f64> for Double {

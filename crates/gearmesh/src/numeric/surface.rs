@@ -2,7 +2,7 @@
 //!
 //! Nodes are the products of those of `chebyshev`. Must not know: what is interpolated.
 
-use super::chebyshev::{Series, nodes};
+use super::chebyshev::{Transform, nodes};
 
 /// A polynomial Σ c_jk T_j T_k on `lower[0]..=upper[0]` × `lower[1]..=upper[1]`.
 #[derive(Clone, Debug, PartialEq)]
@@ -34,14 +34,13 @@ impl Surface {
     #[must_use]
     pub fn from_values(lower: [f64; 2], upper: [f64; 2], counts: [usize; 2], values: &[f64]) -> Self {
         let [rows, columns] = counts;
-        let along: Vec<Series> =
-            values.chunks(columns).map(|row| Series::from_values(lower[1], upper[1], row)).collect();
+        let [across, along] = counts.map(Transform::new);
+        let along: Vec<Vec<f64>> = values.chunks(columns).map(|row| along.coefficients(row)).collect();
         let mut coefficients = vec![0.0; rows * columns];
         for order in 0..columns {
-            let column: Vec<f64> = along.iter().map(|series| series.coefficients()[order]).collect();
-            let across = Series::from_values(lower[0], upper[0], &column);
-            for (row, coefficient) in across.coefficients().iter().enumerate() {
-                coefficients[row * columns + order] = *coefficient;
+            let column: Vec<f64> = along.iter().map(|row| row[order]).collect();
+            for (row, coefficient) in across.coefficients(&column).into_iter().enumerate() {
+                coefficients[row * columns + order] = coefficient;
             }
         }
         Self { lower, upper, counts, coefficients }

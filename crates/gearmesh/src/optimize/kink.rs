@@ -124,37 +124,52 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a * b).sum()
 }
 
+/// Length of the shortest vector of the hull, over that of the longest gradient, below which a point is stationary:
+/// differences over the tolerance tell no less.
+pub(super) const STATIONARY: f64 = 1e-3;
+
 /// Of the gap between the hull and the plane through the vector found, as a share of its square.
 const GAP: f64 = 1e-10;
 const MOST_STEPS: usize = 10_000;
 
-/// The shortest vector of the convex hull, by exchange of weight between the two vectors that gain most by it.
+/// The shortest vector of the convex hull, by exchange of weight between the two vectors that gain most by it. Below
+/// [`STATIONARY`] of the longest of them it is no nearer to zero than that needs.
 ///
 /// Source: Mitchell, Dem'yanov and Malozemov, SIAM J. Control 12 (1974) 19.
 fn shortest(vectors: &[Vec<f64>]) -> Vec<f64> {
-    let mut weights = vec![0.0; vectors.len()];
+    let count = vectors.len();
+    let among: Vec<f64> = vectors.iter().flat_map(|one| vectors.iter().map(|other| dot(one, other))).collect();
+    let with = |vector: usize| &among[vector * count..(vector + 1) * count];
+    let enough = STATIONARY * STATIONARY * (0..count).map(|at| with(at)[at]).fold(0.0, f64::max);
+    let mut weights = vec![0.0; count];
     weights[0] = 1.0;
-    let mut found = vectors[0].clone();
+    // The vector found, and its products with all others.
+    let (mut found, mut products) = (vectors[0].clone(), with(0).to_vec());
     for _ in 0..MOST_STEPS {
-        let products: Vec<f64> = vectors.iter().map(|vector| dot(vector, &found)).collect();
-        let of = |at: &usize| products[*at];
-        let (Some(low), Some(high)) = (
-            (0..vectors.len()).min_by(|a, b| of(a).total_cmp(&of(b))),
-            (0..vectors.len()).filter(|&at| weights[at] > 0.0).max_by(|a, b| of(a).total_cmp(&of(b))),
-        ) else {
-            break;
-        };
-        let gap = products[high] - products[low];
-        let difference: Vec<f64> = vectors[low].iter().zip(&vectors[high]).map(|(a, b)| a - b).collect();
-        let square = dot(&difference, &difference);
-        if gap <= GAP * dot(&found, &found) || square == 0.0 {
+        let (mut low, mut high) = (0, 0);
+        let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
+        for (at, (product, weight)) in products.iter().zip(&weights).enumerate() {
+            if *product < lowest {
+                (low, lowest) = (at, *product);
+            }
+            if *weight > 0.0 && *product > highest {
+                (high, highest) = (at, *product);
+            }
+        }
+        let gap = highest - lowest;
+        let apart = || vectors[low].iter().zip(&vectors[high]).map(|(to, from)| to - from);
+        let square: f64 = apart().map(|part| part * part).sum();
+        if gap <= GAP * dot(&found, &found).max(enough) || square == 0.0 {
             break;
         }
         let moved = (gap / square).min(weights[high]);
         weights[high] -= moved;
         weights[low] += moved;
-        for (found, difference) in found.iter_mut().zip(&difference) {
-            *found += moved * difference;
+        for (found, part) in found.iter_mut().zip(apart()) {
+            *found += moved * part;
+        }
+        for (product, (to, from)) in products.iter_mut().zip(with(low).iter().zip(with(high))) {
+            *product += moved * (to - from);
         }
     }
     found

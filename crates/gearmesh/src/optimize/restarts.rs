@@ -7,15 +7,11 @@
 //! kink. Where the gradients say that it goes down but no line does, or the restarts are used up, it has stalled, and says
 //! so. Must not know: which search runs.
 
-use super::kink::{self, Slope};
+use super::kink::{self, STATIONARY, Slope};
 use super::line::Line;
 use super::local::{Limits, Search, ends, moved};
 use super::search::Reason;
 use super::{Local, Strategy};
-
-/// The shortest vector of the hull, over the longest gradient, below which a point is stationary: differences over the
-/// tolerance tell no less.
-const STATIONARY: f64 = 1e-3;
 
 /// The least tolerance that looks follow: below, differences would drown in rounding.
 const FINEST: f64 = 1e-8;
