@@ -10,6 +10,7 @@ mod calculix;
 mod desk;
 mod determinism;
 mod e2e;
+mod estimates;
 mod export;
 mod extremes;
 mod fuzz;
@@ -27,3 +28,6 @@ mod rexs;
 mod schema;
 mod settings;
 mod support;
+
+// What `estimates` shares with the kernels' own tests names it as they do.
+use gearmesh::gear;

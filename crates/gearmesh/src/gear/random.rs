@@ -1,14 +1,25 @@
 //! For tests only: random pairs, loads and designs as they occur, the same ones each time.
 //!
-//! Must not know: what is tested with them.
+//! The program's tests have this file too, for populations that take longer than tests of the kernels may. Must not know:
+//! what is tested with them.
 
 use chacha20::ChaCha8Rng;
 use rand_core::{Rng, SeedableRng};
 
-use super::fixtures::{NamedModification, STEEL, design};
-use super::geometry::{GearPair, Rack, Specification};
-use super::modification::Design;
-use declare::record::Value::{Choice, Number, Quantity};
+use crate::gear::compliance::energy::Energy;
+use crate::gear::compliance::{Assumptions, ContactLaw, Method};
+use crate::gear::geometry::root::RootShape;
+use crate::gear::geometry::{GearPair, Rack, Specification};
+use crate::gear::material::Material;
+use crate::gear::modification::curve::Curve;
+use crate::gear::modification::end_relief::{EndRelief, FaceEnd};
+use crate::gear::modification::helix_slope::HelixSlope;
+use crate::gear::modification::lead_crowning::LeadCrowning;
+use crate::gear::modification::relief::{Amount, FromTip, Start};
+use crate::gear::modification::tip_relief::TipRelief;
+use crate::gear::modification::{Design, Gears};
+use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
+use crate::gear::transmission_error::load_case::LoadCase;
 
 /// Draws from ranges.
 pub(crate) struct Random(ChaCha8Rng);
@@ -60,7 +71,7 @@ impl Random {
                 tip_radius: None,
                 face_width: width,
                 bore_radius: module * (0.5 * f64::from(teeth) + profile_shift - 1.25) / bore,
-                material: STEEL,
+                material: Material::STEEL,
             };
             if let Ok(pair) = GearPair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None) {
                 return pair;
@@ -78,38 +89,72 @@ impl Random {
     pub(crate) fn design(&mut self, pair: &GearPair) -> Design {
         loop {
             let curve = self.of(&["linear", "parabolic", "power"]);
-            let tip = [
-                ("amount", Quantity(self.between(0.0, 20e-6))),
-                ("fraction", Number(self.between(0.2, 1.0))),
-                ("curve", Choice(curve)),
-                ("exponent", Number(self.between(1.2, 3.0))),
-            ];
-            let tip = if curve == "power" { &tip[..] } else { &tip[..3] };
-            let crown = [("amount", Quantity(self.between(0.0, 15e-6)))];
-            let slope = [("amount", Quantity(self.between(-15e-6, 15e-6)))];
+            let (amount, fraction, exponent) =
+                (self.between(0.0, 20e-6), self.between(0.2, 1.0), self.between(1.2, 3.0));
+            let tip = TipRelief {
+                amount: Amount::Depth(amount),
+                start: Start::Fraction(fraction),
+                counted_from: FromTip::Tip,
+                curve: match curve {
+                    "linear" => Curve::Linear,
+                    "parabolic" => Curve::Parabolic,
+                    _ => Curve::Power { exponent },
+                },
+            };
+            let crown = LeadCrowning { amount: self.between(0.0, 15e-6) };
+            let slope = HelixSlope { amount: self.between(-15e-6, 15e-6) };
             let width = pair.pinion.specification.face_width;
-            let end = [
-                ("amount", Quantity(self.between(1e-6, 20e-6))),
-                ("length", Quantity(width * self.between(0.1, 0.45))),
-                ("curve", Choice("power")),
-                ("exponent", Number(self.between(1.2, 3.5))),
-            ];
-            let mut parts: Vec<NamedModification> = Vec::new();
+            let end = EndRelief {
+                amount: self.between(1e-6, 20e-6),
+                length: width * self.between(0.1, 0.45),
+                end: FaceEnd::Both,
+                curve: Curve::Power { exponent: self.between(1.2, 3.5) },
+            };
+            let mut design = Design::default();
+            let mut fits = true;
             if self.share() < 0.8 {
-                parts.push(("tip_relief", self.of(&["pinion", "gear", "both"]), tip));
+                fits &= design.add(self.of(&[Gears::Pinion, Gears::Gear, Gears::Both]), &tip, pair).is_ok();
             }
             if self.share() < 0.5 {
-                parts.push(("lead_crowning", "pinion", &crown));
+                fits &= design.add(Gears::Pinion, &crown, pair).is_ok();
             }
             if self.share() < 0.3 {
-                parts.push(("helix_slope", "gear", &slope));
+                fits &= design.add(Gears::Gear, &slope, pair).is_ok();
             }
             if self.share() < 0.6 {
-                parts.push(("end_relief", self.of(&["pinion", "gear"]), &end));
+                fits &= design.add(self.of(&[Gears::Pinion, Gears::Gear]), &end, pair).is_ok();
             }
-            if let Ok(design) = design(pair, &parts) {
+            if fits {
                 return design;
             }
         }
+    }
+
+    /// A design of a random pair under a load, the teeth by the energy method.
+    pub(crate) fn case(&mut self, settings: Settings) -> Case {
+        loop {
+            let pair = self.pair();
+            let contact = self.of(&[ContactLaw::Linear, ContactLaw::LoadDependent]);
+            let coupled = self.share() < 0.2;
+            let assumptions = Assumptions { root: RootShape::Trochoid, contact, coupled, torque: None, accuracy: None };
+            if let Ok(found) = (Energy { harmonics: 10, ..Energy::default() }).tabulate(&pair, assumptions) {
+                let cycle = MeshCycle::new(&pair, &found.compliance, settings).unwrap();
+                let (design, torque) = (self.design(&pair), self.torque(&pair));
+                return Case { cycle, design, torque };
+            }
+        }
+    }
+}
+
+/// A design under a load.
+pub(crate) struct Case {
+    pub(crate) cycle: MeshCycle,
+    pub(crate) design: Design,
+    pub(crate) torque: f64,
+}
+
+impl Case {
+    pub(crate) fn load_case(&self) -> LoadCase<'_> {
+        LoadCase::new(&self.cycle, &self.design, self.torque)
     }
 }

@@ -1,6 +1,5 @@
 //! Reference values to 40 digits, golden values of a published pair, and what must not change them.
 
-mod accuracy;
 mod methods;
 mod reference;
 mod scaling;

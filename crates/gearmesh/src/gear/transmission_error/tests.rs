@@ -2,10 +2,10 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
-mod accuracy;
 mod corner;
 mod extremes;
 mod sampling;
+mod spans;
 mod surface;
 mod work;
 

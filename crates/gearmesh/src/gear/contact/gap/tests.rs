@@ -46,18 +46,29 @@ fn positions(pair: &GearPair, count: u32) -> impl Iterator<Item = f64> {
     (0..=count).map(move |index| from + (to - from) * (f64::from(index) + 0.313) / f64::from(count + 1))
 }
 
-/// Every point of both flanks in small steps, first the gear's before the pinion's flank, then the reverse; the
-/// separation by polar coordinates, depths added as the model says or moved along the normal as they are.
-fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
+/// A point of a flank before the mate's flank: both rolls, and how far the mate is behind without modification \[m\].
+struct Opposite {
+    point: Side,
+    roll: f64,
+    touched: f64,
+    behind: f64,
+}
+
+/// What both flanks of a design here lose together, at one place and another \[m\].
+const DEPTHS: [f64; 2] = [-0.1e-3, 0.5e-3];
+
+/// Points of both flanks in small steps, first the gear's before the pinion's flank, then the reverse, as far as one may be
+/// the nearest; the separation by polar coordinates. Points are moved along their normals by `moved`.
+fn opposite(pair: &GearPair, s: f64, moved: impl Fn(Side, f64) -> f64) -> Vec<Opposite> {
     let length = pair.tangent_length;
-    let mut minimum = f64::INFINITY;
+    let mut found = Vec::new();
     for (point, flank) in [(Side::Gear, Side::Pinion), (Side::Pinion, Side::Gear)] {
         let (own, other) = (pair.side(point), pair.side(flank));
         let (nominal, start, end) = match point {
             Side::Gear => (s, pair.start_of_contact, pair.end_of_contact),
             Side::Pinion => (length - s, length - pair.end_of_contact, length - pair.start_of_contact),
         };
-        let count = 60_000;
+        let (count, mut first) = (60_000, None);
         for index in 0..=count {
             let position = start + (end - start) * f64::from(index) / f64::from(count);
             let before = position - nominal;
@@ -65,32 +76,44 @@ fn brute(pair: &GearPair, design: &Design, s: f64, true_points: bool) -> f64 {
                 continue;
             }
             let roll = (length - position) / own.base_radius;
-            let depth = design.depth(point, roll);
-            let angle = -before / own.base_radius;
             // From the point's own centre: along its normal, then out to the base circle.
-            let normal = own.base_radius * roll - if true_points { depth } else { 0.0 };
-            let x = length - normal * angle.cos() + own.base_radius * angle.sin();
-            let y = own.base_radius + other.base_radius - normal * angle.sin() - own.base_radius * angle.cos();
+            let normal = own.base_radius * roll - moved(point, roll);
+            let (sine, cosine) = (-before / own.base_radius).sin_cos();
+            let x = length - normal * cosine + own.base_radius * sine;
+            let y = own.base_radius + other.base_radius - normal * sine - own.base_radius * cosine;
             let touched = ((x * x + y * y) / (other.base_radius * other.base_radius) - 1.0).sqrt();
             if touched > end / other.base_radius {
                 continue;
             }
-            let coordinate = other.base_radius * (x.atan2(y) - touched.atan() + touched);
-            let lost = if true_points { 0.0 } else { depth };
-            minimum = minimum.min(coordinate - nominal + lost + design.depth(flank, touched));
+            let behind = other.base_radius * (x.atan2(y) - touched.atan() + touched) - nominal;
+            // The farther before the line of action, the farther behind; of moved points but for the depth itself.
+            if behind > *first.get_or_insert(behind) + 2.0 * (DEPTHS[1] - DEPTHS[0]) {
+                break;
+            }
+            found.push(Opposite { point, roll, touched, behind });
         }
     }
-    minimum
+    found
+}
+
+/// The least gap of points that are where they are without modification: depths are added, as the model says.
+fn least(opposite: &[Opposite], design: &Design) -> f64 {
+    let gap = |at: &Opposite| {
+        let depth = design.depth(at.point, at.roll) + design.depth(at.point.other(), at.touched);
+        assert!((DEPTHS[0]..=DEPTHS[1]).contains(&depth), "{depth:e}");
+        at.behind + depth
+    };
+    opposite.iter().map(gap).fold(f64::INFINITY, f64::min)
 }
 
 #[test]
 fn the_gap_is_the_least_of_a_fine_scan() {
     let pair = pair();
-    for (index, design) in designs(&pair).iter().enumerate() {
-        let profiles = design.profiles(0.0);
-        let gaps = Gaps::new(&pair, &profiles);
-        for s in positions(&pair, 40) {
-            let (found, scanned) = (gaps.at(s).unwrap(), brute(&pair, design, s, false));
+    for s in positions(&pair, 40) {
+        let opposite = opposite(&pair, s, |_, _| 0.0);
+        for (index, design) in designs(&pair).iter().enumerate() {
+            let profiles = design.profiles(0.0);
+            let (found, scanned) = (Gaps::new(&pair, &profiles).at(s).unwrap(), least(&opposite, design));
             // The scan's step is 0.24 µm: it is too large by its square over 2ρ, and by a step down a kink.
             let step = 2.5e-7 * 0.3;
             assert!(
@@ -147,21 +170,33 @@ impl Modification for Step {
     }
 }
 
-/// The gap of a modification of one's own against the fine scan; `bend` is its largest second derivative along the path.
-fn scan(pair: &GearPair, modification: Arc<dyn Modification>, amount: f64, bend: f64) {
-    let said = format!("{modification:?}");
-    let modification = crate::gear::modification::NamedModification { family: "own", modification };
-    let design = Design { pinion: vec![modification], gear: Vec::new() };
-    let profiles = design.profiles(0.0);
-    let gaps = Gaps::new(pair, &profiles);
+/// A modification of one's own, how large it is, and its largest second derivative along the path.
+struct Own {
+    modification: Arc<dyn Modification>,
+    amount: f64,
+    bend: f64,
+}
+
+/// Gaps of modifications of one's own against the fine scan.
+fn scan(pair: &GearPair, own: impl IntoIterator<Item = Own>) {
+    let of = |modification| Design {
+        pinion: vec![crate::gear::modification::NamedModification { family: "own", modification }],
+        gear: Vec::new(),
+    };
+    let own: Vec<_> =
+        own.into_iter().map(|Own { modification, amount, bend }| (of(modification), amount, bend)).collect();
     for s in positions(pair, 30) {
-        let (found, scanned) = (gaps.at(s).unwrap(), brute(pair, &design, s, false));
-        let step = 2.5e-7;
-        // Slopes are those of parabolas through three points of a piece, so that a minimum is a little beside its place.
-        assert!(
-            found < scanned + 3e-6 * amount && found > scanned - (60.0 + bend) * step * step - 1e-13,
-            "{said} {s}: {found:e} {scanned:e}"
-        );
+        let opposite = opposite(pair, s, |_, _| 0.0);
+        for (design, amount, bend) in &own {
+            let profiles = design.profiles(0.0);
+            let (found, scanned) = (Gaps::new(pair, &profiles).at(s).unwrap(), least(&opposite, design));
+            let step = 2.5e-7;
+            // Slopes are those of parabolas through three points of a piece, so that a minimum is a little beside its place.
+            assert!(
+                found < scanned + 3e-6 * amount && found > scanned - (60.0 + bend) * step * step - 1e-13,
+                "{design:?} {s}: {found:e} {scanned:e}"
+            );
+        }
     }
 }
 
@@ -170,11 +205,13 @@ fn scan(pair: &GearPair, modification: Arc<dyn Modification>, amount: f64, bend:
 fn the_gap_of_waves_is_the_least_of_a_fine_scan() {
     let pair = pair();
     let flank = Flank::new(&pair, Side::Pinion);
-    for (amount, number) in [(5e-6, 1.0), (5e-6, 4.0), (5e-6, 6.3), (3e-6, 8.0), (10e-6, 16.0), (2e-6, 20.0)] {
-        let waves = Waves { amount, number, flank: [flank.root_roll, flank.tip_roll] };
+    let own = |(amount, number): (f64, f64)| {
+        let modification = Arc::new(Waves { amount, number, flank: [flank.root_roll, flank.tip_roll] });
         // Between two points of the scan a wave turns by its bend times the square of their distance.
-        scan(&pair, Arc::new(waves), amount, 0.5 * amount * (TAU * number / 10e-3).powi(2));
-    }
+        Own { modification, amount, bend: 0.5 * amount * (TAU * number / 10e-3).powi(2) }
+    };
+    let waves = [(5e-6, 1.0), (5e-6, 4.0), (5e-6, 6.3), (3e-6, 8.0), (10e-6, 16.0), (2e-6, 20.0)];
+    scan(&pair, waves.map(own));
 }
 
 /// Tier: second method; as before. A step that bends once is not cut, and Newton's steps from its hollow leave its bracket.
@@ -183,7 +220,14 @@ fn the_gap_of_a_smooth_step_is_the_least_of_a_fine_scan() {
     let pair = pair();
     let flank = Flank::new(&pair, Side::Pinion);
     let across = flank.tip_roll - flank.root_roll;
-    for (amount, place, width) in [
+    let own = |(amount, place, width): (f64, f64, f64)| {
+        let (roll, width) = (flank.root_roll + place * across, width * across);
+        let along = width * pair.pinion.base_radius;
+        // The logistic function bends by at most 1/(6 √3).
+        let bend = amount.abs() / (6.0 * f64::sqrt(3.0) * along * along);
+        Own { modification: Arc::new(Step { amount, roll, width }), amount: amount.abs(), bend }
+    };
+    let steps = [
         (20e-6, 0.9, 0.02),
         (-20e-6, 0.9, 0.02),
         (-50e-6, 0.8, 0.01),
@@ -192,17 +236,8 @@ fn the_gap_of_a_smooth_step_is_the_least_of_a_fine_scan() {
         (-20e-6, 0.7, 0.004),
         (-80e-6, 0.46, 0.0315),
         (-80e-6, 0.38, 0.0567),
-    ] {
-        let (roll, width) = (flank.root_roll + place * across, width * across);
-        let along = width * pair.pinion.base_radius;
-        // The logistic function bends by at most 1/(6 √3).
-        scan(
-            &pair,
-            Arc::new(Step { amount, roll, width }),
-            f64::abs(amount),
-            f64::abs(amount) / (6.0 * f64::sqrt(3.0) * along * along),
-        );
-    }
+    ];
+    scan(&pair, steps.map(own));
 }
 
 /// With points moved along their normals the gap differs by its own size times the slope of the reliefs.
@@ -213,7 +248,11 @@ fn the_gap_is_that_of_true_points_to_first_order() {
         let profiles = design.profiles(0.0);
         let gaps = Gaps::new(&pair, &profiles);
         for s in positions(&pair, 25) {
-            let (found, exact) = (gaps.at(s).unwrap(), brute(&pair, design, s, true));
+            // Moved points lose no depth of their own once more.
+            let gap = |at: &Opposite| at.behind + design.depth(at.point.other(), at.touched);
+            let exact =
+                opposite(&pair, s, |side, roll| design.depth(side, roll)).iter().map(gap).fold(f64::INFINITY, f64::min);
+            let found = gaps.at(s).unwrap();
             assert!((found - exact).abs() < 0.12 * found.abs() + 1e-7, "{index} {s}: {found:e} {exact:e}");
         }
     }

@@ -48,8 +48,22 @@ pub(super) fn distance_to_swept_rack(gear: &Gear, x: f64, y: f64) -> f64 {
     let steps = 1200;
     let centre = x.atan2(y);
     let scan = |k: i32| centre + reach * (2.0 * f64::from(k) / f64::from(steps) - 1.0);
-    let scanned = (0..=steps).map(|k| (at(scan(k)), k));
-    let (_, nearest) = scanned.min_by(|(one, _), (other, _)| one.total_cmp(other)).unwrap();
+    // No point is nearer by more than it moves, and it turns about the pitch point.
+    let radius = x.hypot(y);
+    let lever = (radius - gear.reference_radius).hypot((radius * gear.reference_radius).sqrt() * reach);
+    let moved = |by: i32| lever * 2.0 * reach * f64::from(by) / f64::from(steps);
+    let (mut least, mut nearest) = (f64::INFINITY, 0);
+    let mut open = vec![(0, steps)];
+    while let Some((first, last)) = open.pop() {
+        let middle = i32::midpoint(first, last);
+        let value = at(scan(middle));
+        if value < least {
+            (least, nearest) = (value, middle);
+        }
+        if value - moved(last - middle) < least {
+            open.extend([(first, middle - 1), (middle + 1, last)].into_iter().filter(|(first, last)| first <= last));
+        }
+    }
     let (mut lower, mut upper) = (scan(nearest - 1), scan(nearest + 1));
     for _ in 0..60 {
         let (left, right) = (lower + 0.381_966 * (upper - lower), upper - 0.381_966 * (upper - lower));

@@ -11,22 +11,27 @@ use crate::gear::geometry::tip_path::{Corner, TipPath};
 
 const SIDES: [Side; 2] = [Side::Pinion, Side::Gear];
 
-/// Where a point of the mate's tooth is in the frame of the gear's tooth, by turning both gears: the mate by `angle`, with
-/// the flanks of the gear's right side touching.
-fn seen(pair: &GearPair, side: Side, [x, y]: [f64; 2], angle: f64) -> [f64; 2] {
+/// The frame of the mate's tooth as that of the gear's tooth sees it: sine and cosine of the mate's turn and of the gear's.
+type Turns = [(f64, f64); 2];
+
+/// Both gears turned: the mate by `angle`, with the flanks of the gear's right side touching.
+fn turns(pair: &GearPair, side: Side, angle: f64) -> Turns {
     let (own, mate) = (pair.side(side), pair.side(side.other()));
     let [z, z_mate] = [own, mate].map(|gear| f64::from(gear.specification.teeth));
     // Backlash: half of it lies on either side of the mate's tooth when both are in the middle.
     let pitch = |gear: &Gear| gear.base_radius / pair.working_pressure_angle.cos();
     let width = |gear: &Gear| gear.half_angle(pitch(gear)) * pitch(gear);
     let slack = (PI / z * pitch(own) - width(own) - width(mate)) / pitch(own);
+    // The gear turns along; its tooth is half a pitch to the left of the space.
+    [angle.sin_cos(), (-(angle * z_mate / z + PI / z - slack)).sin_cos()]
+}
+
+/// Where a point of the mate's tooth is in the frame of the gear's tooth.
+fn seen(pair: &GearPair, [(sine, cosine), (back_sine, back_cosine)]: Turns, [x, y]: [f64; 2]) -> [f64; 2] {
     // The mate's tooth hangs down from (0, a) and swings to the left, towards the tooth whose right root is meant.
-    let (sine, cosine) = angle.sin_cos();
     let [left, down] = [x * cosine + y * sine, y * cosine - x * sine];
     let [x, y] = [-left, pair.centre_distance - down];
-    // The gear turns along; its tooth is half a pitch to the left of the space.
-    let back = -(angle * z_mate / z + PI / z - slack);
-    [x * back.cos() - y * back.sin(), x * back.sin() + y * back.cos()]
+    [x * back_cosine - y * back_sine, x * back_sine + y * back_cosine]
 }
 
 /// Vertices of a polyline that lie together: those from `first` to `last` are within `radius` of `centre`.
@@ -56,11 +61,12 @@ fn between([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
 }
 
 /// Signed distance of a point from a polyline: positive to the left of its direction. What is surely farther away than the
-/// nearest so far is not looked at.
-fn distance_to(path: &[[f64; 2]], stretches: &[Stretch], [x, y]: [f64; 2]) -> f64 {
+/// nearest so far is not looked at; `likely` is the stretch to begin with, and then the one that the nearest is on.
+fn distance_to(path: &[[f64; 2]], stretches: &[Stretch], likely: &mut usize, [x, y]: [f64; 2]) -> f64 {
     // The square of the distance.
     let (mut nearest, mut sign) = (f64::INFINITY, 0.0_f64);
-    for stretch in stretches {
+    for index in std::iter::once(*likely).chain(0..stretches.len()) {
+        let stretch = &stretches[index];
         if between([x, y], stretch.centre) - stretch.radius > nearest.sqrt() {
             continue;
         }
@@ -71,6 +77,7 @@ fn distance_to(path: &[[f64; 2]], stretches: &[Stretch], [x, y]: [f64; 2]) -> f6
             let square = (x - a - along * dx).powi(2) + (y - b - along * dy).powi(2);
             if square < nearest {
                 (nearest, sign) = (square, (dx * (y - b) - dy * (x - a)).signum());
+                *likely = index;
             }
         }
     }
@@ -97,13 +104,14 @@ fn brute(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> f64 
             }));
         }
     }
+    let way: Vec<Turns> = (-800..=1600).map(|step| turns(pair, side, f64::from(step) * 5e-4)).collect();
     let mut minimum = f64::INFINITY;
     for point in tip {
         // At its lowest the path runs to the left, so what lies to the left of its direction is outside.
-        let path: Vec<_> = (-800..=1600).map(|step| seen(pair, side, point, f64::from(step) * 5e-4)).collect();
-        let stretches = Stretch::of(&path);
+        let path: Vec<_> = way.iter().map(|turns| seen(pair, *turns, point)).collect();
+        let (stretches, mut likely) = (Stretch::of(&path), 0);
         for place in root {
-            minimum = minimum.min(distance_to(&path, &stretches, place.local.position));
+            minimum = minimum.min(distance_to(&path, &stretches, &mut likely, place.local.position));
         }
     }
     minimum

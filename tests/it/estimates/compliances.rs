@@ -1,13 +1,13 @@
 //! Estimated errors of compliances against the truth, over random pairs.
 
-use crate::gear::compliance::energy::{Energy, GearBody};
-use crate::gear::compliance::finite_element::FiniteElement;
-use crate::gear::compliance::iso6336::Iso6336;
-use crate::gear::compliance::weber_banaschek::WeberBanaschek;
-use crate::gear::compliance::{Assumptions, ContactLaw, Method, ROUNDING, Tabulated, ToothCompliance};
-use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{GearPair, Side};
-use crate::gear::random::Random;
+use super::random::Random;
+use gearmesh::gear::compliance::energy::{Energy, GearBody};
+use gearmesh::gear::compliance::finite_element::FiniteElement;
+use gearmesh::gear::compliance::iso6336::Iso6336;
+use gearmesh::gear::compliance::weber_banaschek::WeberBanaschek;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, ROUNDING, Tabulated, ToothCompliance};
+use gearmesh::gear::geometry::root::RootShape;
+use gearmesh::gear::geometry::{GearPair, Side};
 
 fn energy(pair: &GearPair, body: GearBody, harmonics: u32, assumptions: Assumptions) -> Option<Tabulated> {
     Energy { body, harmonics, ..Energy::default() }.tabulate(pair, assumptions).ok()
