@@ -156,6 +156,7 @@ fn shortest(vectors: &[Vec<f64>]) -> Vec<f64> {
                 (high, highest) = (at, *product);
             }
         }
+        // No less than the square of how far away the shortest vector is.
         let gap = highest - lowest;
         let apart = || vectors[low].iter().zip(&vectors[high]).map(|(to, from)| to - from);
         let square: f64 = apart().map(|part| part * part).sum();
@@ -222,6 +223,58 @@ mod tests {
             let found = shortest(&vectors);
             assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?} {expected:?}");
         }
+    }
+
+    /// The nearest point to the origin of all triangles, by their edges: 0 inside of one.
+    fn nearest_of_triangles(points: &[Vec<f64>]) -> [f64; 2] {
+        let turn = |a: &[f64], b: &[f64]| a[0] * b[1] - a[1] * b[0];
+        let mut nearest = [f64::INFINITY; 2];
+        for (i, a) in points.iter().enumerate() {
+            for (j, b) in points[..i].iter().enumerate() {
+                let edge = [b[0] - a[0], b[1] - a[1]];
+                let along = (-dot(a, &edge) / dot(&edge, &edge)).clamp(0.0, 1.0);
+                let foot = [a[0] + along * edge[0], a[1] + along * edge[1]];
+                if dot(&foot, &foot) < dot(&nearest, &nearest) {
+                    nearest = foot;
+                }
+                for c in &points[..j] {
+                    let turns = [turn(a, b), turn(b, c), turn(c, a)];
+                    if turns.iter().all(|turn| *turn > 0.0) || turns.iter().all(|turn| *turn < 0.0) {
+                        return [0.0; 2];
+                    }
+                }
+            }
+        }
+        nearest
+    }
+
+    /// Tier: second method; hulls about the origin, near it and beside it, of any size, as near as the least gap makes sure.
+    #[test]
+    fn the_shortest_vector_is_as_near_as_it_must_be() {
+        let mut inside = 0;
+        for number in 1..=600 {
+            let size = libm::pow(10.0, 3.0 - (number % 16) as f64);
+            // Farther from the origin with the number.
+            let (shift, count) = (number as f64 / 600.0, 3 + number % 5);
+            let place = |index: usize| {
+                let index = 7 * number + index;
+                vec![size * (2.0 * halton(index, 2) - 1.0 + shift), size * (2.0 * halton(index, 3) - 1.0)]
+            };
+            let mut points: Vec<Vec<f64>> = (0..count).map(place).collect();
+            // Moved towards the origin by most of its distance, it is nearest at the same point.
+            let (away, left) = (nearest_of_triangles(&points), [1.0, 0.1, 1e-2, 1e-3, 1e-4][number % 5]);
+            for point in &mut points {
+                (point[0], point[1]) = (point[0] - (1.0 - left) * away[0], point[1] - (1.0 - left) * away[1]);
+            }
+            let (found, exact) = (shortest(&points), away.map(|part| left * part));
+            let longest = points.iter().map(|point| dot(point, point)).fold(0.0, f64::max).sqrt();
+            let apart = (found[0] - exact[0]).hypot(found[1] - exact[1]);
+            let share = dot(&exact, &exact).sqrt() / longest;
+            let allowed = GAP.sqrt() * share.max(STATIONARY) * longest;
+            assert!(apart <= allowed * (1.0 + 1e-4), "{number}: {apart:e} for {allowed:e}");
+            inside += usize::from(share == 0.0);
+        }
+        assert!((150..450).contains(&inside), "{inside}");
     }
 
     fn slope_of(function: impl Fn(&[f64]) -> f64, at: &[f64]) -> Option<Slope> {
