@@ -91,9 +91,6 @@ const PER_SLICE: f64 = 0.01;
 /// Solves that a curve takes for each of its positions, with its extrema and first touches.
 const SOLVES_PER_POSITION: f64 = 4.0;
 
-/// The tables that need curves.
-const OF_CURVES: [&str; 4] = [summary::TABLE, curve::TABLE, tables::HARMONICS, tables::COST];
-
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let ste = Ste::checked(record)?;
     if ste.designs.is_empty() {
@@ -269,15 +266,12 @@ impl Stage for Ste {
             designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
         // Sorted while they are few: a table sorts by comparing the texts of every row.
         tasks.sort_by(|a, b| a.0.1.cmp(&b.0.1).then(a.1.total_cmp(&b.1)));
-        // Equidistant samples alone need no curve.
-        let of_curves = OF_CURVES.iter().any(|table| context.demand.table(table));
-        let answered = if of_curves { tasks.as_slice() } else { &[] };
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
         let of_curve = narrowed(curve().schema());
-        let steps = Steps::new(context, answered.len());
-        let at_once = (answered.len() / (SHARES * rayon::current_num_threads())).clamp(1, MOST_AT_ONCE);
-        let parts: Vec<(Vec<Keyed>, Table)> = answered
+        let steps = Steps::new(context, tasks.len());
+        let at_once = (tasks.len() / (SHARES * rayon::current_num_threads())).clamp(1, MOST_AT_ONCE);
+        let parts: Vec<(Vec<Keyed>, Table)> = tasks
             .par_chunks(at_once)
             .map(|tasks| {
                 let mut answers = Vec::with_capacity(tasks.len());

@@ -3,7 +3,7 @@
 //! Must not know: how a curve is found.
 
 use super::tables::{cost, curve, harmonics, summary};
-use super::{MOST_AT_ONCE, OF_CURVES, Ste, samples};
+use super::{MOST_AT_ONCE, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
@@ -22,8 +22,7 @@ impl Ste {
         let designs = ports.map(|port| ahead.rows(&port, names::designs::TABLE)).fold(RowCount::NONE, RowCount::and);
         let curves = designs.times(RowCount::exact(self.torque.len()));
         let of_each = common::curve_rows(self.settings(), self.harmonics);
-        let of_curves = OF_CURVES.iter().any(|table| demand.table(table));
-        let rows = curves.times(RowCount::about(if of_curves { of_each } else { 0 }));
+        let rows = curves.times(RowCount::about(of_each));
         let points = rows.count.min((THREADS * MOST_AT_ONCE).saturating_mul(of_each) as u64);
         let pressures = demand.column(names::summary::TABLE, names::summary::LARGEST_PRESSURE)
             || demand.column(names::curve::TABLE, names::curve::PRESSURE);

@@ -52,8 +52,9 @@ fn deepest(pair: &GearPair, points: &[Point], gear: &Silhouette, turn: f64, cent
             let [x, y] = point.local.position;
             let (x, y) = (cosine * x - sine * y, sine * x + cosine * y);
             // Seen from the gear, whose tooth beside the space is half a pitch from the line of centres.
-            let (radius, place) = (x.hypot(centre_distance - y), x.atan2(centre_distance - y));
+            let radius = x.hypot(centre_distance - y);
             if radius < pair.gear.tip_radius {
+                let place = x.atan2(centre_distance - y);
                 let depth = gear.depth(radius, place - gear_turn - PI / z2);
                 if depth > deepest.0 {
                     deepest = (depth, [x, y]);
