@@ -9,6 +9,7 @@ use crate::stage::{Inputs, Port};
 use declare::declared::Words;
 use declare::error::Failure;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::gear::material::Plane;
 use gearmesh::numeric::chebyshev::{Series, nodes};
 use gearmesh::numeric::surface::Surface;
 use studygraph::table::columns::Columns;
@@ -98,6 +99,9 @@ fn model<'a>() -> Columns<ModelRow<'a>> {
         .text("method", "Method of the tooth compliance.", |row: &ModelRow<'a>| row.method)
         .text("root", "Root curve of the teeth; none where the method asks for none.", |row| row.root)
         .text(names::model::CONTACT, contact, |row| row.compliance.contact.map_or(INCLUDED, ContactLaw::word))
+        .text(names::model::PLANE, "Plane state of the flanks in contact: strain or stress.", |row| {
+            row.compliance.plane.word()
+        })
         .text(names::model::COUPLING, "Whether loaded neighbours share the gear body: none or body.", |row| {
             if row.compliance.coupled { "body" } else { "none" }
         })
@@ -179,10 +183,12 @@ pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<Pai
         INCLUDED => None,
         word => Some(ContactLaw::of(word).ok_or_else(|| Failure::new(format!("unknown contact law `{word}`")))?),
     };
+    let plane = model.texts(names::model::PLANE).first().map_or("", String::as_str);
     Ok(PairCompliance {
         pinion: tooth("pinion", compliance, neighbours)?,
         gear: tooth("gear", compliance, neighbours)?,
         contact,
+        plane: Plane::of(plane).ok_or_else(|| Failure::new(format!("unknown plane state `{plane}`")))?,
         coupled: model.texts(names::model::COUPLING).first().is_some_and(|coupling| coupling == "body"),
     })
 }
@@ -274,6 +280,7 @@ mod tests {
             pinion: tooth(1.0),
             gear: tooth(0.7),
             contact: Some(ContactLaw::LoadDependent),
+            plane: Plane::Stress,
             coupled: true,
         };
         let round = |pair: &PairCompliance| {
@@ -284,7 +291,7 @@ mod tests {
             assert_eq!(round(&PairCompliance { contact, ..pair.clone() }).contact, contact);
         }
         let back = round(&pair);
-        assert!(back.coupled && back.contact == Some(ContactLaw::LoadDependent));
+        assert!(back.coupled && back.plane == Plane::Stress && back.contact == Some(ContactLaw::LoadDependent));
         for roll in [0.07, 0.2, 0.41, 0.62] {
             assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);
             assert!(

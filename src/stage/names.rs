@@ -67,7 +67,7 @@ tables! {
         FURTHER_ROLL_ANGLE = "further_roll_angle",
         COMPLIANCE = "compliance",
     }
-    model of "stiffness": "model" { CONTACT = "contact", COUPLING = "coupling" }
+    model of "stiffness": "model" { CONTACT = "contact", PLANE = "plane", COUPLING = "coupling" }
     designs of "modification": "designs" { DESIGN = "design", ORDER = "order", ELEMENTS = "elements" }
     elements of "modification": "elements" {
         DESIGN = "design",

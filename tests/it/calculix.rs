@@ -10,7 +10,6 @@ mod program;
 mod tooth;
 mod wheel;
 
-use gearmesh::gear::finite_elements::element::Plane;
 use gearmesh::gear::finite_elements::gear_model::GearModel;
 use gearmesh::gear::finite_elements::mesh::Sizing;
 use gearmesh::gear::finite_elements::sector::NodalForces;
@@ -18,6 +17,7 @@ use gearmesh::gear::finite_elements::wheel::Wheel as Ring;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{Gear, Rack, Specification};
 use gearmesh::gear::material::Material;
+use gearmesh::gear::material::Plane;
 
 /// The standard rack, and the bore of the anchors, r_f/1.4.
 fn specification(teeth: u32, profile_shift: f64, module: f64, youngs_modulus: f64) -> Specification {

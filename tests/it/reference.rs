@@ -10,6 +10,7 @@ use crate::registry::walk::{Ran, demand, load, walk};
 use declare::seed::Seed;
 use declare::work::Tally;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::gear::material::Plane;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::numeric::chebyshev::Series;
@@ -174,7 +175,13 @@ fn harris_relations_hold_through_the_stage() {
         contact_depth: constant(2.5e-3),
         neighbours: Vec::new(),
     };
-    let elastic = PairCompliance { pinion: tooth(), gear: tooth(), contact: Some(ContactLaw::Linear), coupled: false };
+    let elastic = PairCompliance {
+        pinion: tooth(),
+        gear: tooth(),
+        contact: Some(ContactLaw::Linear),
+        plane: Plane::Strain,
+        coupled: false,
+    };
     let pair = pair::read(table(&ran, "pair", "gears"), table(&ran, "pair", "pair")).unwrap();
     let radii = [pair.pinion.base_radius, pair.gear.base_radius];
     let written = compliance::write(&elastic, radii, "energy", "trochoid").unwrap();

@@ -10,10 +10,11 @@ use super::program;
 use super::{model, specification};
 use gearmesh::gear::compliance::ToothCompliance;
 use gearmesh::gear::compliance::across_face::Layers;
-use gearmesh::gear::finite_elements::element::{Plane, RULE, shape};
+use gearmesh::gear::finite_elements::element::{RULE, shape};
 use gearmesh::gear::finite_elements::gear_model::GearModel;
 use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
 use gearmesh::gear::geometry::{Gear, Specification};
+use gearmesh::gear::material::Plane;
 use gearmesh::numeric::chebyshev::Series;
 
 const TEETH: u32 = 17;

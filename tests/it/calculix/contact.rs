@@ -9,11 +9,12 @@ use super::press::{Fineness, Pressed, press, sizing};
 use super::{displacements, model, specification, work};
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
-use gearmesh::gear::contact::flattening;
-use gearmesh::gear::finite_elements::element::{self, NODES, Plane};
+use gearmesh::gear::contact::flattening::{Bodies, combined_radius};
+use gearmesh::gear::finite_elements::element::{self, NODES};
 use gearmesh::gear::finite_elements::mesh::Mesh;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::material::Plane;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::{Equilibrium, LoadCase};
@@ -132,11 +133,11 @@ fn compare(pair: &GearPair, path: &[f64], approach: f64, edge: f64) -> Option<Co
     let all = || (0..path.len()).zip(path);
     let overlap =
         all().map(|(k, _)| theirs.overlap(k) * theirs.loads[k]).sum::<f64>() / theirs.loads.iter().sum::<f64>();
-    let steel = [&pair.pinion.specification.material; 2];
+    let steel = Bodies::of(pair, Plane::Strain);
     let hertz = |k: usize, s: f64| {
-        let radius = flattening::combined_radius([s, pair.tangent_length - s]);
+        let radius = combined_radius([s, pair.tangent_length - s]);
         let load = theirs.loads[k] / pair.contact_width();
-        (flattening::half_width(steel, radius) * load.sqrt(), flattening::pressure(steel, radius, load))
+        (steel.half_width(radius) * load.sqrt(), steel.pressure(radius, load))
     };
     let found = Compared {
         ratios: [&ours[0], &ours[1]].map(|state| state.transmission_error() / (approach - overlap)),

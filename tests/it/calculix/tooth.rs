@@ -5,9 +5,10 @@ use std::fmt::Write;
 use super::program;
 use super::wheel::Wheel;
 use super::{displacements, model, specification, work};
-use gearmesh::gear::finite_elements::element::{self, Plane, RULE};
+use gearmesh::gear::finite_elements::element::{self, RULE};
 use gearmesh::gear::finite_elements::mesh::{Edge, Sizing};
 use gearmesh::gear::geometry::Gear;
+use gearmesh::gear::material::Plane;
 
 const TEETH: u32 = 17;
 

@@ -3,8 +3,9 @@
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
 use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use super::contact::flattening::Bodies;
 use super::geometry::{Gear, GearPair, Rack, Specification};
-use super::material::Material;
+use super::material::{Material, Plane};
 use super::modification::{Design, family};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::surface::Surface;
@@ -13,6 +14,7 @@ use declare::error::Diagnostic;
 use declare::record::{Record, Value};
 
 pub(crate) const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+pub(crate) const STEELS: Bodies = Bodies { materials: [STEEL; 2], plane: Plane::Strain };
 pub(crate) const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
 
 fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
@@ -109,14 +111,20 @@ pub(crate) fn constant(pair: &GearPair, stiffness: f64) -> PairCompliance {
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
     let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * width);
     let half = 0.5 * (1.0 / stiffness - contact);
-    PairCompliance { pinion: tooth(|_| half), gear: tooth(|_| half), contact: Some(ContactLaw::Linear), coupled: false }
+    PairCompliance {
+        pinion: tooth(|_| half),
+        gear: tooth(|_| half),
+        contact: Some(ContactLaw::Linear),
+        plane: Plane::Strain,
+        coupled: false,
+    }
 }
 
 /// Teeth that get softer towards their tips, much like real ones.
 pub(crate) fn varying() -> PairCompliance {
     let pinion = tooth(|u| 0.8e-9 + 2.4e-9 * u * u + 1.5e-9 * u * u * u);
     let gear = tooth(|u| 0.5e-9 + 3.0e-9 * u * u);
-    PairCompliance { pinion, gear, contact: Some(ContactLaw::Linear), coupled: false }
+    PairCompliance { pinion, gear, contact: Some(ContactLaw::Linear), plane: Plane::Strain, coupled: false }
 }
 
 /// As [`varying`], with neighbouring teeth deflecting each other.

@@ -12,6 +12,7 @@ use super::{Assumptions, ComplianceError, Method, PairCompliance, ROUNDING, Tabu
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
+use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::quadrature::GaussLegendre;
@@ -82,7 +83,7 @@ impl Method for Energy {
         };
         let [pinion, gear] = of_both(pair, side)?;
         let Assumptions { contact, coupled, .. } = assumptions;
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: Plane::Strain, coupled };
         let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
         Ok(Tabulated { compliance, warnings, error_estimate, meshes: Vec::new(), work })
     }

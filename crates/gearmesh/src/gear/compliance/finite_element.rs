@@ -12,12 +12,12 @@ use super::{
     Assumptions, ComplianceError, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses, Tabulated,
     ToothCompliance, neighbours, of_both,
 };
-use crate::gear::finite_elements::element::Plane;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
+use crate::gear::material::Plane;
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::surface::Surface;
@@ -68,7 +68,7 @@ impl Method for FiniteElement {
         let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
         let Assumptions { contact, coupled, .. } = assumptions;
         let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
         Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
     }
 

@@ -12,6 +12,7 @@ use super::{
     Assumptions, ComplianceError, Foreseen, Method, PairCompliance, ROUNDING, Tabulated, ToothCompliance, integrated,
 };
 use crate::gear::geometry::{GearPair, Side, Specification};
+use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use declare::Declared;
@@ -160,8 +161,13 @@ impl Method for Iso6336 {
                 neighbours: Vec::new(),
             })
         };
-        let compliance =
-            PairCompliance { pinion: tooth(Side::Pinion)?, gear: tooth(Side::Gear)?, contact: None, coupled: false };
+        let compliance = PairCompliance {
+            pinion: tooth(Side::Pinion)?,
+            gear: tooth(Side::Gear)?,
+            contact: None,
+            plane: Plane::Strain,
+            coupled: false,
+        };
         let warnings = warnings(&inputs, pair, assumptions.torque);
         let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
         Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })

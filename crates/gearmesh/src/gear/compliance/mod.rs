@@ -20,6 +20,7 @@ use super::finite_elements::MeshError;
 use super::geometry::error::{GeometryError, Millimetres, Plain};
 use super::geometry::root::RootShape;
 use super::geometry::{GearPair, Side};
+use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
@@ -328,6 +329,8 @@ pub struct PairCompliance {
     pub gear: ToothCompliance,
     /// None where the compliances of the teeth include it already, for methods that know a pair as a whole.
     pub contact: Option<ContactLaw>,
+    /// The plane state of the flanks: what contact takes for E.
+    pub plane: Plane,
     /// Whether loads on neighbouring teeth deflect each other through the gear bodies.
     pub coupled: bool,
 }

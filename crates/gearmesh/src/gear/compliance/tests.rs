@@ -9,8 +9,7 @@ use super::ring::Ring;
 use super::sainsot::Body;
 use super::weber_banaschek::WeberBanaschek;
 use super::{Assumptions, ComplianceError, ContactLaw, Method, Tabulated, ToothCompliance, members};
-use crate::gear::contact::flattening;
-use crate::gear::fixtures::STEEL;
+use crate::gear::fixtures::{STEEL, STEELS};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
@@ -57,7 +56,7 @@ fn energy(pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, Compli
 /// Stiffness of the mesh \[N/m\] at a path position: all pairs in contact pressed by one common approach, with the
 /// influence of teeth on each other where the tables have it.
 fn mesh_stiffness(pair: &GearPair, tabulated: &Tabulated, s: f64) -> f64 {
-    let contact = flattening::linear([&STEEL; 2]) / pair.contact_width();
+    let contact = STEELS.linear() / pair.contact_width();
     let positions: Vec<f64> =
         (0..9).map(|k| s + f64::from(k) * pair.base_pitch).take_while(|s| *s <= pair.end_of_contact).collect();
     let compliance = &tabulated.compliance;

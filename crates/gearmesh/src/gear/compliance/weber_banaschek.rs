@@ -29,6 +29,7 @@ use super::{
 use crate::gear::geometry::involute::Section;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
+use crate::gear::material::Plane;
 use crate::gear::work::COMPLIANCE_EVALUATIONS;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::crossing::bracketed;
@@ -51,7 +52,7 @@ impl Method for WeberBanaschek {
         let side = |side| tabulate_side(pair, side, assumptions, &mut warnings, &mut evaluations);
         let [pinion, gear] = of_both(pair, side)?;
         let Assumptions { contact, coupled, .. } = assumptions;
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), coupled };
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: Plane::Strain, coupled };
         let work = Work::of(&COMPLIANCE_EVALUATIONS, evaluations);
         Ok(Tabulated { compliance, warnings, error_estimate: ROUNDING, meshes: Vec::new(), work })
     }

@@ -6,33 +6,54 @@
 
 use std::f64::consts::PI;
 
-use crate::gear::material::Material;
+use crate::gear::geometry::GearPair;
+use crate::gear::material::{Material, Plane};
 use crate::numeric::lambert::larger_root;
 
-/// (1 − ν²)/E \[1/Pa\].
-#[must_use]
-pub fn plane_compliance(material: &Material) -> f64 {
-    (1.0 - material.poisson_ratio * material.poisson_ratio) / material.youngs_modulus
+/// What both flanks are made of, and the plane state that they are in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bodies {
+    /// Of pinion and gear.
+    pub materials: [Material; 2],
+    /// Of both.
+    pub plane: Plane,
 }
 
-/// The linear law: 2/π Σ(1 − ν²)/E, penetration per load per width \[1/Pa\]; for equal materials 4(1 − ν²)/(πE).
-#[must_use]
-pub fn linear(materials: [&Material; 2]) -> f64 {
-    2.0 / PI * (plane_compliance(materials[0]) + plane_compliance(materials[1]))
-}
+impl Bodies {
+    /// Those of a pair.
+    #[must_use]
+    pub fn of(pair: &GearPair, plane: Plane) -> Self {
+        Self { materials: [pair.pinion.specification.material, pair.gear.specification.material], plane }
+    }
 
-/// Half the width of the contact, b_H² = 4 p ρ Σ(1 − ν²)/E / π, over the square root of the load per width p.
-#[must_use]
-pub fn half_width(materials: [&Material; 2], combined_radius: f64) -> f64 {
-    let compliance = plane_compliance(materials[0]) + plane_compliance(materials[1]);
-    (4.0 * combined_radius * compliance / PI).sqrt()
-}
+    /// 1/E′ of each \[1/Pa\].
+    fn compliances(&self) -> [f64; 2] {
+        self.materials.map(|material| material.plane_compliance(self.plane))
+    }
 
-/// The largest pressure of a line contact \[Pa\]: √(p / (π ρ Σ(1 − ν²)/E)).
-#[must_use]
-pub fn pressure(materials: [&Material; 2], combined_radius: f64, line_load: f64) -> f64 {
-    let compliance = plane_compliance(materials[0]) + plane_compliance(materials[1]);
-    (line_load / (PI * combined_radius * compliance)).sqrt()
+    /// Σ 1/E′ \[1/Pa\].
+    fn compliance(&self) -> f64 {
+        let [one, other] = self.compliances();
+        one + other
+    }
+
+    /// The linear law: 2/π Σ 1/E′, penetration per load per width \[1/Pa\]; for equal materials 4/(πE′).
+    #[must_use]
+    pub fn linear(&self) -> f64 {
+        2.0 / PI * self.compliance()
+    }
+
+    /// Half the width of the contact, b_H² = 4 p ρ Σ(1/E′) / π, over the square root of the load per width p.
+    #[must_use]
+    pub fn half_width(&self, combined_radius: f64) -> f64 {
+        (4.0 * combined_radius * self.compliance() / PI).sqrt()
+    }
+
+    /// The largest pressure of a line contact \[Pa\]: √(p / (π ρ Σ 1/E′)).
+    #[must_use]
+    pub fn pressure(&self, combined_radius: f64, line_load: f64) -> f64 {
+        (line_load / (PI * combined_radius * self.compliance())).sqrt()
+    }
 }
 
 /// 1/ρ = 1/ρ1 + 1/ρ2.
@@ -43,25 +64,26 @@ pub fn combined_radius(radii: [f64; 2]) -> f64 {
 
 /// The load-dependent law of two flanks at one place: approach p(α − β ln p) at the load per width p.
 ///
-/// Σ 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] with b_H ∝ √p. The law presumes b_H ≪ t; it would yield under more load
+/// By Weber and Banaschek Σ 2/(πE′)·[ln(2t/b_H) − ν′/2] with b_H ∝ √p. The law presumes b_H ≪ t; it would yield under more load
 /// beyond ln p = α/β − 1, where b_H has grown to the size of the tooth, and is held constant from there on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Logarithmic {
     /// α \[1/Pa\].
     pub constant: f64,
-    /// β = 1/π Σ(1 − ν²)/E \[1/Pa\].
+    /// β = 1/π Σ 1/E′ \[1/Pa\].
     pub rate: f64,
 }
 
 impl Logarithmic {
     /// `depths`: t of both teeth \[m\].
     #[must_use]
-    pub fn new(materials: [&Material; 2], combined_radius: f64, depths: [f64; 2]) -> Self {
-        let unit = half_width(materials, combined_radius);
+    pub fn weber(bodies: &Bodies, combined_radius: f64, depths: [f64; 2]) -> Self {
+        let unit = bodies.half_width(combined_radius);
         let mut law = Self { constant: 0.0, rate: 0.0 };
-        for (material, depth) in materials.into_iter().zip(depths) {
-            let factor = 2.0 / PI * plane_compliance(material);
-            let ratio = material.poisson_ratio / (2.0 * (1.0 - material.poisson_ratio));
+        let of_bodies = bodies.compliances().into_iter().zip(&bodies.materials).zip(depths);
+        for ((compliance, material), depth) in of_bodies {
+            let factor = 2.0 / PI * compliance;
+            let ratio = 0.5 * material.plane_poisson_ratio(bodies.plane);
             law.constant += factor * (libm::log(2.0 * depth / unit) - ratio);
             law.rate += 0.5 * factor;
         }
@@ -130,13 +152,17 @@ mod tests {
     const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
     const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25 };
 
+    const fn bodies(materials: [Material; 2]) -> Bodies {
+        Bodies { materials, plane: Plane::Strain }
+    }
+
     #[test]
     fn the_linear_law_is_the_articles_for_equal_materials_and_the_mean_of_two() {
         let article = |nu: f64, modulus: f64| 4.0 * (1.0 - nu * nu) / (PI * modulus);
-        assert!((linear([&STEEL, &STEEL]) / article(0.3, 206e9) - 1.0).abs() < 1e-15);
+        assert!((bodies([STEEL; 2]).linear() / article(0.3, 206e9) - 1.0).abs() < 1e-15);
         let mean = 0.5 * (article(0.3, 206e9) + article(0.25, 100e9));
-        for materials in [[&STEEL, &SOFT], [&SOFT, &STEEL]] {
-            assert!((linear(materials) / mean - 1.0).abs() < 1e-15);
+        for materials in [[STEEL, SOFT], [SOFT, STEEL]] {
+            assert!((bodies(materials).linear() / mean - 1.0).abs() < 1e-15);
         }
     }
 
@@ -146,21 +172,21 @@ mod tests {
         let s = 2.009_266_843_717_533_4e-3 + 8.856_394_302_280_648e-3;
         let radius = combined_radius([s, 34.373_024_404_229_71e-3 - s]);
         let load = 50.0 / 26.781_240e-3 / 18e-3;
-        assert!((pressure([&STEEL, &STEEL], radius, load) - 709e6).abs() < 0.5e6);
+        assert!((bodies([STEEL; 2]).pressure(radius, load) - 709e6).abs() < 0.5e6);
     }
 
     /// Mean pressure times width is the load, and the largest pressure of an ellipse is 4/π of the mean.
     #[test]
     fn pressure_and_half_width_balance_the_load() {
         let (radius, load) = (6e-3, 2e5_f64);
-        let half = half_width([&STEEL, &SOFT], radius) * load.sqrt();
-        let total = 0.5 * PI * half * pressure([&STEEL, &SOFT], radius, load);
+        let half = bodies([STEEL, SOFT]).half_width(radius) * load.sqrt();
+        let total = 0.5 * PI * half * bodies([STEEL, SOFT]).pressure(radius, load);
         assert!((total / load - 1.0).abs() < 1e-14);
     }
 
     #[test]
     fn the_load_dependent_law_inverts_at_every_load() {
-        let law = Logarithmic::new([&STEEL, &SOFT], 7e-3, [2.5e-3, 3e-3]);
+        let law = Logarithmic::weber(&bodies([STEEL, SOFT]), 7e-3, [2.5e-3, 3e-3]);
         let series = law.in_series(4e-11);
         let mut before = 0.0;
         for exponent in -300..=40 {
@@ -180,36 +206,41 @@ mod tests {
     #[test]
     fn the_load_dependent_law_is_webers() {
         let (radius, load, depths) = (7e-3, 1e5, [2.5e-3, 3e-3]);
-        let half = half_width([&STEEL, &SOFT], radius) * f64::sqrt(load);
+        let half = bodies([STEEL, SOFT]).half_width(radius) * f64::sqrt(load);
         let body = |material: &Material, depth: f64| {
             let nu = material.poisson_ratio;
             2.0 * (1.0 - nu * nu) / (PI * material.youngs_modulus)
                 * (f64::ln(2.0 * depth / half) - nu / (2.0 * (1.0 - nu)))
         };
         let exact = load * (body(&STEEL, depths[0]) + body(&SOFT, depths[1]));
-        let law = Logarithmic::new([&STEEL, &SOFT], radius, depths);
+        let law = Logarithmic::weber(&bodies([STEEL, SOFT]), radius, depths);
         assert!((law.approach(load) / exact - 1.0).abs() < 1e-13);
     }
 
-    /// Tier: second method; the strain under a Hertz pressure (Johnson, Contact Mechanics, eq. 4.49), integrated.
+    /// Tier: second method; the strain under a Hertz pressure (Johnson, Contact Mechanics, eq. 4.49), integrated, in
+    /// either plane state with Hooke's law of three dimensions.
     #[test]
     fn the_load_dependent_law_is_the_integral_of_the_strain() {
         let (load, radius, depth) = (2e5_f64, 8e-3, 3e-3);
-        let steel = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-        let half = half_width([&steel; 2], radius) * load.sqrt();
-        let peak = pressure([&steel; 2], radius, load);
-        let strain = |z: f64| {
-            let root = libm::hypot(half, z);
-            let along = -peak * half / root;
-            let across = -peak * ((half * half + 2.0 * z * z) / (half * root) - 2.0 * z / half);
-            (1.3 / 206e9) * (0.7 * along - 0.3 * across)
-        };
-        // z = b_H sinh w spreads the peak.
-        let rule = GaussLegendre::new(60);
-        let [integral] =
-            rule.integrate(0.0, libm::asinh(depth / half), |w| [-strain(half * libm::sinh(w)) * half * libm::cosh(w)]);
-        let approach = Logarithmic::new([&steel; 2], radius, [depth; 2]).approach(load);
-        // The closed form drops terms of the order of (b_H/t)².
-        assert!((approach / (2.0 * integral) - 1.0).abs() < (half / depth).powi(2), "{approach} for {integral}");
+        for plane in [Plane::Strain, Plane::Stress] {
+            let bodies = Bodies { materials: [STEEL; 2], plane };
+            let half = bodies.half_width(radius) * load.sqrt();
+            let peak = bodies.pressure(radius, load);
+            let strain = |z: f64| {
+                let root = libm::hypot(half, z);
+                let along = -peak * half / root;
+                let across = -peak * ((half * half + 2.0 * z * z) / (half * root) - 2.0 * z / half);
+                let third = if plane == Plane::Strain { 0.3 * (along + across) } else { 0.0 };
+                (along - 0.3 * (across + third)) / 206e9
+            };
+            // z = b_H sinh w spreads the peak.
+            let rule = GaussLegendre::new(60);
+            let [integral] = rule
+                .integrate(0.0, libm::asinh(depth / half), |w| [-strain(half * libm::sinh(w)) * half * libm::cosh(w)]);
+            let approach = Logarithmic::weber(&bodies, radius, [depth; 2]).approach(load);
+            // The closed form drops terms of the order of (b_H/t)².
+            let ratio = approach / (2.0 * integral);
+            assert!((ratio - 1.0).abs() < (half / depth).powi(2), "{plane:?}: {approach} for {integral}");
+        }
     }
 }

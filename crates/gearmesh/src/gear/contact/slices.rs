@@ -47,7 +47,7 @@ mod tests {
     use super::*;
 
     use crate::gear::contact::flattening::Logarithmic;
-    use crate::gear::fixtures::{STEEL, design, pair};
+    use crate::gear::fixtures::{STEELS, design, pair};
     use crate::numeric::lobatto::Rule;
     use declare::record::Value::Quantity;
 
@@ -57,7 +57,7 @@ mod tests {
         let (rule, width) = (Rule::new(9), 4e-3);
         let crowned = design(&pair(), &[("lead_crowning", "pinion", &[("amount", Quantity(8e-6))])]).unwrap();
         let faces = [Face::new(&crowned, width, &rule)];
-        let law = Logarithmic::new([&STEEL; 2], 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
+        let law = Logarithmic::weber(&STEELS, 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
         let slices = [Slice::Linear(3e8), Slice::Logarithmic(law)].to_vec();
         let springs = Slices { slices, faces: &faces, widths: &[width] };
         for (spring, penetration) in [(0, 1e-7), (0, 5e-6), (0, 3e-5), (1, 1e-7), (1, 5e-6), (1, 3e-5)] {

@@ -81,7 +81,7 @@ impl Springs for LogarithmicPairs<'_> {
 mod tests {
     use super::*;
     use crate::gear::contact::flattening::Logarithmic;
-    use crate::gear::fixtures::{STEEL, design, pair};
+    use crate::gear::fixtures::{STEELS, design, pair};
     use crate::numeric::lobatto::Rule;
     use declare::record::Value::Quantity;
 
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn a_pair_carries_the_load_at_the_penetration_above() {
         let rule = Rule::new(17);
-        let law = Logarithmic::new([&STEEL; 2], 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
+        let law = Logarithmic::weber(&STEELS, 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
         for crown in [0.0, 2e-6, 30e-6] {
             let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
             let face = Face::new(&crowned, 18e-3, &rule);

@@ -4,7 +4,7 @@
 //! Source: Zienkiewicz and Taylor, The Finite Element Method, 5th edition, volume 1, chapters 8 and 9.
 //! Must not know: gears, the mesh.
 
-use declare::Words;
+use crate::gear::material::Plane;
 
 /// Nodes of an element.
 pub const NODES: usize = 8;
@@ -15,16 +15,6 @@ pub const FREEDOMS: usize = 2 * NODES;
 const GAUSS: f64 = 0.774_596_669_241_483_4;
 /// Abscissas and weights of the three-point rule.
 pub const RULE: [(f64, f64); 3] = [(-GAUSS, 5.0 / 9.0), (0.0, 8.0 / 9.0), (GAUSS, 5.0 / 9.0)];
-
-/// Which plane state.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
-pub enum Plane {
-    /// no strain along the width: wide faces
-    #[default]
-    Strain,
-    /// no stress along the width: thin discs
-    Stress,
-}
 
 /// σ = D ε with ε = (ε_x, ε_y, γ_xy).
 pub type Elasticity = [[f64; 3]; 3];

@@ -6,7 +6,7 @@
 //! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
 
 use super::MeshError;
-use super::element::{Plane, edge_shape, elasticity};
+use super::element::{edge_shape, elasticity};
 use super::mesh::{Edge, Mesh, Sizing};
 use super::outline::Outline;
 use super::root_stress::{self, SurfaceStress};
@@ -15,6 +15,7 @@ use super::wheel::{Pressed, Wheel};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{Millimetres, Plain};
 use crate::gear::geometry::root::Root;
+use crate::gear::material::Plane;
 
 /// Relative error of compliances by rounding, over the square of teeth times root radius over bore radius: it takes far less
 /// force to turn a large gear on a small bore than to strain its elements by as much. Measured up to 1000 teeth.

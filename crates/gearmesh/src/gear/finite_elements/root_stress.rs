@@ -5,8 +5,8 @@
 //! International Journal for Numerical Methods in Engineering 10 (1976) 243–251).
 //! Stresses times the module over the load per width. Must not know: strength.
 
-use super::element::Plane;
 use super::mesh::{Edge, Mesh};
+use crate::gear::material::Plane;
 
 /// 1/√3.
 const GAUSS: f64 = 0.577_350_269_189_625_8;

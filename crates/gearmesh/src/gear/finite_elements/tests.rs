@@ -7,12 +7,12 @@ mod orders;
 mod whole_gear;
 
 use super::MeshError;
-use super::element::Plane;
 use super::gear_model::GearModel;
 use super::mesh::Sizing;
 use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::{Gear, Rack, Specification};
 use crate::gear::material::Material;
+use crate::gear::material::Plane;
 
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 

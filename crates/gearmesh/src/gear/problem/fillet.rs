@@ -9,7 +9,6 @@
 
 use super::{Problem, Stated, Variable, Worth};
 use crate::gear::finite_elements::MeshError;
-use crate::gear::finite_elements::element::Plane;
 use crate::gear::finite_elements::gear_model::GearModel;
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
@@ -18,6 +17,7 @@ use crate::gear::geometry::outline::roots::Toe;
 use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
 use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification, trochoid};
+use crate::gear::material::Plane;
 use declare::units::{Dimension, RATIO};
 use declare::{Declared, Words};
 

@@ -6,7 +6,7 @@
 use super::{Built, Case, Finding, ROUNDINGS, TABLE};
 use crate::gear::compliance::ContactLaw;
 use crate::gear::contact::CornerContact;
-use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::contact::flattening::{Bodies, Logarithmic, combined_radius};
 use crate::gear::contact::gap::Gaps;
 use crate::gear::geometry::Side;
 use crate::gear::transmission_error::curve::Wanted;
@@ -44,7 +44,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
     let Built { pair, design, compliance, cycle } = built;
     let exact = cycle.settings.corner_contact == CornerContact::Exact;
     let corners = exact.then(|| Gaps::new(pair, &design.profiles(0.0)));
-    let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
+    let bodies = Bodies::of(pair, compliance.plane);
     let s = |index: usize| cycle.path_position(position, index);
     let rolls = |index: usize| cycle.rolls(s(index));
     let mut found = Pairs {
@@ -63,16 +63,13 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
             found.largest_gap = found.largest_gap.max(found.gaps[j]);
         }
         let teeth = compliance.pinion.total(pinion) + compliance.gear.total(gear);
-        let contact = if compliance.contact == Some(ContactLaw::Linear) {
-            flattening::linear(materials) / cycle.face_width
-        } else {
-            0.0
-        };
+        let contact =
+            if compliance.contact == Some(ContactLaw::Linear) { bodies.linear() / cycle.face_width } else { 0.0 };
         found.compliance[j][j] = teeth + contact;
         if compliance.contact == Some(ContactLaw::LoadDependent) {
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
-            let radius = flattening::combined_radius(cycle.radii(s(j)));
-            found.laws[j] = Some(Logarithmic::new(materials, radius, depths));
+            let radius = combined_radius(cycle.radii(s(j)));
+            found.laws[j] = Some(Logarithmic::weber(&bodies, radius, depths));
         }
         for k in 0..j {
             let [behind, ahead] = [rolls(k), rolls(j)];

@@ -8,7 +8,7 @@
 use super::path::Path;
 use crate::gear::compliance::PairCompliance;
 use crate::gear::compliance::across_face::Layers;
-use crate::gear::contact::flattening;
+use crate::gear::contact::flattening::Bodies;
 use crate::gear::geometry::GearPair;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
@@ -61,13 +61,12 @@ impl Across {
         let (first, last) = path.window();
         let places = (0..=LENGTHS).map(|place| first + (last - first) * f64::from(place) / f64::from(LENGTHS));
         let reach = places.fold(mean, |reach, s| reach.max(length(0, s)).max(length(1, s)));
-        let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
         Ok(Self {
             teeth: [0, 1].map(|side| fit(&|s| tooth(side, s))),
             lengths: [0, 1].map(|side| fit(&|s| length(side, s))),
             wind_up,
             reach,
-            contact: flattening::linear(materials),
+            contact: Bodies::of(pair, compliance.plane).linear(),
             rule: Rule::new(POINTS),
         })
     }

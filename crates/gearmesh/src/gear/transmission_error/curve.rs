@@ -4,7 +4,7 @@
 
 use super::load_case::{Equilibrium, LoadCase};
 use super::trace::{Extremum, NODES, Span, Trace};
-use crate::gear::contact::flattening;
+use crate::gear::contact::flattening::combined_radius;
 use crate::gear::geometry::Side;
 use crate::numeric::complementarity::PerSpring;
 use crate::numeric::harmonics;
@@ -250,8 +250,8 @@ impl LoadCase<'_> {
         (0..cycle.springs(pairs))
             .filter(|spring| state.balance.loads[*spring] > 0.0)
             .map(|spring| {
-                let radius = flattening::combined_radius(cycle.path.radii(cycle.path_position(position, spring)));
-                flattening::pressure(cycle.materials(), radius, self.line_load(position, state, spring))
+                let radius = combined_radius(cycle.path.radii(cycle.path_position(position, spring)));
+                cycle.bodies.pressure(radius, self.line_load(position, state, spring))
             })
             .fold(0.0, f64::max)
     }

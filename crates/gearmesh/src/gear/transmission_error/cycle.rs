@@ -13,10 +13,9 @@ use super::count::Total;
 use super::path::Path;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use crate::gear::contact::flattening::{self, Logarithmic};
+use crate::gear::contact::flattening::{Bodies, Logarithmic, combined_radius};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::GearPair;
-use crate::gear::material::Material;
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
@@ -76,6 +75,7 @@ pub struct MeshCycle {
     /// In the order of τ, one base pitch together: two, or one where ε_α is whole; the first has the most pairs.
     pub zones: Vec<Zone>,
     pub(super) path: Path,
+    pub(super) bodies: Bodies,
     pub(super) elasticity: Elasticity,
     /// Where slices hold each other.
     pub(super) across: Option<Across>,
@@ -115,7 +115,7 @@ impl MeshCycle {
             )));
         }
         let path = Path::new(pair, settings.corner_contact);
-        let materials = [&pair.pinion.specification.material, &pair.gear.specification.material];
+        let bodies = Bodies::of(pair, compliance.plane);
         let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
         let (pinion_series, gear_series) = (compliance.pinion.total_series(), compliance.gear.total_series());
         let across = match settings.slice_coupling {
@@ -133,11 +133,11 @@ impl MeshCycle {
         let law = |s: f64| {
             let (pinion, gear) = path.rolls(s);
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
-            Logarithmic::new(materials, flattening::combined_radius(path.radii(s)), depths)
+            Logarithmic::weber(&bodies, combined_radius(path.radii(s)), depths)
         };
         let elasticity = match compliance.contact {
             Some(ContactLaw::Linear) => {
-                let contact = flattening::linear(materials) / face_width;
+                let contact = bodies.linear() / face_width;
                 Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
             }
             None => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
@@ -172,7 +172,21 @@ impl MeshCycle {
         let springs = exact.then_some(springs);
         let pair = pair.clone();
         let work = Arc::default();
-        Ok(Self { pair, settings, springs, face_width, zones, path, elasticity, across, coupling, rows, slices, work })
+        Ok(Self {
+            pair,
+            settings,
+            springs,
+            face_width,
+            zones,
+            path,
+            bodies,
+            elasticity,
+            across,
+            coupling,
+            rows,
+            slices,
+            work,
+        })
     }
 
     /// The same cycle with the same corner contact and coupling of slices, sampled otherwise.
@@ -227,10 +241,6 @@ impl MeshCycle {
     #[must_use]
     pub fn radii(&self, s: f64) -> [f64; 2] {
         self.path.radii(s)
-    }
-
-    pub(super) fn materials(&self) -> [&Material; 2] {
-        [&self.pair.pinion.specification.material, &self.pair.gear.specification.material]
     }
 
     /// Whether any pair feels its neighbours' load.

@@ -4,12 +4,12 @@ use super::super::energy::{Energy, GearBody};
 use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStresses, Tabulated};
 use super::{FiniteElement, difference};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
-use crate::gear::finite_elements::element::Plane;
 use crate::gear::finite_elements::gear_model::Influences;
-use crate::gear::fixtures::{STEEL, standard};
+use crate::gear::fixtures::{STEEL, STEELS, standard};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{GearPair, Side, Specification};
 use crate::gear::material::Material;
+use crate::gear::material::Plane;
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
 
 const COUPLED: Assumptions =
@@ -40,7 +40,7 @@ fn a_pair_has_the_stiffness_another_program_gives() {
     let (pinion, gear) = (found.pinion.total(pitch), found.gear.total(pitch));
     let radii = [pair.pinion.base_radius * pitch, pair.gear.base_radius * pitch];
     let depths = [found.pinion.contact_depth.value(pitch), found.gear.contact_depth.value(pitch)];
-    let law = Logarithmic::new([&STEEL; 2], combined_radius(radii), depths);
+    let law = Logarithmic::weber(&STEELS, combined_radius(radii), depths);
     let load = 300e3 * 3.0;
     let stiffness = 1.0 / ((pinion + gear) * width + law.approach(load) / load);
     assert!((stiffness / 17.06e9 - 1.0).abs() < 5e-3, "{stiffness:e}");

@@ -29,7 +29,7 @@ fn every_value_of_the_reference() {
             "s_E" => zone.e,
             "contact_ratio" => pair.contact_ratio,
             "double_zone_length" => zone.b - zone.a,
-            "hertz_linear_1_over_kh" => flattening::linear([&STEEL; 2]) / pair.contact_width(),
+            "hertz_linear_1_over_kh" => STEELS.linear() / pair.contact_width(),
             "pinion.base_radius" => pair.pinion.base_radius,
             "pinion.form_radius" => pair.pinion.form_radius,
             "pinion.tip_thickness_arc" => pair.pinion.tip_thickness(),
@@ -99,7 +99,7 @@ fn approach(pair: &GearPair, tabulated: &Tabulated, force: f64, design: &str, pl
         let part = (w / crown).max(0.0).sqrt().min(1.0);
         w.max(0.0) * part - crown * part.powi(3) / 3.0
     };
-    let contact = flattening::linear([&STEEL; 2]) / pair.contact_width();
+    let contact = STEELS.linear() / pair.contact_width();
     let pairs: Vec<(f64, f64)> = positions
         .into_iter()
         .map(|s| {

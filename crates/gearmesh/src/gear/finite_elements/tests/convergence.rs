@@ -1,9 +1,10 @@
 //! Anchors, observed order, and the split into tooth and contact against a resolved Hertzian pressure.
 
 use super::super::mesh::Sizing;
-use super::super::{element::Plane, gear_model::GearModel, root_stress};
+use super::super::{gear_model::GearModel, root_stress};
 use super::{gear, model, shifted, standard};
 use crate::gear::geometry::root::RootShape;
+use crate::gear::material::Plane;
 use crate::numeric::chebyshev::nodes;
 
 /// Tier: second method; two unrelated codes, within 0.1 % of each other. Compliances \[µm mm/N\] are given to four digits.

@@ -1,10 +1,11 @@
 //! Patch test, rigid bodies, and a thick ring against Lamé's closed form: displacement and stress.
 
-use super::super::element::{NODES, Plane, RULE, edge_shape, elasticity, shape, stiffness, stress};
+use super::super::element::{NODES, RULE, edge_shape, elasticity, shape, stiffness, stress};
 use super::super::mesh::{Edge, Mesh};
 use super::super::root_stress::{SurfaceStress, along_surface, largest};
 use super::super::sector::{NodalForces, Sector};
 use super::super::wheel::Wheel;
+use crate::gear::material::Plane;
 
 /// A distorted element with curved edges.
 fn distorted() -> [[f64; 2]; NODES] {

@@ -1,6 +1,7 @@
 //! By how much a sector moves when the sums of its factorisation are made in another order.
 
-use super::super::element::{Plane, elasticity};
+use super::super::element::elasticity;
+use crate::gear::material::Plane;
 use cholesky::Order;
 
 use super::super::sector::Sector;

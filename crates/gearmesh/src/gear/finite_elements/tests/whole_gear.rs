@@ -2,10 +2,11 @@
 
 use cholesky::{Entries, Factor, Order};
 
-use super::super::element::{Plane, elasticity, stiffness};
+use super::super::element::{elasticity, stiffness};
 use super::super::sector::NodalForces;
 use super::{gear, model, standard};
 use crate::gear::geometry::root::RootShape;
+use crate::gear::material::Plane;
 use crate::numeric::chebyshev::nodes;
 
 /// Tier: invariant (Maxwell and Betti); what a load at u on one tooth does at v on the next one, the load at v on that
