@@ -25,9 +25,9 @@ pub struct Teeth {
     /// The shape of the tooth below its involute.
     #[declared(default = "trochoid")]
     pub root: RootShape,
-    /// How the flanks flatten against each other.
-    #[declared(default = "linear")]
-    pub contact: ContactLaw,
+    /// How the flanks flatten against each other: with finite elements `resolved` unless said otherwise, with other methods
+    /// `linear`.
+    pub contact: Option<ContactLaw>,
 }
 
 impl Teeth {
@@ -36,15 +36,27 @@ impl Teeth {
     /// # Errors
     /// Which of them, with its place in `record`.
     pub fn check(&self, record: &Record) -> Result<(), Diagnostic> {
-        let Self { method, root, contact } = self;
-        if method.whole_pair() && *contact != ContactLaw::Linear {
+        let Self { method, root, .. } = self;
+        let contact = self.contact();
+        if !method.knows(contact) {
+            let (reason, help) = if method.whole_pair() {
+                (
+                    "its stiffness is that of a pair with its contact",
+                    "leave `contact` out, or take a method of single teeth",
+                )
+            } else {
+                (
+                    "it does not know how a tooth yields at its surface",
+                    "take `load_dependent`, or `method: finite_element`",
+                )
+            };
             return Err(Diagnostic::new(format!(
-                "`contact: {}` is not for the method `{}`: its stiffness is that of a pair with its contact",
+                "`contact: {}` is not for the method `{}`: {reason}",
                 contact.word(),
                 method.name()
             ))
             .at(record.place_of(Self::NAMES.contact))
-            .help("leave `contact` out, or take a method of single teeth"));
+            .help(help));
         }
         if method.needs_fillet() && *root == RootShape::BaseCircle {
             return Err(Diagnostic::new(format!(
@@ -58,9 +70,14 @@ impl Teeth {
         Ok(())
     }
 
+    /// The contact law: what was said, or what goes with the method.
+    pub fn contact(&self) -> ContactLaw {
+        self.contact.unwrap_or_else(|| self.method.usual_contact())
+    }
+
     /// What the method is to assume, but for what is each kind's own.
     pub fn assumptions(&self, coupled: bool) -> Assumptions {
-        Assumptions { root: self.root, contact: self.contact, coupled, torque: None, accuracy: None }
+        Assumptions { root: self.root, contact: self.contact(), coupled, torque: None, accuracy: None }
     }
 }
 

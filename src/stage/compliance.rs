@@ -24,9 +24,12 @@ const SERIES: &[(&str, &str, &str, Getter)] = &[
     ("shear", "nm/N", "Shear of the tooth, 1/k_s.", |tooth| &tooth.shear),
     ("axial", "nm/N", "Axial compression of the tooth, 1/k_a.", |tooth| &tooth.axial),
     ("body", "nm/N", "Gear body under the tooth's own load, 1/k_f.", |tooth| &tooth.body),
-    ("contact_depth", "mm", "From the contact point to the tooth's centreline along the load line.", |tooth| {
-        &tooth.contact_depth
-    }),
+    (
+        "contact_depth",
+        "mm",
+        "Depth of the contact law: to the tooth's centreline along the load line; of resolved contact a constant.",
+        |tooth| &tooth.contact_depth,
+    ),
 ];
 
 /// Instead of a contact law, where the compliances of the teeth include the contact.
@@ -51,9 +54,12 @@ fn teeth<'a>() -> Columns<NodeRow<'a>> {
         .key()
         .float(names::compliance::ROLL_ANGLE, "rad", "Roll angle of the loaded point.", |row| row.roll)
         .float("radius", "mm", "Radius of the loaded point.", |row| row.radius);
-    SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
+    let corner =
+        "B of resolved contact: −B ln(c/m) is added to the rest, c the distance to the tip's corner, B per width.";
+    let columns = SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
         columns.float(name, unit, description, move |row| series(row.tooth).value(row.roll))
-    })
+    });
+    columns.float(names::compliance::CORNER, "nm mm/N", corner, |row| row.tooth.corner)
 }
 
 /// Two nodes of two teeth of a gear, the first tooth's before the further one's.
@@ -215,6 +221,7 @@ fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothComplianc
         axial: series("axial")?,
         body: series("body")?,
         contact_depth: series("contact_depth")?,
+        corner: si(table, names::compliance::CORNER, rows.first().copied().unwrap_or_default()),
         neighbours: across,
     })
 }
@@ -271,6 +278,7 @@ mod tests {
             axial: Series::fit(0.07, 0.62, 24, |u| scale * 1e-11 * u * u),
             body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
+            corner: scale * 1.7e-12,
             neighbours: vec![
                 Surface::fit([0.07; 2], [0.62; 2], [12, 9], |u, v| scale * 3e-10 * (1.0 - u * v)),
                 Surface::from_values([0.07; 2], [0.62; 2], [1, 1], &[scale * 2e-10]),
@@ -287,7 +295,7 @@ mod tests {
             let [compliance, neighbours, model] = write(pair, [0.0268, 0.0677], "energy", "trochoid").unwrap();
             read(&compliance, &neighbours, &model).unwrap()
         };
-        for contact in [Some(ContactLaw::Linear), None] {
+        for contact in [Some(ContactLaw::Linear), Some(ContactLaw::Resolved), None] {
             assert_eq!(round(&PairCompliance { contact, ..pair.clone() }).contact, contact);
         }
         let back = round(&pair);

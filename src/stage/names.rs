@@ -58,7 +58,7 @@ tables! {
         DIRECTION = "direction",
         CURVATURE = "curvature",
     }
-    compliance of "stiffness": "compliance" { GEAR = "gear", ROLL_ANGLE = "roll_angle" }
+    compliance of "stiffness": "compliance" { GEAR = "gear", ROLL_ANGLE = "roll_angle", CORNER = "corner" }
     neighbours of "stiffness": "neighbours" {
         GEAR = "gear",
         NEIGHBOUR = "neighbour",

@@ -173,6 +173,7 @@ fn harris_relations_hold_through_the_stage() {
         axial: constant(0.0),
         body: constant(0.0),
         contact_depth: constant(2.5e-3),
+        corner: 0.0,
         neighbours: Vec::new(),
     };
     let elastic = PairCompliance {

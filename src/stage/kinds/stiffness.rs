@@ -58,7 +58,7 @@ struct Stiffness {
     /// Whether loaded neighbours deflect each other through the gear bodies.
     #[declared(default = "body")]
     pub coupling: Coupling,
-    /// Torque on the pinion for the mesh stiffness; the load-dependent contact needs one.
+    /// Torque on the pinion for the mesh stiffness, which all but the linear contact depend on.
     #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE)]
     pub torque: Option<f64>,
     /// Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet
@@ -88,10 +88,15 @@ const ANY_TORQUE: f64 = 1.0;
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let stiffness = Stiffness::checked(record)?;
     stiffness.teeth.check(record)?;
-    if stiffness.teeth.contact == ContactLaw::LoadDependent && stiffness.torque.is_none() {
-        return Err(Diagnostic::new("`contact: load_dependent` needs a `torque`: the stiffness depends on the load")
-            .at(record.place_of(Teeth::NAMES.contact))
-            .help("add for example `torque: 50 N m`"));
+    let contact = stiffness.teeth.contact();
+    if contact != ContactLaw::Linear && stiffness.torque.is_none() {
+        let said = if stiffness.teeth.contact.is_some() { "" } else { ", which goes with the method," };
+        return Err(Diagnostic::new(format!(
+            "`contact: {}`{said} needs a `torque`: the stiffness depends on the load",
+            contact.word()
+        ))
+        .at(record.place_of(Teeth::NAMES.contact))
+        .help("add for example `torque: 50 N m`"));
     }
     Ok(Box::new(stiffness))
 }

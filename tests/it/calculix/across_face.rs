@@ -207,6 +207,7 @@ fn compare(height: f64, bounds: [f64; 4]) {
         axial: constant(0.0),
         body: constant(plane),
         contact_depth: constant(0.0),
+        corner: 0.0,
         neighbours: Vec::new(),
     };
     let layers = Layers::new(&gear, &tooth, WIDTH);

@@ -155,6 +155,20 @@ impl Series {
         nodes(self.lower, self.upper, self.coefficients.len()).into_iter().map(|x| self.value(x)).collect()
     }
 
+    /// The derivative: c′_(k−1) = c′_(k+1) + 2k c_k over half the interval.
+    #[must_use]
+    pub fn derivative(&self) -> Self {
+        let count = self.coefficients.len();
+        let mut slopes = vec![0.0; count + 1];
+        for k in (1..count).rev() {
+            slopes[k - 1] = slopes[k + 1] + 2.0 * k as f64 * self.coefficients[k];
+        }
+        slopes[0] *= 0.5;
+        slopes.truncate(count.saturating_sub(1).max(1));
+        let per_half = 2.0 / (self.upper - self.lower);
+        Self { coefficients: slopes.into_iter().map(|slope| slope * per_half).collect(), ..*self }
+    }
+
     /// The antiderivative that is zero at `lower`.
     #[must_use]
     pub fn integral(&self) -> Self {
@@ -190,6 +204,17 @@ mod tests {
             let exact = libm::exp(x) - libm::exp(0.5);
             assert!((integral.value(x) - exact).abs() < 4e-14 * libm::exp(3.0), "integral at {x}");
         }
+    }
+
+    #[test]
+    fn the_derivative_is_that_of_the_polynomial() {
+        let series = Series::fit(0.5, 3.0, 30, libm::exp).derivative();
+        for x in [0.5, 0.7, 1.9, 3.0] {
+            assert!((series.value(x) / libm::exp(x) - 1.0).abs() < 1e-11, "at {x}");
+        }
+        assert!(Series::from_values(0.0, 1.0, &[3.0]).derivative().value(0.3).abs() < 1e-300, "of a constant");
+        let slope = Series::from_values(0.0, 2.0, &[0.0, 2.0]).derivative().value(1.7);
+        assert!((slope - 2.0 * 2_f64.sqrt() / 2.0).abs() < 1e-14, "of a straight line: {slope}");
     }
 
     #[test]

@@ -6,6 +6,7 @@ pub mod chebyshev;
 pub mod complementarity;
 pub mod crossing;
 pub mod double_double;
+pub mod elimination;
 pub mod extremum;
 pub mod graded;
 pub mod harmonics;

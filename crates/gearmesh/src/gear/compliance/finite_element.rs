@@ -8,10 +8,13 @@
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::{FRAC_PI_2, PI};
+
 use super::{
-    Assumptions, ComplianceError, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses, Tabulated,
-    ToothCompliance, neighbours, of_both,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses,
+    Tabulated, ToothCompliance, neighbours, of_both,
 };
+use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::root_stress;
@@ -33,6 +36,13 @@ const MOST_ELEMENTS: usize = 64;
 const MOST_POISSON: f64 = 0.49;
 /// The order that the error estimate counts on; 2 to 4 are observed.
 const ORDER: f64 = 1.5;
+/// The distance from a resolved contact, in modules, at which the surface's displacement is the tooth's: far for any contact,
+/// and so near that what is left for the tooth is positive.
+const LENGTH: f64 = 0.25;
+/// Rows of elements are as thin at the tip, as a share of what they would be, where its corner matters.
+const TIP_ROWS: f64 = 1.0 / 16.0;
+/// Rows of the body that make the block of a resolved load another one: what it gives must not depend on it.
+const OTHER_BLOCK: usize = 1;
 
 /// Plane finite elements of the whole gear: teeth and body as one.
 #[derive(Clone, Debug, PartialEq, Declared)]
@@ -54,6 +64,14 @@ const MESH_BYTES: usize = 100_000;
 
 impl Method for FiniteElement {
     fn needs_fillet(&self) -> bool {
+        true
+    }
+
+    fn usual_contact(&self) -> ContactLaw {
+        ContactLaw::Resolved
+    }
+
+    fn knows(&self, _contact: ContactLaw) -> bool {
         true
     }
 
@@ -127,6 +145,7 @@ struct Task<'a> {
     accuracy: Option<f64>,
     rolls: Vec<f64>,
     neighbours: u32,
+    resolved: bool,
 }
 
 impl<'a> Task<'a> {
@@ -153,6 +172,7 @@ impl<'a> Task<'a> {
             accuracy: assumptions.accuracy,
             rolls,
             neighbours: if assumptions.coupled { neighbours(pair, side) } else { 0 },
+            resolved: assumptions.contact == ContactLaw::Resolved,
         })
     }
 
@@ -161,21 +181,37 @@ impl<'a> Task<'a> {
     }
 
     fn model(&self, across: usize) -> Result<GearModel<'_>, ComplianceError> {
-        GearModel::new(self.gear, &self.root, self.plane, &Sizing::even(across))
-            .map_err(|error| self.failed(across, error))
+        let mut sizing = Sizing::even(across);
+        if self.resolved {
+            let tip = self.gear.flank(self.gear.tip_roll());
+            let [height, half] = [tip.height, tip.half_thickness].map(|length| length / self.gear.specification.module);
+            sizing.focus = Some([TIP_ROWS * Sizing::along(half, across), height]);
+        }
+        GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
     fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
         let model = self.model(across)?;
         let done = Work::of(&MESH_FACTORISATIONS, 1).with(&COMPLIANCE_EVALUATIONS, self.rolls.len());
         work.add(&done);
-        let found = model.influences(&self.rolls, self.neighbours).map_err(|error| self.failed(across, error))?;
+        let failed = |error| self.failed(across, error);
+        let (found, other_block) = if self.resolved {
+            let with_block = |rows: usize| {
+                let found = model.rests(&self.rolls, self.neighbours, rows).map_err(failed)?;
+                Ok::<_, ComplianceError>(Influences { own: self.beside(&found.own), ..found })
+            };
+            let found = with_block(0)?;
+            let change = difference(&found, &with_block(OTHER_BLOCK)?);
+            (found, change)
+        } else {
+            (model.influences(&self.rolls, self.neighbours).map_err(failed)?, 0.0)
+        };
         let facts = MeshFacts {
             side: self.side,
             elements_across: across,
             elements: model.mesh.elements.len(),
             unknowns: model.sector.unknowns(),
-            error_estimate: model.rounding(),
+            error_estimate: model.rounding() + other_block,
         };
         Ok((found, facts))
     }
@@ -199,14 +235,42 @@ impl<'a> Task<'a> {
         }
     }
 
+    /// 1/E′ for E = 1.
+    fn half_plane(&self) -> f64 {
+        let material = &self.gear.specification.material;
+        material.plane_compliance(self.plane) * material.youngs_modulus
+    }
+
+    /// B for E = 1.
+    fn corner(&self) -> f64 {
+        self.half_plane() * wedge::softening(FRAC_PI_2 + libm::atan(self.gear.tip_roll()))
+    }
+
+    /// What a tooth yields beside the half plane and beside −B ln c.
+    fn beside(&self, rests: &[f64]) -> Vec<f64> {
+        let (tip, corner) = (self.gear.tip_roll(), self.corner());
+        let radius = self.gear.base_radius / self.gear.specification.module;
+        let beside = |(roll, rest): (&f64, &f64)| {
+            let distance = 0.5 * radius * (tip - roll) * (tip + roll);
+            rest + corner * libm::log(distance) - 2.0 / PI * self.half_plane() * libm::log(LENGTH)
+        };
+        self.rolls.iter().zip(rests).map(beside).collect()
+    }
+
     /// SI, over the whole face width.
     fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
         let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
         let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
         let nothing = || Series::from_values(lower, upper, &[0.0]);
-        let [contact_depth] = Series::converged(lower, upper, |roll| [self.gear.depth_to_centreline(roll)])
-            .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
+        let contact_depth = if self.resolved {
+            Series::from_values(lower, upper, &[LENGTH * self.gear.specification.module])
+        } else {
+            let [depth] = Series::converged(lower, upper, |roll| [self.gear.depth_to_centreline(roll)])
+                .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
+            depth
+        };
+        let corner = if self.resolved { self.corner() } else { 0.0 };
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [ROLLS; 2], &scaled(&rows.concat())))
             .collect();
@@ -216,6 +280,7 @@ impl<'a> Task<'a> {
             axial: nothing(),
             body: Series::from_values(lower, upper, &scaled(&solution.own)),
             contact_depth,
+            corner: corner / self.gear.specification.material.youngs_modulus,
             neighbours,
         })
     }

@@ -158,6 +158,7 @@ impl Method for Iso6336 {
                 axial: nothing(),
                 body: nothing(),
                 contact_depth: nothing(),
+                corner: 0.0,
                 neighbours: Vec::new(),
             })
         };

@@ -48,6 +48,20 @@ pub trait Method: Any + Debug + Registrable + Send + Sync {
         false
     }
 
+    /// The contact law that goes with it where none is asked for.
+    fn usual_contact(&self) -> ContactLaw {
+        ContactLaw::Linear
+    }
+
+    /// Whether it knows teeth with a contact law.
+    fn knows(&self, contact: ContactLaw) -> bool {
+        match contact {
+            ContactLaw::Linear => true,
+            ContactLaw::LoadDependent => !self.whole_pair(),
+            ContactLaw::Resolved => false,
+        }
+    }
+
     /// The tables of a pair, with sentences for the user where a formula is used outside its range.
     ///
     /// # Errors
@@ -276,6 +290,9 @@ pub struct ToothCompliance {
     /// Distance from the contact point to the tooth's centreline along the load line \[m\]: the depth t of the
     /// load-dependent contact laws.
     pub contact_depth: Series,
+    /// B \[1/Pa\]: towards the corner of its tip a tooth yields by −B ln(c/m) more to a load per width, at the distance c
+    /// along the flank. 0 but for resolved contact, where it is not in the other parts.
+    pub corner: f64,
     /// Deflection at a tooth per load on the one k + 1 pitches further, in the sense in which the roll angles of loaded
     /// teeth grow. Arguments: the roll angles of the loaded points of the first and of the further tooth; on the line of
     /// action they differ by (k + 1)·2π/z, in corner contact by less. Reciprocal, so one table serves both.
@@ -316,8 +333,12 @@ pub enum ContactLaw {
     Linear,
     /// Weber and Banaschek: grows with the logarithm of the load
     ///
-    /// 2(1 − ν²)/(πE)·[ln(2t/b_H) − ν/(2(1 − ν))] per body and load per width.
+    /// 2/(πE′)·[ln(2t/b_H) − ν′/2] per body and load per width: each tooth is a half plane down to its centreline.
     LoadDependent,
+    /// Half planes at the contact alone, teeth with their tips below it
+    ///
+    /// For finite elements, which know the difference.
+    Resolved,
 }
 
 /// Everything the contact solver needs to know of a pair's elasticity.

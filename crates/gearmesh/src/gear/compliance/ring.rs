@@ -13,6 +13,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::numeric::elimination::solve;
 use std::f64::consts::PI;
 
 use crate::gear::geometry::Gear;
@@ -169,14 +170,15 @@ impl Ring {
             let [a, b, c, d] = fields.map(part);
             [a, b, c, d, normal, shear]
         };
-        let solution = solve([
+        let mut rows = [
             row(inner, |field| field.radial, 0.0, 0.0),
             row(inner, |field| field.tangential, 0.0, 0.0),
             row(outer, |field| field.normal_stress, 1.0, 0.0).map(|value| value * scale),
             row(outer, |field| field.shear_stress, 0.0, 1.0).map(|value| value * scale),
-        ]);
+        ];
+        solve(&mut rows);
         let sum = |column: usize, part: fn(&Field) -> f64| -> f64 {
-            solution.iter().zip(&outer).map(|(amplitude, field)| amplitude[column] * part(field)).sum()
+            rows.iter().zip(&outer).map(|(row, field)| row[4 + column] * part(field)).sum()
         };
         [
             sum(0, |field| field.radial),
@@ -249,28 +251,4 @@ pub fn error(by_angle: f64, neighbours: bool) -> f64 {
 #[must_use]
 pub fn harmonics(error: f64, neighbours: bool, minimum: f64, maximum: f64) -> f64 {
     libm::ceil(libm::cbrt(CUT_OFF[usize::from(neighbours)] / error)).clamp(minimum, maximum)
-}
-
-/// Gaussian elimination with partial pivoting, two right-hand sides beside the matrix.
-fn solve(mut rows: [[f64; 6]; 4]) -> [[f64; 2]; 4] {
-    for column in 0..4 {
-        let larger = |a: usize, b: usize| if rows[b][column].abs() > rows[a][column].abs() { b } else { a };
-        let pivot = (column..4).fold(column, larger);
-        rows.swap(column, pivot);
-        let above = rows[column];
-        for row in &mut rows[column + 1..] {
-            let factor = row[column] / above[column];
-            for (value, pivot) in row.iter_mut().zip(above).skip(column) {
-                *value -= factor * pivot;
-            }
-        }
-    }
-    let mut solution = [[0.0; 2]; 4];
-    for row in (0..4).rev() {
-        for side in 0..2 {
-            let known: f64 = (row + 1..4).map(|column| rows[row][column] * solution[column][side]).sum();
-            solution[row][side] = (rows[row][4 + side] - known) / rows[row][row];
-        }
-    }
-    solution
 }

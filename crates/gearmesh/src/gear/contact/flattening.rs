@@ -6,6 +6,7 @@
 
 use std::f64::consts::PI;
 
+use super::tip::Tips;
 use crate::gear::geometry::GearPair;
 use crate::gear::material::{Material, Plane};
 use crate::numeric::lambert::larger_root;
@@ -78,24 +79,35 @@ impl Logarithmic {
     /// `depths`: t of both teeth \[m\].
     #[must_use]
     pub fn weber(bodies: &Bodies, combined_radius: f64, depths: [f64; 2]) -> Self {
+        Self::new(bodies, combined_radius, depths, |material| -0.5 * material.plane_poisson_ratio(bodies.plane))
+    }
+
+    /// Σ 2/(πE′)·[ln(2l/b_H) + `beside`].
+    fn new(bodies: &Bodies, combined_radius: f64, lengths: [f64; 2], beside: impl Fn(&Material) -> f64) -> Self {
         let unit = bodies.half_width(combined_radius);
         let mut law = Self { constant: 0.0, rate: 0.0 };
-        let of_bodies = bodies.compliances().into_iter().zip(&bodies.materials).zip(depths);
-        for ((compliance, material), depth) in of_bodies {
+        let of_bodies = bodies.compliances().into_iter().zip(&bodies.materials).zip(lengths);
+        for ((compliance, material), length) in of_bodies {
             let factor = 2.0 / PI * compliance;
-            let ratio = 0.5 * material.plane_poisson_ratio(bodies.plane);
-            law.constant += factor * (libm::log(2.0 * depth / unit) - ratio);
+            law.constant += factor * (libm::log(2.0 * length / unit) + beside(material));
             law.rate += 0.5 * factor;
         }
         law
     }
 
+    /// Half planes, beside the displacement of their surfaces at the distances `lengths` \[m\] from the contact, which are
+    /// large against its width: Σ 2/(πE′)·[ln(2l/b_H) + ½] (Johnson, Contact Mechanics, 4.2).
+    #[must_use]
+    pub fn half_planes(bodies: &Bodies, combined_radius: f64, lengths: [f64; 2]) -> Self {
+        Self::new(bodies, combined_radius, lengths, |_| 0.5)
+    }
+
     /// The law with `compliance` (penetration per load per width, > 0) in series.
     #[must_use]
-    pub fn in_series(self, compliance: f64) -> InSeries {
+    pub fn in_series<'a>(self, compliance: f64) -> InSeries<'a> {
         let last = libm::exp(self.constant / self.rate - 1.0);
         let start = (compliance + self.constant) / self.rate + libm::log(self.rate) - 1.0;
-        InSeries { law: self, compliance, last, start }
+        InSeries { law: self, compliance, last, start, tips: None }
     }
 
     /// The approach of the flanks at the load per width p.
@@ -109,32 +121,58 @@ impl Logarithmic {
 
 /// Flanks and teeth in series, prepared for many inversions.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct InSeries {
+pub struct InSeries<'a> {
     /// The flanks.
     pub law: Logarithmic,
-    /// c: penetration of both teeth without the contact, per load per width \[1/Pa\].
+    /// c: penetration of both teeth without the contact, per load per width \[1/Pa\]; with what tips add that are far.
     pub compliance: f64,
     /// The load per width above which the flanks' approach is constant.
     last: f64,
     /// (c + α) / β + ln β − 1.
     start: f64,
+    /// Tips that may be near, where contact is resolved.
+    tips: Option<Tips<'a>>,
 }
 
-impl InSeries {
+impl<'a> InSeries<'a> {
     /// Fills the places of an array that no pair takes: flanks and teeth without compliance.
     pub const NONE: Self =
-        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0 };
+        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0, tips: None };
+
+    /// The same between teeth whose tips may be near.
+    #[must_use]
+    pub fn at_tips(self, tips: Tips<'a>) -> Self {
+        Self { tips: Some(tips), ..self.law.in_series(self.compliance + tips.far()) }
+    }
+
+    /// The compliance without what the tips add.
+    pub(super) fn without_tips(&self) -> f64 {
+        self.compliance - self.tips.map_or(0.0, |tips| tips.far())
+    }
 
     /// The penetration at a load per width.
     #[must_use]
     pub fn penetration(&self, load: f64) -> f64 {
+        if let Some(tips) = self.tips.as_ref().filter(|_| load > 0.0) {
+            return tips.penetration(self, load);
+        }
         self.compliance * load + self.law.approach(load)
     }
 
     /// Load per width p and dp/dw at the penetration w > 0.
     #[must_use]
+    #[inline]
     pub fn load(&self, penetration: f64) -> (f64, f64) {
-        let Self { law: Logarithmic { rate, .. }, compliance, last, start } = *self;
+        let (load, slope) = self.load_without_tips(penetration);
+        match &self.tips {
+            None => (load, slope),
+            Some(tips) => tips.load(self, penetration, load),
+        }
+    }
+
+    #[inline]
+    fn load_without_tips(&self, penetration: f64) -> (f64, f64) {
+        let Self { law: Logarithmic { rate, .. }, compliance, last, start, .. } = *self;
         if penetration >= (compliance + rate) * last {
             return ((penetration - rate * last) / compliance, 1.0 / compliance);
         }

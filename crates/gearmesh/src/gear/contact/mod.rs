@@ -8,6 +8,8 @@ pub mod gap;
 pub mod separation;
 pub mod slices;
 pub mod springs;
+pub mod tip;
+pub mod wedge;
 
 use declare::Words;
 

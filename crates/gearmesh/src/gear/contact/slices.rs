@@ -9,17 +9,17 @@ use crate::numeric::complementarity::Springs;
 
 /// A slice under the penetration of its highest place.
 #[derive(Clone, Copy, Debug)]
-pub enum Slice {
+pub enum Slice<'a> {
     /// Stiffness \[N/m\].
     Linear(f64),
     /// Per width.
-    Logarithmic(InSeries),
+    Logarithmic(InSeries<'a>),
 }
 
 /// Slice by slice, pair by pair.
 pub struct Slices<'a> {
     /// All slices of the first pair, then those of the next.
-    pub slices: Vec<Slice>,
+    pub slices: Vec<Slice<'a>>,
     /// The deviations within each slice, of one pair that stands for all, or of one pair after the other.
     pub faces: &'a [Face<'a>],
     /// Width of each of these slices \[m\]; the width of two where one stands for both.

@@ -54,7 +54,7 @@ impl Springs for LinearPairs<'_> {
 /// compliance of both teeth without the contact.
 pub struct LogarithmicPairs<'a> {
     /// Contact and teeth of each pair, per width.
-    pub slices: [InSeries; MOST_SPRINGS],
+    pub slices: [InSeries<'a>; MOST_SPRINGS],
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.

@@ -11,6 +11,9 @@ pub const NODES: usize = 8;
 /// Freedoms of an element: two at each node.
 pub const FREEDOMS: usize = 2 * NODES;
 
+/// The nodes of each side of an element: start, middle, end, with the element to the left.
+pub const SIDES: [[usize; 3]; 4] = [[0, 4, 1], [1, 5, 2], [2, 6, 3], [3, 7, 0]];
+
 /// √(3/5).
 const GAUSS: f64 = 0.774_596_669_241_483_4;
 /// Abscissas and weights of the three-point rule.

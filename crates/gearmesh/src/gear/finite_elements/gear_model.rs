@@ -6,9 +6,10 @@
 //! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
 
 use super::MeshError;
-use super::element::{edge_shape, elasticity};
+use super::element::{Elasticity, edge_shape, elasticity};
 use super::mesh::{Edge, Mesh, Sizing};
 use super::outline::Outline;
+use super::point_load::{Block, HalfPlane, Taken};
 use super::root_stress::{self, SurfaceStress};
 use super::sector::{NodalForces, Sector};
 use super::wheel::{Pressed, Wheel};
@@ -26,6 +27,7 @@ const MOST_ROUNDING: f64 = 1e-2;
 pub struct GearModel<'a> {
     gear: &'a Gear,
     plane: Plane,
+    elasticity: Elasticity,
     /// Height at which the involute begins \[modules\].
     form: f64,
     /// One tooth with its share of the body.
@@ -57,7 +59,7 @@ impl<'a> GearModel<'a> {
         let elasticity = elasticity(plane, gear.specification.material.poisson_ratio);
         let sector = Sector::new(&mesh, &elasticity)?;
         let form = gear.flank(root.form_roll).height / gear.specification.module * (1.0 + 1e-9);
-        Ok(Self { gear, plane, form, mesh, sector })
+        Ok(Self { gear, plane, elasticity, form, mesh, sector })
     }
 
     /// Bound on the relative error of the compliances by rounding.
@@ -96,6 +98,45 @@ impl<'a> GearModel<'a> {
         let height = height / self.gear.specification.module;
         let (edge, place) = find(&self.mesh, &self.mesh.centreline, height);
         Ok(spread(edge, place, self.direction(roll)))
+    }
+
+    /// A unit load on the right flank at a roll angle, less the field of a half plane under it.
+    fn taken(&self, block: &Block, roll: f64) -> Taken {
+        let height = self.gear.flank(roll).height / self.gear.specification.module;
+        let (edge, place) = find(&self.mesh, &self.mesh.flank, height);
+        let shares = edge_shape(place);
+        let at = [0, 1].map(|axis| (0..3).map(|k| shares[k] * self.mesh.nodes[edge.nodes[k]][axis]).sum());
+        let field = HalfPlane::new(at, self.direction(roll), &self.gear.specification.material, self.plane);
+        block.take(&self.mesh.nodes, &field)
+    }
+
+    /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for. Own is what is
+    /// left of the displacement at the load when the field of a half plane is taken off, −2 ln r/(π E′) on its surface at
+    /// the distance r \[modules\]. The block around the load is the tooth and as many `rows` of the body beneath it: what
+    /// comes out does not depend on it but for the error of the mesh.
+    ///
+    /// # Errors
+    /// When the gear is not held to rounding.
+    pub fn rests(&self, rolls: &[f64], neighbours: u32, rows: usize) -> Result<Influences, MeshError> {
+        let members = self.mesh.tooth(rows);
+        // No element is folded over: they were factorised.
+        let block =
+            Block::new(&self.mesh.nodes, &self.mesh.elements, &members, &self.elasticity).ok_or(MeshError::Singular)?;
+        let (forces, own): (Vec<NodalForces>, Vec<f64>) =
+            rolls.iter().map(|&roll| self.taken(&block, roll)).map(|taken| (taken.forces, taken.own)).unzip();
+        let responses = self.sector.responses(&forces);
+        let pressed: Vec<&Pressed> = responses.iter().map(|response| &response.pressed).collect();
+        let steps: Vec<u32> = (0..=neighbours).collect();
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: self.gear.specification.teeth, stiffness: &stiffness };
+        let found = wheel.influences(&pressed, &pressed, &steps)?;
+        let held = |k: usize| self.sector.held_work(&forces[k], &responses[k], &responses[k]);
+        let own = own.into_iter().enumerate().map(|(k, own)| own + held(k) + found[0][k][k]).collect();
+        let count = rolls.len();
+        let further = (found[1..].iter())
+            .map(|matrix| (0..count).map(|by| (0..count).map(|on| matrix[on][by]).collect()).collect())
+            .collect();
+        Ok(Influences { own, further })
     }
 
     /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for.

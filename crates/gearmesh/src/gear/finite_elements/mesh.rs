@@ -42,6 +42,12 @@ impl Sizing {
         let half = (0..=2 * across).map(|k| k as f64 / (2 * across) as f64).collect();
         Self { across: half, level: across as f64, focus: None }
     }
+
+    /// Length of an element along the flank with so many across, where half the tooth is `half` thick \[modules\].
+    #[must_use]
+    pub fn along(half: f64, across: usize) -> f64 {
+        ALONG * 2.0 * half / across as f64
+    }
 }
 
 /// An element's edge on a boundary: the element, which of its edges, and its nodes (start, middle, end).
@@ -74,6 +80,11 @@ pub struct Mesh {
     pub root: Vec<Edge>,
     /// The tooth's centreline, outwards.
     pub centreline: Vec<Edge>,
+    /// Where the elements of the tooth begin in [`Mesh::elements`], from the cut upwards; before them are those of the body,
+    /// row by row from the bore, each row from the left edge to the right one.
+    pub first_of_tooth: usize,
+    /// Elements in a row of the body, and how many of them lie beside the tooth at its left.
+    pub body_row: [usize; 2],
     /// π/z: half the angle of the sector \[rad\].
     pub half_pitch: f64,
 }
@@ -216,6 +227,8 @@ impl Mesh {
             flank,
             root,
             centreline,
+            first_of_tooth: (body.columns - 1) / 2 * ((body.rows() - 1) / 2),
+            body_row: [(body.columns - 1) / 2, half / 2],
             half_pitch,
         };
         let folded = (0..mesh.elements.len()).find(|&element| {
@@ -231,6 +244,16 @@ impl Mesh {
             Some(element) => Err(MeshError::Folded { element: element + 1, elements: mesh.elements.len() }),
             None => Ok(mesh),
         }
+    }
+
+    /// The elements of the tooth and of as many rows of the body beneath it.
+    #[must_use]
+    pub fn tooth(&self, rows: usize) -> Vec<usize> {
+        let [row, beside] = self.body_row;
+        let beneath = (1..=rows.min(self.first_of_tooth / row.max(1))).flat_map(|depth| {
+            self.first_of_tooth - depth * row + beside..self.first_of_tooth - (depth - 1) * row - beside
+        });
+        beneath.chain(self.first_of_tooth..self.elements.len()).collect()
     }
 
     /// The nodes of an element.

@@ -4,6 +4,7 @@ mod convergence;
 mod elements;
 mod extremes;
 mod orders;
+mod point_load;
 mod whole_gear;
 
 use super::MeshError;

@@ -6,7 +6,7 @@
 use super::{Built, Case, Finding, ROUNDINGS, TABLE};
 use crate::gear::compliance::ContactLaw;
 use crate::gear::contact::CornerContact;
-use crate::gear::contact::flattening::{Bodies, Logarithmic, combined_radius};
+use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
 use crate::gear::contact::gap::Gaps;
 use crate::gear::geometry::Side;
 use crate::gear::transmission_error::curve::Wanted;
@@ -30,17 +30,17 @@ const CONDITION: &str = "condition of the compliance matrix";
 type Matrix = [[f64; MOST_SPRINGS]; MOST_SPRINGS];
 
 /// The pairs at one position, from the tables.
-struct Pairs {
+struct Pairs<'a> {
     count: usize,
     /// From the smallest one up.
     gaps: [f64; MOST_SPRINGS],
     largest_gap: f64,
     /// Own compliances without a load-dependent part on the diagonal.
     compliance: Matrix,
-    laws: [Option<Logarithmic>; MOST_SPRINGS],
+    laws: [Option<InSeries<'a>>; MOST_SPRINGS],
 }
 
-fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
+fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
     let Built { pair, design, compliance, cycle } = built;
     let exact = cycle.settings.corner_contact == CornerContact::Exact;
     let corners = exact.then(|| Gaps::new(pair, &design.profiles(0.0)));
@@ -66,10 +66,13 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs {
         let contact =
             if compliance.contact == Some(ContactLaw::Linear) { bodies.linear() / cycle.face_width } else { 0.0 };
         found.compliance[j][j] = teeth + contact;
-        if compliance.contact == Some(ContactLaw::LoadDependent) {
+        if let Some(contact @ (ContactLaw::LoadDependent | ContactLaw::Resolved)) = compliance.contact {
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
             let radius = combined_radius(cycle.radii(s(j)));
-            found.laws[j] = Some(Logarithmic::weber(&bodies, radius, depths));
+            let resolved = contact == ContactLaw::Resolved;
+            let law = if resolved { Logarithmic::half_planes } else { Logarithmic::weber };
+            let alone = law(&bodies, radius, depths).in_series(0.0);
+            found.laws[j] = Some(cycle.tips(s(j)).map_or(alone, |tips| alone.at_tips(tips)));
         }
         for k in 0..j {
             let [behind, ahead] = [rolls(k), rolls(j)];
@@ -197,7 +200,7 @@ pub(super) fn condition_found(findings: &[Finding]) -> f64 {
     findings.iter().find(|finding| finding.invariant == CONDITION).map_or(1.0, |finding| finding.value)
 }
 
-impl Pairs {
+impl Pairs<'_> {
     /// The largest load that the penetrations do not explain, over the force, and what rounding may leave; the
     /// penetration is the difference of approach and gap, so a pair's own limit grows with what is subtracted.
     fn residual(&self, case: &Case, built: &Built, state: &Equilibrium, force: f64) -> Option<(f64, f64)> {
@@ -219,7 +222,7 @@ impl Pairs {
                     return None;
                 }
                 let load = balance.loads[j] / width;
-                let needed = balance.loads[j] * own + law.approach(load);
+                let needed = balance.loads[j] * own + law.penetration(load);
                 (((penetration.max(0.0) - needed) / own).abs(), 1.0 / own)
             } else {
                 let w = penetration.max(0.0);
@@ -243,7 +246,7 @@ impl Pairs {
             loaded.iter().map(|j| loaded.iter().map(|k| self.compliance[*j][*k]).collect()).collect();
         for (row, j) in loaded.iter().enumerate() {
             if let Some(law) = &self.laws[*j] {
-                matrix[row][row] += law.approach(loads[*j] / width) / loads[*j];
+                matrix[row][row] += law.penetration(loads[*j] / width) / loads[*j];
             }
         }
         for _ in 0..30 {

@@ -229,7 +229,7 @@ impl Case {
             Some("the second evaluation stays on the line of action")
         } else if self.crowning != 0.0 && settings.slice_coupling != SliceCoupling::None {
             Some("the slices of the second evaluation do not hold each other")
-        } else if self.crowning != 0.0 && assumptions.contact == ContactLaw::LoadDependent {
+        } else if self.crowning != 0.0 && assumptions.contact != ContactLaw::Linear {
             Some("a crowned face under the load-dependent law has no closed form: its slices decide, not rounding")
         } else {
             None

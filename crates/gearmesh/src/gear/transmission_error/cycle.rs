@@ -10,10 +10,12 @@ use std::sync::Arc;
 
 use super::across::Across;
 use super::count::Total;
+use super::ends::Ends;
 use super::path::Path;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
-use crate::gear::contact::flattening::{Bodies, Logarithmic, combined_radius};
+use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
+use crate::gear::contact::tip::Tips;
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::GearPair;
 use crate::numeric::chebyshev::Series;
@@ -92,8 +94,22 @@ pub struct MeshCycle {
 pub(super) enum Elasticity {
     /// Stiffness of a pair \[N/m\].
     Linear(Graded),
-    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\].
-    Logarithmic { compliance: Graded, constant: Graded, rate: f64 },
+    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\]; where contact is
+    /// resolved, the teeth's tips.
+    Logarithmic { compliance: Graded, constant: Graded, rate: f64, ends: Option<Ends> },
+}
+
+impl Elasticity {
+    /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.
+    pub(super) fn series(&self, s: f64, own: Option<f64>) -> InSeries<'_> {
+        let Self::Logarithmic { compliance, constant, rate, ends } = self else { return InSeries::NONE };
+        let law = Logarithmic { constant: constant.value(s), rate: *rate };
+        let series = law.in_series(own.unwrap_or_else(|| compliance.value(s)));
+        match ends {
+            None => series,
+            Some(ends) => series.at_tips(ends.tips(s)),
+        }
+    }
 }
 
 impl MeshCycle {
@@ -130,10 +146,10 @@ impl MeshCycle {
             total(&pinion_series, &compliance.pinion, pinion) + total(&gear_series, &compliance.gear, gear)
         };
         let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
-        let law = |s: f64| {
+        let law = |new: fn(&Bodies, f64, [f64; 2]) -> Logarithmic, s: f64| {
             let (pinion, gear) = path.rolls(s);
             let depths = [compliance.pinion.contact_depth.value(pinion), compliance.gear.contact_depth.value(gear)];
-            Logarithmic::weber(&bodies, combined_radius(path.radii(s)), depths)
+            new(&bodies, combined_radius(path.radii(s)), depths)
         };
         let elasticity = match compliance.contact {
             Some(ContactLaw::Linear) => {
@@ -141,11 +157,16 @@ impl MeshCycle {
                 Elasticity::Linear(fit(&|s| 1.0 / (teeth(s) + contact)))
             }
             None => Elasticity::Linear(fit(&|s| 1.0 / teeth(s))),
-            Some(ContactLaw::LoadDependent) => Elasticity::Logarithmic {
-                compliance: fit(&|s| teeth(s) * face_width),
-                constant: fit(&|s| law(s).constant),
-                rate: law(pair.start_of_contact).rate,
-            },
+            Some(contact) => {
+                let resolved = contact == ContactLaw::Resolved;
+                let new = if resolved { Logarithmic::half_planes } else { Logarithmic::weber };
+                Elasticity::Logarithmic {
+                    compliance: fit(&|s| teeth(s) * face_width),
+                    constant: fit(&|s| law(new, s).constant),
+                    rate: law(new, pair.start_of_contact).rate,
+                    ends: resolved.then(|| Ends::new(pair, compliance, &path)),
+                }
+            }
         };
         let neighbours = if compliance.coupled {
             let known = compliance.pinion.neighbours.len().max(compliance.gear.neighbours.len());
@@ -241,6 +262,14 @@ impl MeshCycle {
     #[must_use]
     pub fn radii(&self, s: f64) -> [f64; 2] {
         self.path.radii(s)
+    }
+
+    /// Where contact is resolved: the tips of both teeth at a path position.
+    pub(in crate::gear) fn tips(&self, s: f64) -> Option<Tips<'_>> {
+        match &self.elasticity {
+            Elasticity::Logarithmic { ends: Some(ends), .. } => Some(ends.tips(s)),
+            _ => None,
+        }
     }
 
     /// Whether any pair feels its neighbours' load.

@@ -11,7 +11,7 @@ use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
-use crate::gear::contact::flattening::{InSeries, Logarithmic};
+use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
@@ -321,14 +321,9 @@ impl<'a> LoadCase<'a> {
         complementarity::balance_coupled(responses, gaps, &coupling, self.force, above)
     }
 
-    /// A slice of the pair at `s` under the load-dependent law.
-    fn slice(&self, s: f64) -> InSeries {
-        match &self.cycle.elasticity {
-            Elasticity::Linear(_) => InSeries::NONE,
-            Elasticity::Logarithmic { compliance, constant, rate } => {
-                Logarithmic { constant: constant.value(s), rate: *rate }.in_series(compliance.value(s))
-            }
-        }
+    /// A slice of the pair at `s` under a law of the load's logarithm.
+    fn slice(&self, s: f64) -> InSeries<'_> {
+        self.cycle.elasticity.series(s, None)
     }
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.

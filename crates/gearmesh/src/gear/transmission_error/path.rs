@@ -6,7 +6,8 @@
 //! follow that, so that they belong to the pair and not to the design. Must not know: modification, load.
 
 use crate::gear::contact::CornerContact;
-use crate::gear::contact::separation::Facing;
+use crate::gear::contact::flattening::combined_radius;
+use crate::gear::contact::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::graded::Graded;
 
@@ -56,6 +57,20 @@ impl Path {
             }
             Some([_, (facing, _)]) if s > self.end => [self.end, facing.corner(s - self.end).curvature],
             _ => [s, self.tangent_length - s],
+        }
+    }
+
+    /// How far from the corner of this gear's tip a pair touches, along the flank \[m\]. Negative beyond it: there flanks
+    /// that went on would touch, a parabola that stands as far off the corner as they do.
+    pub(super) fn from_corner(&self, side: Side, s: f64) -> f64 {
+        let [pinion, gear] = self.radii(s);
+        let beyond = |corner: Touch| -(2.0 * corner.separation * combined_radius([pinion, gear])).sqrt();
+        let along = |tip: f64, here: f64, base: f64| 0.5 * (tip - here) * (tip + here) / base;
+        match (side, &self.corners) {
+            (Side::Pinion, Some([_, (facing, _)])) if s > self.end => beyond(facing.corner(s - self.end)),
+            (Side::Gear, Some([(facing, _), _])) if s < self.start => beyond(facing.corner(self.start - s)),
+            (Side::Pinion, _) => along(self.end, pinion, self.base_radii[0]),
+            (Side::Gear, _) => along(self.tangent_length - self.start, gear, self.base_radii[1]),
         }
     }
 

@@ -11,7 +11,6 @@ use super::cycle::{Elasticity, MeshCycle};
 use super::flanks::{Flanks, strips};
 use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
-use crate::gear::contact::flattening::Logarithmic;
 use crate::gear::contact::slices::{Slice, Slices};
 use crate::gear::modification::Design;
 use crate::numeric::complementarity::{Balance, MOST_SPRINGS, PerSpring, Springs};
@@ -172,7 +171,7 @@ impl<'a> Sliced<'a> {
     }
 
     /// What each slice carries by itself.
-    fn springs<'b>(&'b self, cycle: &MeshCycle, positions: &[f64], own: &[f64], faces: &'b [Face]) -> Slices<'b> {
+    fn springs<'b>(&'b self, cycle: &'b MeshCycle, positions: &[f64], own: &[f64], faces: &'b [Face]) -> Slices<'b> {
         let mut slices = Vec::with_capacity(own.len());
         for (&s, own) in positions.iter().zip(own.chunks(self.count())) {
             let own = own.iter().zip(&self.widths);
@@ -180,9 +179,8 @@ impl<'a> Sliced<'a> {
                 Elasticity::Linear(_) => {
                     slices.extend(own.map(|(own, width)| Slice::Linear(1.0 / (own + self.across.contact / width))));
                 }
-                Elasticity::Logarithmic { constant, rate, .. } => {
-                    let law = Logarithmic { constant: constant.value(s), rate: *rate };
-                    slices.extend(own.map(|(own, width)| Slice::Logarithmic(law.in_series(own * width))));
+                elasticity @ Elasticity::Logarithmic { .. } => {
+                    slices.extend(own.map(|(own, width)| Slice::Logarithmic(elasticity.series(s, Some(own * width)))));
                 }
             }
         }

@@ -142,6 +142,8 @@ fn ring(sectors: u32, count: usize) -> Mesh {
         flank: Vec::new(),
         root,
         centreline: Vec::new(),
+        first_of_tooth: 0,
+        body_row: [0; 2],
         half_pitch,
     }
 }

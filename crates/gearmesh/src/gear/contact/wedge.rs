@@ -1,0 +1,213 @@
+//! Contact near the corner of a tooth's tip: a parabola pressed on a wedge.
+//!
+//! Far from its edge a surface yields to a line load as a half plane does; at the distance c from a corner it yields by
+//! −B ln c more (Timoshenko and Goodier, Theory of Elasticity, 3rd edition, article 38: a wedge loaded at its end). Between
+//! two places at ξ and η from the corner it is taken for B ln((ξ + η)/2), which is right on the diagonal and at one corner
+//! end, and elsewhere off by 0.15 of B at most. With half the Hertzian width b as unit and λ = c/b where the parabola has
+//! its top, below 0 beyond the corner, the approach follows from
+//!
+//! (ξ − λ)² − ∫ [ln|ξ − η| + B/k₀ ln((ξ + η)/2)] p dη = Ψ/k₀, ∫ p = 1, p ≥ 0, ξ ≥ 0,
+//!
+//! k₀ = Σ 2/(πE′): without corner Ψ/k₀ = ln 2 + ½ (Johnson, Contact Mechanics, 4.2). The ends of the contact are given and
+//! λ follows, since everything else in the equation is linear. Must not know: gears, loads.
+
+use std::f64::consts::{FRAC_PI_2, LN_2, PI};
+
+use crate::numeric::chebyshev::Series;
+use crate::numeric::crossing::bracketed;
+use crate::numeric::elimination::solve;
+
+/// Terms of the pressure, a cosine series in the angle whose cosine is the place; near a corner it is 3e-5 off in Ψ/k₀.
+const TERMS: usize = 16;
+/// Points on which the corner's influence is summed.
+const POINTS: usize = 4 * TERMS;
+/// λ up to where there is a table; beyond, −B/k₀ ln λ is left and a rest that falls as 1/λ².
+const FAR: f64 = 10.0;
+/// λ down to where there is one; beyond, the contact is so narrow that only its logarithm changes.
+const BEYOND: f64 = -30.0;
+/// Where the tables are joined besides the corner and the place where the contact reaches it.
+const JOINTS: [f64; 2] = [-2.0, 2.0];
+/// Nodes of a table.
+const NODES: usize = 12;
+/// The narrowest contact that is looked at when λ is below [`BEYOND`].
+const NARROWEST: f64 = 1e-3;
+/// Start over end of a contact, when λ is above [`FAR`].
+const ROUNDEST: f64 = 0.95;
+
+/// B E′: near a corner of the angle `interior`, > 0 and < 2π \[rad\], the surface yields by −B ln c more than that of a half
+/// plane to a load on one of its sides, normal to it, at the distance c from the corner. 0 for a half plane.
+#[must_use]
+pub fn softening(interior: f64) -> f64 {
+    let half = 0.5 * interior;
+    // The load against the bisector.
+    let (sine, cosine) = libm::sincos(FRAC_PI_2 - half);
+    let shear = 0.5 * libm::sin(interior);
+    cosine * cosine / (half + shear) + sine * sine / (half - shear) - 2.0 / PI
+}
+
+/// By how much a parabola approaches a wedge more than a half plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Wedge {
+    /// B/k₀.
+    ratio: f64,
+    /// In order, each with its slope; the first one over ln(−λ).
+    tables: [(Series, Series); 5],
+    /// Times 1/λ² beyond [`FAR`].
+    rest: f64,
+    /// At [`BEYOND`].
+    last: f64,
+}
+
+impl Wedge {
+    /// `ratio`: B/k₀, 0 or more, below 1.
+    #[must_use]
+    pub fn new(ratio: f64) -> Self {
+        let at_corner = Shape::new(0.0, ratio);
+        let reached = at_corner.inside();
+        let value = |place: f64| {
+            let found = if place >= reached.place {
+                let miss = |start: f64| Shape::new(start, ratio).inside().place - place;
+                bracketed(0.0, ROUNDEST, miss).map_or(reached, |start| Shape::new(start, ratio).inside())
+            } else {
+                let miss = |end: f64| at_corner.from_corner(end).place - place;
+                bracketed(NARROWEST, reached.end, miss).map_or(reached, |end| at_corner.from_corner(end))
+            };
+            // Above the least gap, which is at the corner where the top is beyond it.
+            found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5
+        };
+        let table = |lower: f64, upper: f64| {
+            let values = Series::fit(lower, upper, NODES, value);
+            let slopes = values.derivative();
+            (values, slopes)
+        };
+        let beyond = Series::fit(libm::log(-JOINTS[0]), libm::log(-BEYOND), NODES, |log| value(-libm::exp(log)));
+        let slopes = beyond.derivative();
+        let tables = [
+            (beyond, slopes),
+            table(JOINTS[0], 0.0),
+            table(0.0, reached.place),
+            table(reached.place, JOINTS[1]),
+            table(JOINTS[1], FAR),
+        ];
+        let rest = (tables[4].0.value(FAR) + ratio * libm::log(FAR)) * FAR * FAR;
+        let last = tables[0].0.value(libm::log(-BEYOND));
+        Self { ratio, tables, rest, last }
+    }
+
+    /// (Ψ − k₀ λ² where λ < 0)/k₀ − ln 2 − ½, and its slope over λ. Continuous; towards −B/k₀ ln λ far inside, and by
+    /// (1 + B/k₀) ln|λ| larger and larger beyond the corner.
+    #[must_use]
+    pub fn more(&self, place: f64) -> [f64; 2] {
+        if place > FAR {
+            let square = self.rest / (place * place);
+            return [square - self.ratio * libm::log(place), -(2.0 * square + self.ratio) / place];
+        }
+        if place < JOINTS[0] {
+            let log = libm::log(-place);
+            if place < BEYOND {
+                let slope = 1.0 + self.ratio;
+                return [self.last + slope * (log - libm::log(-BEYOND)), slope / place];
+            }
+            let (values, slopes) = &self.tables[0];
+            return [values.value(log), slopes.value(log) / place];
+        }
+        let after = self.tables[1..4].iter().position(|(values, _)| place <= values.upper()).unwrap_or(3);
+        let (values, slopes) = &self.tables[1 + after];
+        [values.value(place), slopes.value(place)]
+    }
+
+    /// What is left of [`Wedge::more`] far inside, besides −B/k₀ ln λ, times λ².
+    #[must_use]
+    pub fn rest(&self) -> f64 {
+        self.rest
+    }
+
+    /// λ from which on that is all.
+    #[must_use]
+    pub const fn far() -> f64 {
+        FAR
+    }
+}
+
+/// A contact from `start` to 1 by what its pressures do to it: −∫ [ln|x − y| + B/k₀ ln((x + y)/2)] at places x, for each
+/// term of the pressure.
+struct Shape {
+    ratio: f64,
+    places: [f64; TERMS],
+    influence: [[f64; TERMS]; TERMS],
+}
+
+/// A contact in half Hertzian widths.
+#[derive(Clone, Copy)]
+struct Contact {
+    /// λ.
+    place: f64,
+    /// Ψ/k₀ − λ².
+    above_corner: f64,
+    /// How far from the corner it ends.
+    end: f64,
+}
+
+impl Shape {
+    fn new(start: f64, ratio: f64) -> Self {
+        let (middle, half) = (0.5 * (1.0 + start), 0.5 * (1.0 - start));
+        let angle = |index: usize, count: usize| PI * (index as f64 + 0.5) / count as f64;
+        let cosines: [f64; TERMS] = std::array::from_fn(|k| libm::cos(angle(k, TERMS)));
+        let places = cosines.map(|cosine| middle + half * cosine);
+        let points: [f64; POINTS] = std::array::from_fn(|k| middle + half * libm::cos(angle(k, POINTS)));
+        let corner = places.map(|x| points.map(|y| -ratio * PI / POINTS as f64 * libm::log(0.5 * (x + y))));
+        // cos(n angle) from whole multiples of a step of angle, so that few cosines are needed.
+        let turn: [f64; 4 * POINTS] = std::array::from_fn(|k| libm::cos(PI * k as f64 / (2 * POINTS) as f64));
+        let wave = |n: usize, odd: usize| turn[n * odd % (4 * POINTS)];
+        let influence = std::array::from_fn(|row| {
+            std::array::from_fn(|n| {
+                let summed: f64 = corner[row].iter().enumerate().map(|(k, part)| part * wave(n, 2 * k + 1)).sum();
+                let own = if n == 0 {
+                    -PI * libm::log(0.5 * half)
+                } else {
+                    PI / n as f64 * wave(n, (2 * row + 1) * (POINTS / TERMS))
+                };
+                own + summed
+            })
+        });
+        Self { ratio, places, influence }
+    }
+
+    /// The contact that starts at the corner and ends at `end`, where the pressure is 0.
+    fn from_corner(&self, end: f64) -> Contact {
+        // Unknown: the terms, λ, Ψ/k₀ − λ².
+        let mut rows = [[0.0; TERMS + 3]; TERMS + 2];
+        let known = (1.0 + self.ratio) * libm::log(end);
+        for (row, (x, influence)) in rows.iter_mut().zip(self.places.iter().zip(&self.influence)) {
+            row[..TERMS].copy_from_slice(influence);
+            (row[TERMS], row[TERMS + 1]) = (-2.0 * end * x, -1.0);
+            row[TERMS + 2] = known - end * end * x * x;
+        }
+        (rows[TERMS][0], rows[TERMS][TERMS + 2]) = (PI, 1.0);
+        rows[TERMS + 1][..TERMS].fill(1.0);
+        solve(&mut rows);
+        Contact { place: rows[TERMS][TERMS + 2], above_corner: rows[TERMS + 1][TERMS + 2], end }
+    }
+
+    /// The contact of this shape at both ends of which the pressure is 0.
+    fn inside(&self) -> Contact {
+        // Unknown: the terms, the square of the end, λ times the end, Ψ/k₀ − λ² + (1 + B/k₀) ln(end).
+        let mut rows = [[0.0; TERMS + 4]; TERMS + 3];
+        for (row, (x, influence)) in rows.iter_mut().zip(self.places.iter().zip(&self.influence)) {
+            row[..TERMS].copy_from_slice(influence);
+            (row[TERMS], row[TERMS + 1], row[TERMS + 2]) = (x * x, -2.0 * x, -1.0);
+        }
+        (rows[TERMS][0], rows[TERMS][TERMS + 3]) = (PI, 1.0);
+        rows[TERMS + 1][..TERMS].fill(1.0);
+        for (n, value) in rows[TERMS + 2][..TERMS].iter_mut().enumerate() {
+            *value = if n % 2 == 0 { 1.0 } else { -1.0 };
+        }
+        solve(&mut rows);
+        let [square, product, sum] = [0, 1, 2].map(|k| rows[TERMS + k][TERMS + 3]);
+        let end = square.sqrt();
+        Contact { place: product / end, above_corner: sum - (1.0 + self.ratio) * libm::log(end), end }
+    }
+}
+
+#[cfg(test)]
+mod tests;
