@@ -102,7 +102,7 @@ pub(crate) fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
         axial: nothing(),
         body: nothing(),
         contact_depth: Series::from_values(0.0, 2.0, &[2.5e-3]),
-        corner: 0.0,
+        corner: 1.6e-12,
         neighbours: Vec::new(),
     }
 }

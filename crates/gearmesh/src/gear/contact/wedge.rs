@@ -14,13 +14,13 @@
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 use crate::numeric::chebyshev::Series;
-use crate::numeric::crossing::bracketed;
+use crate::numeric::crossing::crossing;
 use crate::numeric::elimination::solve;
 
 /// Terms of the pressure, a cosine series in the angle whose cosine is the place; near a corner it is 3e-5 off in Ψ/k₀.
 const TERMS: usize = 16;
 /// Points on which the corner's influence is summed.
-const POINTS: usize = 4 * TERMS;
+const POINTS: usize = 2 * TERMS;
 /// λ up to where there is a table; beyond, −B/k₀ ln λ is left and a rest that falls as 1/λ².
 const FAR: f64 = 10.0;
 /// λ down to where there is one; beyond, the contact is so narrow that only its logarithm changes.
@@ -29,6 +29,8 @@ const BEYOND: f64 = -30.0;
 const JOINTS: [f64; 2] = [-2.0, 2.0];
 /// Nodes of a table.
 const NODES: usize = 12;
+/// How well the ends of a contact are found.
+const CLOSE: f64 = 1e-8;
 /// The narrowest contact that is looked at when λ is below [`BEYOND`].
 const NARROWEST: f64 = 1e-3;
 /// Start over end of a contact, when λ is above [`FAR`].
@@ -62,15 +64,20 @@ impl Wedge {
     /// `ratio`: B/k₀, 0 or more, below 1.
     #[must_use]
     pub fn new(ratio: f64) -> Self {
-        let at_corner = Shape::new(0.0, ratio);
-        let reached = at_corner.inside();
+        let waves = Waves::new();
+        let at_corner = Shape::new(0.0, ratio, &waves);
+        let inside = |start: f64| Shape::new(start, ratio, &waves).inside();
+        let (reached, roundest) = (at_corner.inside(), inside(ROUNDEST).place);
+        let narrowest = at_corner.from_corner(NARROWEST).place;
         let value = |place: f64| {
             let found = if place >= reached.place {
-                let miss = |start: f64| Shape::new(start, ratio).inside().place - place;
-                bracketed(0.0, ROUNDEST, miss).map_or(reached, |start| Shape::new(start, ratio).inside())
+                let miss = |start: f64| inside(start).place - place;
+                let ends = [(0.0, reached.place - place), (ROUNDEST, roundest - place)];
+                inside(crossing(miss, ends[0], ends[1], CLOSE))
             } else {
                 let miss = |end: f64| at_corner.from_corner(end).place - place;
-                bracketed(NARROWEST, reached.end, miss).map_or(reached, |end| at_corner.from_corner(end))
+                let ends = [(NARROWEST, narrowest - place), (reached.end, reached.place - place)];
+                at_corner.from_corner(crossing(miss, ends[0], ends[1], CLOSE * NARROWEST))
             };
             // Above the least gap, which is at the corner where the top is beyond it.
             found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5
@@ -148,25 +155,33 @@ struct Contact {
     end: f64,
 }
 
+/// cos(nθ) for the terms n: at the angles of the places, and at those of the points.
+struct Waves {
+    places: [[f64; TERMS]; TERMS],
+    points: [[f64; POINTS]; TERMS],
+}
+
+impl Waves {
+    fn new() -> Self {
+        let wave = |n: usize, k: usize, count: usize| libm::cos(PI * n as f64 * (k as f64 + 0.5) / count as f64);
+        Self {
+            places: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, TERMS))),
+            points: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, POINTS))),
+        }
+    }
+}
+
 impl Shape {
-    fn new(start: f64, ratio: f64) -> Self {
+    fn new(start: f64, ratio: f64, waves: &Waves) -> Self {
         let (middle, half) = (0.5 * (1.0 + start), 0.5 * (1.0 - start));
-        let angle = |index: usize, count: usize| PI * (index as f64 + 0.5) / count as f64;
-        let cosines: [f64; TERMS] = std::array::from_fn(|k| libm::cos(angle(k, TERMS)));
-        let places = cosines.map(|cosine| middle + half * cosine);
-        let points: [f64; POINTS] = std::array::from_fn(|k| middle + half * libm::cos(angle(k, POINTS)));
-        let corner = places.map(|x| points.map(|y| -ratio * PI / POINTS as f64 * libm::log(0.5 * (x + y))));
-        // cos(n angle) from whole multiples of a step of angle, so that few cosines are needed.
-        let turn: [f64; 4 * POINTS] = std::array::from_fn(|k| libm::cos(PI * k as f64 / (2 * POINTS) as f64));
-        let wave = |n: usize, odd: usize| turn[n * odd % (4 * POINTS)];
+        let places = waves.places[1].map(|cosine| middle + half * cosine);
+        let points = waves.points[1].map(|cosine| middle + half * cosine);
+        let weight = -ratio * PI / POINTS as f64;
         let influence = std::array::from_fn(|row| {
+            let corner = points.map(|y| weight * libm::log(0.5 * (places[row] + y)));
             std::array::from_fn(|n| {
-                let summed: f64 = corner[row].iter().enumerate().map(|(k, part)| part * wave(n, 2 * k + 1)).sum();
-                let own = if n == 0 {
-                    -PI * libm::log(0.5 * half)
-                } else {
-                    PI / n as f64 * wave(n, (2 * row + 1) * (POINTS / TERMS))
-                };
+                let summed: f64 = corner.iter().zip(&waves.points[n]).map(|(part, wave)| part * wave).sum();
+                let own = if n == 0 { -PI * libm::log(0.5 * half) } else { PI / n as f64 * waves.places[n][row] };
                 own + summed
             })
         });

@@ -100,6 +100,10 @@ pub(super) enum Elasticity {
 }
 
 impl Elasticity {
+    pub(super) fn is_resolved(&self) -> bool {
+        matches!(self, Self::Logarithmic { ends: Some(_), .. })
+    }
+
     /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.
     pub(super) fn series(&self, s: f64, own: Option<f64>) -> InSeries<'_> {
         let Self::Logarithmic { compliance, constant, rate, ends } = self else { return InSeries::NONE };

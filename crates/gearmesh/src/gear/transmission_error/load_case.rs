@@ -103,7 +103,11 @@ impl<'a> LoadCase<'a> {
         let count = Count::new(&cycle.work, sliced.as_ref().map_or(uncoupled, |sliced| sliced.count()));
         // Slices take up load one by one: no cut makes what they carry smooth.
         // Corners come into contact as a square root: halving goes on to no end there, at three times the price.
-        let refines = sliced.is_none() && !face.is_sliced() && cycle.settings.corner_contact == CornerContact::None;
+        // The law of a wedge bends where the contact reaches the corner.
+        let refines = sliced.is_none()
+            && !face.is_sliced()
+            && cycle.settings.corner_contact == CornerContact::None
+            && !cycle.elasticity.is_resolved();
         let regime = match sliced {
             _ if torque <= 0.0 => Regime::Unloaded,
             Some(sliced) => Regime::CoupledSlices(sliced),

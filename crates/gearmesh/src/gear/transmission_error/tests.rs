@@ -158,6 +158,7 @@ fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
 fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     let pair = pair();
     let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
+    let resolved = PairCompliance { contact: Some(ContactLaw::Resolved), ..coupled() };
     let power =
         [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
@@ -180,7 +181,7 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
         ga_design(&pair, 3e-6, 8.0e-3, 20e-6),
         mixed,
     ];
-    for (which, compliance) in [varying(), coupled(), logarithmic].iter().enumerate() {
+    for (which, compliance) in [varying(), coupled(), logarithmic, resolved].iter().enumerate() {
         let run = |positions: usize, design: &Design, torque: f64| {
             let cycle =
                 MeshCycle::new(&pair, compliance, Settings { positions, slices: 9, ..Settings::default() }).unwrap();
@@ -255,7 +256,7 @@ fn swapping_the_gears_changes_nothing() {
     let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root), ("end_relief", one, &face)]).unwrap()
     };
-    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
+    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent, ContactLaw::Resolved] {
         for compliance in [varying(), coupled()] {
             let compliance = PairCompliance { contact: Some(contact), ..compliance };
             let mirrored = PairCompliance {

@@ -270,36 +270,3 @@ fn gears_that_are_alike_are_meshed_once() {
     assert_eq!(of_alike.compliance.pinion, of_alike.compliance.gear);
     assert_eq!(of_alike.meshes[1], of_unlike.meshes[1]);
 }
-
-#[test]
-fn explore_resolved() {
-    use crate::gear::modification::Design;
-    use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
-    use crate::gear::transmission_error::load_case::LoadCase;
-    let specification = |teeth: u32, profile_shift: f64| Specification {
-        profile_shift,
-        face_width: 3e-3,
-        bore_radius: (0.5 * f64::from(teeth) - 1.25 + profile_shift) * 3e-3 / 1.4,
-        ..standard(teeth, 3e-3, 1.4)
-    };
-    let pair = GearPair::new(specification(12, 0.5), specification(17, 0.2), None).unwrap();
-    for across in [8, 16, 32] {
-        for contact in [ContactLaw::LoadDependent, ContactLaw::Resolved] {
-            let found = method(Plane::Strain, across).tabulate(&pair, Assumptions { contact, ..COUPLED }).unwrap();
-            let cycle = MeshCycle::new(&pair, &found.compliance, Settings::default()).unwrap();
-            let first = pair.start_of_contact + 0.4 * (pair.contact_ratio - 1.0) * pair.base_pitch;
-            let (c, base) = (pair.zone_points().c, pair.pinion.base_radius);
-            let one =
-                LoadCase::new(&cycle, &Design::default(), 504e3 * 3e-3 * base).state(c - pair.start_of_contact, 1);
-            let two =
-                LoadCase::new(&cycle, &Design::default(), 551e3 * 3e-3 * base).state(first - pair.start_of_contact, 2);
-            let share = two.balance.loads[0] / (two.balance.loads[0] + two.balance.loads[1]);
-            println!(
-                "{across} {contact:?} est {:.1e}: one {:.4} µm, two {:.4} µm share {share:.4}",
-                found.error_estimate,
-                one.transmission_error() * 1e6,
-                two.transmission_error() * 1e6
-            );
-        }
-    }
-}

@@ -37,7 +37,7 @@ fn models() -> Vec<PairCompliance> {
     [varying(), coupled()]
         .into_iter()
         .flat_map(|model| {
-            [ContactLaw::Linear, ContactLaw::LoadDependent]
+            [ContactLaw::Linear, ContactLaw::LoadDependent, ContactLaw::Resolved]
                 .map(|contact| PairCompliance { contact: Some(contact), ..model.clone() })
         })
         .collect()

@@ -31,8 +31,12 @@ fn designs(pair: &GearPair) -> Vec<Design> {
 }
 
 fn models() -> Vec<PairCompliance> {
-    let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
-    vec![varying(), coupled(), PairCompliance { contact: Some(ContactLaw::LoadDependent), ..coupled() }, logarithmic]
+    let with = |contact: ContactLaw, model: PairCompliance| PairCompliance { contact: Some(contact), ..model };
+    let mut models = vec![varying(), coupled()];
+    for contact in [ContactLaw::LoadDependent, ContactLaw::Resolved] {
+        models.extend([with(contact, coupled()), with(contact, varying())]);
+    }
+    models
 }
 
 /// Off the line of action both ends of contact are passed without a jump.
@@ -77,7 +81,9 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
                 let [coarse, middle, fine] =
                     [0, 1, 2].map(|cycle: usize| LoadCase::new(&cycles[cycle], design, torque).peak_to_peak());
                 for found in [coarse, middle] {
-                    assert!((found / fine - 1.0).abs() < 1e-9, "{which} {index} {torque}: {found:e} {fine:e}");
+                    // The tables of the wedge are joined with slopes that differ in the sixth digit.
+                    let close = if compliance.contact == Some(ContactLaw::Resolved) { 1e-8 } else { 1e-9 };
+                    assert!((found / fine - 1.0).abs() < close, "{which} {index} {torque}: {found:e} {fine:e}");
                 }
             }
         }

@@ -24,7 +24,7 @@ fn without_gaps_everything_is_proportional_to_the_torque() {
 #[test]
 fn loads_balance_the_torque() {
     let pair = pair_with_contact_ratio(2.3);
-    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
+    for contact in [ContactLaw::Linear, ContactLaw::LoadDependent, ContactLaw::Resolved] {
         for compliance in [varying(), coupled()] {
             let compliance = PairCompliance { contact: Some(contact), ..compliance };
             let cycle = cycle(&pair, &compliance);
