@@ -133,7 +133,7 @@ fn a_step_is_the_stage_with_its_settings() {
 fn meshes_converge_and_seeds_spread() {
     let text = BASE.to_owned()
         + "
-  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }
+  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, torque: 50 N m }
   meshes:
     kind: accuracy
     of: mesh

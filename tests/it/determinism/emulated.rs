@@ -24,7 +24,7 @@ stages:
     material: { youngs_modulus: 206 GPa, poisson_ratio: 0.3 }
     pinion: { teeth: 19, face_width: 20 mm, bore_radius: 14.079 mm }
     gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
-  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }
+  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, torque: 50 N m }
   designs: { kind: modification, pair: pair, designs: { unmodified: [] } }
   ste: { kind: ste, stiffness: stiffness, designs: designs, torque: 200 N m }
 ";

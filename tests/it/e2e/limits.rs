@@ -100,7 +100,7 @@ fn checking_draws_nothing() {
 fn memory_is_foreseen_from_above() {
     let desk = desk(concat!(
         "    outline: { points: 500, teeth: all }\n",
-        "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }\n",
+        "  stiffness: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, torque: 50 N m }\n",
         "  designs: { kind: modification, pair: pair, designs: { none: [] } }\n",
         "  ste: { kind: ste, stiffness: stiffness, designs: designs, positions: 2000, torque: { from: 1 N m, to: 200 N m, count: 12 } }\n",
         "  of_pair: { kind: accuracy, of: pair, quantities: [outline.x], reference: {}, ladders: { l: [{}] }, repeats: 1 }\n",

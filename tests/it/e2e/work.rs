@@ -22,8 +22,8 @@ stages:
     gear: { teeth: 24, face_width: 20 mm, bore_radius: 18 mm }
   beam: { kind: stiffness, pair: pair, method: energy, contact: load_dependent, torque: 100 N m }
   beam_alike: { kind: stiffness, pair: alike, method: energy }
-  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } } }
-  mesh_alike: { kind: stiffness, pair: alike, method: { finite_element: { elements_across: 6 } } }
+  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, torque: 50 N m }
+  mesh_alike: { kind: stiffness, pair: alike, method: { finite_element: { elements_across: 6 } }, torque: 50 N m }
   parallel: { kind: modification, pair: pair, designs: { short: [tip_relief: { gear: both, amount: 12 um, length: 1 mm }] } }
   crowned: { kind: modification, pair: pair, designs: { crowned: [lead_crowning: { gear: pinion, amount: 9 um }] } }
   askew:

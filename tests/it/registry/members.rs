@@ -279,7 +279,7 @@ fn every_design_problem_runs_and_says_what_it_keeps() {
 #[test]
 fn a_method_that_meshes_says_with_what() {
     let text = study(
-        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, accuracy: 0.5 % }\n",
+        "  beam: { kind: stiffness, pair: pair }\n  mesh: { kind: stiffness, pair: pair, method: { finite_element: { elements_across: 6 } }, torque: 50 N m, accuracy: 0.5 % }\n",
     );
     let loaded = load(&text);
     let ran = walk(&loaded);

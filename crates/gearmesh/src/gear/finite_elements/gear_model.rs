@@ -118,12 +118,26 @@ impl<'a> GearModel<'a> {
     /// # Errors
     /// When the gear is not held to rounding.
     pub fn rests(&self, rolls: &[f64], neighbours: u32, rows: usize) -> Result<Influences, MeshError> {
-        let members = self.mesh.tooth(rows);
+        let loads: Vec<(usize, f64)> = rolls.iter().map(|&roll| (rows, roll)).collect();
+        self.rests_in_blocks(&loads, neighbours)
+    }
+
+    /// The same of loads that each have a block of their own.
+    ///
+    /// # Errors
+    /// As [`Self::rests`].
+    pub fn rests_in_blocks(&self, loads: &[(usize, f64)], neighbours: u32) -> Result<Influences, MeshError> {
+        let Mesh { nodes, elements, .. } = &self.mesh;
+        let most = loads.iter().map(|load| load.0).max().unwrap_or(0);
         // No element is folded over: they were factorised.
         let block =
-            Block::new(&self.mesh.nodes, &self.mesh.elements, &members, &self.elasticity).ok_or(MeshError::Singular)?;
-        let (forces, own): (Vec<NodalForces>, Vec<f64>) =
-            rolls.iter().map(|&roll| self.taken(&block, roll)).map(|taken| (taken.forces, taken.own)).unzip();
+            |rows| Block::new(nodes, elements, &self.mesh.tooth(rows), &self.elasticity).ok_or(MeshError::Singular);
+        let blocks = (0..=most).map(block).collect::<Result<Vec<_>, _>>()?;
+        let (forces, own): (Vec<NodalForces>, Vec<f64>) = loads
+            .iter()
+            .map(|&(rows, roll)| self.taken(&blocks[rows], roll))
+            .map(|taken| (taken.forces, taken.own))
+            .unzip();
         let responses = self.sector.responses(&forces);
         let pressed: Vec<&Pressed> = responses.iter().map(|response| &response.pressed).collect();
         let steps: Vec<u32> = (0..=neighbours).collect();
@@ -132,7 +146,7 @@ impl<'a> GearModel<'a> {
         let found = wheel.influences(&pressed, &pressed, &steps)?;
         let held = |k: usize| self.sector.held_work(&forces[k], &responses[k], &responses[k]);
         let own = own.into_iter().enumerate().map(|(k, own)| own + held(k) + found[0][k][k]).collect();
-        let count = rolls.len();
+        let count = loads.len();
         let further = (found[1..].iter())
             .map(|matrix| (0..count).map(|by| (0..count).map(|on| matrix[on][by]).collect()).collect())
             .collect();

@@ -77,13 +77,15 @@ impl Wheel<'_> {
             let turn = self.turn(harmonic, 1);
             let factor = cholesky(self.matrix(turn)).ok_or(MeshError::Singular)?;
             let solved = |pressed: &&Pressed| forward(&factor, Self::wave(turn, pressed));
-            let affected: Vec<Wave> = affected.iter().map(solved).collect();
-            let loads: Vec<Wave> = loads.iter().map(solved).collect();
+            let waves: Vec<Wave> = loads.iter().map(solved).collect();
+            let others: Vec<Wave> =
+                if std::ptr::eq(affected, loads) { Vec::new() } else { affected.iter().map(solved).collect() };
+            let affected = if std::ptr::eq(affected, loads) { &waves } else { &others };
             let twice = if harmonic == 0 || 2 * harmonic == self.sectors { 1.0 } else { 2.0 };
             let weight = twice / f64::from(self.sectors);
             let turns: Vec<[f64; 2]> = steps.iter().map(|&step| self.turn(harmonic, step)).collect();
             for (row, affected) in affected.iter().enumerate() {
-                for (column, load) in loads.iter().enumerate() {
+                for (column, load) in waves.iter().enumerate() {
                     let [real, imaginary] = work(affected, load);
                     for ([cosine, sine], matrix) in turns.iter().zip(&mut result) {
                         matrix[row][column] += weight * (cosine * real - sine * imaginary);
