@@ -3,10 +3,13 @@
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use criterion::{Criterion, criterion_group};
+use std::hint::black_box;
+
+use criterion::measurement::WallTime;
+use criterion::{BenchmarkGroup, Criterion, criterion_group};
 
 use crate::accuracy::{relative, seconds};
-use crate::article::{Stages, study_path};
+use crate::article::{Stages, TORQUE, study_path};
 use crate::brief;
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method, Tabulated};
@@ -14,8 +17,12 @@ use gearmesh::gear::contact::CornerContact;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::modification::arc::ArcRelief;
+use gearmesh::gear::modification::curve::Curve;
+use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_curve::{FlankPoint, Formulas, Through, TipPoint};
+use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
+use gearmesh::gear::transmission_error::curve::Wanted;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
@@ -31,8 +38,12 @@ const COUPLED: Assumptions = Assumptions {
 
 /// Both gears of a pair, from so many elements across, to an accuracy if one is wanted.
 fn tabulate(pair: &GearPair, elements_across: u32, accuracy: Option<f64>) -> Tabulated {
+    with_law(pair, COUPLED.contact, elements_across, accuracy)
+}
+
+fn with_law(pair: &GearPair, contact: ContactLaw, elements_across: u32, accuracy: Option<f64>) -> Tabulated {
     let method = FiniteElement { elements_across, ..FiniteElement::default() };
-    method.tabulate(pair, Assumptions { accuracy, ..COUPLED }).expect("the pair can be meshed")
+    method.tabulate(pair, Assumptions { accuracy, contact, ..COUPLED }).expect("the pair can be meshed")
 }
 
 /// Two gears of 48 teeth: half of the time is one gear's.
@@ -54,12 +65,51 @@ fn finite_elements(criterion: &mut Criterion) {
             began.elapsed() / 2
         });
     });
+    group.bench_function("48 teeth, resolved, 0.1 %", |bencher| {
+        bencher.iter_custom(|times| {
+            let began = std::time::Instant::now();
+            for _ in 0..times {
+                std::hint::black_box(with_law(&pair, ContactLaw::Resolved, 16, Some(0.001)));
+            }
+            began.elapsed() / 2
+        });
+    });
+    curves(&mut group);
     let mut stages = Stages::of("mei2016");
     stages.prepare("arc");
     group.measurement_time(Duration::from_secs(8));
     group.bench_function("both sweeps of mei2016", |bencher| {
         bencher.iter(|| (stages.run("arc"), stages.run("parabola")));
     });
+}
+
+/// Curves of both contact laws of a pair with relief on both tips, 64 positions.
+fn curves(group: &mut BenchmarkGroup<WallTime>) {
+    let pair = Stages::new().pair();
+    let relief = TipRelief {
+        amount: Amount::Depth(10e-6),
+        start: Start::Length(3.4e-3),
+        counted_from: FromTip::Tip,
+        curve: Curve::Parabolic,
+    };
+    let mut design = Design::default();
+    design.add(Gears::Both, &relief, &pair).expect("it is shorter than the flank");
+    for (law, contact) in [("Weber", ContactLaw::LoadDependent), ("resolved", ContactLaw::Resolved)] {
+        let mut compliance = with_law(&pair, contact, 16, None).compliance;
+        for (what, corner_contact, coupled) in
+            [("uncoupled", CornerContact::None, false), ("coupled, corner contact", CornerContact::Exact, true)]
+        {
+            compliance.coupled = coupled;
+            let settings = Settings { corner_contact, ..Settings::default() };
+            let cycle = MeshCycle::new(&pair, &compliance, settings).expect("its contact ratio is 1.65");
+            group.bench_function(format!("curve, {law}, {what}"), |bencher| {
+                bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
+            });
+        }
+        group.bench_function(format!("cycle, {law}"), |bencher| {
+            bencher.iter(|| MeshCycle::new(black_box(&pair), &compliance, Settings::default()));
+        });
+    }
 }
 
 pub fn print() {

@@ -16,6 +16,9 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("diff/report 1e5 rows x 9", 0.1, "two folders of Parquet to the text, rows by key"),
     ("diff/report 1e6 rows x 9", 1.0, "as before"),
     ("finite elements/48 teeth, 0.2 %", 1.0, "influence functions of a gear at 0.2 % accuracy, one thread"),
+    ("finite elements/48 teeth, resolved, 0.1 %", 50e-3, "tables of a gear with resolved contact, one thread"),
+    ("finite elements/curve, resolved, uncoupled", 30e-6, "64 positions, both tips relieved, one thread"),
+    ("finite elements/curve, resolved, coupled, corner contact", 150e-6, "as before"),
     (
         "finite elements/both sweeps of mei2016",
         2.0,
