@@ -5,8 +5,10 @@
 
 mod across_face;
 mod contact;
+mod flanks;
 mod press;
 mod program;
+mod reference;
 mod tooth;
 mod wheel;
 

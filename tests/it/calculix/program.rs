@@ -31,7 +31,7 @@ pub fn run(check: &str, deck: &str) -> Option<Printed> {
     let output = Command::new(&program)
         .arg("deck")
         .current_dir(folder.path())
-        .env("OMP_NUM_THREADS", "2")
+        .env("OMP_NUM_THREADS", env::var_os("OMP_NUM_THREADS").unwrap_or_else(|| "2".into()))
         .output()
         .unwrap_or_else(|error| panic!("{}: {error}", program.display()));
     let log = String::from_utf8_lossy(&output.stdout);
@@ -43,7 +43,7 @@ pub fn run(check: &str, deck: &str) -> Option<Printed> {
 pub struct Printed(String);
 
 impl Printed {
-    /// The rows of the table whose heading starts with `heading`: all their numbers.
+    /// The rows of the last table whose heading starts with `heading`: all their numbers.
     pub fn table(&self, heading: &str) -> Vec<Vec<f64>> {
         (self.after(heading).lines().skip(1).skip_while(|line| line.trim().is_empty()))
             .take_while(|line| !line.trim().is_empty())
@@ -59,7 +59,7 @@ impl Printed {
     }
 
     fn after(&self, heading: &str) -> &str {
-        &self.0[self.0.find(heading).unwrap_or_else(|| panic!("no `{heading}` in\n{}", self.0))..]
+        &self.0[self.0.rfind(heading).unwrap_or_else(|| panic!("no `{heading}` in\n{}", self.0))..]
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::fmt::Write;
 
+use super::press::constants;
 use super::program;
 use super::wheel::Wheel;
 use super::{displacements, model, specification, work};
@@ -19,13 +20,8 @@ fn compare(plane: Plane) {
     let loaded = 1;
 
     let wheel = Wheel::new(&[&model.mesh; TEETH as usize]);
-    // CPS8 is a solid here: its thickness changes as a continuous field and shears where it does, which makes it 1 %
-    // stiffer than plane stress where it is as thick as the module. Plane strain with other constants is plane stress.
     let nu = 0.3;
-    let (modulus, poisson) = match plane {
-        Plane::Strain => (1.0, nu),
-        Plane::Stress => ((1.0 + 2.0 * nu) / ((1.0 + nu) * (1.0 + nu)), nu / (1.0 + nu)),
-    };
+    let (modulus, poisson) = constants(gear.specification.material, plane);
     let mut deck = wheel.cards("GEAR", 0);
     write!(deck, "*MATERIAL, NAME=ALL\n*ELASTIC\n{modulus:.12e}, {poisson:.12e}\n").unwrap();
     deck += "*SOLID SECTION, ELSET=GEAR, MATERIAL=ALL\n1.\n*STEP\n*STATIC\n*BOUNDARY\nGEARBORE, 1, 2\n*CLOAD\n";

@@ -288,6 +288,12 @@ impl<'a> Task<'a> {
             depth
         };
         let corner = if self.resolved { self.corner() } else { 0.0 };
+        if self.resolved
+            && let Some(place) = solution.own.iter().position(|own| *own <= 0.0)
+        {
+            let length = LENGTH * self.gear.specification.module;
+            return Err(ComplianceError::Stiff { side: self.side, roll: self.rolls[place], length });
+        }
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [self.rolls.len(); 2], &scaled(&rows.concat())))
             .collect();

@@ -263,6 +263,16 @@ pub enum ComplianceError {
         /// Why not.
         error: MeshError,
     },
+    /// So little of the gear yields below the contact that a half plane down to the contact's length is softer.
+    #[error("{}: at a roll angle of {} rad the tooth and its body yield less than the half plane at the contact does within {}, so that nothing is left for resolved contact; `contact: load_dependent` takes it", .side.name(), Plain(*.roll), Millimetres(*.length))]
+    Stiff {
+        /// The gear.
+        side: Side,
+        /// Where on its flank \[rad\].
+        roll: f64,
+        /// The length of the law \[m\].
+        length: f64,
+    },
     /// ν is above what the elements take in plane strain.
     #[error("{}: Poisson's ratio is {}, but must be 0 to {} in plane strain: nearer to incompressible the elements lock; `plane: stress` takes any", .side.name(), Plain(*.poisson_ratio), Plain(*.maximum))]
     Incompressible {

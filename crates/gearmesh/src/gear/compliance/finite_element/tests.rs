@@ -7,7 +7,7 @@ use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::finite_elements::gear_model::Influences;
 use crate::gear::fixtures::{STEEL, STEELS, standard};
 use crate::gear::geometry::root::RootShape;
-use crate::gear::geometry::{GearPair, Side, Specification};
+use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
 use crate::gear::material::Plane;
 use crate::gear::work::{COMPLIANCE_EVALUATIONS, MESH_FACTORISATIONS};
@@ -269,4 +269,27 @@ fn gears_that_are_alike_are_meshed_once() {
     assert_eq!(of_alike.compliance.gear, of_unlike.compliance.gear);
     assert_eq!(of_alike.compliance.pinion, of_alike.compliance.gear);
     assert_eq!(of_alike.meshes[1], of_unlike.meshes[1]);
+}
+
+/// Tier: limit; teeth of a tenth of a module on a ring that is hardly thicker leave less than a half plane would.
+#[test]
+fn a_gear_with_nothing_below_its_contact_is_refused() {
+    let stub = |ring: f64| Specification {
+        rack: Rack { addendum: 0.1, dedendum: 0.12, tip_radius: 0.05 },
+        bore_radius: 3e-3 * (0.5 * 60.0 - 0.12 - ring),
+        ..standard(60, 3e-3, 1.4)
+    };
+    let resolved = Assumptions { contact: ContactLaw::Resolved, ..COUPLED };
+    let tabulate = |ring: f64| {
+        let gear = Gear::new(&stub(ring)).unwrap();
+        let pair = GearPair {
+            pinion: gear.clone(),
+            gear,
+            ..GearPair::new(standard(60, 3e-3, 1.4), standard(60, 3e-3, 1.4), None).unwrap()
+        };
+        method(Plane::Strain, 12).tabulate(&pair, resolved)
+    };
+    let refused = tabulate(0.1).unwrap_err().to_string();
+    assert!(refused.contains("`contact: load_dependent` takes it"), "{refused}");
+    assert!(tabulate(2.0).is_ok());
 }
