@@ -192,17 +192,17 @@ fn deflection(coupling: &Coupling, loads: &PerSpring, at: usize, count: usize) -
 }
 
 /// Load changes of the loaded springs: `particular` undoes the residual, `unit` follows a unit of approach.
-struct Bordered {
-    particular: PerSpring,
-    unit: PerSpring,
-    offset: f64,
-    slope: f64,
+pub(super) struct Bordered {
+    pub(super) particular: PerSpring,
+    pub(super) unit: PerSpring,
+    pub(super) offset: f64,
+    pub(super) slope: f64,
 }
 
 impl Bordered {
     /// Cholesky's factorisation of the compliance matrix of the loaded springs; `None` when it is not positive definite
     /// or nothing is loaded.
-    fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
+    pub(super) fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
         let mut loaded = [0; MOST_SPRINGS];
         let mut size = 0;
         for (spring, _) in rises[..count].iter().enumerate().filter(|(_, rise)| **rise > 0.0) {

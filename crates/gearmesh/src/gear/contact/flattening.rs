@@ -105,16 +105,19 @@ impl Logarithmic {
     /// The law with `compliance` (penetration per load per width, > 0) in series.
     #[must_use]
     pub fn in_series<'a>(self, compliance: f64) -> InSeries<'a> {
-        let last = libm::exp(self.constant / self.rate - 1.0);
         let start = (compliance + self.constant) / self.rate + libm::log(self.rate) - 1.0;
-        InSeries { law: self, compliance, last, start, tips: None }
+        InSeries { law: self, compliance, start, tips: None, far: 0.0 }
+    }
+
+    /// The load per width above which the approach is constant.
+    fn last(&self) -> f64 {
+        libm::exp(self.constant / self.rate - 1.0)
     }
 
     /// The approach of the flanks at the load per width p.
     #[must_use]
     pub fn approach(&self, load: f64) -> f64 {
-        let last = libm::exp(self.constant / self.rate - 1.0);
-        let load = load.min(last);
+        let load = load.min(self.last());
         if load > 0.0 { load * (self.constant - self.rate * libm::log(load)) } else { 0.0 }
     }
 }
@@ -126,37 +129,51 @@ pub struct InSeries<'a> {
     pub law: Logarithmic,
     /// c: penetration of both teeth without the contact, per load per width \[1/Pa\]; with what tips add that are far.
     pub compliance: f64,
-    /// The load per width above which the flanks' approach is constant.
-    last: f64,
     /// (c + α) / β + ln β − 1.
     start: f64,
     /// Tips that may be near, where contact is resolved.
     tips: Option<Tips<'a>>,
+    /// What they add to the compliance where they are far.
+    far: f64,
 }
 
 impl<'a> InSeries<'a> {
     /// Fills the places of an array that no pair takes: flanks and teeth without compliance.
     pub const NONE: Self =
-        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, last: 0.0, start: 0.0, tips: None };
+        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, start: 0.0, tips: None, far: 0.0 };
 
     /// The same between teeth whose tips may be near.
     #[must_use]
     pub fn at_tips(self, tips: Tips<'a>) -> Self {
-        Self { tips: Some(tips), ..self.law.in_series(self.compliance + tips.far()) }
+        let far = tips.far();
+        Self { tips: Some(tips), far, ..self.law.in_series(self.compliance + far) }
     }
 
     /// The compliance without what the tips add.
     pub(super) fn without_tips(&self) -> f64 {
-        self.compliance - self.tips.map_or(0.0, |tips| tips.far())
+        self.compliance - self.far
     }
 
     /// The penetration at a load per width.
     #[must_use]
     pub fn penetration(&self, load: f64) -> f64 {
-        if let Some(tips) = self.tips.as_ref().filter(|_| load > 0.0) {
-            return tips.penetration(self, load);
+        if load > 0.0 { self.at_load(load).0 } else { 0.0 }
+    }
+
+    /// The penetration at a load per width p > 0, and dw/dp.
+    #[must_use]
+    #[inline]
+    pub fn at_load(&self, load: f64) -> (f64, f64) {
+        if let Some(tips) = &self.tips {
+            return tips.at_load(self, load);
         }
-        self.compliance * load + self.law.approach(load)
+        let Self { law: Logarithmic { constant, rate }, compliance, .. } = *self;
+        let log = libm::log(load);
+        if rate * (log + 1.0) > constant {
+            return (compliance * load + rate * self.law.last(), compliance);
+        }
+        let total = compliance + constant - rate * log;
+        (load * total, total - rate)
     }
 
     /// Load per width p and dp/dw at the penetration w > 0.
@@ -172,12 +189,13 @@ impl<'a> InSeries<'a> {
 
     #[inline]
     fn load_without_tips(&self, penetration: f64) -> (f64, f64) {
-        let Self { law: Logarithmic { rate, .. }, compliance, last, start, .. } = *self;
-        if penetration >= (compliance + rate) * last {
-            return ((penetration - rate * last) / compliance, 1.0 / compliance);
-        }
+        let Self { law: Logarithmic { rate, .. }, compliance, start, .. } = *self;
         // w = p (c + α − β ln p) in u = w / (β p): u − ln u = (c + α) / β + ln β − ln w.
         let total = rate * larger_root(start - libm::log(penetration));
+        if total <= compliance + rate {
+            let last = self.law.last();
+            return ((penetration - rate * last) / compliance, 1.0 / compliance);
+        }
         (penetration / total, 1.0 / (total - rate))
     }
 }

@@ -4,6 +4,7 @@
 
 use super::face::Face;
 use super::flattening::InSeries;
+use crate::numeric::by_loads::Yielding;
 use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 
 /// The deviations across the common face.
@@ -22,6 +23,11 @@ impl<'a> Faces<'a> {
             Self::Same(face) => face,
             Self::Each(faces) => &faces[pair],
         }
+    }
+
+    /// Whether the flanks run parallel across the face.
+    pub fn are_flat(self) -> bool {
+        matches!(self, Self::Same(face) if face.is_flat())
     }
 
     /// The largest mean deviation above the smallest \[m\].
@@ -67,6 +73,15 @@ impl LogarithmicPairs<'_> {
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
         self.slices[pair].penetration(total / self.width) + self.faces.of(pair).mean
+    }
+}
+
+impl Yielding for LogarithmicPairs<'_> {
+    /// On a flat face.
+    #[inline]
+    fn penetration(&self, pair: usize, load: f64) -> (f64, f64) {
+        let (penetration, slope) = self.slices[pair].at_load(load / self.width);
+        (penetration, slope / self.width)
     }
 }
 

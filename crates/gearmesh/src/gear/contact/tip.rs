@@ -69,26 +69,41 @@ impl Tips<'_> {
         [series.without_tips() + series.law.constant - rate * log + added, slope - rate]
     }
 
-    /// The penetration at a load per width > 0.
-    pub(super) fn penetration(&self, series: &InSeries, load: f64) -> f64 {
-        let largest = self.largest();
-        let held = load.min(largest);
+    /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
+    fn rest(&self, rate: f64) -> f64 {
+        let rest = |corner: &Corner| {
+            let share = self.half_width / corner.distance;
+            2.0 * rate * corner.wedge.rest() * share * share
+        };
+        self.corners.iter().map(rest).sum()
+    }
+
+    /// Whether both corners are far from a contact of this load per width.
+    fn are_far(&self, load: f64) -> bool {
+        let width = self.half_width * load.sqrt();
+        width < self.widest && self.corners.iter().all(|corner| corner.distance >= Wedge::far() * width)
+    }
+
+    /// The penetration at a load per width > 0, and its slope.
+    pub(super) fn at_load(&self, series: &InSeries, load: f64) -> (f64, f64) {
+        let rate = series.law.rate;
+        if self.are_far(load) {
+            let rest = self.rest(rate) * load;
+            let total = series.compliance + series.law.constant - rate * libm::log(load) + rest;
+            return (load * total, total - rate + rest);
+        }
+        let held = load.min(self.largest());
         let [total, slope] = self.whole(series, libm::log(held));
-        held * total + (load - held) * (total + slope)
+        (held * total + (load - held) * (total + slope), total + slope)
     }
 
     /// Load per width and its slope at the penetration w > 0, where without tips they would be `load` and its own.
     pub(super) fn load(&self, series: &InSeries, penetration: f64, load: f64) -> (f64, f64) {
         let largest = self.largest();
         let rate = series.law.rate;
-        let width = self.half_width * load.sqrt();
-        if load < largest && self.corners.iter().all(|corner| corner.distance >= Wedge::far() * width) {
+        if self.are_far(load) {
             // The rest of Ψ falls as 1/λ², which is in proportion to p: one step of Newton's method.
-            let rest = |corner: &Corner| {
-                let share = self.half_width / corner.distance;
-                2.0 * rate * corner.wedge.rest() * share * share
-            };
-            let rest: f64 = self.corners.iter().map(rest).sum();
+            let rest = self.rest(rate);
             let load = load - load * load * rest / (penetration / load - rate + 2.0 * rest * load);
             return (load, 1.0 / (penetration / load - rate + rest * load));
         }

@@ -14,6 +14,7 @@ use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
+use crate::numeric::by_loads;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
 /// Places closer than this share of the base pitch are one.
@@ -304,6 +305,13 @@ impl<'a> LoadCase<'a> {
                     *slot = self.slice(*s);
                 }
                 let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, faces };
+                if faces.are_flat() {
+                    let coupling = self.coupling_of(reach);
+                    let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
+                    if let Some(found) = found {
+                        return found;
+                    }
+                }
                 let above = pairs.above(reach.nearest(), self.force);
                 self.balance_of_pairs(reach, &pairs, above)
             }
@@ -311,9 +319,18 @@ impl<'a> LoadCase<'a> {
     }
 
     fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
-        let (springs, positions, gaps) = (reach.springs(), reach.positions(), reach.gaps());
-        if matches!(self.regime, Regime::Pairs) || gaps.len() < 2 {
-            return complementarity::balance(responses, gaps, self.force, above);
+        let gaps = reach.gaps();
+        match self.coupling_of(reach) {
+            None => complementarity::balance(responses, gaps, self.force, above),
+            Some(coupling) => complementarity::balance_coupled(responses, gaps, &coupling, self.force, above),
+        }
+    }
+
+    /// What the pairs' loads do to each other; none where nothing couples them.
+    fn coupling_of(&self, reach: &WithinReach) -> Option<Coupling> {
+        let (springs, positions) = (reach.springs(), reach.positions());
+        if matches!(self.regime, Regime::Pairs) || springs.len() < 2 {
+            return None;
         }
         let mut coupling: Coupling = [PerSpring::default(); MOST_SPRINGS];
         for (ahead, &spring) in springs.iter().enumerate() {
@@ -322,7 +339,7 @@ impl<'a> LoadCase<'a> {
                 (coupling[behind][ahead], coupling[ahead][behind]) = (value, value);
             }
         }
-        complementarity::balance_coupled(responses, gaps, &coupling, self.force, above)
+        Some(coupling)
     }
 
     /// A slice of the pair at `s` under a law of the load's logarithm.
