@@ -45,7 +45,7 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
         (found.loads[spring], loaded[spring]) = (load.max(0.0), load > 0.0);
     }
     for _ in 0..STEPS {
-        let change = step(springs, gaps, coupling, total, &loaded, &mut found)?;
+        let change = step(springs, gaps, coupling, total, loaded, &mut found)?;
         let mut largest = 0.0_f64;
         for (spring, load) in found.loads[..count].iter_mut().enumerate().filter(|(spring, _)| loaded[*spring]) {
             *load += change[spring];
@@ -82,7 +82,7 @@ fn step(
     gaps: &[f64],
     coupling: Option<&Coupling>,
     total: f64,
-    loaded: &[bool; MOST_SPRINGS],
+    loaded: [bool; MOST_SPRINGS],
     found: &mut Balance,
 ) -> Option<PerSpring> {
     let count = gaps.len();

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::tip::Tips;
+use super::tip::{NearTips, Tips};
 use crate::gear::geometry::GearPair;
 use crate::gear::material::{Material, Plane};
 use crate::numeric::lambert::larger_root;
@@ -73,6 +73,8 @@ pub struct Logarithmic {
     pub constant: f64,
     /// β = 1/π Σ 1/E′ \[1/Pa\].
     pub rate: f64,
+    /// ln β.
+    pub log_rate: f64,
 }
 
 impl Logarithmic {
@@ -85,14 +87,14 @@ impl Logarithmic {
     /// Σ 2/(πE′)·[ln(2l/b_H) + `beside`].
     fn new(bodies: &Bodies, combined_radius: f64, lengths: [f64; 2], beside: impl Fn(&Material) -> f64) -> Self {
         let unit = bodies.half_width(combined_radius);
-        let mut law = Self { constant: 0.0, rate: 0.0 };
+        let mut law = Self { constant: 0.0, rate: 0.0, log_rate: 0.0 };
         let of_bodies = bodies.compliances().into_iter().zip(&bodies.materials).zip(lengths);
         for ((compliance, material), length) in of_bodies {
             let factor = 2.0 / PI * compliance;
             law.constant += factor * (libm::log(2.0 * length / unit) + beside(material));
             law.rate += 0.5 * factor;
         }
-        law
+        Self { log_rate: libm::log(law.rate), ..law }
     }
 
     /// Half planes, beside the displacement of their surfaces at the distances `lengths` \[m\] from the contact, which are
@@ -105,8 +107,8 @@ impl Logarithmic {
     /// The law with `compliance` (penetration per load per width, > 0) in series.
     #[must_use]
     pub fn in_series<'a>(self, compliance: f64) -> InSeries<'a> {
-        let start = (compliance + self.constant) / self.rate + libm::log(self.rate) - 1.0;
-        InSeries { law: self, compliance, start, tips: None, far: 0.0 }
+        let start = (compliance + self.constant) / self.rate + self.log_rate - 1.0;
+        InSeries { law: self, compliance, start, tips: None }
     }
 
     /// The load per width above which the approach is constant.
@@ -132,26 +134,19 @@ pub struct InSeries<'a> {
     /// (c + α) / β + ln β − 1.
     start: f64,
     /// Tips that may be near, where contact is resolved.
-    tips: Option<Tips<'a>>,
-    /// What they add to the compliance where they are far.
-    far: f64,
+    tips: Option<NearTips<'a>>,
 }
 
 impl<'a> InSeries<'a> {
     /// Fills the places of an array that no pair takes: flanks and teeth without compliance.
     pub const NONE: Self =
-        Self { law: Logarithmic { constant: 0.0, rate: 0.0 }, compliance: 0.0, start: 0.0, tips: None, far: 0.0 };
+        Self { law: Logarithmic { constant: 0.0, rate: 0.0, log_rate: 0.0 }, compliance: 0.0, start: 0.0, tips: None };
 
     /// The same between teeth whose tips may be near.
     #[must_use]
     pub fn at_tips(self, tips: Tips<'a>) -> Self {
-        let far = tips.far();
-        Self { tips: Some(tips), far, ..self.law.in_series(self.compliance + far) }
-    }
-
-    /// The compliance without what the tips add.
-    pub(super) fn without_tips(&self) -> f64 {
-        self.compliance - self.far
+        let near = NearTips::new(tips, self.law.rate, self.compliance);
+        Self { tips: Some(near), ..self.law.in_series(self.compliance + near.far) }
     }
 
     /// The penetration at a load per width.
@@ -167,7 +162,7 @@ impl<'a> InSeries<'a> {
         if let Some(tips) = &self.tips {
             return tips.at_load(self, load);
         }
-        let Self { law: Logarithmic { constant, rate }, compliance, .. } = *self;
+        let Self { law: Logarithmic { constant, rate, .. }, compliance, .. } = *self;
         let log = libm::log(load);
         if rate * (log + 1.0) > constant {
             return (compliance * load + rate * self.law.last(), compliance);

@@ -36,95 +36,98 @@ pub struct Tips<'a> {
     pub widest: f64,
 }
 
-impl Tips<'_> {
+/// The same, prepared for many loads.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct NearTips<'a> {
+    tips: Tips<'a>,
+    /// C.
+    compliance: f64,
     /// What the corners add where they are far: Σ −B ln(c/m), of those that are not beyond.
-    #[must_use]
-    pub fn far(&self) -> f64 {
-        let seen = self.corners.iter().filter(|corner| corner.distance > 0.0);
-        seen.map(|corner| -corner.rate * libm::log(corner.distance / self.unit)).sum()
+    pub(super) far: f64,
+    /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
+    rest: f64,
+    /// The load per width up to which they are.
+    last_far: f64,
+    /// The load per width from which on the law is continued by its tangent.
+    largest: f64,
+}
+
+impl<'a> NearTips<'a> {
+    /// At the rate β, with the compliance C of both teeth.
+    pub(super) fn new(tips: Tips<'a>, rate: f64, compliance: f64) -> Self {
+        let Tips { corners, half_width, unit, widest } = tips;
+        let root = widest / half_width;
+        let largest = root * root;
+        let mut near = Self { tips, compliance, far: 0.0, rest: 0.0, last_far: largest, largest };
+        for corner in &corners {
+            // A contact as wide as a tenth of it.
+            let reach = corner.distance.max(0.0) / (Wedge::far() * half_width);
+            near.last_far = near.last_far.min(reach * reach);
+            if corner.distance > 0.0 {
+                let share = half_width / corner.distance;
+                near.far -= corner.rate * libm::log(corner.distance / unit);
+                near.rest += 2.0 * rate * corner.wedge.rest() * share * share;
+            }
+        }
+        near
     }
 
-    /// What they add to the compliance at ln p, and its slope over ln p.
-    fn added(&self, rate: f64, log: f64) -> [f64; 2] {
-        let half_log = 0.5 * log;
-        let width = self.half_width * libm::exp(half_log);
-        let log_width = libm::log(self.half_width / self.unit) + half_log;
-        self.corners.iter().fold([0.0; 2], |[sum, slope], corner| {
+    /// w/p at a load per width, and its slope over ln p.
+    fn whole(&self, series: &InSeries, load: f64) -> [f64; 2] {
+        let (rate, log) = (series.law.rate, libm::log(load));
+        let width = self.tips.half_width * load.sqrt();
+        let log_width = libm::log(width / self.tips.unit);
+        let start = [self.compliance + series.law.constant - rate * log, -rate];
+        self.tips.corners.iter().fold(start, |[sum, slope], corner| {
             let place = corner.distance / width;
             let [more, by_place] = corner.wedge.more(place);
-            [sum + 2.0 * rate * more - corner.rate * log_width, slope - rate * by_place * place - 0.5 * corner.rate]
+            let added = 2.0 * rate * more - corner.rate * log_width;
+            [sum + added, slope - rate * by_place * place - 0.5 * corner.rate]
         })
     }
 
-    /// The load per width from which on the law is continued by its tangent.
-    fn largest(&self) -> f64 {
-        let root = self.widest / self.half_width;
-        root * root
-    }
-
-    /// w/p at ln p, and its slope over ln p.
-    fn whole(&self, series: &InSeries, log: f64) -> [f64; 2] {
-        let rate = series.law.rate;
-        let [added, slope] = self.added(rate, log);
-        [series.without_tips() + series.law.constant - rate * log + added, slope - rate]
-    }
-
-    /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
-    fn rest(&self, rate: f64) -> f64 {
-        let rest = |corner: &Corner| {
-            let share = self.half_width / corner.distance;
-            2.0 * rate * corner.wedge.rest() * share * share
-        };
-        self.corners.iter().map(rest).sum()
-    }
-
-    /// Whether both corners are far from a contact of this load per width.
-    fn are_far(&self, load: f64) -> bool {
-        let width = self.half_width * load.sqrt();
-        width < self.widest && self.corners.iter().all(|corner| corner.distance >= Wedge::far() * width)
-    }
-
     /// The penetration at a load per width > 0, and its slope.
+    #[inline]
     pub(super) fn at_load(&self, series: &InSeries, load: f64) -> (f64, f64) {
         let rate = series.law.rate;
-        if self.are_far(load) {
-            let rest = self.rest(rate) * load;
+        if load < self.last_far {
+            let rest = self.rest * load;
             let total = series.compliance + series.law.constant - rate * libm::log(load) + rest;
             return (load * total, total - rate + rest);
         }
-        let held = load.min(self.largest());
-        let [total, slope] = self.whole(series, libm::log(held));
+        let held = load.min(self.largest);
+        let [total, slope] = self.whole(series, held);
         (held * total + (load - held) * (total + slope), total + slope)
     }
 
-    /// Load per width and its slope at the penetration w > 0, where without tips they would be `load` and its own.
+    /// Load per width and its slope at the penetration w > 0, where without the tips they would be `load` and its own.
     pub(super) fn load(&self, series: &InSeries, penetration: f64, load: f64) -> (f64, f64) {
-        let largest = self.largest();
+        let Self { rest, last_far, largest, .. } = *self;
         let rate = series.law.rate;
-        if self.are_far(load) {
-            // The rest of Ψ falls as 1/λ², which is in proportion to p: one step of Newton's method.
-            let rest = self.rest(rate);
+        if load < last_far {
+            // The rest of Ψ is small: one step of Newton's method.
             let load = load - load * load * rest / (penetration / load - rate + 2.0 * rest * load);
             return (load, 1.0 / (penetration / load - rate + rest * load));
         }
-        let most = libm::log(largest);
-        let (mut log, wanted) = (libm::log(load).min(most), libm::log(penetration));
+        let mut load = load.min(largest);
+        let wanted = libm::log(penetration);
         for _ in 0..STEPS {
-            let [total, slope] = self.whole(series, log);
-            let step = (wanted - log - libm::log(total)) / (1.0 + slope / total);
-            if log + step >= most {
-                let [total, slope] = self.whole(series, most);
-                let rest = penetration - largest * total;
-                if rest >= 0.0 {
-                    return (largest + rest / (total + slope), 1.0 / (total + slope));
+            let [total, slope] = self.whole(series, load);
+            let step = (wanted - libm::log(load * total)) / (1.0 + slope / total);
+            let next = load * libm::exp(step);
+            if next >= largest {
+                let [total, slope] = self.whole(series, largest);
+                let beyond = penetration - largest * total;
+                if beyond >= 0.0 {
+                    return (largest + beyond / (total + slope), 1.0 / (total + slope));
                 }
             }
-            log = (log + step).min(most);
+            load = next.min(largest);
             if step.abs() <= CLOSE {
                 break;
             }
         }
-        let [total, slope] = self.whole(series, log);
+        let [total, slope] = self.whole(series, load);
         (penetration / total, 1.0 / (total + slope))
     }
 }

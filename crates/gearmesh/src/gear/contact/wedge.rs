@@ -68,16 +68,16 @@ impl Wedge {
         let at_corner = Shape::new(0.0, ratio, &waves);
         let inside = |start: f64| Shape::new(start, ratio, &waves).inside();
         let (reached, roundest) = (at_corner.inside(), inside(ROUNDEST).place);
-        let narrowest = at_corner.from_corner(NARROWEST).place;
+        let narrowest = at_corner.ending_at(NARROWEST).place;
         let value = |place: f64| {
             let found = if place >= reached.place {
                 let miss = |start: f64| inside(start).place - place;
                 let ends = [(0.0, reached.place - place), (ROUNDEST, roundest - place)];
                 inside(crossing(miss, ends[0], ends[1], CLOSE))
             } else {
-                let miss = |end: f64| at_corner.from_corner(end).place - place;
+                let miss = |end: f64| at_corner.ending_at(end).place - place;
                 let ends = [(NARROWEST, narrowest - place), (reached.end, reached.place - place)];
-                at_corner.from_corner(crossing(miss, ends[0], ends[1], CLOSE * NARROWEST))
+                at_corner.ending_at(crossing(miss, ends[0], ends[1], CLOSE * NARROWEST))
             };
             // Above the least gap, which is at the corner where the top is beyond it.
             found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5
@@ -189,7 +189,7 @@ impl Shape {
     }
 
     /// The contact that starts at the corner and ends at `end`, where the pressure is 0.
-    fn from_corner(&self, end: f64) -> Contact {
+    fn ending_at(&self, end: f64) -> Contact {
         // Unknown: the terms, λ, Ψ/k₀ − λ².
         let mut rows = [[0.0; TERMS + 3]; TERMS + 2];
         let known = (1.0 + self.ratio) * libm::log(end);

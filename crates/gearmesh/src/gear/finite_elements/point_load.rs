@@ -42,7 +42,7 @@ impl HalfPlane {
     }
 
     /// Distances along the load and across it, and the square of the distance.
-    fn from_load(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+    fn relative_to_load(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let ([a, b], [n, m]) = (self.at, self.inward);
         let (dx, dy) = (x - a, y - b);
         [dx * n + dy * m, dy * n - dx * m, dx * dx + dy * dy]
@@ -52,7 +52,7 @@ impl HalfPlane {
     #[must_use]
     pub fn displacement(&self, place: [f64; 2]) -> [f64; 2] {
         let ([n, m], nu) = (self.inward, self.poisson_ratio);
-        let [depth, across, square] = self.from_load(place);
+        let [depth, across, square] = self.relative_to_load(place);
         let angle = libm::atan2(across, depth);
         let along = self.scale * ((1.0 + nu) * depth * depth / square - libm::log(square));
         let aside = self.scale * ((1.0 + nu) * depth * across / square - (1.0 - nu) * angle);
@@ -61,7 +61,7 @@ impl HalfPlane {
 
     /// What the field pulls with on a surface, per length, times a vector that is normal to it and points outwards.
     fn traction(&self, [x, y]: [f64; 2], [p, q]: [f64; 2]) -> [f64; 2] {
-        let [depth, _, square] = self.from_load([x, y]);
+        let [depth, _, square] = self.relative_to_load([x, y]);
         let (dx, dy) = (x - self.at[0], y - self.at[1]);
         let size = -2.0 / PI * (depth / square) * ((dx * p + dy * q) / square);
         [size * dx, size * dy]
@@ -99,17 +99,23 @@ impl Block {
         elasticity: &Elasticity,
     ) -> Option<Self> {
         let mut inside = vec![false; elements.len()];
-        members.iter().for_each(|&member| inside[member] = true);
+        for &member in members {
+            inside[member] = true;
+        }
         let (mut within, mut around) = (vec![false; nodes.len()], vec![false; nodes.len()]);
         for (element, inside) in elements.iter().zip(&inside) {
             let found = if *inside { &mut within } else { &mut around };
-            element.iter().for_each(|&node| found[node] = true);
+            for &node in element {
+                found[node] = true;
+            }
         }
         let shared: Vec<bool> = within.iter().zip(&around).map(|(within, around)| *within && *around).collect();
         // The middle of a side is a node of the elements at that side alone.
         let mut sides = vec![0_u8; nodes.len()];
         for &member in members {
-            SIDES.iter().for_each(|side| sides[elements[member][side[1]]] += 1);
+            for [_, middle, _] in SIDES {
+                sides[elements[member][middle]] += 1;
+            }
         }
         let of_member = |&member: &usize| SIDES.map(|side| side.map(|place| elements[member][place]));
         let boundary = members.iter().flat_map(of_member).filter(|side| sides[side[1]] == 1).collect();
@@ -176,7 +182,7 @@ fn pieces(side: &[[f64; 2]; 3], field: &HalfPlane) -> Vec<[f64; 2]> {
     let distance = |s: f64| {
         let shares = edge_shape(s);
         let place = [0, 1].map(|axis| (0..3).map(|k| shares[k] * side[k][axis]).sum::<f64>());
-        field.from_load(place)[2].sqrt()
+        field.relative_to_load(place)[2].sqrt()
     };
     let nearest = nearest(side, field.at);
     let closest = distance(nearest);

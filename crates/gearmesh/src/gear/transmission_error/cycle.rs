@@ -94,9 +94,9 @@ pub struct MeshCycle {
 pub(super) enum Elasticity {
     /// Stiffness of a pair \[N/m\].
     Linear(Graded),
-    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\]; where contact is
+    /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\] and ln β; where contact is
     /// resolved, the teeth's tips.
-    Logarithmic { compliance: Graded, constant: Graded, rate: f64, ends: Option<Ends> },
+    Logarithmic { compliance: Graded, constant: Graded, rates: [f64; 2], ends: Option<Box<Ends>> },
 }
 
 impl Elasticity {
@@ -106,8 +106,10 @@ impl Elasticity {
 
     /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.
     pub(super) fn series(&self, s: f64, own: Option<f64>) -> InSeries<'_> {
-        let Self::Logarithmic { compliance, constant, rate, ends } = self else { return InSeries::NONE };
-        let law = Logarithmic { constant: constant.value(s), rate: *rate };
+        let Self::Logarithmic { compliance, constant, rates: [rate, log_rate], ends } = self else {
+            return InSeries::NONE;
+        };
+        let law = Logarithmic { constant: constant.value(s), rate: *rate, log_rate: *log_rate };
         let series = law.in_series(own.unwrap_or_else(|| compliance.value(s)));
         match ends {
             None => series,
@@ -164,11 +166,12 @@ impl MeshCycle {
             Some(contact) => {
                 let resolved = contact == ContactLaw::Resolved;
                 let new = if resolved { Logarithmic::half_planes } else { Logarithmic::weber };
+                let Logarithmic { rate, log_rate, .. } = law(new, pair.start_of_contact);
                 Elasticity::Logarithmic {
                     compliance: fit(&|s| teeth(s) * face_width),
                     constant: fit(&|s| law(new, s).constant),
-                    rate: law(new, pair.start_of_contact).rate,
-                    ends: resolved.then(|| Ends::new(pair, compliance, &path)),
+                    rates: [rate, log_rate],
+                    ends: resolved.then(|| Box::new(Ends::new(pair, compliance, &path))),
                 }
             }
         };

@@ -33,7 +33,7 @@ impl Ends {
         Self {
             wedges: rates.map(|rate| Wedge::new(rate / bodies.linear())),
             rates,
-            distances: [Side::Pinion, Side::Gear].map(|side| fit(&|s| path.from_corner(side, s))),
+            distances: [Side::Pinion, Side::Gear].map(|side| fit(&|s| path.corner_distance(side, s))),
             half_width: fit(&|s| bodies.half_width(combined_radius(path.radii(s)))),
             module: pair.pinion.specification.module,
             widest: compliance.pinion.contact_depth.value(0.0).min(compliance.gear.contact_depth.value(0.0)),

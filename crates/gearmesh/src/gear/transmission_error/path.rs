@@ -62,7 +62,7 @@ impl Path {
 
     /// How far from the corner of this gear's tip a pair touches, along the flank \[m\]. Negative beyond it: there flanks
     /// that went on would touch, a parabola that stands as far off the corner as they do.
-    pub(super) fn from_corner(&self, side: Side, s: f64) -> f64 {
+    pub(super) fn corner_distance(&self, side: Side, s: f64) -> f64 {
         let [pinion, gear] = self.radii(s);
         let beyond = |corner: Touch| -(2.0 * corner.separation * combined_radius([pinion, gear])).sqrt();
         let along = |tip: f64, here: f64, base: f64| 0.5 * (tip - here) * (tip + here) / base;

@@ -47,7 +47,7 @@ fn by_strips(place: f64, ratio: f64) -> f64 {
     });
     // ∫ ln|x − y| dy and the same with the sum, from the one end to the other.
     let moment = |x: f64| if x == 0.0 { 0.0 } else { x * (libm::log(x.abs()) - 1.0) };
-    let mut loaded = vec![true; STRIPS];
+    let mut loaded = [true; STRIPS];
     loop {
         let strips: Vec<usize> = (0..STRIPS).filter(|&k| loaded[k]).collect();
         let mut rows = vec![[0.0; STRIPS + 2]; strips.len() + 1];
@@ -76,7 +76,9 @@ fn by_strips(place: f64, ratio: f64) -> f64 {
         if pulled.is_empty() {
             return rows[strips.len()][size];
         }
-        pulled.iter().for_each(|&strip| loaded[strip] = false);
+        for strip in pulled {
+            loaded[strip] = false;
+        }
     }
 }
 

@@ -15,6 +15,9 @@ use crate::numeric::quadrature::GaussLegendre;
 
 const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
 
+/// A map of the unit square, and how many elements it has along and across.
+type Patch<'a> = (&'a dyn Fn(f64, f64) -> [f64; 2], [usize; 2]);
+
 /// A body that is its own mirror image, below whose upper half lies the axis y = 0.
 struct Half {
     nodes: Vec<[f64; 2]>,
@@ -23,7 +26,7 @@ struct Half {
 
 impl Half {
     /// Of blocks of elements, each from a map of the unit square and counts along and across.
-    fn new(blocks: &[(&dyn Fn(f64, f64) -> [f64; 2], [usize; 2])]) -> Self {
+    fn new(blocks: &[Patch]) -> Self {
         let (mut nodes, mut elements): (Vec<[f64; 2]>, Vec<[usize; NODES]>) = (Vec::new(), Vec::new());
         let mut known = std::collections::BTreeMap::new();
         for (map, [along, across]) in blocks {
@@ -34,6 +37,7 @@ impl Half {
                         let u = (2 * i + x) as f64 / (2 * along) as f64;
                         let v = (2 * j + y) as f64 / (2 * across) as f64;
                         let place = map(u, v);
+                        #[allow(clippy::cast_possible_truncation)] // places are of the order of 1
                         let key = place.map(|x| (x * 1e8 + 0.3).round() as i64);
                         *known.entry(key).or_insert_with(|| {
                             nodes.push(place);
@@ -72,10 +76,10 @@ impl Half {
             let place = |k: usize| numbers[element[k / 2]][k % 2];
             for (row, values) in matrix.iter().enumerate() {
                 for (column, value) in values.iter().enumerate() {
-                    if let (Some(row), Some(column)) = (place(row), place(column)) {
-                        if row >= column {
-                            entries.add(row, column, *value);
-                        }
+                    if let (Some(row), Some(column)) = (place(row), place(column))
+                        && row >= column
+                    {
+                        entries.add(row, column, *value);
                     }
                 }
             }
@@ -215,7 +219,7 @@ fn the_rest_grows_towards_the_corner_as_a_wedge() {
             across.windows(2).flat_map(|ends| [ends[0], 0.5 * (ends[0] + ends[1])]).chain([1.0]).collect();
         let sizing = Sizing { across: middles, level: 24.0, focus: Some([1e-3, flank.height]) };
         let model = GearModel::new(&gear, &root, Plane::Strain, &sizing).unwrap();
-        let rolls = [0.05, 0.025, 0.0125, 0.00625, 0.003125].map(|c| (tip * tip - 2.0 * c / gear.base_radius).sqrt());
+        let rolls = [0.05, 0.025, 0.0125, 0.00625, 0.003_125].map(|c| (tip * tip - 2.0 * c / gear.base_radius).sqrt());
         let found = model.rests(&rolls, 0, 0).unwrap().own;
         let exact = scale(Plane::Strain) * wedge::softening(0.5 * PI + tip.atan());
         let errors: Vec<f64> =
