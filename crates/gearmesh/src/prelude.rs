@@ -10,7 +10,7 @@ pub use crate::gear::compliance::{Assumptions, ContactLaw, Method, Tabulated};
 pub use crate::gear::contact::{CornerContact, SliceCoupling};
 pub use crate::gear::geometry::root::RootShape;
 pub use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
-pub use crate::gear::material::Material;
+pub use crate::gear::material::{Material, Plane};
 pub use crate::gear::modification::arc::ArcRelief;
 pub use crate::gear::modification::curve::Curve;
 pub use crate::gear::modification::end_relief::{EndRelief, FaceEnd};

@@ -36,10 +36,9 @@ const LEAST: usize = 4;
 const MOST_ELEMENTS: usize = 64;
 /// ν up to which plane strain does not lock.
 const MOST_POISSON: f64 = 0.49;
-/// The order that the error estimate counts on; 2 to 4 are observed.
+/// The order that the error estimate counts on; 2 to 4 are observed, the least near the corner of the tip where contact is
+/// resolved.
 const ORDER: f64 = 1.5;
-/// The same of resolved contact; 2.2 are observed near the corner of the tip, where the error is largest.
-const RESOLVED_ORDER: f64 = 1.75;
 /// The distance from a resolved contact, in modules, at which the surface's displacement is the tooth's: far for any contact,
 /// and so near that what is left for the tooth is positive.
 const LENGTH: f64 = 0.25;
@@ -224,8 +223,7 @@ impl<'a> Task<'a> {
             let coarse = even(across / 2).max(LEAST);
             let (found, mut facts) = self.at(across, work)?;
             let change = difference(&found, &self.at(coarse, work)?.0);
-            let order = if self.resolved { RESOLVED_ORDER } else { ORDER };
-            facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, order) - 1.0);
+            facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
             let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
                 return Ok((found, facts));
