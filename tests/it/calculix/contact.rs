@@ -1,6 +1,6 @@
 //! The approach of two gears in contact: our tables, contact law and equilibrium against whole gears pressed together.
 //!
-//! The contact law takes each tooth for a half space down to its centreline. It is not one, and the pair is 1 to 3 %
+//! Weber's contact law takes each tooth for a half space down to its centreline. It is not one, and the pair is 1 to 3 %
 //! softer for it; the same finite elements tell by how much, and with that everything is met.
 
 use std::env;

@@ -1,9 +1,10 @@
 //! The finite-element method: tooth and gear body as one elastic body, the whole gear, clamped at its bore.
 //!
 //! `finite_elements` gives the influences of unit loads on a flank; here they become the pair's tables. What a load does
-//! to its own tooth is one number, so all of it is in `body`, and bending, shear and compression are zero. It is the
-//! displacement of the centreline along the load line; the contact law adds the approach of the flank, to the depth
-//! `contact_depth`, so nothing is counted twice. Must not know: how it is solved.
+//! to its own tooth is one number, so all of it is in `body`, and bending, shear and compression are zero. With resolved
+//! contact it is the displacement of the loaded point beside that of a half plane; otherwise that of the centreline along
+//! the load line, to which the contact law adds the approach of the flank, over the depth `contact_depth`. Either way
+//! nothing is counted twice. Must not know: how it is solved.
 
 #[cfg(test)]
 mod tests;

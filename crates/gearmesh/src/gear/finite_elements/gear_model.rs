@@ -1,8 +1,8 @@
 //! A gear's teeth under unit loads: what a load on a flank does to its own tooth and to the teeth that follow.
 //!
-//! The own compliance is the displacement of the point Q where the load line crosses the tooth's centreline, which local
-//! flattening does not reach: the contact laws contain the approach of the flank to it. Source of this split: Weber and
-//! Banaschek, 1953. A neighbour's is that of its flank point, along its own load line.
+//! The own compliance is either the displacement of the loaded point less that of a half plane (`point_load`), or that of
+//! the point Q where the load line crosses the tooth's centreline, which local flattening does not reach: the laws of that
+//! split (Weber and Banaschek, 1953) contain the approach of the flank to it. A neighbour's is that of its flank point, along its own load line.
 //! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
 
 use super::MeshError;
