@@ -2,7 +2,8 @@
 //!
 //! The own compliance is either the displacement of the loaded point less that of a half plane (`point_load`), or that of
 //! the point Q where the load line crosses the tooth's centreline, which local flattening does not reach: the laws of that
-//! split (Weber and Banaschek, 1953) contain the approach of the flank to it. A neighbour's is that of its flank point, along its own load line.
+//! split (Weber and Banaschek, 1953) contain the approach of the flank to it. A neighbour's is that of its flank point,
+//! along its own load line.
 //! Dimensionless: times 1/(E b) it is m/N. Must not know: pairs, contact laws.
 
 use super::MeshError;
