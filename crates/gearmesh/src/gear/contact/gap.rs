@@ -8,18 +8,11 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::{Profiles, Section};
-use crate::numeric::extremum::maximum;
+use outline::Outline;
 
-/// Samples of each smooth piece of a profile, which say how deep it can get and whether it bends back.
-const SAMPLES: usize = 8;
-/// Samples of a piece that may be a wave: enough for sixteen humps.
-const WAVE_SAMPLES: usize = 64;
-/// How often a piece may turn that is not cut there: twice is a hump with a valley beside it.
-const MOST_TURNS: usize = 2;
-/// By how much of the largest depth a profile must turn between two samples, so that it is not rounding.
-const TURN: f64 = 1e-9;
-/// Distance of the points from which slopes of a profile are taken, in pieces.
-const STEP: f64 = 1e-3;
+mod convex;
+mod outline;
+
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
 /// Places between two known breaks, as shares of the way, at which the spot of contact is determined: denser towards
@@ -61,6 +54,8 @@ pub struct Gaps<'a> {
     /// The contact lies ahead of the line of action: the gear's flank points before the pinion's flank, and the reverse.
     ways: [Way<'a>; 2],
     modified: bool,
+    /// Whether no profile bends back.
+    is_convex: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -69,27 +64,6 @@ struct Way<'a> {
     facing: Facing,
     point: Outline<'a>,
     flank: Outline<'a>,
-}
-
-/// The depths of one profile against positions that count as those of [`Facing`].
-#[derive(Clone, Debug)]
-struct Outline<'a> {
-    parts: Vec<Section<'a>>,
-    facing: Facing,
-    is_point: bool,
-    /// Where it is not smooth, with both ends, ascending.
-    cuts: Vec<f64>,
-    /// By piece.
-    shapes: Vec<Convexity>,
-    /// Positions, ascending, and the least depth that was sampled from there on.
-    minimum: Vec<(f64, f64)>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Convexity {
-    Zero,
-    Convex,
-    Other,
 }
 
 /// The state of a search: the current point, its smooth piece, and the least gap so far.
@@ -110,7 +84,8 @@ impl<'a> Gaps<'a> {
             Way { side, facing, point: Outline::new(point, facing, true), flank: Outline::new(flank, facing, false) }
         };
         let ways = [way(Side::Gear, gear, pinion), way(Side::Pinion, pinion, gear)];
-        Self { ways, modified: !pinion.is_empty() || !gear.is_empty() }
+        let is_convex = ways[0].point.is_convex() && ways[0].flank.is_convex();
+        Self { ways, modified: !pinion.is_empty() || !gear.is_empty(), is_convex }
     }
 
     /// The gap at a path position; none where a tip corner would have to reach beyond the other tip.
@@ -134,11 +109,18 @@ impl<'a> Gaps<'a> {
                 if !self.modified {
                     return (gap, spot);
                 }
-                return way.search(nominal, before, touch, (gap, spot));
+                return if self.is_convex {
+                    way.descend(nominal, before, touch, (gap, spot))
+                } else {
+                    way.search(nominal, before, touch, (gap, spot))
+                };
             }
         }
         if !self.modified {
             return (0.0, Spot::OnLineOfAction);
+        }
+        if self.is_convex {
+            return self.convex(s);
         }
         let mut minimum = (self.ways[0].depth(s, s), Spot::OnLineOfAction);
         for (way, nominal) in self.ways.iter().zip(positions) {
@@ -163,8 +145,15 @@ impl<'a> Gaps<'a> {
         if !self.modified {
             return known;
         }
-        let mut found = Vec::new();
+        let (start, end) = (facing.start, facing.end);
+        let changes = if self.is_convex { self.convex_changes(&known) } else { None };
+        let inside = changes.is_some();
+        let mut found = changes.unwrap_or_default();
+        found.retain(|s| *s > window.0 && *s < window.1);
         for ends in known.windows(2) {
+            if inside && ends[0] >= start && ends[1] <= end {
+                continue;
+            }
             let places = PROBES.map(|share| ends[0] + share * (ends[1] - ends[0]));
             let spots = places.map(|place| self.touching(place).1);
             for probe in 1..places.len() {
@@ -206,6 +195,14 @@ impl Way<'_> {
         self.point.least_from(point) + self.flank.least_from(flank)
     }
 
+    /// Slope and bend of the gap against the distance from the nominal point, on these pieces.
+    fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> (f64, f64) {
+        let point = self.point.rates(nominal + before, pieces[0]);
+        let flank = self.flank.rates(touch.curvature, pieces[1]);
+        let slope = touch.slope + point.0 + flank.0 * touch.rate;
+        (slope, touch.bend + point.1 + flank.1 * touch.rate * touch.rate + flank.0 * touch.rate_slope)
+    }
+
     /// The least of `minimum` and of what lies farther than `before` from the nominal point.
     fn search(&self, nominal: f64, before: f64, touch: Touch, minimum: (f64, Spot)) -> (f64, Spot) {
         let pieces = [self.point.piece(nominal + before), self.flank.piece(touch.curvature)];
@@ -220,19 +217,22 @@ impl Search<'_, '_> {
         while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.minimum.0 {
             let [point, flank] = self.pieces;
             let (next, at_next, ended) = self.piece_end(before, &touch);
-            let shapes = [way.point.shapes[point], way.flank.shapes[flank]];
-            if shapes != [Convexity::Zero; 2] {
-                let parts = if shapes.contains(&Convexity::Other) { 4 } else { 1 };
+            if !(way.point.is_zero(point) && way.flank.is_zero(flank)) {
+                let parts = if way.point.bends_back(point) || way.flank.bends_back(flank) { 4 } else { 1 };
                 self.descend((before, touch), (next, at_next), parts);
             }
             (before, touch) = (next, at_next);
             self.offer(before, &touch, if ended[1] { PieceLocation::EndOfFlank } else { PieceLocation::EndOfPoint });
             self.pieces = [point + usize::from(ended[0]), flank + usize::from(ended[1])];
-            if self.pieces[0] >= way.point.shapes.len() || self.pieces[1] >= way.flank.shapes.len() {
+            if self.pieces[0] >= way.point.pieces() || self.pieces[1] >= way.flank.pieces() {
                 break;
             }
         }
         self.minimum
+    }
+
+    fn pull(&self, before: f64, touch: &Touch) -> (f64, f64) {
+        self.way.pull(self.nominal, before, touch, self.pieces)
     }
 
     fn touch(&self, before: f64) -> Touch {
@@ -319,120 +319,6 @@ impl Search<'_, '_> {
             }
             at = next;
         }
-    }
-
-    /// Slope and bend of the gap against the distance from the nominal point, on the present piece.
-    fn pull(&self, before: f64, touch: &Touch) -> (f64, f64) {
-        let point = self.way.point.rates(self.nominal + before, self.pieces[0]);
-        let flank = self.way.flank.rates(touch.curvature, self.pieces[1]);
-        (touch.slope + point.0 + flank.0 * touch.rate, touch.bend + point.1 + flank.1 * touch.rate * touch.rate)
-    }
-}
-
-impl<'a> Outline<'a> {
-    fn new(parts: &[Section<'a>], facing: Facing, is_point: bool) -> Self {
-        let mut outline = Self {
-            parts: parts.to_vec(),
-            facing,
-            is_point,
-            cuts: vec![facing.start, facing.end],
-            shapes: Vec::new(),
-            minimum: Vec::new(),
-        };
-        for roll in parts.iter().flat_map(Section::breaks).copied() {
-            let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
-            if position > facing.start && position < facing.end {
-                outline.cuts.push(position);
-            }
-        }
-        outline.cuts.sort_by(f64::total_cmp);
-        for index in 1..outline.cuts.len() {
-            let turns = outline.turns([outline.cuts[index - 1], outline.cuts[index]]);
-            outline.cuts.extend(turns);
-        }
-        outline.cuts.sort_by(f64::total_cmp);
-        // Nearer than this two cuts are one.
-        let closest = 1e-9 * (facing.end - facing.start);
-        outline.cuts.dedup_by(|next, kept| *next - *kept <= closest);
-        if let Some(last) = outline.cuts.last_mut() {
-            *last = facing.end;
-        }
-        let mut samples = Vec::new();
-        for ends in outline.cuts.windows(2) {
-            let place = |index: usize| ends[0] + (ends[1] - ends[0]) * index as f64 / SAMPLES as f64;
-            let depths: Vec<f64> = (0..=SAMPLES).map(|index| outline.depth(place(index))).collect();
-            let largest = depths.iter().fold(0.0_f64, |maximum, depth| maximum.max(depth.abs()));
-            let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -1e-12 * largest);
-            outline.shapes.push(match (largest > 0.0, bends_back) {
-                (false, _) => Convexity::Zero,
-                (true, false) => Convexity::Convex,
-                (true, true) => Convexity::Other,
-            });
-            samples.extend((0..=SAMPLES).map(place).zip(depths.iter().copied()));
-            // A valley between samples, without which a search towards it would end before it began.
-            for index in 1..SAMPLES {
-                if depths[index] < depths[index - 1] && depths[index] <= depths[index + 1] {
-                    let (from, guess, to) = (place(index - 1), place(index), place(index + 1));
-                    let (at, height) = maximum(|x| -outline.depth(x), from, guess, to, 1e-7 * (to - from));
-                    samples.push((at, -height));
-                }
-            }
-        }
-        samples.sort_by(|one, two| one.0.total_cmp(&two.0));
-        let mut minimum = f64::INFINITY;
-        for sample in samples.iter_mut().rev() {
-            minimum = minimum.min(sample.1);
-            sample.1 = minimum;
-        }
-        outline.minimum = samples;
-        outline
-    }
-
-    /// About where a smooth piece turns, if it does so more often than a search in a few parts can follow.
-    fn turns(&self, [from, to]: [f64; 2]) -> Vec<f64> {
-        let place = |index: usize| from + (to - from) * index as f64 / WAVE_SAMPLES as f64;
-        let depths: [f64; WAVE_SAMPLES + 1] = std::array::from_fn(|index| self.depth(place(index)));
-        let least = TURN * depths.iter().fold(0.0_f64, |largest, depth| largest.max(depth.abs()));
-        let rises = |index: usize| depths[index] - depths[index - 1];
-        let (mut turns, mut last) = (Vec::new(), 0.0_f64);
-        for index in (1..=WAVE_SAMPLES).filter(|index| rises(*index).abs() > least) {
-            if last * rises(index) < 0.0 {
-                turns.push(place(index - 1));
-            }
-            last = rises(index);
-        }
-        if turns.len() > MOST_TURNS { turns } else { Vec::new() }
-    }
-
-    fn depth(&self, position: f64) -> f64 {
-        let roll = if self.is_point { self.facing.point_roll(position) } else { self.facing.flank_roll(position) };
-        self.parts.iter().map(|part| part.depth(roll)).sum()
-    }
-
-    fn least_from(&self, position: f64) -> f64 {
-        if self.parts.is_empty() {
-            return 0.0;
-        }
-        let next = self.minimum.partition_point(|sample| sample.0 < position);
-        self.depth(position).min(self.minimum.get(next).map_or(f64::INFINITY, |sample| sample.1))
-    }
-
-    fn piece(&self, position: f64) -> usize {
-        let cuts = &self.cuts[1..self.cuts.len() - 1];
-        cuts.partition_point(|cut| *cut <= position)
-    }
-
-    /// First and second derivative of the depth, of the parabola through three points of the piece.
-    fn rates(&self, position: f64, piece: usize) -> (f64, f64) {
-        if self.shapes[piece] == Convexity::Zero {
-            return (0.0, 0.0);
-        }
-        let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);
-        let step = STEP * (upper - lower);
-        let middle = position.clamp(lower + step, upper - step);
-        let [before, at, after] = [middle - step, middle, middle + step].map(|place| self.depth(place));
-        let bend = (before - 2.0 * at + after) / (step * step);
-        (0.5 * (after - before) / step + bend * (position - middle), bend)
     }
 }
 

@@ -41,6 +41,8 @@ pub struct Touch {
     pub curvature: f64,
     /// df/de.
     pub rate: f64,
+    /// d²f/de² \[1/m\].
+    pub rate_slope: f64,
 }
 
 impl Facing {
@@ -121,12 +123,34 @@ impl Facing {
         // A flank that is met at its base circle has no curvature there; then the rates are only very large.
         let curved = curvature.max(1e-12 * flank_radius);
         let over = roll * cosine_sum / curved;
+        let rate = roll * ((y + flank_radius) * cosine - x * sine) / curved;
+        let (forward, sideways) = ((sine + roll * cosine) / point_radius, (roll * sine - cosine) / point_radius);
+        let turned = x * forward + (y + flank_radius) * sideways;
         Touch {
             separation: along + flank_radius * defect(turn) - bulge - y * sine_turn,
             slope: -roll * sine_sum,
             bend: sine_sum / point_radius + roll * cosine_sum * (1.0 / point_radius + over),
             curvature,
-            rate: roll * ((y + flank_radius) * cosine - x * sine) / curved,
+            rate,
+            rate_slope: (roll * roll - rate * rate + turned) / curved,
+        }
+    }
+
+    /// The nominal point of contact.
+    #[must_use]
+    pub fn on_line(&self, nominal: f64) -> Touch {
+        let roll = self.point_roll(nominal);
+        let curvature = nominal.max(1e-12 * self.flank_radius);
+        let over = roll / curvature;
+        let rate = over * self.flank_radius;
+        let turned = (nominal * roll - self.flank_radius) / self.point_radius;
+        Touch {
+            separation: 0.0,
+            slope: 0.0,
+            bend: roll * (1.0 / self.point_radius + over),
+            curvature: nominal,
+            rate,
+            rate_slope: (roll * roll - rate * rate + turned) / curvature,
         }
     }
 
@@ -241,6 +265,27 @@ mod tests {
             assert!((rate(|touch| touch.separation) / middle.slope - 1.0).abs() < 1e-7);
             assert!((rate(|touch| touch.slope) / middle.bend - 1.0).abs() < 1e-6);
             assert!((rate(|touch| touch.curvature) / middle.rate - 1.0).abs() < 1e-6);
+            assert!((rate(|touch| touch.rate) / middle.rate_slope - 1.0).abs() < 1e-6);
+        }
+    }
+
+    /// Tier: second method; the closed form where e is 0.
+    #[test]
+    fn the_nominal_point_is_a_point_like_any_other() {
+        for side in [Side::Gear, Side::Pinion] {
+            let facing = Facing::new(&pair(), side);
+            for nominal in [facing.start, 8e-3, facing.end] {
+                let (short, long) = (facing.on_line(nominal), facing.touch(nominal, 0.0));
+                for value in [
+                    |touch: &Touch| touch.curvature,
+                    |touch: &Touch| touch.bend,
+                    |touch: &Touch| touch.rate,
+                    |touch: &Touch| touch.rate_slope,
+                ] {
+                    assert!((value(&short) / value(&long) - 1.0).abs() < 1e-13, "{short:?} {long:?}");
+                }
+                assert!([short, long].iter().all(|touch| touch.separation == 0.0 && touch.slope == 0.0));
+            }
         }
     }
 

@@ -124,6 +124,29 @@ fn the_gap_is_the_least_of_a_fine_scan() {
     }
 }
 
+/// Tier: second method; the search that needs no convexity, at places as well as among breaks.
+#[test]
+fn convex_profiles_give_what_the_thorough_search_finds() {
+    let pair = pair();
+    let window = (pair.start_of_contact - 3e-3, pair.end_of_contact + 3e-3);
+    for (index, design) in designs(&pair).iter().enumerate() {
+        let profiles = design.profiles(0.0);
+        let quick = Gaps::new(&pair, &profiles);
+        // A power below 1 bends back.
+        assert_eq!(quick.is_convex, index != 5, "{index}");
+        let thorough = Gaps { is_convex: false, ..quick.clone() };
+        for s in positions(&pair, 400) {
+            let (one, two) = (quick.at(s).unwrap(), thorough.at(s).unwrap());
+            assert!((one - two).abs() <= 2e-15 + 1e-9 * two, "{index} {s}: {one:e} {two:e}");
+        }
+        let (one, two) = (quick.breaks(window), thorough.breaks(window));
+        for s in &two {
+            let nearest = one.iter().map(|other| (s - other).abs()).fold(f64::INFINITY, f64::min);
+            assert!(nearest <= 1e-9, "{index}: {s} is {nearest:e} from the next of {one:?}");
+        }
+    }
+}
+
 /// Waves over the flank, smooth all along it.
 #[derive(Debug)]
 struct Waves {

@@ -1,0 +1,185 @@
+//! The gap where no profile bends back: the only place where it no longer falls is the least, and is known beforehand.
+//!
+//! S and convex depths add up to a convex function of the distance from the line of action. Its slope there says towards
+//! which side the flanks come nearer, and two steps of Newton's method lead to the place. Where the slope of a relief has
+//! a step the flanks touch at that kink over a stretch of the path, whose two ends are roots of one equation each. Must
+//! not know: profiles that bend back.
+
+use super::outline::Outline;
+use super::{Gaps, PieceLocation, Spot, Way};
+use crate::gear::contact::separation::Touch;
+use crate::numeric::crossing::bracketed;
+
+/// What is left of the search may be off by this share of the separation.
+const CLOSE: f64 = 1e-9;
+/// The most steps of a search for the least gap; one or two are taken.
+const STEPS: usize = 8;
+/// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
+/// integrated is of third order in it.
+const SECANTS: usize = 12;
+const PLACE: f64 = 1e-9;
+
+/// By how much of its largest slope a profile may bend back at a kink: slopes are those of parabolas, and the gap is off by
+/// the square of it.
+const KINK: f64 = 1e-5;
+
+/// A place was not found within the steps that a search has.
+#[derive(Clone, Copy, Debug)]
+struct NotFound;
+
+impl Gaps<'_> {
+    /// The least gap inside the path of contact.
+    pub(super) fn convex(&self, s: f64) -> (f64, Spot) {
+        for way in &self.ways {
+            let nominal = way.facing.turned(way.side, s);
+            let start = (way.depth(nominal, nominal), Spot::OnLineOfAction);
+            let found = way.descend(nominal, 0.0, way.facing.on_line(nominal), start);
+            if found.1 != Spot::OnLineOfAction {
+                return found;
+            }
+        }
+        (self.ways[0].depth(s, s), Spot::OnLineOfAction)
+    }
+
+    /// Path positions inside the path of contact `known` among its breaks, where the flanks begin and cease to touch at a
+    /// kink, at a tip or on the line of action; none where the search for one fails.
+    pub(super) fn convex_changes(&self, known: &[f64]) -> Option<Vec<f64>> {
+        let mut found: Vec<f64> = known.windows(2).filter_map(|ends| self.turn([ends[0], ends[1]])).collect();
+        for way in &self.ways {
+            for (outline, is_point) in [(&way.point, true), (&way.flank, false)] {
+                for kink in 1..outline.cuts.len() {
+                    // Where it comes to the kink on the piece before it, and where it goes on to the next one.
+                    for piece in [kink - 1, kink] {
+                        if piece < outline.pieces() {
+                            found.extend(way.change(outline.cuts[kink], piece, is_point).ok()?);
+                        }
+                    }
+                }
+            }
+        }
+        Some(found)
+    }
+
+    /// Between two breaks inside the path of contact: where the depth is least, and the flanks touch on the line of action.
+    fn turn(&self, [from, to]: [f64; 2]) -> Option<f64> {
+        let way = &self.ways[0];
+        let pieces = way.pieces(0.5 * (from + to), &way.facing.on_line(0.5 * (from + to)));
+        let slope = |s: f64| way.pull(s, 0.0, &way.facing.on_line(s), pieces).0;
+        let inside = from >= way.facing.start && to <= way.facing.end;
+        if inside && slope(from) < 0.0 && slope(to) > 0.0 { bracketed(from, to, slope) } else { None }
+    }
+}
+
+impl Way<'_> {
+    /// The smooth pieces on which both flanks are.
+    fn pieces(&self, point: f64, touch: &Touch) -> [usize; 2] {
+        [self.point.piece(point), self.flank.piece(touch.curvature)]
+    }
+
+    /// The least gap from a place on; `start` if it does not fall there.
+    pub(super) fn descend(&self, nominal: f64, from: f64, touch: Touch, start: (f64, Spot)) -> (f64, Spot) {
+        let pieces = self.pieces(nominal + from, &touch);
+        let rates = self.pull(nominal, from, &touch, pieces);
+        if rates.0 >= 0.0 {
+            return start;
+        }
+        self.fall(nominal, from, pieces, rates).unwrap_or_else(|| self.search(nominal, from, touch, start))
+    }
+
+    /// The least gap on these pieces, from a place on where it falls; none where it falls to their end.
+    fn fall(
+        &self,
+        nominal: f64,
+        from: f64,
+        pieces: [usize; 2],
+        (mut slope, mut bend): (f64, f64),
+    ) -> Option<(f64, Spot)> {
+        let [last, wall] = [self.point.cuts[pieces[0] + 1] - nominal, self.flank.cuts[pieces[1] + 1]];
+        let mut at = from;
+        for _ in 0..STEPS {
+            let step = -slope / bend;
+            at += step;
+            if !(bend > 0.0 && at >= from && at <= last) {
+                return None;
+            }
+            let touch = self.facing.touch(nominal + at, at);
+            let before = bend;
+            (slope, bend) = self.pull(nominal, at, &touch, pieces);
+            let left = -slope / bend;
+            if !(touch.curvature <= wall && touch.curvature + touch.rate * left <= wall && at + left <= last) {
+                return None;
+            }
+            // Of the Taylor series to the second order, the rest by how the second derivative has changed.
+            let rest = (bend - before) / step * left * left * left;
+            if rest.abs() <= 6.0 * CLOSE * touch.separation {
+                let gap = touch.separation + self.depth(nominal + at, touch.curvature) + 0.5 * slope * left;
+                return Some((gap, Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside }));
+            }
+        }
+        None
+    }
+
+    /// The path position from which on, or up to which, the flanks touch at the kink of one of them, if they move
+    /// towards it this way on that piece; nothing where they do not.
+    fn change(&self, kink: f64, piece: usize, is_point: bool) -> Result<Option<f64>, NotFound> {
+        // The slope of the gap at the kink when this is the nominal position, which vanishes where it ceases to fall.
+        let slope = |nominal: f64| {
+            let (before, touch) = if is_point {
+                (kink - nominal, self.facing.touch(kink, kink - nominal))
+            } else {
+                self.meet(nominal, kink).ok_or(NotFound)?
+            };
+            let mut pieces = self.pieces(nominal + before, &touch);
+            pieces[usize::from(!is_point)] = piece;
+            Ok(self.pull(nominal, before, &touch, pieces))
+        };
+        let inside = |nominal: f64| nominal > self.facing.start && nominal < self.facing.end;
+        let (mut at, mut value) = (kink, slope(kink)?);
+        if value.0 >= 0.0 {
+            return Ok(None);
+        }
+        let mut next = kink + value.0 / value.1 * if is_point { 1.0 } else { self.facing.on_line(kink).rate };
+        for _ in 0..SECANTS {
+            if !inside(next) {
+                // It is beyond the end of the path.
+                return Ok(None);
+            }
+            let there = slope(next)?;
+            let step = there.0 * (next - at) / (there.0 - value.0);
+            (at, value) = (next, there);
+            next -= step;
+            if step.abs() <= PLACE * self.facing.end {
+                return Ok(inside(next).then(|| self.facing.turned(self.side, next)));
+            }
+        }
+        Err(NotFound)
+    }
+
+    /// How far from the line of action the flank is met where its radius of curvature is `wall`.
+    fn meet(&self, nominal: f64, wall: f64) -> Option<(f64, Touch)> {
+        let mut touch = self.facing.on_line(nominal);
+        let mut before = 0.0;
+        for _ in 0..STEPS {
+            // Half the square of the curvature is almost straight in the distance.
+            let step = (wall * wall - touch.curvature * touch.curvature) / (2.0 * touch.curvature * touch.rate);
+            before += step;
+            touch = self.facing.touch(nominal + before, before);
+            if step.abs() <= PLACE * self.facing.end {
+                return Some((before, touch));
+            }
+        }
+        None
+    }
+}
+
+impl Outline<'_> {
+    /// Whether the profile bends back nowhere, at a kink neither.
+    pub(super) fn is_convex(&self) -> bool {
+        let smooth = (0..self.pieces()).all(|piece| !self.bends_back(piece));
+        // At both ends of every piece.
+        let slopes: Vec<[f64; 2]> =
+            (0..self.pieces()).map(|piece| [piece, piece + 1].map(|end| self.rates(self.cuts[end], piece).0)).collect();
+        let largest = slopes.iter().flatten().fold(0.0_f64, |largest, slope| largest.max(slope.abs()));
+        smooth && slopes.windows(2).all(|pieces| pieces[1][0] - pieces[0][1] >= -KINK * largest)
+    }
+}
