@@ -135,6 +135,30 @@ fn torques_vanish_and_become_absurd() {
     }
 }
 
+/// Tier: closed form; how wide Hertz' contact is in the middle of the path, where its radius is the largest.
+#[test]
+fn a_contact_too_wide_for_half_planes_is_said() {
+    let half_width = |torque: f64| {
+        let (angle, modulus) = (20_f64.to_radians(), 206e9 / (2.0 * 0.91));
+        let [one, two] = [24.0, 36.0].map(|teeth| 1.5e-3 * teeth * angle.sin());
+        let load = torque / (36e-3 * angle.cos()) / 20e-3;
+        1e3 * (4.0 * load * (one * two / (one + two)) / (PI * modulus)).sqrt()
+    };
+    let material = "youngs_modulus: 206 GPa, poisson_ratio: 0.3";
+    for (torque, told) in [(2500.0, false), (10_000.0, true)] {
+        let written = format!("{torque} N m");
+        let case = Case { material, method: FINITE_ELEMENT, contact: "resolved", torque: &written, ..PLAIN };
+        let ran = case.ran();
+        let found = ran["te"].warnings.iter().find_map(|warning| warning.split_once("the flanks touch "));
+        assert_eq!(found.is_some(), told, "{torque}: {:?}", ran["te"].warnings);
+        if let Some((_, text)) = found {
+            assert!(text.contains("up to 0.750000 mm"), "{text}");
+            let half: f64 = text.split(' ').next().unwrap().parse().unwrap();
+            assert!(half < 1.05 * half_width(torque) && half > 0.95 * half_width(torque), "{half} {torque}");
+        }
+    }
+}
+
 /// Tier: closed form; on a bore that all but vanishes the gear turns as a ring, r_b²/(4πGb)(1/r_bore² − 1/r_f²), by every
 /// method that has a body. At the root circle there is no body left.
 #[test]

@@ -116,6 +116,8 @@ struct Answer {
     settings: Settings,
     error: f64,
     seconds: f64,
+    /// As [`LoadCase::widest_contact`] has it.
+    widest: Option<[f64; 2]>,
 }
 
 impl Ste {
@@ -150,8 +152,9 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
+        let widest = loading.widest_contact(&points);
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds }, points))
+        Ok((Answer { summary, settings, error, seconds, widest }, points))
     }
 
     /// Of approaches that no linear model is for, and of accuracies that were not reached.
@@ -165,6 +168,15 @@ impl Ste {
                      model",
                     largest * 1e3,
                     module * 1e3,
+                ));
+            }
+            if let Some([half, limit]) = answer.widest.filter(|[half, limit]| half > limit) {
+                (context.warn)(format!(
+                    "design `{name}` at {torque} N m: the flanks touch {:.6} mm to either side, but are half planes up to \
+                     {:.6} mm only; beyond that the law of contact goes on along its tangent, and the numbers are those of \
+                     no tooth",
+                    half * 1e3,
+                    limit * 1e3,
                 ));
             }
             match self.accuracy {
