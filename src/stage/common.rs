@@ -93,7 +93,7 @@ pub struct Slices {
 /// Where flanks touch and what holds them.
 #[derive(Clone, Copy, Debug, Declared)]
 pub struct Contact {
-    /// Where flanks can touch: on the line of action, or also off it.
+    /// Whether tip corners can touch before A and after E.
     #[declared(default = "none")]
     pub corner_contact: CornerContact,
     /// Whether slices across the face hold each other.

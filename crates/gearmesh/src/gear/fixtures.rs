@@ -4,7 +4,7 @@
 
 use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use super::contact::flattening::Bodies;
-use super::geometry::{Gear, GearPair, Rack, Specification};
+use super::geometry::{Gear, GearPair, Rack, Side, Specification};
 use super::material::{Material, Plane};
 use super::modification::{Design, family};
 use crate::numeric::chebyshev::Series;
@@ -47,6 +47,41 @@ pub(crate) fn standard(teeth: u32, module: f64, bore_ratio: f64) -> Specificatio
         bore_radius: module * (0.5 * f64::from(teeth) - 1.25) / bore_ratio,
         material: STEEL,
     }
+}
+
+/// The least gap by a way of its own, of profiles that bend back nowhere: points of each flank by their polar coordinates
+/// about the other gear's centre, and their best place by thirds. Good to 1e-16 m.
+pub(crate) fn least_gap(pair: &GearPair, design: &Design, s: f64) -> f64 {
+    least_gap_of(pair, |side, roll| design.depth(side, roll), s)
+}
+
+/// The same of any depths by gear and roll angle.
+pub(crate) fn least_gap_of(pair: &GearPair, depth: impl Fn(Side, f64) -> f64, s: f64) -> f64 {
+    let length = pair.tangent_length;
+    let ways = [(Side::Gear, s, pair.end_of_contact), (Side::Pinion, length - s, length - pair.start_of_contact)];
+    let of = |(point, nominal, end): (Side, f64, f64)| {
+        let (own, other) = (pair.side(point), pair.side(point.other()));
+        let gap = |before: f64| {
+            let arc = length - nominal - before;
+            let (sine, cosine) = (before / own.base_radius).sin_cos();
+            let x = length - arc * cosine - own.base_radius * sine;
+            let y = own.base_radius + other.base_radius + arc * sine - own.base_radius * cosine;
+            let curvature = (x * x + (y - other.base_radius) * (y + other.base_radius)).sqrt();
+            if before > end - nominal || curvature > end {
+                return f64::INFINITY;
+            }
+            let (radius, roll) = (other.base_radius, curvature / other.base_radius);
+            let behind = radius * (x.atan2(y) - roll.atan()) + curvature - nominal;
+            behind + depth(point, arc / own.base_radius) + depth(point.other(), roll)
+        };
+        let (mut low, mut high) = (0.0, end - nominal);
+        for _ in 0..80 {
+            let [one, two] = [low + (high - low) / 3.0, high - (high - low) / 3.0];
+            if gap(one) > gap(two) { low = one } else { high = two }
+        }
+        gap(low).min(gap(0.0))
+    };
+    of(ways[0]).min(of(ways[1]))
 }
 
 /// 19/48, 20 and 18 mm wide.

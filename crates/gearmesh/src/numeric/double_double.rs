@@ -106,7 +106,7 @@ impl Double {
     #[must_use]
     pub fn sine_cosine(self) -> (Self, Self) {
         let quarter = Self::PI.half();
-        let turns = (self / quarter).high.round();
+        let turns = (self.high / quarter.high).round();
         let rest = self - quarter * turns;
         let small = rest.times_power_of_two(0.015_625);
         let square = small.square();

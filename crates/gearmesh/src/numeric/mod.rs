@@ -16,5 +16,6 @@ pub mod layer;
 pub mod lobatto;
 pub mod many_springs;
 pub mod panels;
+pub mod piecewise;
 pub mod quadrature;
 pub mod surface;

@@ -7,12 +7,19 @@
 
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
-use crate::gear::modification::section::{Profiles, Section};
+use crate::gear::modification::section::Profiles;
+use crate::numeric::piecewise::{self, Piecewise, Tolerance};
 use outline::Outline;
 
 mod convex;
 mod outline;
 
+/// How well quick copies follow, over the largest value on a piece: complementarity holds to as much. And over the largest of
+/// all, to which depths are rounded.
+const ACCURACY: [f64; 2] = [1e-14, 1e-15];
+/// How near to where it vanishes, but for rounding, a gap has no copy: over the smooth stretch, and over the largest gap.
+const NEAR: f64 = 0.01;
+const VANISHES: f64 = 1e-12;
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
 /// Places between two known breaks, as shares of the way, at which the spot of contact is determined: denser towards
@@ -78,14 +85,29 @@ impl<'a> Gaps<'a> {
     /// `profiles` of one section across the face.
     #[must_use]
     pub fn new(pair: &GearPair, profiles: &Profiles<'a>) -> Self {
-        let [pinion, gear] = profiles;
-        let way = |side: Side, point: &[Section<'a>], flank: &[Section<'a>]| {
-            let facing = Facing::new(pair, side);
-            Way { side, facing, point: Outline::new(point, facing, true), flank: Outline::new(flank, facing, false) }
-        };
-        let ways = [way(Side::Gear, gear, pinion), way(Side::Pinion, pinion, gear)];
-        let is_convex = ways[0].point.is_convex() && ways[0].flank.is_convex();
+        let gaps = Self::of(pair, profiles);
+        if gaps.is_convex { gaps } else { gaps.thorough() }
+    }
+
+    fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
+        let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
+        let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
+        let is_convex = point.is_convex() && flank.is_convex();
+        let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
+        let ways = [
+            Way { side: Side::Gear, facing: facings[0], point, flank },
+            Way { side: Side::Pinion, facing: facings[1], point: point_too, flank: flank_too },
+        ];
         Self { ways, modified: !pinion.is_empty() || !gear.is_empty(), is_convex }
+    }
+
+    /// For a search that needs no convexity.
+    fn thorough(mut self) -> Self {
+        for way in &mut self.ways {
+            way.point.sample_minimum();
+            way.flank.sample_minimum();
+        }
+        Self { is_convex: false, ..self }
     }
 
     /// The gap at a path position; none where a tip corner would have to reach beyond the other tip.
@@ -96,8 +118,9 @@ impl<'a> Gaps<'a> {
     }
 
     fn touching(&self, s: f64) -> (f64, Spot) {
-        let positions = [0, 1].map(|way| self.ways[way].facing.turned(self.ways[way].side, s));
-        for (way, nominal) in self.ways.iter().zip(positions) {
+        let nominal = |way: &Way| way.facing.turned(way.side, s);
+        for way in &self.ways {
+            let nominal = nominal(way);
             let before = way.facing.start - nominal;
             if before > 0.0 {
                 let touch = way.facing.corner(before);
@@ -110,7 +133,7 @@ impl<'a> Gaps<'a> {
                     return (gap, spot);
                 }
                 return if self.is_convex {
-                    way.descend(nominal, before, touch, (gap, spot))
+                    way.descend(nominal, before, touch).unwrap_or((gap, spot))
                 } else {
                     way.search(nominal, before, touch, (gap, spot))
                 };
@@ -122,8 +145,9 @@ impl<'a> Gaps<'a> {
         if self.is_convex {
             return self.convex(s);
         }
-        let mut minimum = (self.ways[0].depth(s, s), Spot::OnLineOfAction);
-        for (way, nominal) in self.ways.iter().zip(positions) {
+        let mut minimum = (self.on_line(s), Spot::OnLineOfAction);
+        for way in &self.ways {
+            let nominal = nominal(way);
             // The first check of the search, before anything is computed.
             if way.least_from(nominal, nominal) < minimum.0 {
                 minimum = way.search(nominal, 0.0, way.facing.touch(nominal, 0.0), minimum);
@@ -166,12 +190,82 @@ impl<'a> Gaps<'a> {
         }
         known.extend(found);
         known.sort_by(f64::total_cmp);
+        known.dedup_by(|next, kept| *next - *kept <= self.closest());
         known
+    }
+
+    /// A quick copy of the gap between the first and the last of its [`Gaps::breaks`].
+    #[must_use]
+    pub fn copied(&self, rule: &piecewise::Rule, breaks: &[f64]) -> Piecewise {
+        let gap = |s: f64| self.at(s).unwrap_or(f64::NAN);
+        let largest = breaks.iter().map(|s| gap(*s)).fold(0.0, f64::max);
+        let tolerance = Tolerance { relative: ACCURACY[0], absolute: ACCURACY[1] * largest };
+        let mut copy = Piecewise::from(breaks.first().copied().unwrap_or(0.0));
+        for ends in breaks.windows(2) {
+            // The spot is the same all over the stretch.
+            let middle = 0.5 * (ends[0] + ends[1]);
+            let spot = self.touching(middle).1;
+            if spot == Spot::OnLineOfAction && self.is_unmodified(middle) {
+                // Not what rounding makes of its ends: deflections may be smaller than that.
+                copy.push(rule, ends[1], tolerance, |_| 0.0, |_| 0.0);
+                continue;
+            }
+            // Where a gap vanishes it is left as it is: what the copy is rounded to may be larger than a deflection.
+            let vanishing = NEAR * (ends[1] - ends[0]);
+            let [before, after] =
+                [ends[0], ends[1]].map(|end| if gap(end) <= VANISHES * largest { vanishing } else { 0.0 });
+            copy.skip(ends[0] + before);
+            copy.push(rule, ends[1] - after, tolerance, |s| self.at_spot(s, spot).unwrap_or_else(|| gap(s)), gap);
+            copy.skip(ends[1]);
+        }
+        copy
+    }
+
+    /// The depths at the nominal point of contact.
+    fn on_line(&self, s: f64) -> f64 {
+        if self.is_unmodified(s) { 0.0 } else { self.ways[0].depth(s, s) }
+    }
+
+    /// Whether nothing is taken off around the nominal point of contact, whatever rounding makes of where reliefs start.
+    fn is_unmodified(&self, s: f64) -> bool {
+        let Way { point, flank, .. } = &self.ways[0];
+        point.is_zero(point.piece(s)) && flank.is_zero(flank.piece(s))
+    }
+
+    /// The gap where the flanks touch at a known spot, if that saves a search.
+    fn at_spot(&self, s: f64, spot: Spot) -> Option<f64> {
+        let nominal = |way: &Way| way.facing.turned(way.side, s);
+        match spot {
+            Spot::OnLineOfAction => Some(self.on_line(s)),
+            Spot::Corner { .. } => {
+                let way = self.ways.iter().find(|way| way.facing.start > nominal(way))?;
+                let touch = way.facing.corner(way.facing.start - nominal(way));
+                Some(touch.separation + way.depth(way.facing.start, touch.curvature))
+            }
+            Spot::Beside { side, pieces, place: PieceLocation::EndOfPoint } => {
+                let way = self.ways.iter().find(|way| way.side == side)?;
+                let cut = way.point.cuts[pieces[0] + 1];
+                let touch = way.facing.touch(cut, cut - nominal(way));
+                Some(touch.separation + way.point.depth_at_end(pieces[0]) + way.flank.depth(touch.curvature))
+            }
+            Spot::Beside { side, pieces, place: PieceLocation::EndOfFlank } => {
+                let way = self.ways.iter().find(|way| way.side == side)?;
+                let wall = way.flank.cuts[pieces[1] + 1];
+                let (before, touch) = way.meet(nominal(way), wall)?;
+                Some(touch.separation + way.point.depth(nominal(way) + before) + way.flank.depth_at_end(pieces[1]))
+            }
+            Spot::Beside { .. } | Spot::Nowhere => None,
+        }
+    }
+
+    /// Places nearer than this are one.
+    fn closest(&self) -> f64 {
+        1e-11 * (self.ways[0].facing.end - self.ways[0].facing.start)
     }
 
     /// Where the spot is no longer the one at the lower end, and which it is then.
     fn change(&self, (mut lower, spot): (f64, Spot), mut upper: f64) -> (f64, Spot) {
-        let closest = 1e-11 * (self.ways[0].facing.end - self.ways[0].facing.start);
+        let closest = self.closest();
         let mut next = self.touching(upper).1;
         while upper - lower > closest {
             let middle = 0.5 * (lower + upper);
@@ -195,12 +289,43 @@ impl Way<'_> {
         self.point.least_from(point) + self.flank.least_from(flank)
     }
 
-    /// Slope and bend of the gap against the distance from the nominal point, on these pieces.
-    fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> (f64, f64) {
+    /// The gap, its slope and its bend against the distance from the nominal point, on these pieces.
+    fn pull(&self, nominal: f64, before: f64, touch: &Touch, pieces: [usize; 2]) -> [f64; 3] {
         let point = self.point.rates(nominal + before, pieces[0]);
         let flank = self.flank.rates(touch.curvature, pieces[1]);
-        let slope = touch.slope + point.0 + flank.0 * touch.rate;
-        (slope, touch.bend + point.1 + flank.1 * touch.rate * touch.rate + flank.0 * touch.rate_slope)
+        [
+            touch.separation + point[0] + flank[0],
+            touch.slope + point[1] + flank[1] * touch.rate,
+            touch.bend + point[2] + flank[2] * touch.rate * touch.rate + flank[1] * touch.rate_slope,
+        ]
+    }
+
+    /// The end of the smooth pieces: where the profile of the point or that of the flank has its next cut.
+    fn piece_end(
+        &self,
+        nominal: f64,
+        before: f64,
+        touch: &Touch,
+        [point, flank]: [usize; 2],
+    ) -> (f64, Touch, [bool; 2]) {
+        let (cut, wall) = (self.point.cuts[point + 1], self.flank.cuts[flank + 1]);
+        let last = (cut - nominal).max(before);
+        let at_last = self.facing.touch(cut, last);
+        if at_last.curvature <= wall {
+            return (last, at_last, [true, false]);
+        }
+        // Half the square of the curvature is almost straight in the distance.
+        let (mut at, mut there) = (before, *touch);
+        for _ in 0..30 {
+            let step = (wall * wall - there.curvature * there.curvature) / (2.0 * there.curvature * there.rate);
+            at = (at + step).clamp(before, last);
+            there = self.facing.touch(nominal + at, at);
+            if step.abs() <= 1e-13 * self.facing.end {
+                break;
+            }
+        }
+        there.curvature = wall;
+        (at, there, [false, true])
     }
 
     /// The least of `minimum` and of what lies farther than `before` from the nominal point.
@@ -216,7 +341,7 @@ impl Search<'_, '_> {
         // The separation only grows: no farther than it alone would be too large.
         while touch.separation + way.least_from(self.nominal + before, touch.curvature) < self.minimum.0 {
             let [point, flank] = self.pieces;
-            let (next, at_next, ended) = self.piece_end(before, &touch);
+            let (next, at_next, ended) = way.piece_end(self.nominal, before, &touch, self.pieces);
             if !(way.point.is_zero(point) && way.flank.is_zero(flank)) {
                 let parts = if way.point.bends_back(point) || way.flank.bends_back(flank) { 4 } else { 1 };
                 self.descend((before, touch), (next, at_next), parts);
@@ -232,7 +357,8 @@ impl Search<'_, '_> {
     }
 
     fn pull(&self, before: f64, touch: &Touch) -> (f64, f64) {
-        self.way.pull(self.nominal, before, touch, self.pieces)
+        let [_, slope, bend] = self.way.pull(self.nominal, before, touch, self.pieces);
+        (slope, bend)
     }
 
     fn touch(&self, before: f64) -> Touch {
@@ -244,29 +370,6 @@ impl Search<'_, '_> {
         if gap < self.minimum.0 {
             self.minimum = (gap, Spot::Beside { side: self.way.side, pieces: self.pieces, place });
         }
-    }
-
-    /// The end of the smooth piece: where the profile of the point or that of the flank has its next cut.
-    fn piece_end(&self, before: f64, touch: &Touch) -> (f64, Touch, [bool; 2]) {
-        let [point, flank] = self.pieces;
-        let (cut, wall) = (self.way.point.cuts[point + 1], self.way.flank.cuts[flank + 1]);
-        let last = (cut - self.nominal).max(before);
-        let at_last = self.way.facing.touch(cut, last);
-        if at_last.curvature <= wall {
-            return (last, at_last, [true, false]);
-        }
-        // Half the square of the curvature is almost straight in the distance.
-        let (mut at, mut there) = (before, *touch);
-        for _ in 0..30 {
-            let step = (wall * wall - there.curvature * there.curvature) / (2.0 * there.curvature * there.rate);
-            at = (at + step).clamp(before, last);
-            there = self.touch(at);
-            if step.abs() <= 1e-13 * self.way.facing.end {
-                break;
-            }
-        }
-        there.curvature = wall;
-        (at, there, [false, true])
     }
 
     /// Offers the minima between two places of one smooth piece, searched in equal parts.

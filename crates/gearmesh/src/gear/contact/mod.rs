@@ -16,10 +16,10 @@ use declare::Words;
 /// Where flanks can touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
 pub enum CornerContact {
-    /// flanks touch on the line of action only, from A to E
+    /// flanks touch from A to E only, where they come nearest to each other
     #[default]
     None,
-    /// they touch where they come nearest to each other, tip corners before A and after E included
+    /// tip corners touch too, before A and after E
     Exact,
 }
 

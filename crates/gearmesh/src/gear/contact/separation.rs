@@ -102,9 +102,8 @@ impl Facing {
         // Line of action along x from the flank's tangent point; the flank's centre is r_b below, the point's above.
         let roll = (tangent_length - point) / point_radius;
         let angle = -before / point_radius;
-        let (sine, cosine) = libm::sincos(angle);
-        let half = libm::sin(0.5 * angle);
-        let lift = 2.0 * half * half;
+        let (sine, lift) = sine_and_lift(angle);
+        let cosine = 1.0 - lift;
         // Of second order: how far the point is from the nominal contact along the line of action.
         let along = point_radius * (roll * lift - defect(angle));
         let (x, y) = (point - before + along, point_radius * (lift - roll * sine));
@@ -116,7 +115,6 @@ impl Facing {
         let (up, across) = (-(excess + flank_roll * y), y + flank_radius + x * flank_roll);
         let length = flank_radius * (1.0 + flank_roll * flank_roll);
         let (sine_turn, cosine_turn) = (up / length, across / length);
-        let turn = libm::atan2(up, across);
         let bulge = x * sine_turn * sine_turn / (1.0 + cosine_turn);
         let sine_sum = sine * cosine_turn + cosine * sine_turn;
         let cosine_sum = cosine * cosine_turn - sine * sine_turn;
@@ -127,7 +125,7 @@ impl Facing {
         let (forward, sideways) = ((sine + roll * cosine) / point_radius, (roll * sine - cosine) / point_radius);
         let turned = x * forward + (y + flank_radius) * sideways;
         Touch {
-            separation: along + flank_radius * defect(turn) - bulge - y * sine_turn,
+            separation: along + flank_radius * arc_excess(sine_turn, cosine_turn) - bulge - y * sine_turn,
             slope: -roll * sine_sum,
             bend: sine_sum / point_radius + roll * cosine_sum * (1.0 / point_radius + over),
             curvature,
@@ -172,14 +170,43 @@ impl Facing {
     }
 }
 
+/// Angles up to which the series below are good to rounding; flanks touch within it.
+const SMALL: f64 = 0.1;
+
+/// sin t and 1 − cos t.
+fn sine_and_lift(angle: f64) -> (f64, f64) {
+    if angle.abs() > SMALL {
+        let half = libm::sin(0.5 * angle);
+        return (libm::sin(angle), 2.0 * half * half);
+    }
+    let q = angle * angle;
+    (angle - defect(angle), 0.5 * q * nested(q, [-1.0 / 12.0, -1.0 / 30.0, -1.0 / 56.0, -1.0 / 90.0, -1.0 / 132.0]))
+}
+
 /// t − sin t.
 fn defect(angle: f64) -> f64 {
     if angle.abs() > 0.5 {
         return angle - libm::sin(angle);
     }
     let q = angle * angle;
-    let series = 1.0 - q / 72.0 * (1.0 - q / 110.0 * (1.0 - q / 156.0 * (1.0 - q / 210.0)));
-    angle * q / 6.0 * (1.0 - q / 20.0 * (1.0 - q / 42.0 * series))
+    let ratios = [-1.0 / 20.0, -1.0 / 42.0, -1.0 / 72.0, -1.0 / 110.0, -1.0 / 156.0, -1.0 / 210.0];
+    (1.0 / 6.0) * angle * q * nested(q, ratios)
+}
+
+/// The same of the angle with this sine and cosine.
+fn arc_excess(sine: f64, cosine: f64) -> f64 {
+    if sine.abs() > SMALL || cosine < 0.0 {
+        return defect(libm::atan2(sine, cosine));
+    }
+    // Of the arc sine.
+    let q = sine * sine;
+    let ratios = [9.0 / 20.0, 25.0 / 42.0, 49.0 / 72.0, 81.0 / 110.0, 121.0 / 156.0, 169.0 / 210.0, 225.0 / 272.0];
+    (1.0 / 6.0) * sine * q * nested(q, ratios)
+}
+
+/// A power series in q as the ratios of its coefficients: 1 + r q (1 + r′ q (…)).
+fn nested<const N: usize>(q: f64, ratios: [f64; N]) -> f64 {
+    ratios.iter().rev().fold(1.0, |sum, ratio| 1.0 + ratio * q * sum)
 }
 
 #[cfg(test)]
@@ -229,6 +256,25 @@ mod tests {
             let t = 0.05 * f64::from(share);
             assert!((defect(t) / (t - t.sin()) - 1.0).abs() < 1e-13 * (0.5 / t).powi(2), "at {t}");
         }
+    }
+
+    /// Tier: closed form; on both sides of where the series end, as long as a difference keeps its digits.
+    #[test]
+    fn the_series_of_small_angles_are_those_of_the_functions() {
+        for share in 1..=24 {
+            let t = 0.005 * f64::from(share);
+            for angle in [t, -t] {
+                let (sine, cosine) = angle.sin_cos();
+                let (found, lift) = sine_and_lift(angle);
+                assert!((found / sine - 1.0).abs() < 4e-16, "sine of {angle}");
+                let half = (0.5 * angle).sin();
+                assert!((lift / (2.0 * half * half) - 1.0).abs() < 1e-15, "1 − cosine of {angle}");
+                let excess = arc_excess(sine, cosine) / defect(angle) - 1.0;
+                assert!(excess.abs() < 4e-15, "arc excess of {angle}: {excess:e}");
+            }
+        }
+        let far = arc_excess(3.0_f64.sin(), 3.0_f64.cos());
+        assert!((far / (3.0 - 3.0_f64.sin()) - 1.0).abs() < 1e-14, "beyond a right angle: {far}");
     }
 
     /// S = x²/2ρ with x = u e the tangential offset, and the first correction vanishes with e.

@@ -1,6 +1,6 @@
 //! The conditions that an equilibrium must meet, recomputed from the tables it was solved from.
 //!
-//! Gaps come from the design, compliances from the tables of the teeth, the passage through a crowned face from its
+//! Gaps come from the search for the least one, compliances from the tables of the teeth, the passage through a crowned face from its
 //! closed form; the solver's own quick copies are not used. Must not know: how an equilibrium is found.
 
 use super::{Built, Case, Finding, ROUNDINGS, TABLE};
@@ -8,7 +8,6 @@ use crate::gear::compliance::ContactLaw;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
 use crate::gear::contact::gap::Gaps;
-use crate::gear::geometry::Side;
 use crate::gear::transmission_error::curve::Wanted;
 use crate::gear::transmission_error::load_case::{Equilibrium, LoadCase};
 use crate::numeric::complementarity::MOST_SPRINGS;
@@ -42,8 +41,7 @@ struct Pairs<'a> {
 
 fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
     let Built { pair, design, compliance, cycle } = built;
-    let exact = cycle.settings.corner_contact == CornerContact::Exact;
-    let corners = exact.then(|| Gaps::new(pair, &design.profiles(0.0)));
+    let gaps = Gaps::new(pair, &design.profiles(0.0));
     let bodies = Bodies::of(pair, compliance.plane);
     let s = |index: usize| cycle.path_position(position, index);
     let rolls = |index: usize| cycle.rolls(s(index));
@@ -56,9 +54,8 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
     };
     for j in 0..count {
         let [pinion, gear] = rolls(j);
-        let depth = || design.depth(Side::Pinion, pinion) + design.depth(Side::Gear, gear);
         // Pairs whose tips would pass each other are out of reach.
-        found.gaps[j] = corners.as_ref().map_or_else(|| Some(depth()), |gaps| gaps.at(s(j))).unwrap_or(FAR);
+        found.gaps[j] = gaps.at(s(j)).unwrap_or(FAR);
         if found.gaps[j] < FAR {
             found.largest_gap = found.largest_gap.max(found.gaps[j]);
         }

@@ -226,7 +226,7 @@ impl Case {
         } else if assumptions.coupled {
             Some("the second evaluation adds pairs; coupling comes from a Fourier series of the ring")
         } else if settings.corner_contact != CornerContact::None {
-            Some("the second evaluation stays on the line of action")
+            Some("the second evaluation stays between A and E")
         } else if self.crowning != 0.0 && settings.slice_coupling != SliceCoupling::None {
             Some("the slices of the second evaluation do not hold each other")
         } else if self.crowning != 0.0 && assumptions.contact != ContactLaw::Linear {

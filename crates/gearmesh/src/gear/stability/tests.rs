@@ -66,7 +66,7 @@ fn the_second_evaluation_has_converged() {
         (case.relief, case.relief_length, case.crowning, case.torque) = (relief, 4e-3, crowning, torque);
         let mut inputs = case.inputs();
         inputs.load_dependent = load_dependent;
-        let (coarse, fine) = (evaluate(&inputs, &Rule::new(20, 24)), evaluate(&inputs, &Rule::new(32, 34)));
+        let (coarse, fine) = (evaluate(&inputs, &Rule::new(24, 28)), evaluate(&inputs, &Rule::new(32, 34)));
         for ((name, coarse), fine) in NAMES.iter().zip(coarse).zip(fine) {
             let difference = ((coarse - fine) / fine).high.abs();
             eprintln!("{name}: {:e} {difference:e}", fine.high);

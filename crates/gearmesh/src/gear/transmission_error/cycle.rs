@@ -22,6 +22,7 @@ use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
+use crate::numeric::piecewise;
 use declare::error::Failure;
 use declare::work::Work;
 
@@ -39,14 +40,14 @@ pub struct Settings {
     /// Slices on each smooth stretch of the face that is in contact, where there is no closed form; where slices are
     /// coupled, equal ones on the whole face.
     pub slices: usize,
-    /// Whether flanks also touch off the line of action, before A and after E.
+    /// Whether tip corners also touch, before A and after E.
     pub corner_contact: CornerContact,
     /// Whether a loaded slice of the face takes its neighbours along.
     pub slice_coupling: SliceCoupling,
 }
 
 impl Default for Settings {
-    /// 64 positions, 17 slices, contact on the line of action only, slices that do not hold each other.
+    /// 64 positions, 17 slices, contact from A to E only, slices that do not hold each other.
     fn default() -> Self {
         Self { positions: 64, slices: 17, corner_contact: CornerContact::None, slice_coupling: SliceCoupling::None }
     }
@@ -85,6 +86,8 @@ pub struct MeshCycle {
     coupling: Vec<Graded>,
     pub(super) rows: SpanRule,
     pub(super) slices: Rule,
+    /// Of quick copies of gaps.
+    pub(super) copies: piecewise::Rule,
     /// Counted by every load case of this cycle and of those sampled otherwise.
     pub(super) work: Arc<Total>,
 }
@@ -213,6 +216,7 @@ impl MeshCycle {
             coupling,
             rows,
             slices,
+            copies: piecewise::Rule::new(),
             work,
         })
     }

@@ -7,11 +7,11 @@ use super::cycle::MeshCycle;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::gap::Gaps;
-use crate::gear::geometry::GearPair;
 use crate::gear::modification::Design;
-use crate::gear::modification::section::{Profiles, Section};
+use crate::numeric::piecewise::Piecewise;
 
 /// The flanks of a design.
+#[derive(Clone)]
 pub(super) struct Flanks<'a> {
     pub(super) cycle: &'a MeshCycle,
     /// The deviation across the face, the same at every position; of a surface, that where contact starts.
@@ -25,14 +25,16 @@ pub(super) struct Flanks<'a> {
 }
 
 /// A section across the face.
+#[derive(Clone)]
 struct FaceSection<'a> {
     /// Of the width.
     share: f64,
     /// What the leads of both gears take off \[m\].
     lead: f64,
-    profiles: Profiles<'a>,
-    /// With corner contact.
+    /// None where flanks touch all over the path, without a gap.
     gaps: Option<Gaps<'a>>,
+    /// Quick copies of them.
+    copies: Piecewise,
 }
 
 impl<'a> Flanks<'a> {
@@ -40,8 +42,9 @@ impl<'a> Flanks<'a> {
         let corners = cycle.settings.corner_contact == CornerContact::Exact;
         let section = |share: f64, z: f64, lead: f64| {
             let profiles = design.profiles(z);
-            let gaps = corners.then(|| Gaps::new(&cycle.pair, &profiles));
-            FaceSection { share, lead, profiles, gaps }
+            let can_be_apart = corners || profiles.iter().any(|parts| !parts.is_empty());
+            let gaps = can_be_apart.then(|| Gaps::new(&cycle.pair, &profiles));
+            FaceSection { share, lead, gaps, copies: Piecewise::default() }
         };
         let middle = section(1.0, 0.0, 0.0);
         if !design.varies_over_surface() {
@@ -76,22 +79,21 @@ impl<'a> Flanks<'a> {
         if self.is_surface { 0.0 } else { self.face.offset }
     }
 
-    /// The gap at a path position: on the line of action; with corner contact, where the flanks come nearest, and none where
-    /// they are too far apart for that.
+    /// The gap at a path position, where the flanks come nearest; none where they are too far apart for that.
     #[inline]
     pub(super) fn gap(&self, s: f64) -> Option<f64> {
-        if self.is_surface { self.least_gap(s) } else { self.middle.gap(&self.cycle.pair, s) }
+        if self.is_surface { self.least_gap(s) } else { self.middle.gap(s) }
     }
 
     /// Out of the way of what most designs need.
     #[cold]
     fn least_gap(&self, s: f64) -> Option<f64> {
-        self.sections.iter().filter_map(|section| section.deviation(&self.cycle.pair, s)).reduce(f64::min)
+        self.sections.iter().filter_map(|section| section.deviation(s)).reduce(f64::min)
     }
 
     /// The face of a surface at a path position, above its gap there.
     pub(super) fn face_at(&self, s: f64) -> Face<'a> {
-        Face::of_slices(self.deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
+        Face::of_slices(deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
     }
 
     /// The mean deviation above the gap at a path position.
@@ -103,7 +105,7 @@ impl<'a> Flanks<'a> {
     /// The deviations of a surface within each of `count` strips, at a path position.
     pub(super) fn strips_at(&self, s: f64, count: usize) -> impl Iterator<Item = Face<'a>> {
         self.sections.chunks(self.sections.len() / count).map(move |sections| {
-            let mut slices = self.deviations(sections, s);
+            let mut slices = deviations(sections, s);
             for slice in &mut slices {
                 slice.0 *= count as f64;
             }
@@ -112,38 +114,35 @@ impl<'a> Flanks<'a> {
         })
     }
 
-    fn deviations(&self, sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
-        let of = |section: &FaceSection| (section.share, section.deviation(&self.cycle.pair, s).unwrap_or(0.0));
-        sections.iter().map(of).collect()
-    }
-
-    /// Cycle positions at which the gap is not smooth, ascending; with corner contact, from places inside `window`.
-    pub(super) fn breaks(&self, window: Option<(f64, f64)>) -> Vec<f64> {
+    /// Makes quick copies of the gaps between two path positions. Returns the cycle positions at which they are not smooth,
+    /// ascending.
+    pub(super) fn follow(&mut self, window: (f64, f64)) -> Vec<f64> {
         let pair = &self.cycle.pair;
-        let mut breaks: Vec<f64> = Vec::new();
         let fold = |s: f64| {
             let pitches = (s - pair.start_of_contact) / pair.base_pitch;
             (pitches - pitches.floor()) * pair.base_pitch
         };
-        let sections = if self.is_surface { &self.sections[..] } else { std::slice::from_ref(&self.middle) };
+        let mut folded: Vec<f64> = Vec::new();
+        let sections = if self.is_surface { &mut self.sections[..] } else { std::slice::from_mut(&mut self.middle) };
         for section in sections {
-            if let (Some(gaps), Some(window)) = (&section.gaps, window) {
-                breaks.extend(gaps.breaks(window).into_iter().map(fold));
-                continue;
+            if let Some(gaps) = &section.gaps {
+                let breaks = gaps.breaks(window);
+                section.copies = gaps.copied(&self.cycle.copies, &breaks);
+                folded.extend(breaks.into_iter().map(fold));
             }
-            let [pinion, gear] = &section.profiles;
-            let of_pinion = pinion.iter().flat_map(Section::breaks).map(|roll| roll * pair.pinion.base_radius);
-            let of_gear =
-                gear.iter().flat_map(Section::breaks).map(|roll| pair.tangent_length - roll * pair.gear.base_radius);
-            let inside = |s: &f64| *s > pair.start_of_contact && *s < pair.end_of_contact;
-            breaks.extend(of_pinion.chain(of_gear).filter(inside).map(fold));
         }
-        breaks.sort_by(f64::total_cmp);
+        folded.sort_by(f64::total_cmp);
         if self.is_surface {
-            breaks.dedup();
+            folded.dedup();
         }
-        breaks
+        folded
     }
+}
+
+/// Of each section, with its share of the width.
+fn deviations(sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
+    let of = |section: &FaceSection| (section.share, section.deviation(s).unwrap_or(0.0));
+    sections.iter().map(of).collect()
 }
 
 /// The strips into which the face is cut where slices hold each other \[m\]; of an even face those of one half.
@@ -156,18 +155,12 @@ pub(super) fn strips(cycle: &MeshCycle, even: bool) -> Vec<[f64; 2]> {
 
 impl FaceSection<'_> {
     #[inline]
-    fn gap(&self, pair: &GearPair, s: f64) -> Option<f64> {
-        if let Some(gaps) = &self.gaps {
-            return gaps.at(s);
-        }
-        let [pinion, gear] = &self.profiles;
-        let [on_pinion, on_gear] = [s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius];
-        let pinion = pinion.iter().map(|part| part.depth(on_pinion)).sum::<f64>();
-        Some(pinion + gear.iter().map(|part| part.depth(on_gear)).sum::<f64>())
+    fn gap(&self, s: f64) -> Option<f64> {
+        self.gaps.as_ref().map_or(Some(0.0), |gaps| self.copies.value(s).or_else(|| gaps.at(s)))
     }
 
     /// With what the leads take off.
-    fn deviation(&self, pair: &GearPair, s: f64) -> Option<f64> {
-        self.gap(pair, s).map(|gap| gap + self.lead)
+    fn deviation(&self, s: f64) -> Option<f64> {
+        self.gap(s).map(|gap| gap + self.lead)
     }
 }

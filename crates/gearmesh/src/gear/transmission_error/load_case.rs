@@ -65,6 +65,11 @@ enum Touching {
     },
 }
 
+/// How closely the outermost places that can touch are found, over their distance from the path: what is looked at farther
+/// out costs time, and gaps there are large beside those that matter.
+const NARROW: f64 = 0.125;
+const MOST_HALVINGS: usize = 60;
+
 /// The penetration of a pair that is out of reach \[m\]: far from any contact.
 const OUT_OF_REACH: f64 = -1.0;
 
@@ -126,13 +131,13 @@ impl<'a> LoadCase<'a> {
             breaks: Arc::default(),
             refines,
         };
-        let mut window = None;
+        let mut window = (cycle.pair.start_of_contact, cycle.pair.end_of_contact);
         if cycle.settings.corner_contact == CornerContact::Exact {
             let corners = load_case.corners();
-            (load_case.touching, window) =
-                (Touching::Anywhere { window: corners.0, limit: corners.1 }, Some(corners.0));
+            window = corners.0;
+            load_case.touching = Touching::Anywhere { window, limit: corners.1 };
         }
-        load_case.breaks = load_case.flanks.breaks(window).into();
+        load_case.breaks = Arc::make_mut(&mut load_case.flanks).follow(window).into();
         load_case
     }
 
@@ -150,7 +155,10 @@ impl<'a> LoadCase<'a> {
         let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s) + flanks.gap(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
-            for _ in 0..8 {
+            for _ in 0..MOST_HALVINGS {
+                if (far - near).abs() <= NARROW * (near - from).abs() {
+                    break;
+                }
                 let middle = 0.5 * (near + far);
                 if flanks.gap(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
             }
@@ -201,8 +209,7 @@ impl<'a> LoadCase<'a> {
         Self { force: 0.0, regime: Regime::Unloaded, levels: Vec::new(), refines: false, ..self.clone() }
     }
 
-    /// The gap on the line of action; with corner contact, where the flanks come nearest, and none where they are
-    /// too far apart.
+    /// The gap, where the flanks come nearest; with corner contact none where they are too far apart.
     #[must_use]
     pub fn gap(&self, s: f64) -> Option<f64> {
         match self.touching {

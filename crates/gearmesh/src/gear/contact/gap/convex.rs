@@ -5,23 +5,18 @@
 //! a step the flanks touch at that kink over a stretch of the path, whose two ends are roots of one equation each. Must
 //! not know: profiles that bend back.
 
-use super::outline::Outline;
 use super::{Gaps, PieceLocation, Spot, Way};
 use crate::gear::contact::separation::Touch;
 use crate::numeric::crossing::bracketed;
 
 /// What is left of the search may be off by this share of the separation.
-const CLOSE: f64 = 1e-9;
+const CLOSE: f64 = 1e-12;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
 /// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
 /// integrated is of third order in it.
 const SECANTS: usize = 12;
 const PLACE: f64 = 1e-9;
-
-/// By how much of its largest slope a profile may bend back at a kink: slopes are those of parabolas, and the gap is off by
-/// the square of it.
-const KINK: f64 = 1e-5;
 
 /// A place was not found within the steps that a search has.
 #[derive(Clone, Copy, Debug)]
@@ -30,15 +25,11 @@ struct NotFound;
 impl Gaps<'_> {
     /// The least gap inside the path of contact.
     pub(super) fn convex(&self, s: f64) -> (f64, Spot) {
-        for way in &self.ways {
+        let beside = self.ways.iter().find_map(|way| {
             let nominal = way.facing.turned(way.side, s);
-            let start = (way.depth(nominal, nominal), Spot::OnLineOfAction);
-            let found = way.descend(nominal, 0.0, way.facing.on_line(nominal), start);
-            if found.1 != Spot::OnLineOfAction {
-                return found;
-            }
-        }
-        (self.ways[0].depth(s, s), Spot::OnLineOfAction)
+            way.descend(nominal, 0.0, way.facing.on_line(nominal))
+        });
+        beside.unwrap_or_else(|| (self.on_line(s), Spot::OnLineOfAction))
     }
 
     /// Path positions inside the path of contact `known` among its breaks, where the flanks begin and cease to touch at a
@@ -64,7 +55,7 @@ impl Gaps<'_> {
     fn turn(&self, [from, to]: [f64; 2]) -> Option<f64> {
         let way = &self.ways[0];
         let pieces = way.pieces(0.5 * (from + to), &way.facing.on_line(0.5 * (from + to)));
-        let slope = |s: f64| way.pull(s, 0.0, &way.facing.on_line(s), pieces).0;
+        let slope = |s: f64| way.pull(s, 0.0, &way.facing.on_line(s), pieces)[1];
         let inside = from >= way.facing.start && to <= way.facing.end;
         if inside && slope(from) < 0.0 && slope(to) > 0.0 { bracketed(from, to, slope) } else { None }
     }
@@ -76,14 +67,41 @@ impl Way<'_> {
         [self.point.piece(point), self.flank.piece(touch.curvature)]
     }
 
-    /// The least gap from a place on; `start` if it does not fall there.
-    pub(super) fn descend(&self, nominal: f64, from: f64, touch: Touch, start: (f64, Spot)) -> (f64, Spot) {
-        let pieces = self.pieces(nominal + from, &touch);
-        let rates = self.pull(nominal, from, &touch, pieces);
-        if rates.0 >= 0.0 {
-            return start;
+    /// The least gap from a place on; none if it does not fall there.
+    pub(super) fn descend(&self, nominal: f64, mut from: f64, mut touch: Touch) -> Option<(f64, Spot)> {
+        let mut pieces = self.pieces(nominal + from, &touch);
+        let mut best = None;
+        loop {
+            let rates = self.pull(nominal, from, &touch, pieces);
+            if rates[1] >= 0.0 {
+                return best;
+            }
+            if let Some(found) = self.fall(nominal, from, pieces, rates) {
+                return Some(found);
+            }
+            let (end, at_end, ended) = self.piece_end(nominal, from, &touch, pieces);
+            if self.pull(nominal, end, &at_end, pieces)[1] > 0.0 {
+                return Some(self.between(nominal, [from, end], pieces));
+            }
+            let (gap, place) = if ended[1] {
+                (self.point.depth(nominal + end) + self.flank.depth_at_end(pieces[1]), PieceLocation::EndOfFlank)
+            } else {
+                (self.point.depth_at_end(pieces[0]) + self.flank.depth(at_end.curvature), PieceLocation::EndOfPoint)
+            };
+            best = Some((at_end.separation + gap, Spot::Beside { side: self.side, pieces, place }));
+            pieces = [0, 1].map(|of| pieces[of] + usize::from(ended[of]));
+            if pieces[0] >= self.point.pieces() || pieces[1] >= self.flank.pieces() {
+                return best;
+            }
+            (from, touch) = (end, at_end);
         }
-        self.fall(nominal, from, pieces, rates).unwrap_or_else(|| self.search(nominal, from, touch, start))
+    }
+
+    /// The least gap on these pieces between a place where it falls and one where it rises.
+    fn between(&self, nominal: f64, [from, to]: [f64; 2], pieces: [usize; 2]) -> (f64, Spot) {
+        let rates = |before: f64| self.pull(nominal, before, &self.facing.touch(nominal + before, before), pieces);
+        let at = bracketed(from, to, |before| rates(before)[1]).unwrap_or(to);
+        (rates(at)[0], Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside })
     }
 
     /// The least gap on these pieces, from a place on where it falls; none where it falls to their end.
@@ -92,7 +110,7 @@ impl Way<'_> {
         nominal: f64,
         from: f64,
         pieces: [usize; 2],
-        (mut slope, mut bend): (f64, f64),
+        [_, mut slope, mut bend]: [f64; 3],
     ) -> Option<(f64, Spot)> {
         let [last, wall] = [self.point.cuts[pieces[0] + 1] - nominal, self.flank.cuts[pieces[1] + 1]];
         let mut at = from;
@@ -103,17 +121,20 @@ impl Way<'_> {
                 return None;
             }
             let touch = self.facing.touch(nominal + at, at);
-            let before = bend;
-            (slope, bend) = self.pull(nominal, at, &touch, pieces);
+            if touch.curvature > wall {
+                return None;
+            }
+            let (before, gap);
+            (before, [gap, slope, bend]) = (bend, self.pull(nominal, at, &touch, pieces));
             let left = -slope / bend;
-            if !(touch.curvature <= wall && touch.curvature + touch.rate * left <= wall && at + left <= last) {
+            if touch.curvature + touch.rate * left > wall || at + left > last {
                 return None;
             }
             // Of the Taylor series to the second order, the rest by how the second derivative has changed.
             let rest = (bend - before) / step * left * left * left;
             if rest.abs() <= 6.0 * CLOSE * touch.separation {
-                let gap = touch.separation + self.depth(nominal + at, touch.curvature) + 0.5 * slope * left;
-                return Some((gap, Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside }));
+                let place = PieceLocation::Inside;
+                return Some((gap + 0.5 * slope * left, Spot::Beside { side: self.side, pieces, place }));
             }
         }
         None
@@ -131,7 +152,8 @@ impl Way<'_> {
             };
             let mut pieces = self.pieces(nominal + before, &touch);
             pieces[usize::from(!is_point)] = piece;
-            Ok(self.pull(nominal, before, &touch, pieces))
+            let [_, slope, bend] = self.pull(nominal, before, &touch, pieces);
+            Ok((slope, bend))
         };
         let inside = |nominal: f64| nominal > self.facing.start && nominal < self.facing.end;
         let (mut at, mut value) = (kink, slope(kink)?);
@@ -156,7 +178,7 @@ impl Way<'_> {
     }
 
     /// How far from the line of action the flank is met where its radius of curvature is `wall`.
-    fn meet(&self, nominal: f64, wall: f64) -> Option<(f64, Touch)> {
+    pub(super) fn meet(&self, nominal: f64, wall: f64) -> Option<(f64, Touch)> {
         let mut touch = self.facing.on_line(nominal);
         let mut before = 0.0;
         for _ in 0..STEPS {
@@ -169,17 +191,5 @@ impl Way<'_> {
             }
         }
         None
-    }
-}
-
-impl Outline<'_> {
-    /// Whether the profile bends back nowhere, at a kink neither.
-    pub(super) fn is_convex(&self) -> bool {
-        let smooth = (0..self.pieces()).all(|piece| !self.bends_back(piece));
-        // At both ends of every piece.
-        let slopes: Vec<[f64; 2]> =
-            (0..self.pieces()).map(|piece| [piece, piece + 1].map(|end| self.rates(self.cuts[end], piece).0)).collect();
-        let largest = slopes.iter().flatten().fold(0.0_f64, |largest, slope| largest.max(slope.abs()));
-        smooth && slopes.windows(2).all(|pieces| pieces[1][0] - pieces[0][1] >= -KINK * largest)
     }
 }

@@ -6,14 +6,19 @@ use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::extremum::maximum;
 
-/// Samples of each smooth piece of a profile, which say how deep it can get and whether it bends back.
-const SAMPLES: usize = 8;
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
+/// Samples of a piece of a wave.
+const SAMPLES: usize = 8;
 /// How often a piece may turn that is not cut there: twice is a hump with a valley beside it.
 const MOST_TURNS: usize = 2;
 /// By how much of the largest depth a profile must turn between two samples, so that it is not rounding.
 const TURN: f64 = 1e-9;
+/// By how much of the largest depth it must bend back between three samples.
+const BEND: f64 = 1e-12;
+/// By how much of its largest slope a profile may bend back at a kink: slopes are those of parabolas, and the gap is off by
+/// the square of it.
+const KINK: f64 = 1e-5;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;
 
@@ -27,7 +32,7 @@ pub(super) struct Outline<'a> {
     pub(super) cuts: Vec<f64>,
     /// By piece.
     shapes: Vec<Convexity>,
-    /// Positions, ascending, and the least depth that was sampled from there on.
+    /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
 }
 
@@ -36,6 +41,18 @@ enum Convexity {
     Zero,
     Convex,
     Other,
+}
+
+impl Convexity {
+    fn of(depths: &[f64]) -> Self {
+        // At the ends rounding may have put a sample on the next piece.
+        if depths[1..depths.len() - 1].iter().all(|depth| *depth == 0.0) {
+            return Self::Zero;
+        }
+        let largest = largest(depths);
+        let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -BEND * largest);
+        if bends_back { Self::Other } else { Self::Convex }
+    }
 }
 
 impl<'a> Outline<'a> {
@@ -55,34 +72,63 @@ impl<'a> Outline<'a> {
             }
         }
         outline.cuts.sort_by(f64::total_cmp);
-        for index in 1..outline.cuts.len() {
-            let turns = outline.turns([outline.cuts[index - 1], outline.cuts[index]]);
-            outline.cuts.extend(turns);
-        }
-        outline.cuts.sort_by(f64::total_cmp);
         // Nearer than this two cuts are one.
         let closest = 1e-9 * (facing.end - facing.start);
         outline.cuts.dedup_by(|next, kept| *next - *kept <= closest);
         if let Some(last) = outline.cuts.last_mut() {
             *last = facing.end;
         }
+        outline.find_shapes();
+        outline
+    }
+
+    /// The same profile with points for the flank, or the reverse.
+    pub(super) fn mirrored(&self, facing: Facing) -> Self {
+        let place = |cut: &f64| facing.start + (self.facing.end - cut);
+        let mut cuts: Vec<f64> = self.cuts.iter().rev().map(place).collect();
+        if let Some(last) = cuts.last_mut() {
+            *last = facing.end;
+        }
+        let shapes = self.shapes.iter().rev().copied().collect();
+        Self { parts: self.parts.clone(), facing, is_point: !self.is_point, cuts, shapes, minimum: Vec::new() }
+    }
+
+    /// Tells the shape of every piece, and cuts waves where they turn.
+    fn find_shapes(&mut self) {
+        let mut cuts = vec![self.facing.start];
+        for ends in self.cuts.windows(2) {
+            let depths: [f64; WAVE_SAMPLES + 1] =
+                std::array::from_fn(|index| self.depth(share(ends, index, WAVE_SAMPLES)));
+            let shape = Convexity::of(&depths);
+            if shape == Convexity::Other {
+                cuts.extend(turns(&depths).into_iter().map(|index| share(ends, index, WAVE_SAMPLES)));
+                cuts.push(ends[1]);
+                let first = self.shapes.len();
+                for ends in cuts[first..].windows(2) {
+                    let depths: [f64; SAMPLES + 1] =
+                        std::array::from_fn(|index| self.depth(share(ends, index, SAMPLES)));
+                    self.shapes.push(Convexity::of(&depths));
+                }
+            } else {
+                cuts.push(ends[1]);
+                self.shapes.push(shape);
+            }
+        }
+        self.cuts = cuts;
+    }
+
+    /// Samples the least depth from each place on, which a search needs where a profile bends back.
+    pub(super) fn sample_minimum(&mut self) {
         let mut samples = Vec::new();
-        for ends in outline.cuts.windows(2) {
-            let place = |index: usize| ends[0] + (ends[1] - ends[0]) * index as f64 / SAMPLES as f64;
-            let depths: Vec<f64> = (0..=SAMPLES).map(|index| outline.depth(place(index))).collect();
-            let largest = depths.iter().fold(0.0_f64, |maximum, depth| maximum.max(depth.abs()));
-            let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -1e-12 * largest);
-            outline.shapes.push(match (largest > 0.0, bends_back) {
-                (false, _) => Convexity::Zero,
-                (true, false) => Convexity::Convex,
-                (true, true) => Convexity::Other,
-            });
-            samples.extend((0..=SAMPLES).map(place).zip(depths.iter().copied()));
+        for ends in self.cuts.windows(2) {
+            let place = |index: usize| share(ends, index, SAMPLES);
+            let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.depth(place(index)));
+            samples.extend((0..=SAMPLES).map(place).zip(depths));
             // A valley between samples, without which a search towards it would end before it began.
             for index in 1..SAMPLES {
                 if depths[index] < depths[index - 1] && depths[index] <= depths[index + 1] {
                     let (from, guess, to) = (place(index - 1), place(index), place(index + 1));
-                    let (at, height) = maximum(|x| -outline.depth(x), from, guess, to, 1e-7 * (to - from));
+                    let (at, height) = maximum(|x| -self.depth(x), from, guess, to, 1e-7 * (to - from));
                     samples.push((at, -height));
                 }
             }
@@ -93,29 +139,31 @@ impl<'a> Outline<'a> {
             minimum = minimum.min(sample.1);
             sample.1 = minimum;
         }
-        outline.minimum = samples;
-        outline
+        self.minimum = samples;
     }
 
-    /// About where a smooth piece turns, if it does so more often than a search in a few parts can follow.
-    fn turns(&self, [from, to]: [f64; 2]) -> Vec<f64> {
-        let place = |index: usize| from + (to - from) * index as f64 / WAVE_SAMPLES as f64;
-        let depths: [f64; WAVE_SAMPLES + 1] = std::array::from_fn(|index| self.depth(place(index)));
-        let least = TURN * depths.iter().fold(0.0_f64, |largest, depth| largest.max(depth.abs()));
-        let rises = |index: usize| depths[index] - depths[index - 1];
-        let (mut turns, mut last) = (Vec::new(), 0.0_f64);
-        for index in (1..=WAVE_SAMPLES).filter(|index| rises(*index).abs() > least) {
-            if last * rises(index) < 0.0 {
-                turns.push(place(index - 1));
-            }
-            last = rises(index);
+    /// Whether the profile bends back nowhere, at a kink neither.
+    pub(super) fn is_convex(&self) -> bool {
+        if self.shapes.contains(&Convexity::Other) {
+            return false;
         }
-        if turns.len() > MOST_TURNS { turns } else { Vec::new() }
+        // At both ends of every piece.
+        let slopes: Vec<[f64; 2]> = (0..self.pieces())
+            .map(|piece| [piece, piece + 1].map(|end| self.rates(self.cuts[end], piece)[1]))
+            .collect();
+        let largest = slopes.iter().flatten().fold(0.0_f64, |largest, slope| largest.max(slope.abs()));
+        slopes.windows(2).all(|pieces| pieces[1][0] - pieces[0][1] >= -KINK * largest)
     }
 
     pub(super) fn depth(&self, position: f64) -> f64 {
         let roll = if self.is_point { self.facing.point_roll(position) } else { self.facing.flank_roll(position) };
         self.parts.iter().map(|part| part.depth(roll)).sum()
+    }
+
+    /// The depth where a piece ends: none at all where a relief starts, whatever rounding makes of its place.
+    pub(super) fn depth_at_end(&self, piece: usize) -> f64 {
+        let starts = piece + 1 < self.pieces() && self.is_zero(piece + 1);
+        if starts || self.is_zero(piece) { 0.0 } else { self.depth(self.cuts[piece + 1]) }
     }
 
     pub(super) fn least_from(&self, position: f64) -> f64 {
@@ -143,16 +191,43 @@ impl<'a> Outline<'a> {
         cuts.partition_point(|cut| *cut <= position)
     }
 
-    /// First and second derivative of the depth, of the parabola through three points of the piece.
-    pub(super) fn rates(&self, position: f64, piece: usize) -> (f64, f64) {
+    /// Depth, and its first and second derivative, those of the parabola through three points of the piece.
+    pub(super) fn rates(&self, position: f64, piece: usize) -> [f64; 3] {
         if self.is_zero(piece) {
-            return (0.0, 0.0);
+            return [0.0; 3];
         }
         let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);
         let step = STEP * (upper - lower);
         let middle = position.clamp(lower + step, upper - step);
         let [before, at, after] = [middle - step, middle, middle + step].map(|place| self.depth(place));
-        let bend = (before - 2.0 * at + after) / (step * step);
-        (0.5 * (after - before) / step + bend * (position - middle), bend)
+        let (slope, bend) = (0.5 * (after - before) / step, (before - 2.0 * at + after) / (step * step));
+        let off = position - middle;
+        [if off == 0.0 { at } else { self.depth(position) }, slope + bend * off, bend]
     }
+}
+
+/// A share of the way from one end to the other.
+fn share(ends: &[f64], index: usize, count: usize) -> f64 {
+    ends[0] + (ends[1] - ends[0]) * index as f64 / count as f64
+}
+
+fn largest(depths: &[f64]) -> f64 {
+    depths.iter().fold(0.0_f64, |largest, depth| largest.max(depth.abs()))
+}
+
+/// Between which samples depths turn, if they do so more often than a search in a few parts can follow.
+fn turns(depths: &[f64]) -> Vec<usize> {
+    let least = TURN * largest(depths);
+    let (mut turns, mut last) = (Vec::new(), 0.0_f64);
+    for index in 1..depths.len() {
+        let rise = depths[index] - depths[index - 1];
+        if rise.abs() <= least {
+            continue;
+        }
+        if last * rise < 0.0 {
+            turns.push(index - 1);
+        }
+        last = rise;
+    }
+    if turns.len() > MOST_TURNS { turns } else { Vec::new() }
 }

@@ -134,7 +134,7 @@ fn convex_profiles_give_what_the_thorough_search_finds() {
         let quick = Gaps::new(&pair, &profiles);
         // A power below 1 bends back.
         assert_eq!(quick.is_convex, index != 5, "{index}");
-        let thorough = Gaps { is_convex: false, ..quick.clone() };
+        let thorough = quick.clone().thorough();
         for s in positions(&pair, 400) {
             let (one, two) = (quick.at(s).unwrap(), thorough.at(s).unwrap());
             assert!((one - two).abs() <= 2e-15 + 1e-9 * two, "{index} {s}: {one:e} {two:e}");

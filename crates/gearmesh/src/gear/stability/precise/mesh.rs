@@ -4,6 +4,7 @@
 //! and first touches are integrated by one Gauss–Legendre rule each, in a variable that is cubic at both ends, so that
 //! the 3/2 power of a crowned face that begins to carry is smooth. Must not know: the kernels.
 
+use super::flanks::{Flanks, Least, Spot};
 use super::rules::Rule;
 use super::tooth::{Tooth, inverse_involute};
 use super::{GearInputs, Inputs};
@@ -11,6 +12,8 @@ use crate::numeric::double_double::Double;
 
 /// Steps between a span's ends at which a touch or an extremum is searched for.
 const STEPS: usize = 24;
+/// Halvings to the place of a touch: what is integrated errs by the square of what is left.
+const HALVINGS: usize = 44;
 /// Zones shorter than this share of the base pitch do not exist, by definition.
 const SHORTEST_ZONE: f64 = 1e-9;
 
@@ -28,12 +31,23 @@ pub(super) struct Mesh<'a> {
     /// Crowning of both gears at the end of the common face.
     crown: Double,
     base_radii: [Double; 2],
+    flanks: Flanks,
 }
 
 /// 2/π Σ(1 − ν²)/E.
 fn flattening(gears: &[GearInputs; 2]) -> Double {
     let of = |gear: &GearInputs| (Double::ONE - Double::from(gear.poisson_ratio).square()) / gear.youngs_modulus;
     (of(&gears[0]) + of(&gears[1])).times_power_of_two(2.0) / Double::PI
+}
+
+/// Shares of a span at which touches are looked for: in steps, denser towards its ends, where flanks touch at the start of a
+/// relief for a while.
+fn looks() -> impl Iterator<Item = f64> {
+    let near = |halvings: u32| libm::exp2(-f64::from(halvings));
+    let steps = (1..STEPS).map(|index| index as f64 / STEPS as f64);
+    let first = (3..14).rev().map(move |halvings| near(2 * halvings));
+    let last = (3..14).map(move |halvings| 1.0 - near(2 * halvings));
+    [0.0].into_iter().chain(first).chain(steps).chain(last).chain([1.0])
 }
 
 /// How a pair of teeth answers a penetration.
@@ -107,6 +121,8 @@ struct SolvedPosition {
     error: Double,
     /// Penetration of each pair: below zero by what is still open.
     penetration: Vec<Double>,
+    /// Where the flanks of each pair come nearest.
+    spots: Vec<Spot>,
 }
 
 impl<'a> Mesh<'a> {
@@ -120,18 +136,26 @@ impl<'a> Mesh<'a> {
         let base_sum = base_radii[0] + base_radii[1];
         let tangent_length = base_sum * inverse_involute(working, tangent.high);
         let width = one.face_width.min(two.face_width);
+        let start = tangent_length - base_radii[1] * teeth[1].tip_roll;
+        let end = base_radii[0] * teeth[0].tip_roll;
         let share = |gear: &GearInputs| gear.crowning * (Double::from(width) / gear.face_width).square();
         Self {
             inputs,
             centre_distance: (tangent_length.square() + base_sum.square()).sqrt(),
             tangent_length,
-            start: tangent_length - base_radii[1] * teeth[1].tip_roll,
-            end: base_radii[0] * teeth[0].tip_roll,
+            start,
+            end,
             base_pitch: Double::PI * inputs.module * cosine,
             force: inputs.torque / base_radii[0],
             width,
             crown: share(one) + share(two),
             base_radii,
+            flanks: Flanks {
+                base_radii,
+                tangent_length,
+                path: [start, end],
+                reliefs: [one.tip_relief(), two.tip_relief()],
+            },
         }
     }
 
@@ -176,23 +200,12 @@ impl<'a> Mesh<'a> {
         Spring::Logarithmic { constant, rate: total.half(), compliance: compliance * self.width, width: self.width }
     }
 
-    fn gap(&self, s: Double) -> Double {
-        let ramp = |gear: &GearInputs, from_tip: Double| {
-            let length = gear.relief_length;
-            if gear.relief.high == 0.0 || from_tip >= length {
-                Double::ZERO
-            } else {
-                gear.relief * (length - from_tip) / length
-            }
-        };
-        ramp(&self.inputs.gears[0], self.end - s) + ramp(&self.inputs.gears[1], s - self.start)
-    }
-
     fn state(&self, teeth: &[Tooth; 2], position: Double, pairs: usize) -> SolvedPosition {
         let places: Vec<Double> =
             (0..pairs).map(|index| self.start + position + self.base_pitch * index as f64).collect();
         let springs: Vec<Spring> = places.iter().map(|s| self.spring(teeth, *s)).collect();
-        let gaps: Vec<Double> = places.iter().map(|s| self.gap(*s)).collect();
+        let nearest_places: Vec<Least> = places.iter().map(|s| self.flanks.least(*s)).collect();
+        let gaps: Vec<Double> = nearest_places.iter().map(|least| least.gap).collect();
         let nearest = (0..pairs).fold(0, |minimum, index| if gaps[index] < gaps[minimum] { index } else { minimum });
         let open: Vec<Double> = gaps.iter().map(|gap| *gap - gaps[nearest]).collect();
         let mut approach = springs[nearest].above(self.force, self.crown);
@@ -215,6 +228,7 @@ impl<'a> Mesh<'a> {
         SolvedPosition {
             error: gaps[nearest] + approach,
             penetration: open.iter().map(|gap| approach - *gap).collect(),
+            spots: nearest_places.iter().map(|least| least.spot).collect(),
         }
     }
 
@@ -290,26 +304,38 @@ impl<'a> Mesh<'a> {
         spans
     }
 
-    /// Where a pair takes up or loses load, or comes into contact all over its face.
+    /// Where a pair takes up or loses load, comes into contact all over its face, or begins to touch at another place.
     fn touches(&self, teeth: &[Tooth; 2], (from, to): (Double, Double), pairs: usize) -> Vec<Double> {
         let [one, two] = &self.inputs.gears;
         if one.relief.high == 0.0 && two.relief.high == 0.0 && self.crown.high == 0.0 {
             return Vec::new();
         }
-        let place = |index: usize| from + (to - from) * (index as f64) / STEPS as f64;
-        let states: Vec<SolvedPosition> = (0..=STEPS).map(|index| self.state(teeth, place(index), pairs)).collect();
+        let states: Vec<(Double, SolvedPosition)> = looks()
+            .map(|share| {
+                let place = from + (to - from) * share;
+                (place, self.state(teeth, place, pairs))
+            })
+            .collect();
         let mut touches = Vec::new();
-        for index in 0..STEPS {
-            for (pair, level) in (0..pairs).flat_map(|pair| [(pair, Double::ZERO), (pair, self.crown)]) {
-                let carries = |state: &SolvedPosition| state.penetration[pair] > level;
-                if carries(&states[index]) != carries(&states[index + 1]) {
-                    let (mut low, mut high) = (place(index), place(index + 1));
-                    for _ in 0..70 {
-                        let middle = (low + high).half();
-                        let same = carries(&self.state(teeth, middle, pairs)) == carries(&states[index]);
-                        if same { low = middle } else { high = middle }
-                    }
-                    touches.push(high);
+        for ends in states.windows(2) {
+            let [(low, before), (high, after)] = [&ends[0], &ends[1]];
+            let mut search = |alike: &dyn Fn(&SolvedPosition) -> bool| {
+                if alike(after) {
+                    return;
+                }
+                let (mut low, mut high) = (*low, *high);
+                for _ in 0..HALVINGS {
+                    let middle = (low + high).half();
+                    if alike(&self.state(teeth, middle, pairs)) { low = middle } else { high = middle }
+                }
+                touches.push(high);
+            };
+            for pair in 0..pairs {
+                search(&|state| state.spots[pair] == before.spots[pair]);
+                let levels = [Double::ZERO, self.crown];
+                for &level in &levels[..if self.crown.high == 0.0 { 1 } else { 2 }] {
+                    let carries = |state: &SolvedPosition| state.penetration[pair] > level;
+                    search(&|state| carries(state) == carries(before));
                 }
             }
         }

@@ -5,11 +5,13 @@
 //! the energy method with the fitted gear body, pairs that are added, both contact laws, linear tip relief counted from
 //! the tip, and crowning (its closed form). Inputs are the kernels' own `f64`, taken as exact. Must not know: the kernels.
 
+mod flanks;
 mod mesh;
 mod rules;
 mod tooth;
 
 use crate::numeric::double_double::Double;
+use flanks::TipRelief;
 use mesh::Mesh;
 pub use rules::Rule;
 use tooth::Tooth;
@@ -64,6 +66,12 @@ pub struct Inputs {
     pub shear_factor: f64,
     /// Whether flanks flatten by the law of Weber and Banaschek instead of the linear one; not with crowning.
     pub load_dependent: bool,
+}
+
+impl GearInputs {
+    fn tip_relief(&self) -> TipRelief {
+        TipRelief { depth: self.relief, length: self.relief_length }
+    }
 }
 
 impl Inputs {

@@ -49,6 +49,7 @@ fn coupled_states_fulfil_complementarity() {
     let compliance = coupled();
     let cycle = cycle(&pair, &compliance);
     let design = ga_design(&pair, 9e-6, 5e-3, 0.0);
+    let gaps = crate::gear::contact::gap::Gaps::new(&pair, &design.profiles(0.0));
     let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
     for point in LoadCase::new(&cycle, &design, 80.0).curve(Wanted::default()) {
         for j in 0..point.pairs {
@@ -64,8 +65,7 @@ fn coupled_states_fulfil_complementarity() {
                 let gear = compliance.gear.neighbours[between].value(u2(ahead), u2(behind));
                 deflection += point.loads[k] * (pinion + gear);
             }
-            let gap = design.depth(Pinion, u1(j)) + design.depth(Gear, u2(j));
-            let open = gap + deflection - point.transmission_error;
+            let open = gaps.at(s(j)).unwrap() + deflection - point.transmission_error;
             if point.loads[j] > 0.0 {
                 assert!(open.abs() < 1e-12 * point.transmission_error, "{open:e}");
             } else {
@@ -124,7 +124,11 @@ fn relief_above_the_deflection_shortens_the_contact() {
     let design = design(&pair, &[("tip_relief", "both", &linear)]).unwrap();
     let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted::default());
     // A relieved pair carries load as long as its gap is below F/k, at each end of the path.
-    let lost = 2.0 * length * (1.0 - force / STIFFNESS / amount);
+    let opens = |end: f64, inwards: f64| {
+        let open = |along: f64| least_gap(&pair, &design, end + along * inwards) - force / STIFFNESS;
+        crate::numeric::crossing::bracketed(0.0, length, open).unwrap()
+    };
+    let lost = opens(pair.start_of_contact, 1.0) + opens(pair.end_of_contact, -1.0);
     close(summary.loaded_contact_ratio, pair.contact_ratio - lost / BASE_PITCH, 1e-9);
     close(summary.largest_load_share, 1.0, 1e-12);
 }
@@ -147,27 +151,33 @@ fn the_load_dependent_law_survives_vanishing_and_absurd_loads() {
     assert_eq!(LoadCase::new(&cycle, &Design::default(), 0.0).peak_to_peak(), 0.0);
 }
 
-/// The driven gear's tip meets the driver's root: relieving either is the same.
+/// The driven gear's tip meets the driver's root: relieving either is the same on the line of action, so that what they
+/// differ by is of second order in the slope of the relief.
 #[test]
 fn root_relief_is_the_other_gears_tip_relief() {
     let pair = pair();
     let cycle = cycle(&pair, &varying());
     for counted in ["tip", "single_zone", "zone_end"] {
-        let values = |counted: &'static str| {
-            [
-                ("amount", Quantity(8e-6)),
-                ("length", Quantity(2.2e-3)),
-                ("curve", Choice("parabolic")),
-                ("counted_from", Choice(counted)),
-            ]
+        let apart = |scale: f64| {
+            let values = |counted: &'static str| {
+                [
+                    ("amount", Quantity(8e-6 * scale)),
+                    ("length", Quantity(2.2e-3)),
+                    ("curve", Choice("parabolic")),
+                    ("counted_from", Choice(counted)),
+                ]
+            };
+            let root = values(if counted == "tip" { "root" } else { counted });
+            let root = design(&pair, &[("root_relief", "pinion", &root)]).unwrap();
+            let tip = design(&pair, &[("tip_relief", "gear", &values(counted))]).unwrap();
+            let [root, tip] =
+                [&root, &tip].map(|design| LoadCase::new(&cycle, design, 50.0 * scale).summary(Wanted::default()));
+            close(root.variance, tip.variance, 0.2 * scale);
+            1.0 - root.peak_to_peak / tip.peak_to_peak
         };
-        let root =
-            design(&pair, &[("root_relief", "pinion", &values(if counted == "tip" { "root" } else { counted }))])
-                .unwrap();
-        let tip = design(&pair, &[("tip_relief", "gear", &values(counted))]).unwrap();
-        let of = |design: &Design| LoadCase::new(&cycle, design, 50.0).summary(Wanted::default());
-        close(of(&root).peak_to_peak, of(&tip).peak_to_peak, 1e-11);
-        close(of(&root).variance, of(&tip).variance, 1e-11);
+        let (small, smaller) = (apart(1e-3), apart(1e-4));
+        assert!((small / smaller - 10.0).abs() < 0.1, "{counted}: {small:e} {smaller:e}");
+        assert!(small.abs() < 1e-4, "{counted}: {small:e}");
     }
 }
 
