@@ -10,6 +10,8 @@ use crate::registry::walk::{Ran, demand, load, walk};
 use declare::seed::Seed;
 use declare::work::Tally;
 use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::gear::contact::gap::Gaps;
+use gearmesh::gear::geometry::Side;
 use gearmesh::gear::material::Plane;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -129,7 +131,8 @@ fn summaries_agree_with_their_curves() {
     }
 }
 
-/// What another stage reads from the tables is the pair, the compliance and the designs, to the last digits.
+/// What another stage reads from the tables is the pair, the compliance and the designs, to the last digits. The reference
+/// takes the gap on the line of action: with it, equilibrium by hand gives its digits; with the least gap, those of `ste`.
 #[test]
 fn modified_designs_meet_the_reference_at_three_mesh_positions() {
     let (ran, reference) = (chain(), reference());
@@ -141,6 +144,7 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
     let named = designs::read(table(&ran, "designs", "designs"), table(&ran, "designs", "elements"), families).unwrap();
     let pitch_point = pair.pinion.reference_radius * libm::sin(pair.working_pressure_angle);
     let double = (pair.contact_ratio - 1.0) * pair.base_pitch;
+    let contact = 4.0 * (1.0 - 0.09) / (std::f64::consts::PI * 206e9 * 18e-3);
     let mut compared = 0;
     for (name, expected) in reference.iter().filter(|(name, _)| name.starts_with("approach.")) {
         let (design, place) = name.strip_prefix("approach.").unwrap().split_once('.').unwrap();
@@ -151,8 +155,29 @@ fn modified_designs_meet_the_reference_at_three_mesh_positions() {
             other => panic!("{other}"),
         };
         let built = named.iter().find(|named| named.name == design).unwrap().built(&pair).unwrap();
+        let profiles = built.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        let edge = built.lead(9e-3);
+        let by_hand = |gap: &dyn Fn(f64, [f64; 2]) -> f64| {
+            let load = |approach: f64| {
+                let one = |index: usize| {
+                    let s = pair.start_of_contact + position + pair.base_pitch * index as f64;
+                    let rolls = [s / pair.pinion.base_radius, (pair.tangent_length - s) / pair.gear.base_radius];
+                    let teeth = compliance.pinion.total(rolls[0]) + compliance.gear.total(rolls[1]);
+                    // A crown of this height at the edges, pressed in by w: k (w t − C t³/3).
+                    let w = (approach - gap(s, rolls)).max(0.0);
+                    let t = if w >= edge { 1.0 } else { (w / edge).sqrt() };
+                    (w * t - edge * t * t * t / 3.0) / (teeth + contact)
+                };
+                (0..pairs).map(one).sum::<f64>() - 50.0 / pair.pinion.base_radius
+            };
+            1e6 * gearmesh::numeric::crossing::bracketed(0.0, 1e-4, load).unwrap()
+        };
+        let on_line =
+            |_: f64, [pinion, gear]: [f64; 2]| built.depth(Side::Pinion, pinion) + built.depth(Side::Gear, gear);
+        close(name, by_hand(&on_line), *expected, 1e-11);
         let state = LoadCase::new(&cycle, &built, 50.0).state(position, pairs);
-        close(name, state.transmission_error() * 1e6, *expected, 1e-11);
+        close(name, state.transmission_error() * 1e6, by_hand(&|s, _| gaps.at(s).unwrap()), 1e-11);
         compared += 1;
     }
     assert_eq!(compared, 6);
@@ -213,8 +238,14 @@ fn harris_relations_hold_through_the_stage() {
             _ => continue,
         };
         let found = [summary.floats("peak_to_peak")[row], summary.floats("unloaded_peak_to_peak")[row]];
-        assert!((found[0] - loaded).abs() < 1e-9 * deflection.max(7.0), "{design} {torque}: {} {loaded}", found[0]);
-        assert!((found[1] - unloaded).abs() < 1e-9, "{design} {torque} unloaded: {} {unloaded}", found[1]);
+        // The relations take the gap on the line of action; the least one is nearer by ρ C′²/2, 0.6 % of the relief at most.
+        let nearer = if design == "unmodified" { 0.0 } else { 0.006 * 7.0 };
+        assert!(
+            (found[0] - loaded).abs() <= 1e-9 * deflection.max(7.0) + nearer,
+            "{design} {torque}: {} {loaded}",
+            found[0]
+        );
+        assert!((found[1] - unloaded).abs() <= 1e-9 + nearer, "{design} {torque} unloaded: {} {unloaded}", found[1]);
         seen += 1;
     }
     assert_eq!(seen, 9);

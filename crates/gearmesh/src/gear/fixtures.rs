@@ -63,7 +63,7 @@ pub(crate) fn least_gap_of(pair: &GearPair, depth: impl Fn(Side, f64) -> f64, s:
         let (own, other) = (pair.side(point), pair.side(point.other()));
         let gap = |before: f64| {
             let arc = length - nominal - before;
-            let (sine, cosine) = (before / own.base_radius).sin_cos();
+            let (sine, cosine) = libm::sincos(before / own.base_radius);
             let x = length - arc * cosine - own.base_radius * sine;
             let y = own.base_radius + other.base_radius + arc * sine - own.base_radius * cosine;
             let curvature = (x * x + (y - other.base_radius) * (y + other.base_radius)).sqrt();
@@ -71,7 +71,7 @@ pub(crate) fn least_gap_of(pair: &GearPair, depth: impl Fn(Side, f64) -> f64, s:
                 return f64::INFINITY;
             }
             let (radius, roll) = (other.base_radius, curvature / other.base_radius);
-            let behind = radius * (x.atan2(y) - roll.atan()) + curvature - nominal;
+            let behind = radius * (libm::atan2(x, y) - libm::atan(roll)) + curvature - nominal;
             behind + depth(point, arc / own.base_radius) + depth(point.other(), roll)
         };
         let (mut low, mut high) = (0.0, end - nominal);
