@@ -16,5 +16,6 @@ pub mod layer;
 pub mod lobatto;
 pub mod many_springs;
 pub mod panels;
+pub mod parabola;
 pub mod quadrature;
 pub mod surface;

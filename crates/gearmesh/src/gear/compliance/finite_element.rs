@@ -12,7 +12,8 @@ mod tests;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{
-    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
+    RootStresses,
     Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
@@ -82,18 +83,7 @@ impl Method for FiniteElement {
     }
 
     fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-        let mut work = Work::NONE;
-        let side = |side| {
-            let task = Task::new(self, pair, side, assumptions)?;
-            let (solution, facts) = task.solve(&mut work)?;
-            Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
-        };
-        let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
-        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
-        let Assumptions { contact, coupled, .. } = assumptions;
-        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
-        Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
+        Ok(self.tabulated(pair, assumptions, |_, _| Ok(()))?.0)
     }
 
     fn foresee(&self, assumptions: Assumptions) -> Foreseen {
@@ -116,7 +106,39 @@ impl Method for FiniteElement {
     }
 }
 
+impl FiniteElement {
+    /// The tables, and what else is wanted of each gear's mesh.
+    fn tabulated<T: Clone>(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+        also: impl Fn(&Task, &GearModel) -> Result<T, MeshError>,
+    ) -> Result<(Tabulated, [T; 2]), ComplianceError> {
+        let mut work = Work::NONE;
+        let side = |side| {
+            let task = Task::new(self, pair, side, assumptions)?;
+            let (solution, facts, model) = task.solve(&mut work)?;
+            let also = also(&task, &model).map_err(|error| task.failed(facts.elements_across, error))?;
+            Ok::<_, ComplianceError>((task.tables(&solution)?, facts, also))
+        };
+        let [(pinion, of_pinion, pinion_too), (gear, of_gear, gear_too)] = of_both(pair, side)?;
+        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
+        Ok((Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work }, [pinion_too, gear_too]))
+    }
+}
+
 impl RootStresses for FiniteElement {
+    fn tabulate_with_roots(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+    ) -> Result<(Tabulated, [RootInfluences; 2]), ComplianceError> {
+        self.tabulated(pair, assumptions, |task, model| task.root_influences(model))
+    }
+
     fn root_stress(
         &self,
         pair: &GearPair,
@@ -197,7 +219,7 @@ impl<'a> Task<'a> {
         GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
-    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
+    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
         let model = self.model(across)?;
         let done = Work::of(&MESH_FACTORISATIONS, 1).with(&COMPLIANCE_EVALUATIONS, self.rolls.len());
         work.add(&done);
@@ -214,20 +236,20 @@ impl<'a> Task<'a> {
             unknowns: model.sector.unknowns(),
             error_estimate: model.rounding() + other_block,
         };
-        Ok((found, facts))
+        Ok((found, facts, model))
     }
 
     /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
-    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
+    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
         let mut across = self.across;
         loop {
             let coarse = even(across / 2).max(LEAST);
-            let (found, mut facts) = self.at(across, work)?;
+            let (found, mut facts, model) = self.at(across, work)?;
             let change = difference(&found, &self.at(coarse, work)?.0);
             facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
-            let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
+            let Some(accuracy) = self.accuracy else { return Ok((found, facts, model)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
-                return Ok((found, facts));
+                return Ok((found, facts, model));
             }
             let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST_ELEMENTS
@@ -271,6 +293,23 @@ impl<'a> Task<'a> {
             rest + corner * libm::log(distance) - 2.0 / PI * self.half_plane() * libm::log(LENGTH)
         };
         rolls.iter().zip(rests).map(beside).collect()
+    }
+
+    /// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
+    fn root_influences(&self, model: &GearModel) -> Result<RootInfluences, MeshError> {
+        let found = model.stress_influences(&self.rolls, self.neighbours)?;
+        let module = self.gear.specification.module;
+        let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
+        let series = |loads: &Vec<Vec<f64>>, place: usize| {
+            let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
+            Series::from_values(lower, upper, &values)
+        };
+        let count = found.gauges.len();
+        Ok(RootInfluences {
+            radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
+            lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
+            stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+        })
     }
 
     /// SI, over the whole face width.

@@ -12,6 +12,7 @@ use super::across::Across;
 use super::count::Total;
 use super::ends::Ends;
 use super::path::Path;
+use super::root_stress::Roots;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
@@ -83,6 +84,8 @@ pub struct MeshCycle {
     pub(super) across: Option<Across>,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
     coupling: Vec<Graded>,
+    /// What loads do to the roots of both gears, if anybody knows.
+    pub(super) roots: Option<Arc<Roots>>,
     pub(super) rows: SpanRule,
     pub(super) slices: Rule,
     /// Counted by every load case of this cycle and of those sampled otherwise.
@@ -211,6 +214,7 @@ impl MeshCycle {
             elasticity,
             across,
             coupling,
+            roots: None,
             rows,
             slices,
             work,
