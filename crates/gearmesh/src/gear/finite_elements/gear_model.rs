@@ -115,6 +115,13 @@ impl<'a> GearModel<'a> {
         block.take(&self.mesh.nodes, &self.field(roll))
     }
 
+    /// The forces of a unit load at a roll angle, less its own field in the tooth, as [`Self::stress_influences`] has it.
+    #[cfg(test)]
+    pub(super) fn load_without_field(&self, roll: f64) -> Option<NodalForces> {
+        let block = Block::new(&self.mesh.nodes, &self.mesh.elements, &self.mesh.tooth(0), &self.elasticity)?;
+        Some(self.taken(&block, roll).forces)
+    }
+
     /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for. Own is what is
     /// left of the displacement at the load when the field of a half plane is taken off, −2 ln r/(π E′) on its surface at
     /// the distance r \[modules\]. The block around the load is the tooth and as many `rows` of the body beneath it: what
@@ -246,7 +253,7 @@ impl GearModel<'_> {
         let Mesh { nodes, elements, root, flank, .. } = &self.mesh;
         let block = Block::new(nodes, elements, &self.mesh.tooth(0), &self.elasticity).ok_or(MeshError::Singular)?;
         let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.taken(&block, roll).forces).collect();
-        let fillet = flank.iter().take_while(|edge| nodes[edge.nodes[0]][1] <= self.form);
+        let fillet = flank.iter().take_while(|edge| nodes[edge.nodes[2]][1] <= self.form);
         // The nodes of the first edge belong to two sectors.
         let edges: Vec<Edge> = root.iter().chain(fillet).skip(1).copied().collect();
         let below = 2 * (root.len() - 1);

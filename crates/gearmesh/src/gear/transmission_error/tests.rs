@@ -4,6 +4,7 @@
 
 mod corner;
 mod extremes;
+mod root_stress;
 mod sampling;
 mod spans;
 mod surface;
