@@ -207,7 +207,10 @@ fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {
             return f64::NAN;
         }
         nominal_root_stress(pair, side, 1.0).unwrap_or_else(|why| {
-            (context.warn)(format!("`{column}` is left empty: ISO 6336-3 does not hold for the {}: {why}", side.name()));
+            (context.warn)(format!(
+                "`{column}` is left empty: ISO 6336-3 does not hold for the {}: {why}",
+                side.name()
+            ));
             f64::NAN
         })
     };
@@ -301,8 +304,7 @@ impl Stage for Ste {
         let curve_pressure = context.demand.column(curve::TABLE, curve::PRESSURE);
         let root_stress = root_influences::are_wanted(context.demand);
         let base = if root_stress { base.with_roots(&root_influences::of(inputs)?) } else { base };
-        let wanted =
-            Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure, root_stress };
+        let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure, root_stress };
         let per_torque = nominal_root_stresses(context, &pair);
         let mut tasks: Vec<(&Named, f64)> =
             designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
@@ -320,7 +322,8 @@ impl Stage for Ste {
                 let mut found = Vec::with_capacity(tasks.len());
                 for &((design, name), torque) in tasks {
                     context.check_stop()?;
-                    let (answer, points) = self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
+                    let (answer, points) =
+                        self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
                     answers.push((name.as_str(), torque, answer));
                     found.push((name.as_str(), torque, points));
                     steps.done();

@@ -13,8 +13,7 @@ use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{
     Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
-    RootStresses,
-    Tabulated, ToothCompliance, neighbours, of_both,
+    RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
@@ -308,7 +307,11 @@ impl<'a> Task<'a> {
         Ok(RootInfluences {
             radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
             lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
-            stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+            stresses: found
+                .stresses
+                .iter()
+                .map(|loads| (0..count).map(|place| series(loads, place)).collect())
+                .collect(),
         })
     }
 

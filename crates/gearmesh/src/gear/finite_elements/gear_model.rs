@@ -268,7 +268,8 @@ impl GearModel<'_> {
         let steps: Vec<u32> = (0..=neighbours).rev().chain((1..=neighbours).map(|ahead| teeth - ahead)).collect();
         let stiffness = self.sector.stiffness();
         let wheel = Wheel { sectors: teeth, stiffness: &stiffness };
-        let found = wheel.influences(&of_probes.iter().collect::<Vec<_>>(), &of_loads.iter().collect::<Vec<_>>(), &steps)?;
+        let found =
+            wheel.influences(&of_probes.iter().collect::<Vec<_>>(), &of_loads.iter().collect::<Vec<_>>(), &steps)?;
         let own = |load: usize, place: usize| {
             let gauge = &gauges[place];
             let held = self.sector.held_work(&probes[place], &by_probe[place], &by_load[load]);
@@ -281,9 +282,8 @@ impl GearModel<'_> {
         };
         let stresses = (found.iter().zip(&steps))
             .map(|(matrix, &step)| {
-                let of = |load: usize, place: usize| {
-                    matrix[place][load] + if step == 0 { own(load, place) } else { 0.0 }
-                };
+                let of =
+                    |load: usize, place: usize| matrix[place][load] + if step == 0 { own(load, place) } else { 0.0 };
                 (0..rolls.len()).map(|load| (0..gauges.len()).map(|place| of(load, place)).collect()).collect()
             })
             .collect();

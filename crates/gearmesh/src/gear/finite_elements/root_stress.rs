@@ -43,7 +43,11 @@ impl Gauge {
     #[must_use]
     pub fn forces(&self) -> NodalForces {
         let scale = self.modulus / self.speed;
-        self.nodes.into_iter().zip(self.rates).map(|(node, rate)| (node, self.along.map(|x| scale * rate * x))).collect()
+        self.nodes
+            .into_iter()
+            .zip(self.rates)
+            .map(|(node, rate)| (node, self.along.map(|x| scale * rate * x)))
+            .collect()
     }
 }
 

@@ -20,8 +20,9 @@ pub(super) struct Total {
 
 impl Total {
     pub(super) fn work(&self) -> Work {
-        let [solves, slices, pressures, root_stresses] = [&self.solves, &self.slices, &self.pressures, &self.root_stresses]
-            .map(|count| count.load(Ordering::Relaxed));
+        let [solves, slices, pressures, root_stresses] =
+            [&self.solves, &self.slices, &self.pressures, &self.root_stresses]
+                .map(|count| count.load(Ordering::Relaxed));
         Work::of(&CONTACT_SOLVES, solves)
             .with(&SLICES, slices)
             .with(&CONTACT_PRESSURES, pressures)

@@ -125,7 +125,8 @@ impl LoadCase<'_> {
         let cycle = self.cycle;
         let rows = &cycle.rows;
         let mut points = self.no_points(wanted);
-        let (mut error, mut pressure, mut roots) = (Trace::default(), Trace::default(), [Trace::default(), Trace::default()]);
+        let (mut error, mut pressure, mut roots) =
+            (Trace::default(), Trace::default(), [Trace::default(), Trace::default()]);
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
@@ -227,9 +228,7 @@ impl LoadCase<'_> {
     }
 
     pub(super) fn points(&self, span: &Span, states: &[Equilibrium; NODES], wanted: Wanted) -> [Point; NODES] {
-        std::array::from_fn(|node| {
-            self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], wanted)
-        })
+        std::array::from_fn(|node| self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], wanted))
     }
 
     fn point(&self, position: f64, pairs: usize, state: &Equilibrium, wanted: Wanted) -> Point {

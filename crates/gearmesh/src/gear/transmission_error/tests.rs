@@ -85,7 +85,11 @@ fn moments_and_harmonics_of_unmodified_gears_are_those_of_a_rectangular_wave() {
     let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
     let (force, share) = (1867.0, pair.contact_ratio - 1.0);
     let design = Design::default();
-    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted { harmonics: 8, pressure: false, ..Wanted::default() });
+    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted {
+        harmonics: 8,
+        pressure: false,
+        ..Wanted::default()
+    });
     let (low, high) = (0.5 * force / STIFFNESS, force / STIFFNESS);
     close(summary.mean, low * share + high * (1.0 - share), 1e-13);
     close(summary.variance, (high - low) * (high - low) * share * (1.0 - share), 1e-12);

@@ -85,7 +85,8 @@ fn the_largest_influence_is_smooth_in_the_load_s_place() {
             .collect();
         for (roll, direct) in rolls.iter().zip(&direct.stresses[1]) {
             let ours: Vec<f64> = series.iter().map(|series| series.value(*roll)).collect();
-            let [ours_peak, direct_peak] = [&ours, direct].map(|stresses| peak(&lengths, &lengths, stresses).unwrap().0);
+            let [ours_peak, direct_peak] =
+                [&ours, direct].map(|stresses| peak(&lengths, &lengths, stresses).unwrap().0);
             let worst = ours.iter().zip(direct).map(|(a, b)| (a - b).abs() / direct_peak).fold(0.0, f64::max);
             let case = format!("z {teeth}, {count} nodes, load at {:.3}", (roll - form) / (tip - form));
             assert!(worst < every, "{case}: {worst:.1e}");

@@ -3,8 +3,8 @@
 use cholesky::{Entries, Factor, Order};
 
 use super::super::element::{elasticity, stiffness};
-use super::super::sector::NodalForces;
 use super::super::gear_model::GearModel;
+use super::super::sector::NodalForces;
 use super::{gear, model, standard};
 use crate::gear::geometry::root::RootShape;
 use crate::gear::material::Plane;
@@ -176,7 +176,8 @@ fn assembled_whole(teeth: u32) {
         // Each sector's displacements in its own tooth's frame.
         let of = |sector: usize, node: usize| {
             let place = number[sector][node];
-            let ([x, y], (sine, cosine)) = ([moved[2 * place], moved[2 * place + 1]], (pitch * sector as f64).sin_cos());
+            let ([x, y], (sine, cosine)) =
+                ([moved[2 * place], moved[2 * place + 1]], (pitch * sector as f64).sin_cos());
             [x * cosine - y * sine, x * sine + y * cosine]
         };
         (0..teeth as usize).map(|sector| (0..mesh.nodes.len()).map(|node| of(sector, node)).collect()).collect()

@@ -58,7 +58,11 @@ fn crowned(pair: &GearPair, crown: f64, slope: f64) -> Design {
 
 /// Without cuts where the face begins to touch: coupled slices have none, and both are to be sampled alike.
 fn summary(cycle: &MeshCycle, design: &Design, torque: f64) -> Summary {
-    LoadCase::new(cycle, design, torque).for_values().summary(Wanted { harmonics: 3, pressure: true, ..Wanted::default() })
+    LoadCase::new(cycle, design, torque).for_values().summary(Wanted {
+        harmonics: 3,
+        pressure: true,
+        ..Wanted::default()
+    })
 }
 
 #[track_caller]
