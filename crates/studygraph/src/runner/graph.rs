@@ -153,12 +153,19 @@ fn demand(
     }
     // All that is asked of a reader is known before what it reads itself.
     for &reader in order.iter().rev() {
-        let mut read = ports[reader].iter().map(|port| port.is_wanted(&demands[reader]));
-        inputs[reader].retain(|_| read.next().unwrap_or(true));
-        for input in &inputs[reader] {
+        let node = &study.nodes[reader];
+        let wanted: Vec<&Port> = ports[reader].iter().filter(|port| port.is_wanted(&demands[reader])).collect();
+        inputs[reader].retain(|input| wanted.iter().any(|port| port.name == input.port));
+        for (port, input) in wanted.into_iter().zip(&inputs[reader]) {
             for want in &input.wants {
-                add(&mut demands[input.node], &study.nodes[input.node], &outputs[input.node], want)
-                    .map_err(|error| error.or_at(study.nodes[reader].place))?;
+                let added = add(&mut demands[input.node], &study.nodes[input.node], &outputs[input.node], want);
+                added.map_err(|error| {
+                    let message = match port.only_for {
+                        [] => error.message.clone(),
+                        _ => format!("what is asked of `{}` cannot be computed: {}", node.name, error.message),
+                    };
+                    Diagnostic { message, ..error }.or_at(node.place)
+                })?;
             }
         }
     }

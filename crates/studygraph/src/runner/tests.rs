@@ -109,7 +109,7 @@ impl Stage for Probe {
                 stage: stage.clone(),
                 through: None,
                 wants: self.wants(),
-                only_for: &[],
+                only_for: if self.mode() == "for_extra" { &[("values", "extra")] } else { &[] },
             };
             if self.mode() == "through" { port.through("of0") } else { port }
         });

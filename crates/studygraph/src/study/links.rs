@@ -134,7 +134,10 @@ pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
                     let from = source(needed, &index, &ports)?;
                     for missing in &needed.wants {
                         check_want(&nodes[from], missing, &outputs[from]).map_err(|(found, _)| {
-                            found.at(place_of(&node.record, port, Some((&want.table, Some(column)))))
+                            let whole = format!("{}.{}.{column}", nodes[target].name, want.table);
+                            let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
+                            let place = place_of(&node.record, port, Some((&want.table, Some(column))));
+                            Diagnostic { message, ..found }.at(place)
                         })?;
                     }
                 }

@@ -135,7 +135,7 @@ impl RootStresses for FiniteElement {
         pair: &GearPair,
         assumptions: Assumptions,
     ) -> Result<(Tabulated, [RootInfluences; 2]), ComplianceError> {
-        self.tabulated(pair, assumptions, |task, model| task.root_influences(model))
+        self.tabulated(pair, assumptions, root_influences)
     }
 
     fn root_stress(
@@ -294,27 +294,6 @@ impl<'a> Task<'a> {
         rolls.iter().zip(rests).map(beside).collect()
     }
 
-    /// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
-    fn root_influences(&self, model: &GearModel) -> Result<RootInfluences, MeshError> {
-        let found = model.stress_influences(&self.rolls, self.neighbours)?;
-        let module = self.gear.specification.module;
-        let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
-        let series = |loads: &Vec<Vec<f64>>, place: usize| {
-            let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
-            Series::from_values(lower, upper, &values)
-        };
-        let count = found.gauges.len();
-        Ok(RootInfluences {
-            radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
-            lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
-            stresses: found
-                .stresses
-                .iter()
-                .map(|loads| (0..count).map(|place| series(loads, place)).collect())
-                .collect(),
-        })
-    }
-
     /// SI, over the whole face width.
     fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
         let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
@@ -348,6 +327,23 @@ impl<'a> Task<'a> {
             neighbours,
         })
     }
+}
+
+/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
+fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
+    let found = model.stress_influences(&task.rolls, task.neighbours)?;
+    let module = task.gear.specification.module;
+    let (lower, upper) = (task.root.form_roll, task.gear.tip_roll());
+    let series = |loads: &Vec<Vec<f64>>, place: usize| {
+        let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
+        Series::from_values(lower, upper, &values)
+    };
+    let count = found.gauges.len();
+    Ok(RootInfluences {
+        radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
+        lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
+        stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+    })
 }
 
 /// The next even number.
