@@ -1,9 +1,9 @@
 //! ISO 6336-3:2019, clauses 6 and 7 (method B): nominal root stress of external spur gears cut by a rack.
 //!
-//! σ_F0 = F_t/(b m) Y_F Y_S Y_B with the load at the outer point of single pair tooth contact. The critical section is where
-//! the tangents to the fillets stand at 30° to the tooth's centreline; Y_F is its bending stress, Y_S corrects for the notch,
-//! Y_B for a thin rim. For 1 ≤ q_s < 8, ε_α < 2 and rims of more than half a tooth's height; Y_DT and f_ε are then 1. The
-//! rack has no protuberance, and profile shift is the generating one. Must not know: load sharing, the tooth's elasticity.
+//! σ_F0 = F_t/(b m) Y_F Y_S with the load at the outer point of single pair tooth contact. The critical section is where the
+//! tangents to the fillets stand at 30° to the tooth's centreline; Y_F is its bending stress, Y_S corrects for the notch. For
+//! 1 ≤ q_s < 8 and ε_α < 2; Y_DT and f_ε are then 1, and Y_B is 1 since bores are held by their shafts. The rack has no
+//! protuberance, and profile shift is the generating one. Must not know: load sharing, the tooth's elasticity.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6};
 
@@ -14,10 +14,6 @@ use super::geometry::{GearPair, Rack, Side, Specification};
 const NOTCH: std::ops::Range<f64> = 1.0..8.0;
 /// ε_α from which two pairs always share the load.
 const DEEP_MESH: f64 = 2.0;
-/// Rim over the height of a tooth: from here on it is no longer said to be safe, ...
-const LEAST_RIM: f64 = 0.5;
-/// ... and from here on it does not matter.
-const THICK_RIM: f64 = 1.2;
 /// Steps of the iteration for θ; five are enough by the standard.
 const STEPS: usize = 100;
 
@@ -67,9 +63,6 @@ pub enum Outside {
     /// ε_α is 2 or more.
     #[error("the transverse contact ratio is {}, but must be below {}: no single pair carries all of the load", Plain(*.0), Plain(DEEP_MESH))]
     ContactRatio(f64),
-    /// The rim is too thin.
-    #[error("the rim is {} times as thick as a tooth is high, but must be more than {}", Plain(*.0), Plain(LEAST_RIM))]
-    Rim(f64),
 }
 
 /// The critical section of a tooth, Y_F and Y_S.
@@ -131,22 +124,15 @@ pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f
         return Err(Outside::ContactRatio(pair.contact_ratio));
     }
     let gear = pair.side(side);
-    let Specification { teeth, module, pressure_angle, profile_shift, rack, bore_radius, .. } = gear.specification;
-    // The outer point of single contact is a base pitch ahead of where the other end of the path has the tip of the mate: on
-    // the tooth the tip's length of action less what is shared with the pair ahead.
+    let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = gear.specification;
+    // Inside the tip, along the line of action, by what is shared with another pair.
     let tip = (gear.tip_radius * gear.tip_radius - gear.base_radius * gear.base_radius).max(0.0).sqrt();
     let length = tip - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;
     let found = section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })?;
-    let rim = (gear.root_radius - bore_radius) / (gear.tip_radius - gear.root_radius);
-    let rim_factor = match rim {
-        rim if rim >= THICK_RIM => 1.0,
-        rim if rim > LEAST_RIM => 1.6 * libm::log(2.242 / rim),
-        rim => return Err(Outside::Rim(rim)),
-    };
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
     let tangential = torque / pair.pinion.reference_radius;
-    Ok(tangential / (width * module) * found.form_factor * found.stress_correction_factor * rim_factor)
+    Ok(tangential / (width * module) * found.form_factor * found.stress_correction_factor)
 }
 
 #[cfg(test)]

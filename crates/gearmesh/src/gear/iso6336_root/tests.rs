@@ -1,6 +1,8 @@
 //! Published factors, other programs, limits.
 
 use super::*;
+use crate::gear::fixtures::standard;
+use crate::gear::geometry::Gear;
 
 fn tooth(teeth: f64, profile_shift: f64, tip_radius: f64, load_radius: f64) -> Tooth {
     let rack = Rack { addendum: 1.0, dedendum: 1.25, tip_radius };
@@ -90,4 +92,47 @@ fn values_of_another_program() {
         near(found.stress_correction_factor, correction);
         near(found.notch, notch);
     }
+}
+
+fn pair(teeth: [u32; 2], addendum: f64) -> GearPair {
+    let gear = |teeth| {
+        let mut specification = standard(teeth, 2e-3, 1.6);
+        specification.rack.addendum = addendum;
+        specification
+    };
+    GearPair::new(gear(teeth[0]), gear(teeth[1]), None).unwrap()
+}
+
+/// Tier: closed form; the load stands where the path of contact has the outer point of single contact, D on the pinion and B on
+/// the gear, and F_t is the torque over the reference radius, whichever gear it is.
+#[test]
+fn the_load_stands_at_the_outer_point_of_single_contact() {
+    let pair = pair([19, 48], 1.0);
+    let points =
+        [(Side::Pinion, pair.start_of_contact + pair.base_pitch), (Side::Gear, pair.end_of_contact - pair.base_pitch)];
+    for (side, s) in points {
+        let Gear { specification, base_radius, .. } = *pair.side(side);
+        let load_radius = base_radius * (1.0 + pair.roll(side, s).powi(2)).sqrt() / specification.module;
+        let Specification { teeth, module, face_width, .. } = specification;
+        let found = section(&tooth(f64::from(teeth), 0.0, 0.38, load_radius)).unwrap();
+        let per_load = found.form_factor * found.stress_correction_factor / (face_width * module);
+        let exact = 30.0 / pair.pinion.reference_radius * per_load;
+        let stress = nominal_root_stress(&pair, side, 30.0).unwrap();
+        assert!((stress / exact - 1.0).abs() < 1e-12, "{side:?}: {stress:e} for {exact:e}");
+    }
+}
+
+#[test]
+fn what_the_standard_does_not_hold_for_is_refused() {
+    let deep = nominal_root_stress(&pair([100, 120], 1.2), Side::Gear, 10.0).unwrap_err();
+    assert!(matches!(deep, Outside::ContactRatio(ratio) if ratio > 2.0), "{deep}");
+    // A sharp rack leaves a sharp notch; q_s passes 8 between 0.06 and 0.07 modules.
+    let of = |tip_radius: f64| section(&tooth(60.0, 0.0, tip_radius, 31.0));
+    assert!(matches!(of(0.0), Err(Outside::Notch(notch)) if notch > 8.0), "{:?}", of(0.0));
+    let just = (0..39).map(|k| 0.01 * f64::from(k)).find(|&round| of(round).is_ok()).unwrap();
+    let (inside, outside) = (of(just).unwrap().notch, of(just - 0.01).unwrap_err());
+    assert!((7.0..8.0).contains(&inside) && outside.to_string().contains("must be 1 to 8"), "{inside}: {outside}");
+    // The rack would have to turn back.
+    let none = section(&tooth(6.0, -1.5, 0.0, 4.0));
+    assert!(none.is_err(), "{none:?}");
 }
