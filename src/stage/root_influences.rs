@@ -154,7 +154,7 @@ mod tests {
             lengths: (0..count).map(|place| 1e-4 * place as f64).collect(),
             stresses: (0..3)
                 .map(|tooth| {
-                    let part = |place: usize| scale * (1.0 + tooth as f64 + 0.1 * place as f64);
+                    let part = |place: usize| scale * (1.0 + f64::from(tooth) + 0.1 * place as f64);
                     (0..count).map(|place| Series::fit(0.07, 0.62, 12, |u| part(place) * libm::exp(u))).collect()
                 })
                 .collect(),

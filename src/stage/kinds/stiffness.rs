@@ -83,9 +83,6 @@ enum Coupling {
 /// What finite elements take without a wanted accuracy: for either gear the mesh, and one half as fine for its error.
 const USUAL_FACTORISATIONS: f64 = 4.0;
 
-/// Rows of the influences on roots with the usual mesh: places, loads and teeth of both gears.
-const ROOT_INFLUENCES: usize = 2 * 18 * 12 * 7;
-
 /// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
 const ANY_TORQUE: f64 = 1.0;
 
@@ -268,7 +265,10 @@ impl Stage for Stiffness {
                 "curve" => RowCount::at_most(curve),
                 "mesh" => RowCount::exact(if meshed { 2 } else { 0 }),
                 ROOT_STRESS => RowCount::about(32),
-                names::root_influences::TABLE => RowCount::about(ROOT_INFLUENCES),
+                names::root_influences::TABLE => {
+                    let of_roots = self.teeth.method.root_stresses();
+                    RowCount::about(of_roots.map_or(0, |method| method.foresee_influences(self.assumptions())))
+                }
                 _ => RowCount::exact(1),
             };
             estimate = estimate.rows(demand, schema, rows);

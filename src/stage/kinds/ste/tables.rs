@@ -62,6 +62,7 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
 }
 
 /// What the summary has of a gear's root.
+#[derive(Clone, Copy)]
 struct OfGear {
     side: Side,
     stress: &'static str,
@@ -88,7 +89,7 @@ const GEARS: [OfGear; 2] = [
 ];
 
 /// Largest root stress of a gear, where it is, and what the standard has for it.
-fn of_root<'a>(columns: Columns<Keyed<'a>>, gear: OfGear) -> Columns<Keyed<'a>> {
+fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
     let (name, at) = (gear.side.name(), usize::from(gear.side == Side::Gear));
     let found = move |row: &Keyed| row.2.summary.largest_root_stress.map(|of_gears| of_gears[at]);
     let stress = format!("Largest tensile stress at the roots of the {name}'s teeth in the mesh cycle.");

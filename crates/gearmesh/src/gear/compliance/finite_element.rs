@@ -130,6 +130,12 @@ impl FiniteElement {
 }
 
 impl RootStresses for FiniteElement {
+    fn foresee_influences(&self, assumptions: Assumptions) -> usize {
+        // About one place for each element across; three neighbours to either side, where contact ratios are 1 to 2.
+        let teeth = if assumptions.coupled { 7 } else { 1 };
+        2 * loads(assumptions.contact) * teeth * self.elements_across as usize
+    }
+
     fn tabulate_with_roots(
         &self,
         pair: &GearPair,
@@ -162,6 +168,11 @@ impl RootStresses for FiniteElement {
     }
 }
 
+/// Loads along a flank.
+fn loads(contact: ContactLaw) -> usize {
+    if contact == ContactLaw::Resolved { RESOLVED_ROLLS } else { ROLLS }
+}
+
 /// One gear, and how it is to be solved.
 struct Task<'a> {
     side: Side,
@@ -190,7 +201,7 @@ impl<'a> Task<'a> {
             return Err(ComplianceError::Incompressible { side, poisson_ratio, maximum: MOST_POISSON });
         }
         let resolved = assumptions.contact == ContactLaw::Resolved;
-        let rolls = nodes(root.form_roll, gear.tip_roll(), if resolved { RESOLVED_ROLLS } else { ROLLS });
+        let rolls = nodes(root.form_roll, gear.tip_roll(), loads(assumptions.contact));
         Ok(Self {
             side,
             gear,

@@ -91,6 +91,9 @@ pub trait RootStresses {
         assumptions: Assumptions,
     ) -> Result<(Vec<RootStress>, Work), ComplianceError>;
 
+    /// About how many influences [`Self::tabulate_with_roots`] gives, of pinion and gear together.
+    fn foresee_influences(&self, assumptions: Assumptions) -> usize;
+
     /// What [`Method::tabulate`] gives, and the influences of loads on the roots of pinion and gear from the same meshes,
     /// factorised once for both.
     ///

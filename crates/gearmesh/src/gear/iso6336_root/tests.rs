@@ -94,20 +94,16 @@ fn values_of_another_program() {
     }
 }
 
-fn pair(teeth: [u32; 2], addendum: f64) -> GearPair {
-    let gear = |teeth| {
-        let mut specification = standard(teeth, 2e-3, 1.6);
-        specification.rack.addendum = addendum;
-        specification
-    };
-    GearPair::new(gear(teeth[0]), gear(teeth[1]), None).unwrap()
+fn pair(teeth: [u32; 2], rack: Rack) -> GearPair {
+    let [pinion, gear] = teeth.map(|teeth| Specification { rack, ..standard(teeth, 2e-3, 1.6) });
+    GearPair::new(pinion, gear, None).unwrap()
 }
 
 /// Tier: closed form; the load stands where the path of contact has the outer point of single contact, D on the pinion and B on
 /// the gear, and F_t is the torque over the reference radius, whichever gear it is.
 #[test]
 fn the_load_stands_at_the_outer_point_of_single_contact() {
-    let pair = pair([19, 48], 1.0);
+    let pair = pair([19, 48], Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 });
     let points =
         [(Side::Pinion, pair.start_of_contact + pair.base_pitch), (Side::Gear, pair.end_of_contact - pair.base_pitch)];
     for (side, s) in points {
@@ -124,7 +120,8 @@ fn the_load_stands_at_the_outer_point_of_single_contact() {
 
 #[test]
 fn what_the_standard_does_not_hold_for_is_refused() {
-    let deep = nominal_root_stress(&pair([100, 120], 1.2), Side::Gear, 10.0).unwrap_err();
+    let long = Rack { addendum: 1.2, dedendum: 1.45, tip_radius: 0.3 };
+    let deep = nominal_root_stress(&pair([100, 120], long), Side::Gear, 10.0).unwrap_err();
     assert!(matches!(deep, Outside::ContactRatio(ratio) if ratio > 2.0), "{deep}");
     // A sharp rack leaves a sharp notch; q_s passes 8 between 0.06 and 0.07 modules.
     let of = |tip_radius: f64| section(&tooth(60.0, 0.0, tip_radius, 31.0));

@@ -72,14 +72,13 @@ fn stresses_of_all_teeth(
         let largest = found.stresses[neighbours as usize][load].iter().copied().fold(0.0, f64::max);
         for (at, stresses) in found.stresses.iter().enumerate() {
             // The loaded tooth is so many pitches further than the stressed one.
-            let further = at as isize - neighbours as isize;
-            let stressed = (-further).rem_euclid(teeth as isize) as usize;
+            let stressed = (neighbours as usize + teeth as usize - at) % teeth as usize;
             for (place, (gauge, &ours)) in found.gauges.iter().zip(&stresses[load]).enumerate() {
                 if stressed == 0 && place >= first_in_block {
                     continue;
                 }
                 let exact = gauge.stress(|node| moved[stressed][node]);
-                assert!((ours - exact).abs() < 1e-9 * largest, "{further} {place}: {ours} for {exact}");
+                assert!((ours - exact).abs() < 1e-9 * largest, "{at} {place}: {ours} for {exact}");
             }
         }
     }
