@@ -15,7 +15,7 @@ pub static SLICES: Counter = Counter { name: "slices", seconds: 0.0, adds: false
 /// Mesh positions at which the Hertzian pressure was found.
 pub static CONTACT_PRESSURES: Counter = Counter { name: "contact_pressures", seconds: 6e-8, adds: true };
 /// Mesh positions at which the stress at the roots of both gears was found.
-pub static ROOT_STRESSES: Counter = Counter { name: "root_stresses", seconds: 1e-6, adds: true };
+pub static ROOT_STRESSES: Counter = Counter { name: "root_stresses", seconds: 2e-6, adds: true };
 /// Whole outlines of teeth that were drawn or checked.
 pub static OUTLINES: Counter = Counter { name: "outlines", seconds: 3e-5, adds: true };
 
