@@ -154,8 +154,10 @@ impl RootStresses for FiniteElement {
             let task = Task::new(self, pair, side, assumptions)?;
             let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
             let module = task.gear.specification.module;
-            work.add(&Work::of(&MESH_FACTORISATIONS, 1));
-            let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
+            let found = task
+                .model(across, &mut work)?
+                .root_stresses(&task.rolls)
+                .map_err(|error| task.failed(across, error))?;
             let row = |(&roll, points): (&f64, &Vec<_>)| {
                 let (stress, radius) = root_stress::largest(points)?;
                 Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
@@ -219,20 +221,20 @@ impl<'a> Task<'a> {
         ComplianceError::Mesh { side: self.side, across, error }
     }
 
-    fn model(&self, across: usize) -> Result<GearModel<'_>, ComplianceError> {
+    fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
         let mut sizing = Sizing::even(across);
         if self.resolved {
             let tip = self.gear.flank(self.gear.tip_roll());
             let [height, half] = [tip.height, tip.half_thickness].map(|length| length / self.gear.specification.module);
             sizing.focus = Some([TIP_ROWS * Sizing::along(half, across), height]);
         }
+        work.add(&Work::of(&MESH_FACTORISATIONS, 1));
         GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
     fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
-        let model = self.model(across)?;
-        let done = Work::of(&MESH_FACTORISATIONS, 1).with(&COMPLIANCE_EVALUATIONS, self.rolls.len());
-        work.add(&done);
+        let model = self.model(across, work)?;
+        work.add(&Work::of(&COMPLIANCE_EVALUATIONS, self.rolls.len()));
         let failed = |error| self.failed(across, error);
         let (found, other_block) = if self.resolved {
             self.rests(&model).map_err(failed)?

@@ -154,7 +154,7 @@ fn interpolation_between_nodes_is_exact_enough() {
     let task = super::Task::new(&method(Plane::Strain, 16), &pair, Side::Gear, COUPLED).unwrap();
     let rolls: Vec<f64> =
         (0..=20).map(|k| root.form_roll + f64::from(k) / 20.0 * (gear.tip_roll() - root.form_roll)).collect();
-    let direct = task.model(16).unwrap().influences(&rolls, 0).unwrap().own;
+    let direct = task.model(16, &mut declare::work::Work::default()).unwrap().influences(&rolls, 0).unwrap().own;
     for (roll, direct) in rolls.into_iter().zip(direct) {
         let value = found.gear.body.value(roll) * 206e9 * gear.specification.face_width;
         assert!((value / direct - 1.0).abs() < 1e-4, "{roll}: {value} {direct}");
