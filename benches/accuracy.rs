@@ -159,7 +159,7 @@ fn slices(cycle: &MeshCycle, design: &Design) {
 fn growth(cycle: &MeshCycle, design: &Design) {
     println!("\nGrowth: torques from 25 to 100 N m, curve, summary and 8 harmonics each, one thread\n");
     println!("{:>9} | {:>12} {:>12}", "torques", "ms", "µs each");
-    let wanted = Wanted { harmonics: 8, pressure: false };
+    let wanted = Wanted { harmonics: 8, pressure: false, ..Wanted::default() };
     for torques in [1, 4, 16, 64, 256] {
         let time = seconds(|| {
             for index in 0..torques {

@@ -44,7 +44,7 @@ fn curves(criterion: &mut Criterion) {
         [("uncoupled", Linear, false), ("coupled", Linear, true), ("load-dependent", LoadDependent, false)]
     {
         let cycle = cycle(&pair, contact, coupled);
-        let wanted = Wanted { harmonics: 8, pressure: false };
+        let wanted = Wanted { harmonics: 8, pressure: false, ..Wanted::default() };
         group.bench_function(format!("curve {name}"), |bencher| {
             bencher.iter(|| LoadCase::new(black_box(&cycle), &design, TORQUE).curve(Wanted::default()));
         });

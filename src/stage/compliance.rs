@@ -238,7 +238,7 @@ fn series_from(table: &Table, column: &str, rows: &[usize]) -> Result<Series, Fa
 
 /// The interval whose Chebyshev nodes are `nodes`: the outermost ones are its ends drawn in by cos(π/2n). A single node
 /// is that of a constant, which is the same on any interval.
-fn interval(nodes: &[f64]) -> (f64, f64) {
+pub(super) fn interval(nodes: &[f64]) -> (f64, f64) {
     let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
     if nodes.len() == 1 {
         return (first - 1.0, first + 1.0);

@@ -9,6 +9,7 @@ pub mod designs;
 pub mod kinds;
 pub mod names;
 pub mod pair;
+pub mod root_influences;
 
 pub use studygraph::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, Want, omission,

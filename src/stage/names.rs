@@ -7,6 +7,8 @@
 pub const PAIR_PORT: &str = "pair";
 /// Through which port a stage reads the pair's compliances.
 pub const STIFFNESS_PORT: &str = "stiffness";
+/// Through which port a stage reads what loads do to the roots.
+pub const ROOT_INFLUENCES_PORT: &str = "root_influences";
 
 /// A table that is read by name.
 pub struct Read {
@@ -77,6 +79,30 @@ tables! {
         VALUE = "value",
         WORD = "word",
     }
-    summary of "ste": "summary" { LARGEST_PRESSURE = "largest_pressure" }
-    curve of "ste": "curve" { PRESSURE = "pressure" }
+    root_influences of "stiffness": "root_influences" {
+        GEAR = "gear",
+        TOOTH = "tooth",
+        NODE = "node",
+        PLACE = "place",
+        ROLL_ANGLE = "roll_angle",
+        RADIUS = "radius",
+        LENGTH = "length",
+        STRESS = "stress",
+    }
+    summary of "ste": "summary" {
+        LARGEST_PRESSURE = "largest_pressure",
+        LARGEST_ROOT_STRESS_PINION = "largest_root_stress_pinion",
+        LARGEST_ROOT_STRESS_GEAR = "largest_root_stress_gear",
+        ROOT_STRESS_POSITION_PINION = "root_stress_position_pinion",
+        ROOT_STRESS_POSITION_GEAR = "root_stress_position_gear",
+        ROOT_STRESS_RADIUS_PINION = "root_stress_radius_pinion",
+        ROOT_STRESS_RADIUS_GEAR = "root_stress_radius_gear",
+        ISO6336_ROOT_STRESS_PINION = "iso6336_root_stress_pinion",
+        ISO6336_ROOT_STRESS_GEAR = "iso6336_root_stress_gear",
+    }
+    curve of "ste": "curve" {
+        PRESSURE = "pressure",
+        ROOT_STRESS_PINION = "root_stress_pinion",
+        ROOT_STRESS_GEAR = "root_stress_gear",
+    }
 }

@@ -9,6 +9,7 @@ mod flanks;
 mod press;
 mod program;
 mod reference;
+mod root_stress;
 mod tooth;
 mod wheel;
 

@@ -25,6 +25,7 @@ mod reliability;
 mod report;
 mod results;
 mod rexs;
+mod root_stress;
 mod schema;
 mod settings;
 mod support;

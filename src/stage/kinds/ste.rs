@@ -16,19 +16,23 @@ use self::samples::{Sample, Samples};
 use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::names::{curve, summary};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs};
+use crate::stage::{
+    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs, root_influences,
+};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
 use gearmesh::gear::contact::SliceCoupling;
+use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::iso6336_root::nominal_root_stress;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
-use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
+use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
@@ -118,6 +122,8 @@ struct Answer {
     seconds: f64,
     /// As [`LoadCase::widest_contact`] has it.
     widest: Option<[f64; 2]>,
+    /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
+    iso6336: [f64; 2],
 }
 
 impl Ste {
@@ -131,6 +137,7 @@ impl Ste {
         (design, name): (&Design, &str),
         torque: f64,
         wanted: Wanted,
+        iso6336: [f64; 2],
     ) -> Result<(Answer, Vec<Point>), Failure> {
         let began = Instant::now();
         let sliced = LoadCase::new(base, design, torque).uses_slices();
@@ -154,7 +161,7 @@ impl Ste {
         let error = sampled.error(settings);
         let widest = loading.widest_contact(&points);
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, widest }, points))
+        Ok((Answer { summary, settings, error, seconds, widest, iso6336 }, points))
     }
 
     /// Of approaches that no linear model is for, and of accuracies that were not reached.
@@ -193,6 +200,23 @@ impl Ste {
     }
 }
 
+/// The standard's root stress of both gears per torque on the pinion, where it is wanted and holds; a warning says why not.
+fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {
+    let of = |side: Side, column: &str| {
+        if !context.demand.column(summary::TABLE, column) {
+            return f64::NAN;
+        }
+        nominal_root_stress(pair, side, 1.0).unwrap_or_else(|why| {
+            (context.warn)(format!(
+                "`{column}` is left empty: ISO 6336-3 does not hold for the {}: {why}",
+                side.name()
+            ));
+            f64::NAN
+        })
+    };
+    [of(Side::Pinion, summary::ISO6336_ROOT_STRESS_PINION), of(Side::Gear, summary::ISO6336_ROOT_STRESS_GEAR)]
+}
+
 /// A design and its name.
 type Named = (Design, String);
 
@@ -202,6 +226,7 @@ impl Stage for Ste {
         for (index, stage) in self.designs.iter().enumerate() {
             ports.push(designs::port(format!("designs_{}", index + 1), &stage.value));
         }
+        ports.push(root_influences::port(&self.stiffness));
         ports
     }
 
@@ -247,6 +272,10 @@ impl Stage for Ste {
             (summary::TABLE, Some(summary::LARGEST_PRESSURE)) if !demand.column(curve::TABLE, curve::PRESSURE) => {
                 for_each_solve(&CONTACT_PRESSURES, 1.0)
             }
+            // Any of them takes all root stresses.
+            (summary::TABLE, Some(summary::LARGEST_ROOT_STRESS_PINION)) if !root_influences::are_wanted(demand) => {
+                for_each_solve(&ROOT_STRESSES, 1.0)
+            }
             (samples::TABLE, None) if !demand.table(samples::SUMMARY) => {
                 let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
                 for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
@@ -273,7 +302,10 @@ impl Stage for Ste {
         }
         let summary_pressure = context.demand.column(summary::TABLE, summary::LARGEST_PRESSURE);
         let curve_pressure = context.demand.column(curve::TABLE, curve::PRESSURE);
-        let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure };
+        let root_stress = root_influences::are_wanted(context.demand);
+        let base = if root_stress { base.with_roots(&root_influences::of(inputs)?) } else { base };
+        let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure, root_stress };
+        let per_torque = nominal_root_stresses(context, &pair);
         let mut tasks: Vec<(&Named, f64)> =
             designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
         // Sorted while they are few: a table sorts by comparing the texts of every row.
@@ -290,7 +322,8 @@ impl Stage for Ste {
                 let mut found = Vec::with_capacity(tasks.len());
                 for &((design, name), torque) in tasks {
                     context.check_stop()?;
-                    let (answer, points) = self.answer(&base, (design, name), torque, wanted)?;
+                    let (answer, points) =
+                        self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
                     answers.push((name.as_str(), torque, answer));
                     found.push((name.as_str(), torque, points));
                     steps.done();

@@ -8,7 +8,8 @@ use std::time::Instant;
 use crate::stage::common::Teeth;
 use crate::stage::compliance as codec;
 use crate::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, pair,
+    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names, pair,
+    root_influences,
 };
 use declare::declared::{Declared, Words};
 use declare::error::{Diagnostic, Failure};
@@ -238,9 +239,15 @@ impl Stage for Stiffness {
         let mut schemas = Vec::from(codec::schemas());
         schemas.extend([curve().schema(), summary().schema(), mesh().schema(), cost().schema(), iso().schema()]);
         if self.teeth.method.root_stresses().is_some() {
-            schemas.push(root_stress().schema());
+            schemas.extend([root_stress().schema(), root_influences::schema()]);
         }
         schemas
+    }
+
+    fn lacks(&self, table: &str) -> Option<&'static str> {
+        let of_roots = table == ROOT_STRESS || table == names::root_influences::TABLE;
+        (of_roots && self.teeth.method.root_stresses().is_none())
+            .then_some("its method knows no stress at the root; `method: finite_element` does")
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
@@ -258,6 +265,10 @@ impl Stage for Stiffness {
                 "curve" => RowCount::at_most(curve),
                 "mesh" => RowCount::exact(if meshed { 2 } else { 0 }),
                 ROOT_STRESS => RowCount::about(32),
+                names::root_influences::TABLE => {
+                    let of_roots = self.teeth.method.root_stresses();
+                    RowCount::about(of_roots.map_or(0, |method| method.foresee_influences(self.assumptions())))
+                }
                 _ => RowCount::exact(1),
             };
             estimate = estimate.rows(demand, schema, rows);
@@ -294,8 +305,14 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
         let began = Instant::now();
-        let Tabulated { compliance, warnings, error_estimate, meshes, work } =
-            self.teeth.method.tabulate(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
+        let (method, assumptions) = (&self.teeth.method, self.assumptions());
+        let roots = method.root_stresses().filter(|_| context.demand.table(names::root_influences::TABLE));
+        let tabulated = match roots {
+            Some(method) => method.tabulate_with_roots(&pair, assumptions).map(|(all, roots)| (all, Some(roots))),
+            None => method.tabulate(&pair, assumptions).map(|all| (all, None)),
+        };
+        let (Tabulated { compliance, warnings, error_estimate, meshes, work }, roots) =
+            tabulated.map_err(|error| Failure::new(error.to_string()))?;
         let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
@@ -336,6 +353,9 @@ impl Stage for Stiffness {
                 method.root_stress(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);
             tables.push(root_stress().table(&stress_rows(found)).map_err(failed)?);
+        }
+        if let Some(roots) = roots {
+            tables.push(root_influences::write(&roots).map_err(failed)?);
         }
         Ok(tables)
     }

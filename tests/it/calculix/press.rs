@@ -13,10 +13,11 @@ use std::fmt::Write;
 use super::flanks::{Flanks, Nearest, take_off};
 use super::program;
 use super::wheel::Wheel;
-use gearmesh::gear::finite_elements::mesh::{Mesh, Sizing};
+use gearmesh::gear::finite_elements::mesh::{Edge, Mesh, Sizing};
 use gearmesh::gear::finite_elements::outline::Outline;
+use gearmesh::gear::finite_elements::root_stress::{along_surface, largest};
 use gearmesh::gear::geometry::root::RootShape;
-use gearmesh::gear::geometry::{Gear, GearPair, Side};
+use gearmesh::gear::geometry::{Gear, GearPair, Side, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::material::Plane;
 use gearmesh::gear::modification::Design;
@@ -90,6 +91,8 @@ pub struct Pressed {
     pub overlaps: Vec<f64>,
     /// Where the pairs come nearest to each other.
     pub nearest: Vec<Nearest>,
+    /// The largest root stress of the teeth in contact \[Pa\], of pinion and gear.
+    pub root_stresses: [f64; 2],
 }
 
 impl Pressed {
@@ -143,8 +146,38 @@ struct Placed {
     offsets: [usize; 2],
     /// The gear's centre \[mm\]; the pinion's is 0.
     centre: [f64; 2],
+    /// The meshes of the teeth in contact, pair by pair, and by how much a gear is turned anticlockwise.
+    teeth: [(Vec<Mesh>, f64); 2],
     /// Nodes, elements and surfaces.
     deck: String,
+}
+
+impl Placed {
+    /// The largest stress at the root of a gear's tooth in contact \[Pa\], from the displacements of all nodes \[mm\].
+    fn root_stress(&self, case: &Case, side: Side, k: usize, moved: &[[f64; 2]]) -> f64 {
+        let (meshes, turned) = &self.teeth[side as usize];
+        let (gear, mesh) = (case.pair.side(side), &meshes[k]);
+        let Specification { teeth, module, material, .. } = gear.specification;
+        let sector = sector(side, k, teeth as usize);
+        let form = gear.flank(gear.form_roll).height / module;
+        let surface: Vec<Edge> = (mesh.root.iter().chain(&mesh.flank))
+            .take_while(|edge| mesh.nodes[edge.nodes[2]][1] < form + 1e-6)
+            .copied()
+            .collect();
+        let (sine, cosine) = (2.0 * mesh.half_pitch * sector as f64 - turned).sin_cos();
+        let own = |node: usize| {
+            let [x, y] = moved[self.wheels[side as usize].sectors[sector].nodes[node]];
+            [x * cosine - y * sine, x * sine + y * cosine].map(|part| part / (module * MILLI))
+        };
+        let displacements: Vec<[f64; 2]> = (0..mesh.nodes.len()).map(own).collect();
+        let points = along_surface(mesh, &surface, &displacements, case.plane, material.poisson_ratio);
+        largest(&points).unwrap().0 * material.youngs_modulus
+    }
+}
+
+/// Teeth further along the path follow clockwise on the pinion and anticlockwise on the gear.
+fn sector(side: Side, k: usize, teeth: usize) -> usize {
+    if side == Side::Pinion { k } else { (teeth - k) % teeth }
 }
 
 fn place(case: &Case, nearest: &[Nearest], fineness: Fineness) -> Placed {
@@ -154,6 +187,7 @@ fn place(case: &Case, nearest: &[Nearest], fineness: Fineness) -> Placed {
     let (mut deck, mut surfaces) = (String::new(), String::new());
     let mut offsets = [0; 2];
     let mut centre = [0.0; 2];
+    let mut of_contact = Vec::new();
     // Where the flanks meet, and the pinion's normal there.
     let mut met = ([0.0; 2], [0.0; 2]);
     let wheels = [(Side::Pinion, "PINION"), (Side::Gear, "GEAR")].map(|(side, name)| {
@@ -167,11 +201,9 @@ fn place(case: &Case, nearest: &[Nearest], fineness: Fineness) -> Placed {
         };
         let fine: Vec<Mesh> = nearest.iter().enumerate().map(fine).collect();
         let teeth = gear.specification.teeth as usize;
-        // Teeth further along the path follow clockwise on the pinion and anticlockwise on the gear.
-        let sector = |k: usize| if side == Side::Pinion { k } else { (teeth - k) % teeth };
         let mut meshes = vec![&coarse; teeth];
         for (k, mesh) in fine.iter().enumerate() {
-            meshes[sector(k)] = mesh;
+            meshes[sector(side, k, teeth)] = mesh;
         }
 
         let roll = pair.roll(side, case.path[0]);
@@ -195,14 +227,16 @@ fn place(case: &Case, nearest: &[Nearest], fineness: Fineness) -> Placed {
         deck += &wheel.cards(name, offset);
         write!(deck, "*SOLID SECTION, ELSET={name}, MATERIAL=ALL\n{width:e}\n").unwrap();
         for (k, mesh) in fine.iter().enumerate() {
-            surfaces += &wheel.surface(&format!("{name}{k}"), offset, sector(k), &mesh.flank);
+            surfaces += &wheel.surface(&format!("{name}{k}"), offset, sector(side, k, teeth), &mesh.flank);
         }
         if side == Side::Pinion {
             offsets[1] = wheel.nodes.len();
         }
+        of_contact.push((fine, turned));
         wheel
     });
-    Placed { wheels, offsets, centre, deck: deck + &surfaces }
+    let [pinion, gear] = <[_; 2]>::try_from(of_contact).unwrap();
+    Placed { wheels, offsets, centre, teeth: [pinion, gear], deck: deck + &surfaces }
 }
 
 /// Presses both gears together.
@@ -210,7 +244,9 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
     let pair = case.pair;
     let pairs = case.path.len();
     let nearest: Vec<Nearest> = (0..pairs).map(|k| case.flanks(k).nearest()).collect();
-    let Placed { wheels, offsets, centre, mut deck } = place(case, &nearest, fineness);
+    let placed = place(case, &nearest, fineness);
+    let Placed { wheels, offsets, centre, .. } = &placed;
+    let mut deck = placed.deck.clone();
     let (modulus, poisson) = constants(pair.pinion.specification.material, case.plane);
     writeln!(deck, "*MATERIAL, NAME=ALL\n*ELASTIC\n{:.12e}, {poisson:.12e}", modulus * 1e-6).unwrap();
     writeln!(
@@ -235,6 +271,7 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
         write!(deck, "{0}, 1, 1, {y:.12e}\n{0}, 2, 2, {1:.12e}\n", node + 1, -x).unwrap();
     }
     deck += "*NODE PRINT, NSET=PINIONBORE\nRF\n*NODE PRINT, NSET=GEARBORE\nRF\n*CONTACT PRINT\nCSTR, CELS\n";
+    deck += "*NODE PRINT, NSET=PINION\nU\n*NODE PRINT, NSET=GEAR\nU\n";
     for k in 0..pairs {
         writeln!(deck, "*CONTACT PRINT, SLAVE={slave}{k}, MASTER={master}{k}\nCF").unwrap();
     }
@@ -242,7 +279,7 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
     let printed = program::run("two gears in contact", &deck)?;
 
     // Force, and moment about the gear's centre; clockwise on the pinion as on the gear.
-    let held = [("PINION", [0.0; 2]), ("GEAR", centre)].map(|(name, [p, q])| {
+    let held = [("PINION", [0.0; 2]), ("GEAR", *centre)].map(|(name, [p, q])| {
         let side = usize::from(name == "GEAR");
         let rows = printed.table(&format!("forces (fx,fy,fz) for set {name}BORE"));
         let each = rows.iter().map(|row| {
@@ -257,7 +294,7 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
     let energies = printed.table("contact print energy (slave element+face,energy)");
     // The rows of a pair are those of the elements of one sector.
     let own = |rows: &[Vec<f64>], k: usize| -> Vec<[f64; 2]> {
-        let sector = if side == 0 { k } else { (teeth - k) % teeth };
+        let sector = sector(case.slave, k, teeth);
         let after = |sector: usize| wheels[side].sectors.get(sector).map(|next| (offsets[side] + next.first) as f64);
         let [first, last] = [sector, sector + 1].map(|sector| after(sector).unwrap_or(f64::INFINITY));
         rows.iter().filter(|row| row[0] > first && row[0] <= last).map(|row| [row[0], row[2]]).collect()
@@ -269,6 +306,12 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
             own(&pressures, k).iter().filter(|row| row[1] > 0.0).map(|row| row[0] as u64).collect();
         pressed.len()
     };
+    let root_stresses = [(Side::Pinion, "PINION"), (Side::Gear, "GEAR")].map(|(side, name)| {
+        let rows = printed.table(&format!("displacements (vx,vy,vz) for set {name}"));
+        let moved: Vec<[f64; 2]> = rows.iter().map(|row| [row[1], row[2]]).collect();
+        let each = (0..pairs).map(|k| placed.root_stress(case, side, k, &moved));
+        each.fold(0.0, f64::max) / case.share
+    });
     let all = |of: &dyn Fn(usize) -> f64| (0..pairs).map(of).collect::<Vec<f64>>();
     let [[a, b, _], [c, d, _]] = held;
     Some(Pressed {
@@ -279,5 +322,6 @@ pub fn press(case: &Case, fineness: Fineness) -> Option<Pressed> {
         overlaps: all(&|k| own(&energies, k).iter().map(|row| row[1]).sum::<f64>() / MILLI / case.share.powi(2)),
         loads,
         nearest,
+        root_stresses,
     })
 }

@@ -82,22 +82,28 @@ fn compare(plane: Plane) {
     let theirs = along.iter().enumerate().map(|(index, point)| {
         let edge = surface[index / 2];
         let s = (if index % 2 == 0 { -1.0 } else { 1.0 }) / 3_f64.sqrt();
-        // The root lies on the body's third sides, from their ends, and on the tooth's second ones.
-        let at = if edge.side == 2 { [-s, 1.0] } else { [1.0, s] };
-        let [mut xx, mut yy, mut xy] = [0.0; 3];
-        for gauss in 0..9 {
-            let weight = lagrange(gauss % 3, at[0]) * lagrange(gauss / 3, at[1]);
-            let row = &stresses[27 * edge.element + gauss];
-            (xx, yy, xy) = (xx + weight * row[2], yy + weight * row[3], xy + weight * row[5]);
-        }
-        let [x, y] = point.along;
-        let (along, across) = (x * x * xx + y * y * yy + 2.0 * x * y * xy, y * y * xx + x * x * yy - 2.0 * x * y * xy);
-        // What is left of a stress across the free surface shrinks with the mesh; ours leaves it out.
-        along - ratio * across
+        on_surface(&stresses, edge, s, point.along, ratio)
     });
     let largest = along.iter().map(|point| point.stress).fold(0.0, f64::max);
     let error = along.iter().zip(theirs).map(|(point, theirs)| (point.stress - theirs).abs()).fold(0.0, f64::max);
     assert!(error < 5e-3 * largest, "{plane:?}: {error} of {largest}");
+}
+
+/// The stress along the surface at a place s of an edge of the first sector, from those printed at the Gauss points of its
+/// element, extrapolated to it. What is left of a stress across the free surface shrinks with the mesh; ours leaves it out, so
+/// `ratio` of it, ν′, is taken off.
+pub fn on_surface(stresses: &[Vec<f64>], edge: &Edge, s: f64, along: [f64; 2], ratio: f64) -> f64 {
+    // The root lies on the body's third sides, from their ends, and on the tooth's second ones.
+    let at = if edge.side == 2 { [-s, 1.0] } else { [1.0, s] };
+    let [mut xx, mut yy, mut xy] = [0.0; 3];
+    for gauss in 0..9 {
+        let weight = lagrange(gauss % 3, at[0]) * lagrange(gauss / 3, at[1]);
+        let row = &stresses[27 * edge.element + gauss];
+        (xx, yy, xy) = (xx + weight * row[2], yy + weight * row[3], xy + weight * row[5]);
+    }
+    let [x, y] = along;
+    let (along, across) = (x * x * xx + y * y * yy + 2.0 * x * y * xy, y * y * xx + x * x * yy - 2.0 * x * y * xy);
+    along - ratio * across
 }
 
 /// The polynomial that is 1 at one Gauss point and 0 at the other two.

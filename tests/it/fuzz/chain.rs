@@ -130,7 +130,7 @@ fn run(case: &Case, corner_contact: CornerContact) {
 
 fn follow(pair: &GearPair, cycle: &MeshCycle, design: &Design, torque: f64) {
     let loading = LoadCase::new(cycle, design, torque);
-    let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 4, pressure: true });
+    let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 4, pressure: true, ..Wanted::default() });
     assert!(
         summary.mean.is_finite() && summary.peak_to_peak.is_finite() && summary.variance.is_finite(),
         "{summary:?}"

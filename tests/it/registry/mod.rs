@@ -186,7 +186,7 @@ fn every_table_that_is_read_by_name_is_written_by_its_kind() {
     for study in studies() {
         let outputs = |name: &str| study.nodes.iter().find(|node| node.name == name).unwrap().stage.outputs();
         for node in &study.nodes {
-            for port in node.stage.inputs().iter().filter(|port| port.through.is_none()) {
+            for port in node.stage.inputs().iter().filter(|port| port.through.is_none() && port.only_for.is_empty()) {
                 for want in &port.wants {
                     let given = outputs(&port.stage);
                     let table = given.iter().find(|schema| schema.name == want.table);

@@ -48,15 +48,30 @@ pub fn walk(study: &Study) -> BTreeMap<String, Ran> {
                 inputs.ports.insert(port.clone(), done[stage].tables.iter().collect());
             }
             let stage = node.stage.as_ref();
-            if demand(stage, false) != demand(stage, true) {
-                run(study.seed, &node.name, stage, &inputs, false);
+            let (least, mut most) = (demand(stage, false), demand(stage, true));
+            without_what_lacks(stage, &inputs, &mut most);
+            if least != most {
+                run(study.seed, &node.name, stage, &inputs, &least);
             }
-            let ran = run(study.seed, &node.name, stage, &inputs, true);
+            let ran = run(study.seed, &node.name, stage, &inputs, &most);
             done.insert(node.name.clone(), ran);
         }
         assert!(done.len() > before, "nothing can go on");
     }
     done
+}
+
+/// Takes out the columns for which a port is read whose tables are not there.
+fn without_what_lacks(stage: &dyn Stage, inputs: &Inputs, demand: &mut Demand) {
+    for port in stage.inputs() {
+        let there = |table: &str| inputs.ports[&port.name].iter().any(|known| known.name() == table);
+        if port.wants.iter().all(|want| there(&want.table)) {
+            continue;
+        }
+        for (table, column) in port.only_for {
+            demand.tables.get_mut(*table).map(|columns| columns.remove(*column));
+        }
+    }
 }
 
 /// The stage behind each port.
@@ -92,8 +107,7 @@ fn foreseen(name: &str, stage: &dyn Stage, demand: &Demand, inputs: &Inputs, tab
 }
 
 /// Runs one stage, and holds it to giving exactly what it was asked for.
-fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bool) -> Ran {
-    let demand = demand(stage, everything);
+fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, demand: &Demand) -> Ran {
     let (stop, warnings) = (AtomicBool::new(false), Mutex::new(Vec::new()));
     let last = Mutex::new(0.0);
     let progress = |share: f64| {
@@ -102,7 +116,7 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bo
     };
     let context = Context {
         seed: Seed::of_stage(seed, name),
-        demand: &demand,
+        demand,
         stop: &stop,
         progress: &progress,
         warn: &|text| warnings.lock().unwrap().push(text),
@@ -113,7 +127,7 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, everything: bo
     let wanted: Vec<_> = wanted.into_iter().map(|schema| demand.narrowed(schema)).collect();
     let given: Vec<_> = tables.iter().map(|table| table.schema().clone()).collect();
     assert_eq!(given, wanted, "`{name}` gives other tables than it was asked for");
-    foreseen(name, stage, &demand, inputs, &tables);
+    foreseen(name, stage, demand, inputs, &tables);
     let mut warnings = warnings.into_inner().unwrap();
     warnings.sort();
     warnings.dedup();

@@ -8,6 +8,7 @@ pub mod finite_elements;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod geometry;
+pub mod iso6336_root;
 pub mod material;
 pub mod modification;
 pub mod problem;

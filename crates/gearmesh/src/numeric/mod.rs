@@ -16,6 +16,7 @@ pub mod layer;
 pub mod lobatto;
 pub mod many_springs;
 pub mod panels;
+pub mod parabola;
 pub mod piecewise;
 pub mod quadrature;
 pub mod surface;

@@ -50,6 +50,8 @@ impl Graph {
             inputs.push(resolved.collect::<Result<Vec<_>, Diagnostic>>().map_err(|error| error.or_at(node.place))?);
         }
         let order = order(study, &inputs)?;
+        let outputs: Vec<Vec<Schema>> = study.nodes.iter().map(|node| node.stage.outputs()).collect();
+        let demands = demand(study, wanted, (&order, &ports, &outputs), &mut inputs)?;
         let mut readers = vec![Vec::new(); study.nodes.len()];
         for (reader, of_reader) in inputs.iter().enumerate() {
             for input in of_reader {
@@ -58,35 +60,7 @@ impl Graph {
                 }
             }
         }
-        let outputs: Vec<Vec<Schema>> = study.nodes.iter().map(|node| node.stage.outputs()).collect();
-        let mut graph = Self { order, inputs, readers, demands: Vec::new(), outputs };
-        graph.demands = graph.demand(study, wanted)?;
-        Ok(graph)
-    }
-
-    fn demand(&self, study: &Study, wanted: &[Wanted]) -> Result<Vec<Demand>, Diagnostic> {
-        let mut demands: Vec<Demand> = self
-            .outputs
-            .iter()
-            .map(|outputs| {
-                let always = outputs.iter().filter(|schema| !schema.on_demand);
-                Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() }
-            })
-            .collect();
-        for (reader, inputs) in self.inputs.iter().enumerate() {
-            for input in inputs {
-                for want in &input.wants {
-                    let node = &study.nodes[input.node];
-                    add(&mut demands[input.node], node, &self.outputs[input.node], want)
-                        .map_err(|error| error.or_at(study.nodes[reader].place))?;
-                }
-            }
-        }
-        for Wanted { stage, want } in wanted {
-            let index = find(study, stage)?;
-            add(&mut demands[index], &study.nodes[index], &self.outputs[index], want)?;
-        }
-        Ok(demands)
+        Ok(Self { order, inputs, readers, demands, outputs })
     }
 
     /// Which nodes are needed for these.
@@ -159,11 +133,51 @@ fn source(study: &Study, ports: &[Vec<Port>], node: &Node, port: &Port, depth: u
     source(study, ports, via, next, depth + 1)
 }
 
+/// What is asked of each node by the user and by nodes that read it. Inputs that nothing asked of their reader needs are
+/// taken out.
+fn demand(
+    study: &Study,
+    wanted: &[Wanted],
+    (order, ports, outputs): (&[usize], &[Vec<Port>], &[Vec<Schema>]),
+    inputs: &mut [Vec<Input>],
+) -> Result<Vec<Demand>, Diagnostic> {
+    let mut demands: Vec<Demand> = (outputs.iter())
+        .map(|outputs| {
+            let always = outputs.iter().filter(|schema| !schema.on_demand);
+            Demand { tables: always.map(|schema| (schema.name.clone(), BTreeSet::new())).collect() }
+        })
+        .collect();
+    for Wanted { stage, want } in wanted {
+        let index = find(study, stage)?;
+        add(&mut demands[index], &study.nodes[index], &outputs[index], want)?;
+    }
+    // All that is asked of a reader is known before what it reads itself.
+    for &reader in order.iter().rev() {
+        let node = &study.nodes[reader];
+        let wanted: Vec<&Port> = ports[reader].iter().filter(|port| port.is_wanted(&demands[reader])).collect();
+        inputs[reader].retain(|input| wanted.iter().any(|port| port.name == input.port));
+        for (port, input) in wanted.into_iter().zip(&inputs[reader]) {
+            for want in &input.wants {
+                let added = add(&mut demands[input.node], &study.nodes[input.node], &outputs[input.node], want);
+                added.map_err(|error| {
+                    let message = match port.only_for {
+                        [] => error.message.clone(),
+                        _ => format!("what is asked of `{}` cannot be computed: {}", node.name, error.message),
+                    };
+                    Diagnostic { message, ..error }.or_at(node.place)
+                })?;
+            }
+        }
+    }
+    Ok(demands)
+}
+
 fn add(demand: &mut Demand, node: &Node, outputs: &[Schema], want: &Want) -> Result<(), Diagnostic> {
     let Some(schema) = outputs.iter().find(|schema| schema.name == want.table) else {
         let known = outputs.iter().map(|schema| schema.name.as_str());
         let message = format!("stage `{}` ({}) has no table `{}`", node.name, node.kind.name, want.table);
-        return Err(Diagnostic::new(message).help(suggest(&want.table, known)));
+        let help = node.stage.lacks(&want.table).map_or_else(|| suggest(&want.table, known), str::to_owned);
+        return Err(Diagnostic::new(message).help(help));
     };
     let columns = demand.tables.entry(want.table.clone()).or_default();
     for name in &want.columns {

@@ -104,7 +104,13 @@ impl Stage for Probe {
         let names = self.record.maybe_list("of").unwrap_or_default();
         let ports = names.iter().enumerate().map(|(index, entry)| {
             let Value::Reference(stage) = &entry.value else { unreachable!() };
-            let port = Port { name: format!("of{index}"), stage: stage.clone(), through: None, wants: self.wants() };
+            let port = Port {
+                name: format!("of{index}"),
+                stage: stage.clone(),
+                through: None,
+                wants: self.wants(),
+                only_for: if self.mode() == "for_extra" { &[("values", "extra")] } else { &[] },
+            };
             if self.mode() == "through" { port.through("of0") } else { port }
         });
         ports.collect()

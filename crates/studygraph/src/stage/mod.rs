@@ -90,6 +90,8 @@ pub struct Port {
     /// Read not from that stage itself but from what *it* reads through its port of this name.
     pub through: Option<&'static str>,
     pub wants: Vec<Want>,
+    /// Columns on demand of the stage's own tables for which alone it is read, as (table, column); none: always.
+    pub only_for: &'static [(&'static str, &'static str)],
 }
 
 impl Port {
@@ -97,7 +99,20 @@ impl Port {
     #[must_use]
     pub fn tables(name: impl Into<String>, stage: impl Into<String>, tables: &[&str]) -> Self {
         let wants = tables.iter().map(|table| Want { table: (*table).to_owned(), columns: Vec::new() }).collect();
-        Self { name: name.into(), stage: stage.into(), through: None, wants }
+        Self { name: name.into(), stage: stage.into(), through: None, wants, only_for: &[] }
+    }
+
+    /// Read only where one of these columns on demand of the stage's own tables is wanted.
+    #[must_use]
+    pub fn only_for(mut self, columns: &'static [(&'static str, &'static str)]) -> Self {
+        self.only_for = columns;
+        self
+    }
+
+    /// Whether it is read, of what is demanded of the stage.
+    #[must_use]
+    pub fn is_wanted(&self, demand: &Demand) -> bool {
+        self.only_for.is_empty() || self.only_for.iter().any(|(table, column)| demand.column(table, column))
     }
 
     #[must_use]

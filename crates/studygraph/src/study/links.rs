@@ -123,15 +123,34 @@ pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
     check_circles(&names, &edges)?;
 
     for (node, own) in nodes.iter().zip(&ports) {
-        for port in own {
+        for port in own.iter().filter(|port| port.only_for.is_empty()) {
             let target = source(port, &index, &ports).map_err(|found| found.at(place_of(&node.record, port, None)))?;
             for want in &port.wants {
                 check_want(&nodes[target], want, &outputs[target])
                     .map_err(|(found, column)| found.at(place_of(&node.record, port, Some((&want.table, column)))))?;
+                // What that takes in turn, since it is wanted.
+                for needed in &ports[target] {
+                    let Some(column) = asked(needed, want) else { continue };
+                    let from = source(needed, &index, &ports)?;
+                    for missing in &needed.wants {
+                        check_want(&nodes[from], missing, &outputs[from]).map_err(|(found, _)| {
+                            let whole = format!("{}.{}.{column}", nodes[target].name, want.table);
+                            let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
+                            let place = place_of(&node.record, port, Some((&want.table, Some(column))));
+                            Diagnostic { message, ..found }.at(place)
+                        })?;
+                    }
+                }
             }
         }
     }
     Ok(())
+}
+
+/// The column on demand among those that are wanted for which a port is read.
+fn asked<'a>(port: &Port, want: &'a Want) -> Option<&'a str> {
+    let read_for = |column: &&String| port.only_for.contains(&(&*want.table, &***column));
+    want.columns.iter().find(read_for).map(String::as_str)
 }
 
 fn by_name<'a>(names: impl Iterator<Item = &'a str>) -> BTreeMap<&'a str, usize> {

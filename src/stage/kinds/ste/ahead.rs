@@ -4,10 +4,10 @@
 
 use super::tables::{cost, curve, harmonics, summary};
 use super::{MOST_AT_ONCE, Ste, samples};
-use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names};
+use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
-use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES};
+use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 
 /// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
 const SOLVES_PER_ROW: f64 = 2.3;
@@ -32,7 +32,8 @@ impl Ste {
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
         let work = Work::of(&CONTACT_SOLVES, solves.saturating_add(sampled))
-            .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 });
+            .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 })
+            .with(&ROOT_STRESSES, if root_influences::are_wanted(demand) { rows.index() } else { 0 });
         Estimate::new(true)
             .work(&work, common::solve_times(self.settings()))
             // Room for as many points again as there are.

@@ -4,6 +4,7 @@
 
 use super::Answer;
 use crate::stage::names;
+use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
@@ -29,7 +30,7 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
     let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
     let slices = "Slices that were used on each stretch of the face without a closed form.";
     let error = "Estimated relative error of the peak-to-peak from positions and slices.";
-    keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.")
+    let columns = keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.")
         .float("mean", "um", mean, |row: &Keyed| row.2.summary.mean)
         .float("peak_to_peak", "um", "Largest less smallest transmission error.", |row| row.2.summary.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))
@@ -50,11 +51,60 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
         .float(names::summary::LARGEST_PRESSURE, "MPa", "Largest Hertzian pressure in the mesh cycle.", |row| {
             row.2.summary.largest_pressure.map_or(f64::NAN, |largest| largest.value)
         })
-        .but(Column::on_demand)
+        .but(Column::on_demand);
+    GEARS
+        .into_iter()
+        .fold(columns, of_root)
         .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
         .integer("slices", slices, |row| row.2.settings.slices)
         .float("error_estimate", "", error, |row| row.2.error)
         .but(|column| column.tolerance(1e-9, 0.0))
+}
+
+/// What the summary has of a gear's root.
+#[derive(Clone, Copy)]
+struct OfGear {
+    side: Side,
+    stress: &'static str,
+    position: &'static str,
+    radius: &'static str,
+    iso6336: &'static str,
+}
+
+const GEARS: [OfGear; 2] = [
+    OfGear {
+        side: Side::Pinion,
+        stress: names::summary::LARGEST_ROOT_STRESS_PINION,
+        position: names::summary::ROOT_STRESS_POSITION_PINION,
+        radius: names::summary::ROOT_STRESS_RADIUS_PINION,
+        iso6336: names::summary::ISO6336_ROOT_STRESS_PINION,
+    },
+    OfGear {
+        side: Side::Gear,
+        stress: names::summary::LARGEST_ROOT_STRESS_GEAR,
+        position: names::summary::ROOT_STRESS_POSITION_GEAR,
+        radius: names::summary::ROOT_STRESS_RADIUS_GEAR,
+        iso6336: names::summary::ISO6336_ROOT_STRESS_GEAR,
+    },
+];
+
+/// Largest root stress of a gear, where it is, and what the standard has for it.
+fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
+    let (name, at) = (gear.side.name(), usize::from(gear.side == Side::Gear));
+    let found = move |row: &Keyed| row.2.summary.largest_root_stress.map(|of_gears| of_gears[at]);
+    let stress = format!("Largest tensile stress at the roots of the {name}'s teeth in the mesh cycle.");
+    let position = format!("Distance from where a pair starts contact, where the {name}'s root stress is largest.");
+    let radius = format!("Radius of the place on the {name}'s root; NaN without load.");
+    let iso = format!("Nominal root stress σ_F0 of the {name} by ISO 6336-3, method B; NaN outside its ranges.");
+    columns
+        .float(gear.stress, "MPa", &stress, move |row| found(row).map_or(f64::NAN, |root| root.extremum.value))
+        .but(Column::on_demand)
+        .float(gear.position, "mm", &position, move |row| found(row).map_or(f64::NAN, |root| root.extremum.position))
+        .but(|column| column.on_demand().tolerance(1e-6, 1e-9))
+        .float(gear.radius, "mm", &radius, move |row| found(row).map_or(f64::NAN, |root| root.radius))
+        .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
+        .float(gear.iso6336, "MPa", &iso, move |row| row.2.iso6336[at])
+        .but(|column| column.on_demand().allows_nan())
 }
 
 /// By itself, since a table with measured times differs from run to run.
@@ -81,6 +131,10 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
     let position = "Distance from where a pair starts contact, along the line of action.";
     let share = "Share of the load on the pair that came into contact last.";
     let secant = "Load over loaded less unloaded transmission error; NaN without load.";
+    let root = |side: Side| match side {
+        Side::Pinion => "Largest tensile stress at the roots of the pinion's loaded teeth.",
+        Side::Gear => "Largest tensile stress at the roots of the gear's loaded teeth.",
+    };
     let counts = "Counts the positions, from 1; those of the extrema are among them.";
     keyed(names::curve::TABLE, description)
         .integer("point", counts, |(.., (point, _)): &PointRow| *point)
@@ -114,6 +168,14 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
         .but(|column| column.tolerance(0.0, 1e-5).allows_nan())
         .float(names::curve::PRESSURE, "MPa", "Largest Hertzian pressure of any pair.", |(.., (_, point))| {
             point.pressure.unwrap_or(f64::NAN)
+        })
+        .but(Column::on_demand)
+        .float(names::curve::ROOT_STRESS_PINION, "MPa", root(Side::Pinion), |(.., (_, point))| {
+            point.root_stress.map_or(f64::NAN, |of_gears| of_gears[0])
+        })
+        .but(Column::on_demand)
+        .float(names::curve::ROOT_STRESS_GEAR, "MPa", root(Side::Gear), |(.., (_, point))| {
+            point.root_stress.map_or(f64::NAN, |of_gears| of_gears[1])
         })
         .but(Column::on_demand)
 }

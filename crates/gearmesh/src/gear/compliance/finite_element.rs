@@ -12,8 +12,8 @@ mod tests;
 use std::f64::consts::{FRAC_PI_2, PI};
 
 use super::{
-    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootStress, RootStresses,
-    Tabulated, ToothCompliance, neighbours, of_both,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
+    RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
@@ -82,18 +82,7 @@ impl Method for FiniteElement {
     }
 
     fn tabulate(&self, pair: &GearPair, assumptions: Assumptions) -> Result<Tabulated, ComplianceError> {
-        let mut work = Work::NONE;
-        let side = |side| {
-            let task = Task::new(self, pair, side, assumptions)?;
-            let (solution, facts) = task.solve(&mut work)?;
-            Ok::<_, ComplianceError>((task.tables(&solution)?, facts))
-        };
-        let [(pinion, of_pinion), (gear, of_gear)] = of_both(pair, side)?;
-        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
-        let Assumptions { contact, coupled, .. } = assumptions;
-        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
-        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
-        Ok(Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work })
+        Ok(self.tabulated(pair, assumptions, |_, _| Ok(()))?.0)
     }
 
     fn foresee(&self, assumptions: Assumptions) -> Foreseen {
@@ -116,7 +105,45 @@ impl Method for FiniteElement {
     }
 }
 
+impl FiniteElement {
+    /// The tables, and what else is wanted of each gear's mesh.
+    fn tabulated<T: Clone>(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+        also: impl Fn(&Task, &GearModel) -> Result<T, MeshError>,
+    ) -> Result<(Tabulated, [T; 2]), ComplianceError> {
+        let mut work = Work::NONE;
+        let side = |side| {
+            let task = Task::new(self, pair, side, assumptions)?;
+            let (solution, facts, model) = task.solve(&mut work)?;
+            let also = also(&task, &model).map_err(|error| task.failed(facts.elements_across, error))?;
+            Ok::<_, ComplianceError>((task.tables(&solution)?, facts, also))
+        };
+        let [(pinion, of_pinion, pinion_too), (gear, of_gear, gear_too)] = of_both(pair, side)?;
+        let meshes = vec![of_pinion, MeshFacts { side: Side::Gear, ..of_gear }];
+        let Assumptions { contact, coupled, .. } = assumptions;
+        let error_estimate = meshes.iter().map(|mesh| mesh.error_estimate).fold(0.0, f64::max);
+        let compliance = PairCompliance { pinion, gear, contact: Some(contact), plane: self.plane, coupled };
+        Ok((Tabulated { compliance, warnings: Vec::new(), error_estimate, meshes, work }, [pinion_too, gear_too]))
+    }
+}
+
 impl RootStresses for FiniteElement {
+    fn foresee_influences(&self, assumptions: Assumptions) -> usize {
+        // About one place for each element across; three neighbours to either side, where contact ratios are 1 to 2.
+        let teeth = if assumptions.coupled { 7 } else { 1 };
+        2 * loads(assumptions.contact) * teeth * self.elements_across as usize
+    }
+
+    fn tabulate_with_roots(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+    ) -> Result<(Tabulated, [RootInfluences; 2]), ComplianceError> {
+        self.tabulated(pair, assumptions, root_influences)
+    }
+
     fn root_stress(
         &self,
         pair: &GearPair,
@@ -127,8 +154,10 @@ impl RootStresses for FiniteElement {
             let task = Task::new(self, pair, side, assumptions)?;
             let across = if task.accuracy.is_some() { task.solve(&mut work)?.1.elements_across } else { task.across };
             let module = task.gear.specification.module;
-            work.add(&Work::of(&MESH_FACTORISATIONS, 1));
-            let found = task.model(across)?.root_stresses(&task.rolls).map_err(|error| task.failed(across, error))?;
+            let found = task
+                .model(across, &mut work)?
+                .root_stresses(&task.rolls)
+                .map_err(|error| task.failed(across, error))?;
             let row = |(&roll, points): (&f64, &Vec<_>)| {
                 let (stress, radius) = root_stress::largest(points)?;
                 Some(RootStress { side, roll, stress: stress / module, radius: radius * module })
@@ -139,6 +168,11 @@ impl RootStresses for FiniteElement {
         rows.extend(of_gear.into_iter().map(|row| RootStress { side: Side::Gear, ..row }));
         Ok((rows, work))
     }
+}
+
+/// Loads along a flank.
+fn loads(contact: ContactLaw) -> usize {
+    if contact == ContactLaw::Resolved { RESOLVED_ROLLS } else { ROLLS }
 }
 
 /// One gear, and how it is to be solved.
@@ -169,7 +203,7 @@ impl<'a> Task<'a> {
             return Err(ComplianceError::Incompressible { side, poisson_ratio, maximum: MOST_POISSON });
         }
         let resolved = assumptions.contact == ContactLaw::Resolved;
-        let rolls = nodes(root.form_roll, gear.tip_roll(), if resolved { RESOLVED_ROLLS } else { ROLLS });
+        let rolls = nodes(root.form_roll, gear.tip_roll(), loads(assumptions.contact));
         Ok(Self {
             side,
             gear,
@@ -187,20 +221,20 @@ impl<'a> Task<'a> {
         ComplianceError::Mesh { side: self.side, across, error }
     }
 
-    fn model(&self, across: usize) -> Result<GearModel<'_>, ComplianceError> {
+    fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
         let mut sizing = Sizing::even(across);
         if self.resolved {
             let tip = self.gear.flank(self.gear.tip_roll());
             let [height, half] = [tip.height, tip.half_thickness].map(|length| length / self.gear.specification.module);
             sizing.focus = Some([TIP_ROWS * Sizing::along(half, across), height]);
         }
+        work.add(&Work::of(&MESH_FACTORISATIONS, 1));
         GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
-    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
-        let model = self.model(across)?;
-        let done = Work::of(&MESH_FACTORISATIONS, 1).with(&COMPLIANCE_EVALUATIONS, self.rolls.len());
-        work.add(&done);
+    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
+        let model = self.model(across, work)?;
+        work.add(&Work::of(&COMPLIANCE_EVALUATIONS, self.rolls.len()));
         let failed = |error| self.failed(across, error);
         let (found, other_block) = if self.resolved {
             self.rests(&model).map_err(failed)?
@@ -214,20 +248,20 @@ impl<'a> Task<'a> {
             unknowns: model.sector.unknowns(),
             error_estimate: model.rounding() + other_block,
         };
-        Ok((found, facts))
+        Ok((found, facts, model))
     }
 
     /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
-    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts), ComplianceError> {
+    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
         let mut across = self.across;
         loop {
             let coarse = even(across / 2).max(LEAST);
-            let (found, mut facts) = self.at(across, work)?;
+            let (found, mut facts, model) = self.at(across, work)?;
             let change = difference(&found, &self.at(coarse, work)?.0);
             facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
-            let Some(accuracy) = self.accuracy else { return Ok((found, facts)) };
+            let Some(accuracy) = self.accuracy else { return Ok((found, facts, model)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
-                return Ok((found, facts));
+                return Ok((found, facts, model));
             }
             let factor = libm::cbrt(facts.error_estimate / accuracy).clamp(1.0, 2.0);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // below 2 MOST_ELEMENTS
@@ -306,6 +340,23 @@ impl<'a> Task<'a> {
             neighbours,
         })
     }
+}
+
+/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
+fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
+    let found = model.stress_influences(&task.rolls, task.neighbours)?;
+    let module = task.gear.specification.module;
+    let (lower, upper) = (task.root.form_roll, task.gear.tip_roll());
+    let series = |loads: &Vec<Vec<f64>>, place: usize| {
+        let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
+        Series::from_values(lower, upper, &values)
+    };
+    let count = found.gauges.len();
+    Ok(RootInfluences {
+        radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
+        lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
+        stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+    })
 }
 
 /// The next even number.

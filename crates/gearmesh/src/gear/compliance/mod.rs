@@ -90,6 +90,33 @@ pub trait RootStresses {
         pair: &GearPair,
         assumptions: Assumptions,
     ) -> Result<(Vec<RootStress>, Work), ComplianceError>;
+
+    /// About how many influences [`Self::tabulate_with_roots`] gives, of pinion and gear together.
+    fn foresee_influences(&self, assumptions: Assumptions) -> usize;
+
+    /// What [`Method::tabulate`] gives, and the influences of loads on the roots of pinion and gear from the same meshes,
+    /// factorised once for both.
+    ///
+    /// # Errors
+    /// When the method does not hold for this pair.
+    fn tabulate_with_roots(
+        &self,
+        pair: &GearPair,
+        assumptions: Assumptions,
+    ) -> Result<(Tabulated, [RootInfluences; 2]), ComplianceError>;
+}
+
+/// What loads on the flanks of a gear's teeth do to the surface of one tooth's root, on the side of the loads.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RootInfluences {
+    /// Radii of places along that surface, from the root land up to the involute \[m\].
+    pub radii: Vec<f64>,
+    /// Their lengths along the surface \[m\], ascending.
+    pub lengths: Vec<f64>,
+    /// Stress along the surface per load per face width \[1/m\], positive in tension, against the roll angle of the load
+    /// \[rad\]; by the loaded tooth, then by place. The loaded teeth are an odd number with the tooth itself in the middle,
+    /// before it those behind, after it those further on, where roll angles are larger.
+    pub stresses: Vec<Vec<Series>>,
 }
 
 /// What a method takes, before it runs.

@@ -11,8 +11,8 @@ use super::element::{Elasticity, edge_shape, elasticity};
 use super::mesh::{Edge, Mesh, Sizing};
 use super::outline::Outline;
 use super::point_load::{Block, HalfPlane, Taken};
-use super::root_stress::{self, SurfaceStress};
-use super::sector::{NodalForces, Sector};
+use super::root_stress::{self, Gauge, SurfaceStress};
+use super::sector::{NodalForces, Response, Sector};
 use super::wheel::{Pressed, Wheel};
 use crate::gear::geometry::Gear;
 use crate::gear::geometry::error::{Millimetres, Plain};
@@ -101,14 +101,25 @@ impl<'a> GearModel<'a> {
         Ok(spread(edge, place, self.direction(roll)))
     }
 
-    /// A unit load on the right flank at a roll angle, less the field of a half plane under it.
-    fn taken(&self, block: &Block, roll: f64) -> Taken {
+    /// The field of a half plane under a unit load on the right flank at a roll angle.
+    fn field(&self, roll: f64) -> HalfPlane {
         let height = self.gear.flank(roll).height / self.gear.specification.module;
         let (edge, place) = find(&self.mesh, &self.mesh.flank, height);
         let shares = edge_shape(place);
         let at = [0, 1].map(|axis| (0..3).map(|k| shares[k] * self.mesh.nodes[edge.nodes[k]][axis]).sum());
-        let field = HalfPlane::new(at, self.direction(roll), &self.gear.specification.material, self.plane);
-        block.take(&self.mesh.nodes, &field)
+        HalfPlane::new(at, self.direction(roll), &self.gear.specification.material, self.plane)
+    }
+
+    /// A unit load on the right flank at a roll angle, less that field.
+    fn taken(&self, block: &Block, roll: f64) -> Taken {
+        block.take(&self.mesh.nodes, &self.field(roll))
+    }
+
+    /// The forces of a unit load at a roll angle, less its own field in the tooth, as [`Self::stress_influences`] has it.
+    #[cfg(test)]
+    pub(super) fn load_without_field(&self, roll: f64) -> Option<NodalForces> {
+        let block = Block::new(&self.mesh.nodes, &self.mesh.elements, &self.mesh.tooth(0), &self.elasticity)?;
+        Some(self.taken(&block, roll).forces)
     }
 
     /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for. Own is what is
@@ -218,6 +229,65 @@ impl GearModel<'_> {
             root_stress::along_surface(&self.mesh, &surface[..count], &displacements, self.plane, nu)
         });
         Ok(found.collect())
+    }
+}
+
+/// What unit loads do to the surface of a tooth's root.
+#[derive(Clone, Debug, PartialEq)]
+pub struct StressInfluences {
+    /// Where, from the root land upwards.
+    pub gauges: Vec<Gauge>,
+    /// Stress along the surface, by the loaded tooth, the loaded place and the gauge; the loaded tooth is from so many pitches
+    /// behind up to as many further, where roll angles are larger.
+    pub stresses: Vec<Vec<Vec<f64>>>,
+}
+
+impl GearModel<'_> {
+    /// The stress on the surface of the root on the side of the loads, from one edge beside the middle of the root land up to
+    /// the start of the involute; for unit loads at `rolls` of that tooth and of as many neighbours to either side as are
+    /// asked for. The own loads' fields are taken off and added in closed form, so that stresses near a load are right too.
+    ///
+    /// # Errors
+    /// When the gear is not held to rounding.
+    pub fn stress_influences(&self, rolls: &[f64], neighbours: u32) -> Result<StressInfluences, MeshError> {
+        let Mesh { nodes, elements, root, flank, .. } = &self.mesh;
+        let block = Block::new(nodes, elements, &self.mesh.tooth(0), &self.elasticity).ok_or(MeshError::Singular)?;
+        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.taken(&block, roll).forces).collect();
+        let fillet = flank.iter().take_while(|edge| nodes[edge.nodes[2]][1] <= self.form);
+        // The nodes of the first edge belong to two sectors.
+        let edges: Vec<Edge> = root.iter().chain(fillet).skip(1).copied().collect();
+        let below = 2 * (root.len() - 1);
+        let gauges =
+            root_stress::gauges(&self.mesh, &edges, self.plane, self.gear.specification.material.poisson_ratio);
+        let probes: Vec<NodalForces> = gauges.iter().map(Gauge::forces).collect();
+        let (by_load, by_probe) = (self.sector.responses(&loads), self.sector.responses(&probes));
+        let pressed = |responses: &'_ [Response]| responses.iter().map(|one| one.pressed.clone()).collect::<Vec<_>>();
+        let (of_loads, of_probes) = (pressed(&by_load), pressed(&by_probe));
+        let teeth = self.gear.specification.teeth;
+        // A tooth that is k pitches behind the gauges' has them k pitches further; one that is further, all the others.
+        let steps: Vec<u32> = (0..=neighbours).rev().chain((1..=neighbours).map(|ahead| teeth - ahead)).collect();
+        let stiffness = self.sector.stiffness();
+        let wheel = Wheel { sectors: teeth, stiffness: &stiffness };
+        let found =
+            wheel.influences(&of_probes.iter().collect::<Vec<_>>(), &of_loads.iter().collect::<Vec<_>>(), &steps)?;
+        let own = |load: usize, place: usize| {
+            let gauge = &gauges[place];
+            let held = self.sector.held_work(&probes[place], &by_probe[place], &by_load[load]);
+            if place < below {
+                return held;
+            }
+            // In the block the mesh has the rest alone.
+            let field = self.field(rolls[load]);
+            held + field.stretch(gauge.place, gauge.along) - gauge.stress(|node| block.at_shared(nodes, &field, node))
+        };
+        let stresses = (found.iter().zip(&steps))
+            .map(|(matrix, &step)| {
+                let of =
+                    |load: usize, place: usize| matrix[place][load] + if step == 0 { own(load, place) } else { 0.0 };
+                (0..rolls.len()).map(|load| (0..gauges.len()).map(|place| of(load, place)).collect()).collect()
+            })
+            .collect();
+        Ok(StressInfluences { gauges, stresses })
     }
 }
 

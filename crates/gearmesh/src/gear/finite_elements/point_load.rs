@@ -59,6 +59,19 @@ impl HalfPlane {
         [along * n - aside * m, along * m + aside * n]
     }
 
+    /// E′ times the strain of the field along a unit vector; 0 at the load itself, where it has none.
+    #[must_use]
+    pub fn stretch(&self, [x, y]: [f64; 2], [p, q]: [f64; 2]) -> f64 {
+        let [depth, _, square] = self.relative_to_load([x, y]);
+        if square <= 0.0 {
+            return 0.0;
+        }
+        let (dx, dy) = (x - self.at[0], y - self.at[1]);
+        let along = dx * p + dy * q;
+        let part = along * along / square;
+        -2.0 / PI * (depth / square) * (part - self.poisson_ratio * (1.0 - part))
+    }
+
     /// What the field pulls with on a surface, per length, times a vector that is normal to it and points outwards.
     fn traction(&self, [x, y]: [f64; 2], [p, q]: [f64; 2]) -> [f64; 2] {
         let [depth, _, square] = self.relative_to_load([x, y]);
@@ -126,10 +139,17 @@ impl Block {
         Some(Self { boundary, shared, joined, rule: GaussLegendre::new(POINTS) })
     }
 
+    /// The field at nodes that the block shares with the elements around it, which have all of the displacement; none at
+    /// others.
+    #[must_use]
+    pub fn at_shared(&self, nodes: &[[f64; 2]], field: &HalfPlane, node: usize) -> [f64; 2] {
+        if self.shared[node] { field.displacement(nodes[node]) } else { [0.0; 2] }
+    }
+
     /// A load on the surface of the block.
     #[must_use]
     pub fn take(&self, nodes: &[[f64; 2]], field: &HalfPlane) -> Taken {
-        let at_shared = |node: usize| if self.shared[node] { field.displacement(nodes[node]) } else { [0.0; 2] };
+        let at_shared = |node: usize| self.at_shared(nodes, field, node);
         let (mut forces, mut own) = (NodalForces::new(), 0.0);
         for (element, matrix) in &self.joined {
             let given = element.map(at_shared);

@@ -5,6 +5,7 @@ mod elements;
 mod extremes;
 mod orders;
 mod point_load;
+mod root_stress;
 mod whole_gear;
 
 use super::MeshError;

@@ -89,7 +89,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
 /// what is modelled, why there is none.
 pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> Result<[f64; 2], String> {
     let loading = LoadCase::new(&built.cycle, &built.design, case.torque);
-    let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true });
+    let (points, summary) = loading.curve_and_summary(Wanted { harmonics: 3, pressure: true, ..Wanted::default() });
     let maximum = loading.largest_approach();
     if !loading.holds(summary.largest.value) {
         return Err(format!(

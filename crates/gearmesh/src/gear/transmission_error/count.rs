@@ -5,7 +5,7 @@
 use std::cell::Cell;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
-use crate::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, SLICES};
+use crate::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES, SLICES};
 use declare::work::Work;
 
 /// What the load cases of a cycle computed in all. Threads that search among designs add to it some hundred thousand times
@@ -15,13 +15,18 @@ pub(super) struct Total {
     solves: AtomicUsize,
     slices: AtomicUsize,
     pressures: AtomicUsize,
+    root_stresses: AtomicUsize,
 }
 
 impl Total {
     pub(super) fn work(&self) -> Work {
-        let [solves, slices, pressures] =
-            [&self.solves, &self.slices, &self.pressures].map(|count| count.load(Ordering::Relaxed));
-        Work::of(&CONTACT_SOLVES, solves).with(&SLICES, slices).with(&CONTACT_PRESSURES, pressures)
+        let [solves, slices, pressures, root_stresses] =
+            [&self.solves, &self.slices, &self.pressures, &self.root_stresses]
+                .map(|count| count.load(Ordering::Relaxed));
+        Work::of(&CONTACT_SOLVES, solves)
+            .with(&SLICES, slices)
+            .with(&CONTACT_PRESSURES, pressures)
+            .with(&ROOT_STRESSES, root_stresses)
     }
 }
 
@@ -31,12 +36,13 @@ pub(super) struct Count<'a> {
     slices: usize,
     solves: Cell<usize>,
     pressures: Cell<usize>,
+    root_stresses: Cell<usize>,
 }
 
 impl<'a> Count<'a> {
     /// `slices`: how many the face of a pair is cut into.
     pub(super) fn new(total: &'a Total, slices: usize) -> Self {
-        Self { total, slices, solves: Cell::new(0), pressures: Cell::new(0) }
+        Self { total, slices, solves: Cell::new(0), pressures: Cell::new(0), root_stresses: Cell::new(0) }
     }
 
     pub(super) fn solve(&self) {
@@ -45,6 +51,10 @@ impl<'a> Count<'a> {
 
     pub(super) fn pressure(&self) {
         self.pressures.set(self.pressures.get() + 1);
+    }
+
+    pub(super) fn root_stress(&self) {
+        self.root_stresses.set(self.root_stresses.get() + 1);
     }
 }
 
@@ -57,12 +67,15 @@ impl Clone for Count<'_> {
 
 impl Drop for Count<'_> {
     fn drop(&mut self) {
-        let (solves, pressures) = (self.solves.get(), self.pressures.get());
+        let [solves, pressures, root_stresses] = [&self.solves, &self.pressures, &self.root_stresses].map(Cell::get);
         if solves > 0 {
             self.total.solves.fetch_add(solves, Ordering::Relaxed);
             self.total.slices.fetch_max(self.slices, Ordering::Relaxed);
             if pressures > 0 {
                 self.total.pressures.fetch_add(pressures, Ordering::Relaxed);
+            }
+            if root_stresses > 0 {
+                self.total.root_stresses.fetch_add(root_stresses, Ordering::Relaxed);
             }
         }
     }

@@ -3,6 +3,7 @@
 //! Must not know: tables, units other than SI.
 
 use super::load_case::{Equilibrium, LoadCase};
+use super::root_stress::LargestRootStress;
 use super::trace::{Extremum, NODES, Span, Trace};
 use crate::gear::contact::flattening::combined_radius;
 use crate::gear::geometry::Side;
@@ -38,6 +39,8 @@ pub struct Point {
     pub tangent_stiffness: f64,
     /// The largest Hertzian pressure of any pair \[Pa\], if it was asked for.
     pub pressure: Option<f64>,
+    /// The largest root stress of pinion and gear \[Pa\], if it was asked for and is known.
+    pub root_stress: Option<[f64; 2]>,
 }
 
 /// What a curve amounts to.
@@ -65,6 +68,8 @@ pub struct Summary {
     pub largest_load_share: f64,
     /// The largest Hertzian pressure in the cycle \[Pa\], if it was asked for.
     pub largest_pressure: Option<Extremum>,
+    /// The largest root stress of pinion and gear in the cycle, if it was asked for and is known.
+    pub largest_root_stress: Option<[LargestRootStress; 2]>,
 }
 
 /// What a summary holds beyond the minimum.
@@ -74,6 +79,8 @@ pub struct Wanted {
     pub harmonics: usize,
     /// Whether the Hertzian pressure is found at every position.
     pub pressure: bool,
+    /// Whether the stress at the roots is found at every position, of a cycle that knows what loads do to them.
+    pub root_stress: bool,
 }
 
 impl Point {
@@ -101,7 +108,7 @@ impl LoadCase<'_> {
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
         let mut points = self.no_points(wanted);
         self.for_values().walk(self.span_length(wanted.harmonics), |span, states| {
-            extend(&mut points, span, &self.points(span, states, wanted.pressure));
+            extend(&mut points, span, &self.points(span, states, wanted));
         });
         points
     }
@@ -118,14 +125,18 @@ impl LoadCase<'_> {
         let cycle = self.cycle;
         let rows = &cycle.rows;
         let mut points = self.no_points(wanted);
-        let (mut error, mut pressure) = (Trace::default(), Trace::default());
+        let (mut error, mut pressure, mut roots) =
+            (Trace::default(), Trace::default(), [Trace::default(), Trace::default()]);
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
-            let here = self.points(span, states, wanted.pressure);
+            let here = self.points(span, states, wanted);
             extend(&mut points, span, &here);
             if wanted.pressure {
                 pressure.spans.push((*span, here.map(|point| point.pressure.unwrap_or(0.0))));
+            }
+            for (gear, root) in roots.iter_mut().enumerate().filter(|_| here[0].root_stress.is_some()) {
+                root.spans.push((*span, here.map(|point| point.root_stress.map_or(0.0, |of_gears| of_gears[gear]))));
             }
             // The loaded pairs are the same all over the span, up to its ends.
             loaded += (span.end - span.start) * here[1].loaded_pairs as f64;
@@ -137,7 +148,7 @@ impl LoadCase<'_> {
         let (mean, variance) = harmonics::mean_and_variance(cycle.period(), &nodes);
         let nominal = self.without_load();
         let unloaded = nominal.extremes();
-        self.add_extremes(&mut points, [largest, smallest], unloaded, wanted.pressure);
+        self.add_extremes(&mut points, [largest, smallest], unloaded, wanted);
         let summary = Summary {
             mean,
             peak_to_peak: largest.value - smallest.value,
@@ -152,6 +163,7 @@ impl LoadCase<'_> {
             largest_pressure: wanted
                 .pressure
                 .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),
+            largest_root_stress: self.largest_root_stress(&roots),
         };
         (points, summary)
     }
@@ -175,10 +187,10 @@ impl LoadCase<'_> {
 
     /// Adds the points of the extrema, under load and without, so that a curve spans what its summary says.
     #[allow(clippy::float_cmp)] // asks whether a point is there, not whether numbers agree
-    fn add_extremes(&self, points: &mut Vec<Point>, loaded: [Extremum; 2], unloaded: [Extremum; 2], pressure: bool) {
+    fn add_extremes(&self, points: &mut Vec<Point>, loaded: [Extremum; 2], unloaded: [Extremum; 2], wanted: Wanted) {
         let at = |extremum: &Extremum| {
             let state = self.state(extremum.position, extremum.pairs);
-            self.point(extremum.position, extremum.pairs, &state, pressure)
+            self.point(extremum.position, extremum.pairs, &state, wanted)
         };
         // At an end of a span the extremum may be the limit from inside, of which rounding has lost sight at the end itself.
         for extremum in loaded {
@@ -215,13 +227,11 @@ impl LoadCase<'_> {
         Vec::with_capacity(spans as usize * NODES)
     }
 
-    pub(super) fn points(&self, span: &Span, states: &[Equilibrium; NODES], pressure: bool) -> [Point; NODES] {
-        std::array::from_fn(|node| {
-            self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], pressure)
-        })
+    pub(super) fn points(&self, span: &Span, states: &[Equilibrium; NODES], wanted: Wanted) -> [Point; NODES] {
+        std::array::from_fn(|node| self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], wanted))
     }
 
-    fn point(&self, position: f64, pairs: usize, state: &Equilibrium, pressure: bool) -> Point {
+    fn point(&self, position: f64, pairs: usize, state: &Equilibrium, wanted: Wanted) -> Point {
         let cycle = self.cycle;
         let path_position = cycle.path_position(position, cycle.newest());
         let loads = state.balance.loads;
@@ -238,7 +248,9 @@ impl LoadCase<'_> {
             newest_load: loads[cycle.newest()],
             secant_stiffness: stiffness(self.force / state.balance.approach),
             tangent_stiffness: stiffness(state.balance.slope),
-            pressure: pressure.then(|| self.pressure(position, pairs, state)),
+            pressure: wanted.pressure.then(|| self.pressure(position, pairs, state)),
+            root_stress: (wanted.root_stress.then(|| self.root_stress(position, pairs, state)).flatten())
+                .map(|of_gears| of_gears.map(|root| root.stress)),
         }
     }
 

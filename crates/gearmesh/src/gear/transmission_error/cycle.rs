@@ -12,6 +12,7 @@ use super::across::Across;
 use super::count::Total;
 use super::ends::Ends;
 use super::path::Path;
+use super::root_stress::Roots;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
@@ -84,6 +85,8 @@ pub struct MeshCycle {
     pub(super) across: Option<Across>,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
     coupling: Vec<Graded>,
+    /// What loads do to the roots of both gears, if anybody knows.
+    pub(super) roots: Option<Arc<Roots>>,
     pub(super) rows: SpanRule,
     pub(super) slices: Rule,
     /// Of quick copies of gaps.
@@ -214,6 +217,7 @@ impl MeshCycle {
             elasticity,
             across,
             coupling,
+            roots: None,
             rows,
             slices,
             copies: piecewise::Rule::new(),

@@ -13,6 +13,7 @@ mod ends;
 mod flanks;
 pub mod load_case;
 mod path;
+pub mod root_stress;
 pub mod sampling;
 mod sliced;
 pub mod stiffness;

@@ -4,6 +4,7 @@
 
 mod corner;
 mod extremes;
+mod root_stress;
 mod sampling;
 mod spans;
 mod surface;
@@ -86,7 +87,11 @@ fn moments_and_harmonics_of_unmodified_gears_are_those_of_a_rectangular_wave() {
     let cycle = cycle(&pair, &constant(&pair, STIFFNESS));
     let (force, share) = (1867.0, pair.contact_ratio - 1.0);
     let design = Design::default();
-    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted { harmonics: 8, pressure: false });
+    let summary = LoadCase::new(&cycle, &design, torque(force)).summary(Wanted {
+        harmonics: 8,
+        pressure: false,
+        ..Wanted::default()
+    });
     let (low, high) = (0.5 * force / STIFFNESS, force / STIFFNESS);
     close(summary.mean, low * share + high * (1.0 - share), 1e-13);
     close(summary.variance, (high - low) * (high - low) * share * (1.0 - share), 1e-12);
@@ -265,7 +270,7 @@ fn swapping_the_gears_changes_nothing() {
                 ..compliance.clone()
             };
             let (one, two) = (of(&pair, "pinion", "gear"), of(&swapped, "gear", "pinion"));
-            let wanted = Wanted { harmonics: 3, pressure: true };
+            let wanted = Wanted { harmonics: 3, pressure: true, ..Wanted::default() };
             let here = LoadCase::new(&cycle(&pair, &compliance), &one, 50.0).summary(wanted);
             let there = cycle(&swapped, &mirrored);
             let there = LoadCase::new(&there, &two, 50.0 * 48.0 / 19.0).summary(wanted);

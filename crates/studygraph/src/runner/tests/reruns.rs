@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::runner::board::StageState;
+use crate::runner::graph::Graph;
 use crate::runner::options::{Force, Wanted};
 use crate::store::cache::Remove;
 use crate::store::results::{Changes, Folder};
@@ -134,6 +135,28 @@ fn what_is_asked_for_goes_upstream_and_readers_of_less_do_not_notice() {
     bench.options.wanted = vec![Wanted { stage: "c".to_owned(), want }];
     bench.run(&specs);
     assert!(bench.computed().is_empty());
+}
+
+#[test]
+fn a_port_for_a_column_on_demand_is_read_only_where_that_is_wanted() {
+    let mut bench = Bench::new();
+    let read_by = |mode: &str| vec![stage("a", 1.0), stage("b", 2.0).of(&["a"]).mode(mode).text("table", "detail")];
+    let outcome = bench.run(&read_by("for_extra"));
+    assert_eq!(bench.computed(), ["a", "b"]);
+    assert_eq!(outcome.table(&bench.cache(), "b", "values").unwrap().floats("value"), [2.0], "nothing was read");
+    let left_out: Vec<_> = outcome.stage("a").unwrap().left_out.iter().map(|omission| omission.what.as_str()).collect();
+    assert!(left_out.contains(&"table `detail`"), "{left_out:?}");
+    let want = Want { table: "values".to_owned(), columns: vec!["extra".to_owned()] };
+    bench.options.wanted = vec![Wanted { stage: "b".to_owned(), want }];
+    let outcome = bench.run(&read_by("for_extra"));
+    assert_eq!(bench.computed(), ["a", "b"], "`a` gives more, and `b` reads it");
+    assert_eq!(outcome.table(&bench.cache(), "b", "values").unwrap().floats("value"), [3.0]);
+    // What it needs goes on upstream, and what is not there is said with who needs it.
+    let missing = vec![stage("a", 1.0), stage("b", 2.0).of(&["a"]).mode("for_extra").text("table", "detials")];
+    let error = Graph::new(&bench.study(&missing), &bench.options.wanted).unwrap_err();
+    assert_eq!(error.message, "what is asked of `b` cannot be computed: stage `a` (plain) has no table `detials`");
+    bench.options.wanted.clear();
+    bench.run(&missing);
 }
 
 #[test]

@@ -115,7 +115,7 @@ impl Stage for Part {
                 let mut next = || words.next().unwrap_or_default();
                 let (stage, table, column) = (next(), next(), next());
                 let wants = vec![Want { table, columns: vec![column] }];
-                ports.push(Port { name: text.clone(), stage, through: None, wants });
+                ports.push(Port { name: text.clone(), stage, through: None, wants, only_for: &[] });
             }
         }
         ports

@@ -1,7 +1,7 @@
 //! The method as a study uses it: a published pair, the error estimate, refusals, and the energy method beside it.
 
 use super::super::energy::{Energy, GearBody};
-use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStresses, Tabulated};
+use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStress, RootStresses, Tabulated};
 use super::{FiniteElement, difference};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::finite_elements::gear_model::Influences;
@@ -154,7 +154,7 @@ fn interpolation_between_nodes_is_exact_enough() {
     let task = super::Task::new(&method(Plane::Strain, 16), &pair, Side::Gear, COUPLED).unwrap();
     let rolls: Vec<f64> =
         (0..=20).map(|k| root.form_roll + f64::from(k) / 20.0 * (gear.tip_roll() - root.form_roll)).collect();
-    let direct = task.model(16).unwrap().influences(&rolls, 0).unwrap().own;
+    let direct = task.model(16, &mut declare::work::Work::default()).unwrap().influences(&rolls, 0).unwrap().own;
     for (roll, direct) in rolls.into_iter().zip(direct) {
         let value = found.gear.body.value(roll) * 206e9 * gear.specification.face_width;
         assert!((value / direct - 1.0).abs() < 1e-4, "{roll}: {value} {direct}");
@@ -292,4 +292,39 @@ fn a_gear_with_nothing_below_its_contact_is_refused() {
     let refused = tabulate(0.1).unwrap_err().to_string();
     assert!(refused.contains("`contact: load_dependent` takes it"), "{refused}");
     assert!(tabulate(2.0).is_ok());
+}
+
+/// Counted: influences on roots come from the factorisations that the compliances take, which are the same with them.
+#[test]
+fn influences_on_roots_take_no_factorisation() {
+    let pair = pair([17, 43], 1.4);
+    for contact in [ContactLaw::LoadDependent, ContactLaw::Resolved] {
+        for accuracy in [None, Some(1e-2)] {
+            let assumptions = Assumptions { contact, accuracy, ..COUPLED };
+            let method = method(Plane::Strain, 8);
+            let alone = method.tabulate(&pair, assumptions).unwrap();
+            let (with_roots, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();
+            assert_eq!(with_roots, alone);
+            // The tooth itself and as many to either side as can be loaded with it.
+            assert!(roots.iter().all(|root| root.stresses.len() == 7 && root.radii.len() > 4));
+        }
+    }
+}
+
+/// Tier: second method; the tables have the stress that the table for unit loads has, from forces at nodes, to 1 % with 12
+/// elements across, but for loads so near to the root that those say little.
+#[test]
+fn influences_on_roots_are_those_of_unit_loads() {
+    let pair = pair([17, 43], 1.4);
+    let method = method(Plane::Strain, 12);
+    let (_, roots) = method.tabulate_with_roots(&pair, COUPLED).unwrap();
+    let (known, _) = method.root_stress(&pair, COUPLED).unwrap();
+    let far = |row: &RootStress| row.roll > 0.2 && (row.side == Side::Pinion || row.roll > 0.27);
+    for row in known.into_iter().filter(far) {
+        let root = &roots[usize::from(row.side == Side::Gear)];
+        let own: Vec<f64> = root.stresses[3].iter().map(|place| place.value(row.roll)).collect();
+        let (stress, radius) = crate::numeric::parabola::peak(&root.lengths, &root.radii, &own).unwrap();
+        assert!((stress / row.stress - 1.0).abs() < 1e-2, "{row:?}: {stress}");
+        assert!((radius / row.radius - 1.0).abs() < 2e-3, "{row:?}: {radius}");
+    }
 }

@@ -3,6 +3,7 @@
 use cholesky::{Entries, Factor, Order};
 
 use super::super::element::{elasticity, stiffness};
+use super::super::gear_model::GearModel;
 use super::super::sector::NodalForces;
 use super::{gear, model, standard};
 use crate::gear::geometry::root::RootShape;
@@ -53,6 +54,34 @@ fn further_teeth_stand_where_roll_angles_grow() {
 #[test]
 fn the_ring_of_sectors_is_the_gear_assembled_whole() {
     [5, 6].into_iter().for_each(assembled_whole);
+}
+
+/// Influences on the roots against the same gauges on the displacements that `solved` has of all teeth, the first one being
+/// loaded: to 1e-9 of the largest. In the block around the load they are those of the rest, so the field is added.
+fn stresses_of_all_teeth(
+    model: &GearModel,
+    rolls: &[f64],
+    teeth: u32,
+    solved: impl Fn(&NodalForces) -> Vec<Vec<[f64; 2]>>,
+) {
+    let neighbours = (teeth - 1) / 2;
+    let found = model.stress_influences(rolls, neighbours).unwrap();
+    let first_in_block = 2 * (model.mesh.root.len() - 1);
+    for (load, &roll) in rolls.iter().enumerate() {
+        let moved = solved(&model.load_without_field(roll).unwrap());
+        let largest = found.stresses[neighbours as usize][load].iter().copied().fold(0.0, f64::max);
+        for (at, stresses) in found.stresses.iter().enumerate() {
+            // The loaded tooth is so many pitches further than the stressed one.
+            let stressed = (neighbours as usize + teeth as usize - at) % teeth as usize;
+            for (place, (gauge, &ours)) in found.gauges.iter().zip(&stresses[load]).enumerate() {
+                if stressed == 0 && place >= first_in_block {
+                    continue;
+                }
+                let exact = gauge.stress(|node| moved[stressed][node]);
+                assert!((ours - exact).abs() < 1e-9 * largest, "{at} {place}: {ours} for {exact}");
+            }
+        }
+    }
 }
 
 fn assembled_whole(teeth: u32) {
@@ -140,4 +169,16 @@ fn assembled_whole(teeth: u32) {
         }
         assert!(stresses[by].len() >= 4);
     }
+    stresses_of_all_teeth(&model, &rolls, teeth, |forces| {
+        let mut moved = vector(forces, 0);
+        factor.solve(&mut moved);
+        // Each sector's displacements in its own tooth's frame.
+        let of = |sector: usize, node: usize| {
+            let place = number[sector][node];
+            let ([x, y], (sine, cosine)) =
+                ([moved[2 * place], moved[2 * place + 1]], (pitch * sector as f64).sin_cos());
+            [x * cosine - y * sine, x * sine + y * cosine]
+        };
+        (0..teeth as usize).map(|sector| (0..mesh.nodes.len()).map(|node| of(sector, node)).collect()).collect()
+    });
 }

@@ -58,7 +58,11 @@ fn crowned(pair: &GearPair, crown: f64, slope: f64) -> Design {
 
 /// Without cuts where the face begins to touch: coupled slices have none, and both are to be sampled alike.
 fn summary(cycle: &MeshCycle, design: &Design, torque: f64) -> Summary {
-    LoadCase::new(cycle, design, torque).for_values().summary(Wanted { harmonics: 3, pressure: true })
+    LoadCase::new(cycle, design, torque).for_values().summary(Wanted {
+        harmonics: 3,
+        pressure: true,
+        ..Wanted::default()
+    })
 }
 
 #[track_caller]
@@ -425,7 +429,7 @@ fn corner_contact_and_coupled_slices_go_together() {
         close(summary(&plate, &design, TORQUE).mean, summary(&none, &design, TORQUE).mean, 1e-11);
         let design = crowned(&pair, 9e-6, 0.0);
         let loading = LoadCase::new(&plate, &design, 400.0);
-        for point in loading.curve(Wanted { harmonics: 0, pressure: true }) {
+        for point in loading.curve(Wanted { harmonics: 0, pressure: true, ..Wanted::default() }) {
             close(point.loads.iter().sum(), loading.force, 1e-12);
             assert!(point.pressure.unwrap() > 0.0);
         }

@@ -18,7 +18,8 @@ fn counted(
     let pair = pair();
     let cycle = MeshCycle::new(&pair, &PairCompliance { contact: Some(contact), ..varying() }, settings).unwrap();
     let design = design(&pair, parts).unwrap();
-    let summary = LoadCase::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure });
+    let summary =
+        LoadCase::new(&cycle, &design, TORQUE).summary(Wanted { harmonics: 2, pressure, ..Wanted::default() });
     let work = cycle.work();
     (summary, [&SLICES, &CONTACT_SOLVES, &CONTACT_PRESSURES].map(|counter| work.count(counter)))
 }

@@ -1,0 +1,96 @@
+//! Influences of loads on the stress of roots: their own field taken off against loads at nodes.
+
+use super::{gear, model, shifted, standard};
+use crate::gear::geometry::root::RootShape;
+use crate::numeric::chebyshev::{Series, nodes};
+use crate::numeric::parabola::peak;
+
+/// Tier: second method. A load is either forces at nodes, whose stresses are wrong for some elements around it, or a field in
+/// closed form and a rest. Half a module away both have the error of the mesh and nothing else: they differ by 0.5 % at most with
+/// 16 elements across, and by 0.06 % with 32.
+#[test]
+fn away_from_a_load_its_nodes_do_not_matter() {
+    for specification in [shifted(12, 0.5, 1.4), standard(19, 1.758), standard(48, 1.758), standard(150, 1.2)] {
+        for shape in [RootShape::Trochoid, RootShape::CircularFillet] {
+            let (gear, root) = gear(&specification, shape);
+            let (form, tip) = (root.form_roll, gear.tip_roll());
+            let rolls = [0.2, 0.5, 0.95].map(|part| form + part * (tip - form));
+            for (across, most) in [(16, 5e-3), (32, 6e-4)] {
+                let model = model(&gear, &root, across).unwrap();
+                let found = model.stress_influences(&rolls, 0).unwrap();
+                let at_nodes = model.root_stresses(&rolls).unwrap();
+                let (mut compared, mut worst) = (0, 0.0_f64);
+                for ((ours, theirs), &roll) in found.stresses[0].iter().zip(&at_nodes).zip(&rolls) {
+                    let largest = ours.iter().copied().fold(0.0, f64::max);
+                    let load = gear.flank(roll);
+                    let away = |[x, y]: [f64; 2]| (x - load.half_thickness).hypot(y - load.height) > 0.5;
+                    // Ours begin an edge further on.
+                    let theirs = theirs[2..].iter().take_while(|point| away(point.place));
+                    for ((ours, theirs), gauge) in ours.iter().zip(theirs).zip(&found.gauges) {
+                        assert_eq!(gauge.place.map(f64::to_bits), theirs.place.map(f64::to_bits));
+                        worst = worst.max((ours - theirs.stress).abs() / largest);
+                        compared += 1;
+                    }
+                }
+                assert!(worst < most && compared > 8, "z {} {shape:?}: {worst} {compared}", specification.teeth);
+            }
+        }
+    }
+}
+
+/// Tier: convergence. Next to a load too, where forces at nodes say nothing: the largest stress under a load at a twentieth of
+/// the flank against that of 48 elements across.
+#[test]
+fn next_to_a_load_stresses_converge() {
+    for teeth in [17, 60] {
+        let (gear, root) = gear(&standard(teeth, 1.4), RootShape::Trochoid);
+        let roll = root.form_roll + 0.05 * (gear.tip_roll() - root.form_roll);
+        let largest = |across: usize| {
+            let found = model(&gear, &root, across).unwrap().stress_influences(&[roll], 0).unwrap();
+            let lengths: Vec<f64> = found.gauges.iter().map(|gauge| gauge.length).collect();
+            peak(&lengths, &lengths, &found.stresses[0][0]).unwrap().0
+        };
+        let exact = largest(48);
+        for (across, error) in [(8, 4e-2), (16, 1e-2), (24, 5e-3)] {
+            let found = largest(across);
+            assert!((found / exact - 1.0).abs() < error, "z {teeth}, {across} across: {found} for {exact}");
+        }
+    }
+}
+
+/// Tier: second method; between the nodes of the tables the influences are interpolated. Right beside a load, where a fillet
+/// ends, they are less smooth; the largest stress of a tooth is not there: to 1e-5 of it, and 3e-4 where there are very many
+/// teeth, whose fillets end high.
+#[test]
+fn the_largest_influence_is_smooth_in_the_load_s_place() {
+    for (teeth, count, [every, of_peak]) in [
+        (17, 12, [2e-2, 1e-5]),
+        (25, 12, [2e-2, 1e-5]),
+        (48, 12, [2e-2, 1e-5]),
+        (48, 16, [1e-2, 2e-6]),
+        (150, 12, [5e-2, 3e-4]),
+    ] {
+        let (gear, root) = gear(&standard(teeth, 1.4), RootShape::Trochoid);
+        let model = model(&gear, &root, 16).unwrap();
+        let (form, tip) = (root.form_roll, gear.tip_roll());
+        let tabulated = model.stress_influences(&nodes(form, tip, count), 1).unwrap();
+        let rolls: Vec<f64> = (1..80).map(|k| form + (tip - form) * f64::from(k) / 80.0).collect();
+        let direct = model.stress_influences(&rolls, 1).unwrap();
+        let lengths: Vec<f64> = tabulated.gauges.iter().map(|gauge| gauge.length).collect();
+        let series: Vec<Series> = (0..lengths.len())
+            .map(|place| {
+                let values: Vec<f64> = tabulated.stresses[1].iter().map(|row| row[place]).collect();
+                Series::from_values(form, tip, &values)
+            })
+            .collect();
+        for (roll, direct) in rolls.iter().zip(&direct.stresses[1]) {
+            let ours: Vec<f64> = series.iter().map(|series| series.value(*roll)).collect();
+            let [ours_peak, direct_peak] =
+                [&ours, direct].map(|stresses| peak(&lengths, &lengths, stresses).unwrap().0);
+            let worst = ours.iter().zip(direct).map(|(a, b)| (a - b).abs() / direct_peak).fold(0.0, f64::max);
+            let case = format!("z {teeth}, {count} nodes, load at {:.3}", (roll - form) / (tip - form));
+            assert!(worst < every, "{case}: {worst:.1e}");
+            assert!((ours_peak / direct_peak - 1.0).abs() < of_peak, "{case}: {ours_peak} for {direct_peak}");
+        }
+    }
+}

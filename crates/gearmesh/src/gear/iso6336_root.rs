@@ -1,0 +1,139 @@
+//! ISO 6336-3:2019, clauses 6 and 7 (method B): nominal root stress of external spur gears cut by a rack.
+//!
+//! σ_F0 = F_t/(b m) Y_F Y_S with the load at the outer point of single pair tooth contact. The critical section is where the
+//! tangents to the fillets stand at 30° to the tooth's centreline; Y_F is its bending stress, Y_S corrects for the notch. For
+//! 1 ≤ q_s < 8 and ε_α < 2; Y_DT and f_ε are then 1, and Y_B is 1 since bores are held by their shafts. The rack has no
+//! protuberance, and profile shift is the generating one. Must not know: load sharing, the tooth's elasticity.
+
+use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6};
+
+use super::geometry::error::Plain;
+use super::geometry::{GearPair, Rack, Side, Specification};
+
+/// q_s for which Y_S is given.
+const NOTCH: std::ops::Range<f64> = 1.0..8.0;
+/// ε_α from which two pairs always share the load.
+const DEEP_MESH: f64 = 2.0;
+/// Steps of the iteration for θ; five are enough by the standard.
+const STEPS: usize = 100;
+
+/// A tooth as the standard needs it, lengths in modules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tooth {
+    /// z (the virtual number z_n of a helical gear).
+    pub teeth: f64,
+    /// α_n \[rad\].
+    pub pressure_angle: f64,
+    /// x.
+    pub profile_shift: f64,
+    /// h_fP and ρ_fP.
+    pub rack: Rack,
+    /// d_en/2: where the load acts.
+    pub load_radius: f64,
+}
+
+/// The critical section and what follows from it, lengths in modules.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Section {
+    /// s_Fn: chord of the tooth.
+    pub chord: f64,
+    /// ρ_F: radius of the fillet.
+    pub fillet_radius: f64,
+    /// h_Fe: lever of the load.
+    pub lever: f64,
+    /// α_Fen: angle of the load to the normal of the centreline \[rad\].
+    pub load_angle: f64,
+    /// q_s: s_Fn/(2 ρ_F).
+    pub notch: f64,
+    /// Y_F.
+    pub form_factor: f64,
+    /// Y_S.
+    pub stress_correction_factor: f64,
+}
+
+/// Why the standard gives no stress.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Outside {
+    /// The fillet has no tangent of 30°, or the load's line passes below the section.
+    #[error("no critical section is found")]
+    NoSection,
+    /// q_s is not what Y_S is given for.
+    #[error("the notch parameter q_s is {}, but must be {} to {}", Plain(*.0), Plain(NOTCH.start), Plain(NOTCH.end))]
+    Notch(f64),
+    /// ε_α is 2 or more.
+    #[error("the transverse contact ratio is {}, but must be below {}: no single pair carries all of the load", Plain(*.0), Plain(DEEP_MESH))]
+    ContactRatio(f64),
+}
+
+/// The critical section of a tooth, Y_F and Y_S.
+///
+/// # Errors
+/// When there is none, or the notch is outside the range of Y_S.
+pub fn section(tooth: &Tooth) -> Result<Section, Outside> {
+    let Tooth { teeth, pressure_angle, profile_shift, rack, load_radius } = *tooth;
+    let (sine, cosine) = libm::sincos(pressure_angle);
+    let tangent = sine / cosine;
+    let (dedendum, round) = (rack.dedendum, rack.tip_radius);
+    let e = FRAC_PI_4 - dedendum * tangent - (1.0 - sine) * round / cosine;
+    let g = round - dedendum + profile_shift;
+    let h = 2.0 / teeth * (FRAC_PI_2 - e) - FRAC_PI_3;
+    let mut theta = FRAC_PI_6;
+    for _ in 0..STEPS {
+        theta = 2.0 * g / teeth * libm::tan(theta) - h;
+    }
+    let next = 2.0 * g / teeth * libm::tan(theta) - h;
+    let cos_theta = libm::cos(theta);
+    if !((next - theta).abs() < 1e-9 && cos_theta > 0.0) {
+        return Err(Outside::NoSection);
+    }
+    let beside = g / cos_theta - round;
+    let chord = teeth * libm::sin(FRAC_PI_3 - theta) + 3_f64.sqrt() * beside;
+    let fillet_radius = round + 2.0 * g * g / (cos_theta * (teeth * cos_theta * cos_theta - 2.0 * g));
+    // The load's angle at its radius, from the centreline's normal.
+    let at_load = libm::acos(0.5 * teeth * cosine / load_radius);
+    let half_thickness = (FRAC_PI_2 + 2.0 * tangent * profile_shift) / teeth + (tangent - pressure_angle)
+        - (libm::tan(at_load) - at_load);
+    let load_angle = at_load - half_thickness;
+    let along = libm::cos(half_thickness) - libm::sin(half_thickness) * libm::tan(load_angle);
+    let lever = 0.5 * (along * 2.0 * load_radius - teeth * libm::cos(FRAC_PI_3 - theta) - beside);
+    if !(chord > 0.0 && fillet_radius > 0.0 && lever > 0.0) {
+        return Err(Outside::NoSection);
+    }
+    let notch = chord / (2.0 * fillet_radius);
+    if !NOTCH.contains(&notch) {
+        return Err(Outside::Notch(notch));
+    }
+    let slenderness = chord / lever;
+    Ok(Section {
+        chord,
+        fillet_radius,
+        lever,
+        load_angle,
+        notch,
+        form_factor: 6.0 * lever * libm::cos(load_angle) / (chord * chord * cosine),
+        stress_correction_factor: (1.2 + 0.13 * slenderness) * libm::pow(notch, 1.0 / (1.21 + 2.3 / slenderness)),
+    })
+}
+
+/// σ_F0 \[Pa\] of a gear of a pair under a torque on the pinion \[N m\], over the common face width.
+///
+/// # Errors
+/// Outside the ranges of the standard's formulas.
+pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f64, Outside> {
+    if pair.contact_ratio >= DEEP_MESH {
+        return Err(Outside::ContactRatio(pair.contact_ratio));
+    }
+    let gear = pair.side(side);
+    let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = gear.specification;
+    // Inside the tip, along the line of action, by what is shared with another pair.
+    let tip = (gear.tip_radius * gear.tip_radius - gear.base_radius * gear.base_radius).max(0.0).sqrt();
+    let length = tip - pair.base_pitch * (pair.contact_ratio - 1.0);
+    let load_radius = libm::hypot(length, gear.base_radius) / module;
+    let found = section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })?;
+    let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
+    let tangential = torque / pair.pinion.reference_radius;
+    Ok(tangential / (width * module) * found.form_factor * found.stress_correction_factor)
+}
+
+#[cfg(test)]
+mod tests;
