@@ -228,6 +228,8 @@ fn harris_relations_hold_through_the_stage() {
     };
     let tables = stage.run(&context, &inputs).unwrap();
     let summary = tables.iter().find(|table| table.name() == "summary").unwrap();
+    let families = gearmesh::gear::modification::members();
+    let named = designs::read(table(&ran, "designs", "designs"), table(&ran, "designs", "elements"), families).unwrap();
     let mut seen = 0;
     for row in 0..summary.rows() {
         let (design, torque) = (summary.texts("design")[row].as_str(), summary.floats("torque")[row]);
@@ -238,14 +240,37 @@ fn harris_relations_hold_through_the_stage() {
             _ => continue,
         };
         let found = [summary.floats("peak_to_peak")[row], summary.floats("unloaded_peak_to_peak")[row]];
-        // The relations take the gap on the line of action; the least one is nearer by ρ C′²/2, 0.6 % of the relief at most.
-        let nearer = if design == "unmodified" { 0.0 } else { 0.006 * 7.0 };
+        if design == "unmodified" {
+            assert!((found[0] - loaded).abs() < 1e-9 * deflection.max(7.0), "{torque}: {} {loaded}", found[0]);
+            assert!(found[1].abs() < 1e-9, "{torque} unloaded: {}", found[1]);
+            seen += 1;
+            continue;
+        }
+        // The relations take the gap on the line of action, to which the least one of a relief is close.
+        let close = |found: f64, relation: f64| (found - relation).abs() < 0.006 * 7.0;
         assert!(
-            (found[0] - loaded).abs() <= 1e-9 * deflection.max(7.0) + nearer,
-            "{design} {torque}: {} {loaded}",
-            found[0]
+            close(found[0], loaded) && close(found[1], unloaded),
+            "{design} {torque}: {found:?} {loaded} {unloaded}"
         );
-        assert!((found[1] - unloaded).abs() <= 1e-9 + nearer, "{design} {torque} unloaded: {} {unloaded}", found[1]);
+        // With it they are equilibrium by hand, at places so dense that kinks between them are lost by 2e-4 of the relief.
+        let built = named.iter().find(|named| named.name == design).unwrap().built(&pair).unwrap();
+        let profiles = built.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        let by_hand = |deflection: f64| {
+            let error = |index: u32| {
+                let s = pair.start_of_contact + pair.base_pitch * f64::from(index) / 20_000.0;
+                let ahead =
+                    (s + pair.base_pitch <= pair.end_of_contact).then(|| gaps.at(s + pair.base_pitch)).flatten();
+                let (one, two) = (1e6 * gaps.at(s).unwrap(), ahead.map_or(f64::INFINITY, |gap| 1e6 * gap));
+                // The nearer pair alone, or both.
+                (one.min(two) + deflection).min(0.5 * (one + two + deflection))
+            };
+            let errors = || (0..20_000).map(error);
+            errors().fold(f64::MIN, f64::max) - errors().fold(f64::MAX, f64::min)
+        };
+        for (found, exact) in found.into_iter().zip([by_hand(deflection), by_hand(0.0)]) {
+            assert!((found - exact).abs() < 2e-4 * 7.0, "{design} {torque}: {found} {exact}");
+        }
         seen += 1;
     }
     assert_eq!(seen, 9);
