@@ -123,7 +123,7 @@ impl<'a> Gaps<'a> {
             let nominal = nominal(way);
             let before = way.facing.start - nominal;
             if before > 0.0 {
-                let touch = way.facing.corner(before);
+                let touch = way.facing.tip(before);
                 if touch.curvature > way.facing.end {
                     return (f64::INFINITY, Spot::Nowhere);
                 }
@@ -133,9 +133,9 @@ impl<'a> Gaps<'a> {
                     return (gap, spot);
                 }
                 return if self.is_convex {
-                    way.descend(nominal, before, touch).unwrap_or((gap, spot))
+                    way.descend(nominal, before, way.facing.flank_end(before)).unwrap_or((gap, spot))
                 } else {
-                    way.search(nominal, before, touch, (gap, spot))
+                    way.search(nominal, before, way.facing.flank_end(before), (gap, spot))
                 };
             }
         }
@@ -239,7 +239,7 @@ impl<'a> Gaps<'a> {
             Spot::OnLineOfAction => Some(self.on_line(s)),
             Spot::Corner { .. } => {
                 let way = self.ways.iter().find(|way| way.facing.start > nominal(way))?;
-                let touch = way.facing.corner(way.facing.start - nominal(way));
+                let touch = way.facing.tip(way.facing.start - nominal(way));
                 Some(touch.separation + way.depth(way.facing.start, touch.curvature))
             }
             Spot::Beside { side, pieces, place: PieceLocation::EndOfPoint } => {

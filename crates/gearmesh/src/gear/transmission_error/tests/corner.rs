@@ -292,7 +292,7 @@ fn the_model_ends_where_a_tip_would_pass_the_other() {
     let limit = LoadCase::new(&cycle, &design, 1.0).largest_approach();
     let ends = [Side::Gear, Side::Pinion].map(|side| {
         let facing = Facing::new(&pair, side);
-        facing.corner(facing.reach(BASE_PITCH)).separation
+        facing.tip(facing.reach(BASE_PITCH)).separation
     });
     close(limit, ends[0].min(ends[1]), 1e-6);
     let largest = |torque: f64| LoadCase::new(&cycle, &design, torque).summary(Wanted::default()).largest.value;
