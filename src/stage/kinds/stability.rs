@@ -254,6 +254,13 @@ impl Stage for Stability {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
+        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(|side| pair.side(*side).tip != Tip::Land) {
+            return Err(Failure::new(format!(
+                "the {} has a chamfer or a rounding at its tip; the second evaluation knows tips with a land only: check a \
+                 geometry without `tip`",
+                side.name()
+            )));
+        }
         let mut base = Point::of(&pair);
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;
         let cases = self.cases(&base, context);

@@ -5,7 +5,8 @@
 use super::path::Path;
 use crate::gear::compliance::PairCompliance;
 use crate::gear::contact::flattening::{Bodies, combined_radius};
-use crate::gear::contact::tip::{Corner, Tips};
+use crate::gear::contact::rounding::Rounding;
+use crate::gear::contact::tip::{Corner, Shape, Tips};
 use crate::gear::contact::wedge::Wedge;
 use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::graded::Graded;
@@ -13,7 +14,7 @@ use crate::numeric::graded::Graded;
 /// Against the path position.
 #[derive(Clone, Debug)]
 pub(super) struct Ends {
-    wedges: [Wedge; 2],
+    shapes: [Shape; 2],
     /// B \[1/Pa\].
     rates: [f64; 2],
     /// From the corners along the flanks \[m\].
@@ -30,8 +31,17 @@ impl Ends {
         let bodies = Bodies::of(pair, compliance.plane);
         let rates = [compliance.pinion.corner, compliance.gear.corner];
         let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
+        let shapes = [(Side::Pinion, pair.end_of_contact), (Side::Gear, pair.start_of_contact)].map(|(side, end)| {
+            let radius = pair.side(side).flank_end.radius;
+            if radius > 0.0 {
+                let radii = path.radii(end);
+                let (own, mate) = (radii[side as usize], radii[side.other() as usize]);
+                return Shape::Rounding(Rounding::new(combined_radius([radius, mate]) / combined_radius([own, mate])));
+            }
+            Shape::Corner(Wedge::new(rates[side as usize] / bodies.linear()))
+        });
         Self {
-            wedges: rates.map(|rate| Wedge::new(rate / bodies.linear())),
+            shapes,
             rates,
             distances: [Side::Pinion, Side::Gear].map(|side| fit(&|s| path.corner_distance(side, s))),
             half_width: fit(&|s| bodies.half_width(combined_radius(path.radii(s)))),
@@ -43,7 +53,7 @@ impl Ends {
     /// The tips of a pair there.
     pub(super) fn tips(&self, s: f64) -> Tips<'_> {
         let corner = |side: usize| Corner {
-            wedge: &self.wedges[side],
+            shape: &self.shapes[side],
             rate: self.rates[side],
             distance: self.distances[side].value(s),
         };
