@@ -16,6 +16,8 @@ use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use declare::{Declared, Words};
+use gearmesh::gear::geometry::Side;
+use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use gearmesh::optimize::latin_hypercube;
 use studygraph::stage::steps::Steps;

@@ -8,6 +8,7 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
+use crate::numeric::crossing::bracketed;
 use crate::numeric::piecewise::{self, Piecewise, Tolerance};
 use outline::Outline;
 
@@ -71,6 +72,16 @@ struct Way<'a> {
     facing: Facing,
     point: Outline<'a>,
     flank: Outline<'a>,
+    turn: Turn,
+}
+
+/// How the slope of the profiles at the end of a flank turns the rounding that follows it.
+#[derive(Clone, Copy, Debug, Default)]
+struct Turn {
+    /// How much farther inside the arc's own position is \[m\].
+    shift: f64,
+    /// What the separation of the arc gains by that, in second order \[m\].
+    offset: f64,
 }
 
 /// The state of a search: the current point, its smooth piece, and the least gap so far.
@@ -94,11 +105,16 @@ impl<'a> Gaps<'a> {
         let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
         let is_convex = point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
-        let ways = [
-            Way { side: Side::Gear, facing: facings[0], point, flank },
-            Way { side: Side::Pinion, facing: facings[1], point: point_too, flank: flank_too },
+        let turn = Turn::default();
+        let mut ways = [
+            Way { side: Side::Gear, facing: facings[0], point, flank, turn },
+            Way { side: Side::Pinion, facing: facings[1], point: point_too, flank: flank_too, turn },
         ];
-        Self { ways, modified: !pinion.is_empty() || !gear.is_empty(), is_convex }
+        let modified = !pinion.is_empty() || !gear.is_empty();
+        for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
+            way.turn = way.turned();
+        }
+        Self { ways, modified, is_convex }
     }
 
     /// For a search that needs no convexity.
@@ -123,7 +139,7 @@ impl<'a> Gaps<'a> {
             let nominal = nominal(way);
             let before = way.facing.start - nominal;
             if before > 0.0 {
-                let touch = way.facing.tip(before);
+                let touch = way.tip(before);
                 if touch.curvature > way.facing.end {
                     return (f64::INFINITY, Spot::Nowhere);
                 }
@@ -239,7 +255,7 @@ impl<'a> Gaps<'a> {
             Spot::OnLineOfAction => Some(self.on_line(s)),
             Spot::Corner { .. } => {
                 let way = self.ways.iter().find(|way| way.facing.start > nominal(way))?;
-                let touch = way.facing.tip(way.facing.start - nominal(way));
+                let touch = way.tip(way.facing.start - nominal(way));
                 Some(touch.separation + way.depth(way.facing.start, touch.curvature))
             }
             Spot::Beside { side, pieces, place: PieceLocation::EndOfPoint } => {
@@ -281,6 +297,34 @@ impl<'a> Gaps<'a> {
 }
 
 impl Way<'_> {
+    /// What comes nearest when the flank ends `before` its own position, if no place of the flank does.
+    fn tip(&self, before: f64) -> Touch {
+        let touch = self.facing.turned_tip(before, self.turn.shift);
+        Touch { separation: touch.separation + self.turn.offset, ..touch }
+    }
+
+    /// A rounding begins with the tangent of the flank as it is modified: when its beginning touches, the mate is met where
+    /// the flank's end meets it, and the gap is the same.
+    fn turned(&self) -> Turn {
+        let facing = self.facing;
+        let slope = |before: f64| {
+            let touch = facing.flank_end(before);
+            self.pull(
+                facing.start - before,
+                before,
+                &touch,
+                [self.point.piece(facing.start), self.flank.piece(touch.curvature)],
+            )[1]
+        };
+        let reach = facing.reach(facing.end - facing.start);
+        // Where the gap does not fall towards the inside, the rounding begins to touch with the end of contact.
+        let first = if slope(0.0) < 0.0 { bracketed(0.0, reach, slope).unwrap_or(reach) } else { 0.0 };
+        let end = facing.flank_end(first);
+        let miss = |shift: f64| facing.turned_tip(first, shift).curvature - end.curvature;
+        let shift = bracketed(-first, facing.end - facing.start, miss).unwrap_or(0.0);
+        Turn { shift, offset: end.separation - facing.turned_tip(first, shift).separation }
+    }
+
     fn depth(&self, point: f64, flank: f64) -> f64 {
         self.point.depth(point) + self.flank.depth(flank)
     }

@@ -167,7 +167,13 @@ impl Facing {
     /// of the same base circle.
     #[must_use]
     pub fn tip(&self, before: f64) -> Touch {
-        let centre = self.touch(self.start + self.round, before);
+        self.turned_tip(before, 0.0)
+    }
+
+    /// The same where the flank ends in another direction, so that the arc's own position is by `shift` farther inside.
+    #[must_use]
+    pub fn turned_tip(&self, before: f64, shift: f64) -> Touch {
+        let centre = self.touch(self.start + self.round + shift, before + shift);
         Touch { curvature: centre.curvature - self.round, ..centre }
     }
 
