@@ -19,7 +19,6 @@ use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::{MeshError, root_stress};
-use crate::gear::geometry::flank_end::FlankEnd;
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
@@ -287,21 +286,15 @@ impl<'a> Task<'a> {
         material.plane_compliance(self.plane) * material.youngs_modulus
     }
 
-    /// Where the tooth would have a corner: of a rounding the one that it takes away.
-    fn corner(&self) -> FlankEnd {
-        let end = self.gear.flank_end;
-        if end.radius > 0.0 { FlankEnd::corner(self.gear.tip_roll()) } else { end }
-    }
-
-    /// B for E = 1, of that corner.
+    /// B for E = 1.
     fn softening(&self) -> f64 {
-        self.half_plane() * wedge::softening(self.corner().interior_angle)
+        self.half_plane() * wedge::softening(self.gear.last_corner().interior_angle)
     }
 
     /// B ln c at a roll angle, c its distance from that corner along the flank \[modules\].
     fn hardened(&self, roll: f64) -> f64 {
         let radius = self.gear.base_radius / self.gear.specification.module;
-        let corner = self.corner().roll;
+        let corner = self.gear.last_corner().roll;
         self.softening() * libm::log(0.5 * radius * (corner - roll) * (corner + roll))
     }
 
@@ -349,24 +342,14 @@ impl<'a> Task<'a> {
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [self.rolls.len(); 2], &scaled(&rows.concat())))
             .collect();
-        let mut body = Series::from_values(lower, upper, &scaled(&solution.own));
-        let mut corner = 0.0;
-        if self.resolved && self.gear.flank_end.radius > 0.0 {
-            // Nothing grows without limit at a rounding.
-            let [softened] =
-                Series::converged(lower, upper, |roll| [body.value(roll) - scale * self.hardened(roll)])
-                    .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
-            body = softened;
-        } else if self.resolved {
-            corner = self.softening() / self.gear.specification.material.youngs_modulus;
-        }
+        let corner = if self.resolved { self.softening() } else { 0.0 };
         Ok(ToothCompliance {
             bending: nothing(),
             shear: nothing(),
             axial: nothing(),
-            body,
+            body: Series::from_values(lower, upper, &scaled(&solution.own)),
             contact_depth,
-            corner,
+            corner: corner / self.gear.specification.material.youngs_modulus,
             neighbours,
         })
     }

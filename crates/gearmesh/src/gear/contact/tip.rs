@@ -58,6 +58,8 @@ pub struct Corner<'a> {
     pub rate: f64,
     /// c: how far from the end the flanks would touch without load \[m\], along the flank; negative beyond it.
     pub distance: f64,
+    /// What the tooth yields more on its way to a corner that a rounding takes away \[1/Pa\]; 0 at a corner that is there.
+    pub softened: f64,
 }
 
 /// Those of both teeth.
@@ -77,9 +79,9 @@ pub struct Tips<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NearTips<'a> {
     tips: Tips<'a>,
-    /// C.
+    /// C, with what roundings add.
     compliance: f64,
-    /// What the corners add where they are far: Σ −B ln(c/m), of those that are not beyond.
+    /// What tips add to the compliance of both teeth where they are far: Σ −B ln(c/m), of those that are not beyond.
     pub(super) far: f64,
     /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
     rest: f64,
@@ -95,7 +97,9 @@ impl<'a> NearTips<'a> {
         let Tips { corners, half_width, unit, widest } = tips;
         let root = widest / half_width;
         let largest = root * root;
-        let mut near = Self { tips, compliance, far: 0.0, rest: 0.0, last_far: largest, largest };
+        let softened: f64 = corners.iter().map(|corner| corner.softened).sum();
+        let compliance = compliance + softened;
+        let mut near = Self { tips, compliance, far: softened, rest: 0.0, last_far: largest, largest };
         for corner in &corners {
             // A contact as wide as a tenth of it.
             let reach = corner.distance.max(0.0) / (corner.shape.far() * half_width);
@@ -181,6 +185,7 @@ mod tests {
             shape: &shapes[side],
             rate: if matches!(shapes[side], Shape::Corner(_)) { [0.15, 0.35][side] * 2.0 * law.rate } else { 0.0 },
             distance: distances[side],
+            softened: if matches!(shapes[side], Shape::Corner(_)) { 0.0 } else { 1e-12 },
         };
         let tips =
             Tips { corners: [corner(0), corner(1)], half_width: STEELS.half_width(7e-3), unit: 3e-3, widest: 0.75e-3 };

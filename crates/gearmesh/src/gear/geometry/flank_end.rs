@@ -22,6 +22,14 @@ pub struct FlankEnd {
     pub radius: f64,
 }
 
+impl Gear {
+    /// The corner in which the flank ends, or, before a rounding, the one that it takes away.
+    #[must_use]
+    pub fn last_corner(&self) -> FlankEnd {
+        if self.flank_end.radius > 0.0 { FlankEnd::corner(self.tip_roll()) } else { self.flank_end }
+    }
+}
+
 impl FlankEnd {
     /// The corner with the tip circle, which the flank meets at 90° + α_a, tan α_a its roll angle.
     #[must_use]
