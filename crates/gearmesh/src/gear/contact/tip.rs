@@ -17,7 +17,7 @@ const STEPS: usize = 50;
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
     /// Of the ratio B/k₀ = B/2β.
-    Corner(Wedge),
+    Corner(Box<Wedge>),
     /// With B = 0.
     Rounding(Rounding),
 }
@@ -208,7 +208,7 @@ mod tests {
     /// that of differences.
     #[test]
     fn the_law_inverts_at_every_load() {
-        let wedges = [0.15, 0.35].map(|ratio| Shape::Corner(Wedge::new(ratio)));
+        let wedges = [0.15, 0.35].map(|ratio| Shape::Corner(Box::new(Wedge::new(ratio))));
         let roundings = [0.05, 0.3].map(|ratio| Shape::Rounding(Rounding::new(ratio)));
         let mixed = [wedges[0].clone(), roundings[1].clone()];
         let cases = [&wedges, &roundings, &mixed].map(|shapes| DISTANCES.map(|distances| (shapes, distances)));

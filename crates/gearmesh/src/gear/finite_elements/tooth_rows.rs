@@ -99,7 +99,7 @@ fn distance([x, y]: [f64; 2], [p, q]: [f64; 2]) -> f64 {
 /// land. A corner of an element is where they meet.
 fn top([edge, land]: [&Stretch; 2], across: &[f64]) -> Vec<[f64; 2]> {
     let middle = (across.len() - 1) / 2;
-    let [long, short] = [edge, land].map(|stretch| stretch.length());
+    let [long, short] = [edge, land].map(Stretch::length);
     let share = 0.5 * long / (long + short);
     let corners = (2..middle).step_by(2);
     let nearer = |a: usize, b: usize| if (across[b] - share).abs() < (across[a] - share).abs() { b } else { a };

@@ -42,7 +42,7 @@ impl Ends {
                 let (own, mate) = (radii[side as usize], radii[side.other() as usize]);
                 return Shape::Rounding(Rounding::new(combined_radius([radius, mate]) / combined_radius([own, mate])));
             }
-            Shape::Corner(Wedge::new(corners[side as usize] / bodies.linear()))
+            Shape::Corner(Box::new(Wedge::new(corners[side as usize] / bodies.linear())))
         });
         let is_rounded = |side: Side| pair.side(side).flank_end.radius > 0.0;
         let softened = [Side::Pinion, Side::Gear].map(|side| {
