@@ -6,7 +6,7 @@ use crate::gear::contact::separation::Facing;
 use crate::gear::fixtures;
 use crate::gear::geometry::Side;
 
-fn exact(pair: &GearPair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
+pub(super) fn exact(pair: &GearPair, compliance: &PairCompliance, positions: usize) -> MeshCycle {
     let settings = Settings { positions, slices: 9, corner_contact: CornerContact::Exact, ..Settings::default() };
     MeshCycle::new(pair, compliance, settings).unwrap()
 }
