@@ -298,6 +298,12 @@ impl MeshCycle {
         }
     }
 
+    /// Whether the law of contact knows the corners of tips.
+    #[must_use]
+    pub fn knows_corners(&self) -> bool {
+        self.elasticity.is_resolved()
+    }
+
     /// Whether any pair feels its neighbours' load.
     pub(super) fn coupled(&self) -> bool {
         !self.coupling.is_empty()

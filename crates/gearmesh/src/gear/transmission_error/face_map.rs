@@ -32,7 +32,7 @@ enum Across<'a> {
     /// The same at every position.
     Leads(Vec<Face<'a>>),
     /// At each position something else.
-    Surface(Flanks<'a>),
+    Surface(Box<Flanks<'a>>),
     /// Slices hold each other, and are the strips.
     Slices,
 }
@@ -85,7 +85,7 @@ impl LoadCase<'_> {
         }
         let strips = equal_strips(self.cycle.face_width, strips);
         if self.flanks.is_surface {
-            return Across::Surface(self.flanks.cut_into(self.design, &strips));
+            return Across::Surface(Box::new(self.flanks.cut_into(self.design, &strips)));
         }
         Across::Leads(strips.iter().map(|ends| Face::between(self.design, *ends, &self.cycle.slices)).collect())
     }

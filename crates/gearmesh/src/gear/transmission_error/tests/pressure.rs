@@ -6,7 +6,7 @@ use crate::gear::contact::flattening::Bodies;
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::material::{Material, Plane};
 use crate::gear::transmission_error::face_map::Cell;
-use crate::gear::transmission_error::pressure::{LineContact, cornered};
+use crate::gear::transmission_error::pressure::LineContact;
 use std::f64::consts::PI;
 
 const PRESSURE: Wanted = Wanted { harmonics: 0, pressure: true, root_stress: false };
@@ -258,7 +258,10 @@ fn corners_that_touch_are_told() {
         for corner_contact in [CornerContact::None, CornerContact::Exact] {
             let settings = Settings { corner_contact, ..Settings::default() };
             let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
-            let told = |design: &Design, torque: f64| cornered(&LoadCase::new(&cycle, design, torque).curve(PRESSURE));
+            let told = |design: &Design, torque: f64| {
+                let loading = LoadCase::new(&cycle, design, torque);
+                loading.cornered(&loading.curve(PRESSURE))
+            };
             for torque in [5.0, 60.0, 300.0] {
                 let Some(found) = told(&Design::default(), torque) else {
                     assert!(!resolved && corner_contact == CornerContact::None);
@@ -271,6 +274,20 @@ fn corners_that_touch_are_told() {
                     for end in ends {
                         let here = |[from, to]: &[f64; 2]| *from <= end + 1e-12 && end - 1e-12 <= *to;
                         assert!(found.stretches.iter().any(here), "{end}: {found:?}");
+                    }
+                }
+                // The ends of stretches are those of what a fine grid has.
+                let design = Design::default();
+                let loading = LoadCase::new(&cycle, &design, torque);
+                for zone in &cycle.zones {
+                    for step in 0..=500 {
+                        let position = zone.start + (zone.end - zone.start) * f64::from(step) / 500.0;
+                        let contacts = loading.contacts(position, zone.pairs, &loading.state(position, zone.pairs));
+                        let inside = |by: f64| {
+                            found.stretches.iter().any(|[from, to]| position >= from - by && position <= to + by)
+                        };
+                        let touches = contacts.iter().any(|contact| contact.at_corner);
+                        assert!(if touches { inside(1e-7) } else { !inside(-1e-7) }, "{position}: {found:?}");
                     }
                 }
                 let long: f64 = found.stretches.iter().map(|[from, to]| to - from).sum();
