@@ -3,6 +3,7 @@
 //! Up to 128 torques are a chunk each, so an added one computes only itself. Must not know: who made the designs.
 
 mod ahead;
+mod pressures;
 mod samples;
 mod tables;
 
@@ -12,10 +13,11 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
-use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
+use self::tables::{Found, Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
-use crate::stage::names::{curve, summary};
+use crate::stage::names::summary;
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs, root_influences,
 };
@@ -28,9 +30,10 @@ use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::iso6336_root::nominal_root_stress;
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
+use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::pressure::Cornered;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
@@ -82,6 +85,9 @@ struct Ste {
     /// Where the first of them is: rotation of the pinion from where a pair starts contact in A, in driving direction.
     #[declared(minimum = -TAU, maximum = TAU, dimension = ANGLE, default = "0 deg")]
     pub first_sample: f64,
+    /// Positions per base pitch in the table `pressure`.
+    #[declared(minimum = 1, maximum = 100_000, default = "32")]
+    pub pressure_positions: usize,
 }
 
 /// Of the module: an approach beyond it is told, since nothing here is linear any more. The article `mei2016` goes to 0.18.
@@ -122,6 +128,8 @@ struct Answer {
     seconds: f64,
     /// As [`LoadCase::widest_contact`] has it.
     widest: Option<[f64; 2]>,
+    /// Where sharp corners are in contact, if pressures were asked for.
+    cornered: Option<Cornered>,
     /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
     iso6336: [f64; 2],
 }
@@ -136,9 +144,9 @@ impl Ste {
         base: &MeshCycle,
         (design, name): (&Design, &str),
         torque: f64,
-        wanted: Wanted,
+        (wanted, of_pairs): (Wanted, bool),
         iso6336: [f64; 2],
-    ) -> Result<(Answer, Vec<Point>), Failure> {
+    ) -> Result<(Answer, Found), Failure> {
         let began = Instant::now();
         let sliced = LoadCase::new(base, design, torque).uses_slices();
         let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
@@ -160,8 +168,11 @@ impl Ste {
         }
         let error = sampled.error(settings);
         let widest = loading.widest_contact(&points);
+        let cornered = loading.cornered(&points);
+        let wanted = points.iter().filter(|_| of_pairs);
+        let contacts = wanted.map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs)).collect();
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, widest, iso6336 }, points))
+        Ok((Answer { summary, settings, error, seconds, widest, cornered, iso6336 }, (points, contacts)))
     }
 
     /// Of approaches that no linear model is for, and of accuracies that were not reached.
@@ -238,6 +249,7 @@ impl Stage for Ste {
             cost().schema(),
             samples::samples().schema(),
             samples::summary().schema(),
+            pressures::map().schema(),
         ]
     }
 
@@ -268,8 +280,8 @@ impl Stage for Ste {
     fn saved(&self, demand: &Demand, table: &str, column: Option<&str>) -> Option<Saved> {
         let for_each_solve = |saved, times| Some(Saved::For { done: &CONTACT_SOLVES, saved, times });
         match (table, column) {
-            // Either column takes all pressures.
-            (summary::TABLE, Some(summary::LARGEST_PRESSURE)) if !demand.column(curve::TABLE, curve::PRESSURE) => {
+            // Any of them takes all pressures.
+            (summary::TABLE, Some(summary::LARGEST_PRESSURE)) if !pressures::are_wanted(demand) => {
                 for_each_solve(&CONTACT_PRESSURES, 1.0)
             }
             // Any of them takes all root stresses.
@@ -279,6 +291,10 @@ impl Stage for Ste {
             (samples::TABLE, None) if !demand.table(samples::SUMMARY) => {
                 let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
                 for_each_solve(&CONTACT_SOLVES, self.samples as f64 / curve)
+            }
+            (pressures::TABLE, None) => {
+                let curve = SOLVES_PER_POSITION * self.settings().positions as f64;
+                for_each_solve(&CONTACT_SOLVES, self.pressure_positions as f64 / curve)
             }
             _ => None,
         }
@@ -300,11 +316,11 @@ impl Stage for Ste {
                 designs.push((named.built(&pair)?, named.name));
             }
         }
-        let summary_pressure = context.demand.column(summary::TABLE, summary::LARGEST_PRESSURE);
-        let curve_pressure = context.demand.column(curve::TABLE, curve::PRESSURE);
         let root_stress = root_influences::are_wanted(context.demand);
         let base = if root_stress { base.with_roots(&root_influences::of(inputs)?) } else { base };
-        let wanted = Wanted { harmonics: self.harmonics, pressure: summary_pressure || curve_pressure, root_stress };
+        let pressure = pressures::are_wanted(context.demand);
+        let wanted = Wanted { harmonics: self.harmonics, pressure, root_stress };
+        let wanted = (wanted, pressures::of_pairs_are_wanted(context.demand));
         let per_torque = nominal_root_stresses(context, &pair);
         let mut tasks: Vec<(&Named, f64)> =
             designs.iter().flat_map(|named| self.torque.iter().map(move |torque| (named, *torque))).collect();
@@ -322,10 +338,10 @@ impl Stage for Ste {
                 let mut found = Vec::with_capacity(tasks.len());
                 for &((design, name), torque) in tasks {
                     context.check_stop()?;
-                    let (answer, points) =
+                    let (answer, curve) =
                         self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
                     answers.push((name.as_str(), torque, answer));
-                    found.push((name.as_str(), torque, points));
+                    found.push((name.as_str(), torque, curve));
                     steps.done();
                 }
                 let rows = curve().only(&of_curve).table_of(&points(&found)).map_err(failed)?;
@@ -335,6 +351,7 @@ impl Stage for Ste {
         let (answers, parts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
         let keyed: Vec<Keyed> = answers.into_iter().flatten().collect();
         self.warn(context, &keyed, pair.pinion.specification.module);
+        pressures::warn(context, &base, &keyed);
         let none = || Table::from_rows(of_curve, Vec::new());
         let curves = Table::concatenated(parts).and_then(|curves| curves.map_or_else(none, Ok));
         let mut tables = vec![
@@ -362,6 +379,18 @@ impl Stage for Ste {
             if of_each {
                 tables.push(samples::summary().table(&sums).map_err(failed)?);
             }
+        }
+        if context.demand.table(pressures::TABLE) {
+            let strips = self.settings().slices;
+            let maps: Vec<Vec<CellRow>> = tasks
+                .par_iter()
+                .map(|&((design, name), torque)| {
+                    context.check_stop()?;
+                    let cells = LoadCase::new(&base, design, torque).map(self.pressure_positions, strips);
+                    Ok(cells.into_iter().map(|cell| (name.as_str(), torque, cell)).collect())
+                })
+                .collect::<Result<_, Failure>>()?;
+            tables.push(pressures::map().table_of(&maps.iter().flatten().copied()).map_err(failed)?);
         }
         context.work.add(&base.work());
         Ok(tables)

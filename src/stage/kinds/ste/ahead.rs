@@ -2,12 +2,14 @@
 //!
 //! Must not know: how a curve is found.
 
+use super::pressures::{self, CellRow, Contacts};
 use super::tables::{cost, curve, harmonics, summary};
 use super::{MOST_AT_ONCE, Ste, samples};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
+use gearmesh::numeric::complementarity::MOST_SPRINGS;
 
 /// Solves for each row of a curve: extrema, first touches, the coarser curve for the error.
 const SOLVES_PER_ROW: f64 = 2.3;
@@ -24,25 +26,34 @@ impl Ste {
         let of_each = common::curve_rows(self.settings(), self.harmonics);
         let rows = curves.times(RowCount::about(of_each));
         let points = rows.count.min((THREADS * MOST_AT_ONCE).saturating_mul(of_each) as u64);
-        let pressures = demand.column(names::summary::TABLE, names::summary::LARGEST_PRESSURE)
-            || demand.column(names::curve::TABLE, names::curve::PRESSURE);
+        let (pressed, of_pairs) = (pressures::are_wanted(demand), pressures::of_pairs_are_wanted(demand));
+        // Nobody knows yet which designs vary across the face.
+        let of_map = MOST_SPRINGS.saturating_mul(self.pressure_positions).saturating_mul(self.settings().slices.max(1));
+        let cells = curves.times(RowCount::at_most(of_map));
+        let mapped = if demand.table(pressures::TABLE) { self.pressure_positions } else { 0 };
+        let held = if mapped > 0 { cells.count.saturating_mul(2 * size_of::<CellRow>() as u64) } else { 0 };
+        let positions = curves.times(RowCount::exact(mapped)).index();
         let samples = if demand.table(samples::TABLE) || demand.table(samples::SUMMARY) { self.samples } else { 0 };
         let sampled = curves.times(RowCount::exact(samples)).index();
         // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
-        let work = Work::of(&CONTACT_SOLVES, solves.saturating_add(sampled))
-            .with(&CONTACT_PRESSURES, if pressures { rows.index() } else { 0 })
+        let again = if of_pairs { rows.index() } else { 0 };
+        let solves = solves.saturating_add(sampled).saturating_add(positions).saturating_add(again);
+        let work = Work::of(&CONTACT_SOLVES, solves)
+            .with(&CONTACT_PRESSURES, if pressed { rows.index().saturating_add(again) } else { 0 })
             .with(&ROOT_STRESSES, if root_influences::are_wanted(demand) { rows.index() } else { 0 });
+        let point = (size_of::<Point>() + if of_pairs { size_of::<Contacts>() } else { 0 }) as u64;
         Estimate::new(true)
             .work(&work, common::solve_times(self.settings()))
             // Room for as many points again as there are.
-            .holding(CYCLE.saturating_add(points.saturating_mul(2 * size_of::<Point>() as u64)))
+            .holding(CYCLE.saturating_add(points.saturating_mul(2 * point)).saturating_add(held))
             .rows(demand, summary().schema(), curves)
             .columns(demand, curve().schema(), rows)
             .rows(demand, harmonics().schema(), curves.times(RowCount::exact(self.harmonics)))
             .rows(demand, cost().schema(), curves)
             .rows(demand, samples::samples().schema(), curves.times(RowCount::exact(self.samples)))
             .rows(demand, samples::summary().schema(), curves)
+            .columns(demand, pressures::map().schema(), cells)
     }
 }

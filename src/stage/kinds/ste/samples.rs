@@ -10,8 +10,7 @@ use studygraph::table::columns::Columns;
 pub const TABLE: &str = "samples";
 pub const SUMMARY: &str = "sample_summary";
 
-/// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
-/// rounding made of it.
+/// So near to the end of the base pitch a position is its start, whatever rounding made of it.
 const BORDER: f64 = 1e-12;
 
 /// One of the equidistant positions.
@@ -72,9 +71,7 @@ pub fn taken(loading: &LoadCase, first: f64, count: usize) -> (Vec<Sample>, Samp
     let sample = |index: usize| {
         let share = (first * teeth / std::f64::consts::TAU + index as f64 / count as f64).rem_euclid(1.0);
         let position = if share < 1.0 - BORDER { share * cycle.period() } else { 0.0 };
-        let border = BORDER * cycle.period();
-        let zone = cycle.zones.iter().find(|zone| position < zone.end - border).or(cycle.zones.last());
-        let error = loading.state(position, zone.map_or(1, |zone| zone.pairs)).transmission_error();
+        let error = loading.state(position, cycle.pairs_behind(position)).transmission_error();
         Sample { number: index + 1, angle: 360.0 * index as f64 / (count as f64 * teeth), position, error }
     };
     let samples: Vec<_> = (0..count).map(sample).collect();

@@ -2,7 +2,8 @@
 //!
 //! Must not know: how a curve is found.
 
-use super::Answer;
+use super::pressures::Contacts;
+use super::{Answer, pressures};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
@@ -47,14 +48,10 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
         })
         .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
             row.2.summary.largest_load_share
-        })
-        .float(names::summary::LARGEST_PRESSURE, "MPa", "Largest Hertzian pressure in the mesh cycle.", |row| {
-            row.2.summary.largest_pressure.map_or(f64::NAN, |largest| largest.value)
-        })
-        .but(Column::on_demand);
+        });
     GEARS
         .into_iter()
-        .fold(columns, of_root)
+        .fold(pressures::of_summary(columns), of_root)
         .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
         .integer("slices", slices, |row| row.2.settings.slices)
         .float("error_estimate", "", error, |row| row.2.error)
@@ -121,8 +118,17 @@ pub fn cost<'a>() -> Columns<Keyed<'a>> {
         .on_demand()
 }
 
-/// A point of a curve, and which it is, from 1.
-pub type PointRow<'a> = Keyed<'a, (usize, &'a Point)>;
+/// A point of a curve.
+#[derive(Clone, Copy)]
+pub struct OfCurve<'a> {
+    /// Which it is, from 1.
+    number: usize,
+    point: &'a Point,
+    /// Of its pairs, where somebody wants them.
+    pub contacts: Option<&'a Contacts>,
+}
+
+pub type PointRow<'a> = Keyed<'a, OfCurve<'a>>;
 
 /// By far the longest tables.
 pub fn curve<'a>() -> Columns<PointRow<'a>> {
@@ -136,54 +142,57 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
         Side::Gear => "Largest tensile stress at the roots of the gear's loaded teeth.",
     };
     let counts = "Counts the positions, from 1; those of the extrema are among them.";
-    keyed(names::curve::TABLE, description)
-        .integer("point", counts, |(.., (point, _)): &PointRow| *point)
+    let columns = keyed(names::curve::TABLE, description)
+        .integer("point", counts, |row: &PointRow| row.2.number)
         .key()
-        .float("cycle_position", "mm", position, |(.., (_, point))| point.cycle_position)
+        .float("cycle_position", "mm", position, |row| row.2.point.cycle_position)
         .but(|column| column.tolerance(1e-9, 1e-9))
-        .float("roll_angle", "deg", "The pinion's roll angle at the newest pair.", |(.., (_, point))| point.roll_angle)
-        .integer("pairs", "Pairs inside the path of contact.", |(.., (_, point))| point.pairs)
-        .integer("loaded_pairs", "Pairs that carry load.", |(.., (_, point))| point.loaded_pairs)
-        .float("transmission_error", "um", "Approach of the gears along the line of action.", |(.., (_, point))| {
-            point.transmission_error
+        .float("roll_angle", "deg", "The pinion's roll angle at the newest pair.", |row| row.2.point.roll_angle)
+        .integer("pairs", "Pairs inside the path of contact.", |row| row.2.point.pairs)
+        .integer("loaded_pairs", "Pairs that carry load.", |row| row.2.point.loaded_pairs)
+        .float("transmission_error", "um", "Approach of the gears along the line of action.", |row| {
+            row.2.point.transmission_error
         })
-        .float("unloaded_transmission_error", "um", "The same without load.", |(.., (_, point))| {
-            point.unloaded_transmission_error
-        })
-        .but(|column| column.tolerance(1e-12, 1e-9))
-        .float("newest_load_share", "", share, |(.., (_, point))| {
-            let load = point.load();
-            if load > 0.0 { point.newest_load / load } else { 0.0 }
+        .float("unloaded_transmission_error", "um", "The same without load.", |row| {
+            row.2.point.unloaded_transmission_error
         })
         .but(|column| column.tolerance(1e-12, 1e-9))
-        .float("secant_stiffness", "N/m", secant, |(.., (_, point))| point.secant_stiffness)
+        .float("newest_load_share", "", share, |row| {
+            let load = row.2.point.load();
+            if load > 0.0 { row.2.point.newest_load / load } else { 0.0 }
+        })
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("secant_stiffness", "N/m", secant, |row| row.2.point.secant_stiffness)
         .but(Column::allows_nan)
-        .float(
-            "tangent_stiffness",
-            "N/m",
-            "Slope of load over transmission error; NaN without load.",
-            |(.., (_, point))| point.tangent_stiffness,
-        )
+        .float("tangent_stiffness", "N/m", "Slope of load over transmission error; NaN without load.", |row| {
+            row.2.point.tangent_stiffness
+        })
         // Where a corner begins to touch, the slope goes with the square root of how far it is in.
         .but(|column| column.tolerance(0.0, 1e-5).allows_nan())
-        .float(names::curve::PRESSURE, "MPa", "Largest Hertzian pressure of any pair.", |(.., (_, point))| {
-            point.pressure.unwrap_or(f64::NAN)
+        .float(names::curve::PRESSURE, "MPa", "Largest pressure of any pair.", |row| {
+            row.2.point.pressed.map_or(f64::NAN, |pressed| pressed.largest)
         })
         .but(Column::on_demand)
-        .float(names::curve::ROOT_STRESS_PINION, "MPa", root(Side::Pinion), |(.., (_, point))| {
-            point.root_stress.map_or(f64::NAN, |of_gears| of_gears[0])
+        .float(names::curve::ROOT_STRESS_PINION, "MPa", root(Side::Pinion), |row| {
+            row.2.point.root_stress.map_or(f64::NAN, |of_gears| of_gears[0])
         })
         .but(Column::on_demand)
-        .float(names::curve::ROOT_STRESS_GEAR, "MPa", root(Side::Gear), |(.., (_, point))| {
-            point.root_stress.map_or(f64::NAN, |of_gears| of_gears[1])
+        .float(names::curve::ROOT_STRESS_GEAR, "MPa", root(Side::Gear), |row| {
+            row.2.point.root_stress.map_or(f64::NAN, |of_gears| of_gears[1])
         })
-        .but(Column::on_demand)
+        .but(Column::on_demand);
+    pressures::of_curve(columns)
 }
 
+/// The points of a curve, and the contacts of their pairs, or none.
+pub type Found = (Vec<Point>, Vec<Contacts>);
+
 /// The points of curves, in the order of the keys, or the table sorts every row.
-pub fn points<'a>(curves: &'a [Keyed<'a, Vec<Point>>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
-    curves.iter().flat_map(|(design, torque, points)| {
-        (1..).zip(points).map(move |(index, point)| (*design, *torque, (index, point)))
+pub fn points<'a>(curves: &'a [Keyed<'a, Found>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
+    curves.iter().flat_map(|(design, torque, (points, contacts))| {
+        (1..).zip(points).map(move |(number, point)| {
+            (*design, *torque, OfCurve { number, point, contacts: contacts.get(number - 1) })
+        })
     })
 }
 

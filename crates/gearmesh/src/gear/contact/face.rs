@@ -15,6 +15,8 @@ pub struct Face<'a> {
     pub offset: f64,
     /// The mean deviation above the smallest.
     pub mean: f64,
+    /// z of the smallest deviation \[m\], the smallest of several; none where nothing varies, or slices do not know their places.
+    pub lowest: Option<f64>,
     shape: DeviationForm,
     /// Where slices lie on a smooth stretch.
     rule: &'a Rule,
@@ -37,6 +39,8 @@ struct Piece {
     length: f64,
     /// h at the upper end less `base`.
     rise: f64,
+    /// z of the lower end.
+    low: f64,
     /// How many such stretches there are, over the face width.
     weight: f64,
 }
@@ -76,7 +80,7 @@ impl<'a> Face<'a> {
     /// One across which nothing varies.
     #[must_use]
     pub fn flat(rule: &'a Rule) -> Self {
-        Self { offset: 0.0, mean: 0.0, shape: DeviationForm::Flat, rule }
+        Self { offset: 0.0, mean: 0.0, lowest: None, shape: DeviationForm::Flat, rule }
     }
 
     /// One whose deviations are known slice by slice: shares of the width, and deviations that count from `lowest`.
@@ -86,7 +90,7 @@ impl<'a> Face<'a> {
             slice.1 -= lowest;
         }
         let mean = slices.iter().map(|slice| slice.0 * slice.1).sum();
-        Self { offset: lowest, mean, shape: DeviationForm::Sliced(slices), rule }
+        Self { offset: lowest, mean, lowest: None, shape: DeviationForm::Sliced(slices), rule }
     }
 
     /// Where slices lie across a face on which anything may vary: shares of the width, and z \[m\].
@@ -121,7 +125,11 @@ impl<'a> Face<'a> {
             piece.base -= offset;
         }
         let mean = pieces.iter().map(Piece::mean).sum();
-        Self { offset, mean, shape: DeviationForm::Quadratic(pieces), rule }
+        let lower =
+            |one: &'_ Piece, other: &'_ Piece| other.base < one.base || (other.base <= one.base && other.low < one.low);
+        let lowest =
+            pieces.iter().reduce(|one, other| if lower(one, other) { other } else { one }).map(|piece| piece.low);
+        Self { offset, mean, lowest, shape: DeviationForm::Quadratic(pieces), rule }
     }
 
     fn sliced(
@@ -137,8 +145,10 @@ impl<'a> Face<'a> {
         let share = |index: usize| if index == places.len() - 1 - index || !even { 1.0 } else { 2.0 };
         let slice = |(index, (length, z)): (usize, &(f64, f64))| (share(index) * length / width, lead(*z));
         let found: Vec<(f64, f64)> = places[..kept].iter().enumerate().map(slice).collect();
-        let lowest = found.iter().map(|slice| slice.1).fold(f64::INFINITY, f64::min);
-        Self::of_slices(found, lowest, rule)
+        let lower = |one: usize, other: usize| if found[other].1 < found[one].1 { other } else { one };
+        let Some(slice) = (0..kept).reduce(lower) else { return Self::flat(rule) };
+        let (lowest, place) = (found[slice].1, places[slice].1);
+        Self { lowest: Some(place), ..Self::of_slices(found, lowest, rule) }
     }
 
     /// Whether both flanks run parallel across the face.
@@ -270,7 +280,7 @@ impl Piece {
         // Against rounding where the lower end is the vertex.
         let slope = if steepness * length <= 1e-14 * (bend * length * length).abs() { 0.0 } else { steepness };
         let rise = (length * (slope + length * bend)).max(0.0);
-        Self { base: height(low), slope, bend, length, rise, weight: 1.0 / width }
+        Self { base: height(low), slope, bend, length, rise, low, weight: 1.0 / width }
     }
 
     fn mean(&self) -> f64 {

@@ -12,7 +12,9 @@
 
 use std::f64::consts::{LN_2, PI};
 
+use super::wedge::Spread;
 use crate::numeric::crossing::bracketed;
+use crate::numeric::extremum::maximum;
 use crate::numeric::graded::Graded;
 
 /// How well the tables follow.
@@ -29,8 +31,18 @@ pub struct Rounding {
     more: [Graded; 2],
 }
 
+/// Places at which the largest pressure is looked for, and how well it is found \[rad\].
+const LOOKS: u32 = 24;
+const TOP: f64 = 1e-6;
+
 /// A contact of which a part lies on the rounding.
 struct Contact {
+    /// t.
+    junction: f64,
+    /// κ.
+    ratio: f64,
+    /// a.
+    half_width: f64,
     /// λ.
     place: f64,
     /// Ψ/k₀ above the least gap, less ln 2 + ½, and its slope over λ.
@@ -57,7 +69,41 @@ impl Contact {
         // Where the flanks would touch on the rounding.
         let beyond = place.min(0.0);
         let least = (1.0 - ratio) * beyond;
-        Self { place, more: [above - least * beyond - LN_2 - 0.5, above_slope / place_slope - 2.0 * least] }
+        Self {
+            junction: t,
+            ratio,
+            half_width: a,
+            place,
+            more: [above - least * beyond - LN_2 - 0.5, above_slope / place_slope - 2.0 * least],
+        }
+    }
+}
+
+impl Contact {
+    /// The one at λ.
+    fn at(place: f64, ratio: f64) -> Self {
+        let t = bracketed(-1.0, 1.0, |t| Self::new(t, ratio).place - place);
+        Self::new(t.unwrap_or(if place < 0.0 { -1.0 } else { 1.0 }), ratio)
+    }
+
+    /// The pressure over Hertz' at the angle θ: a sin θ and the same of the conjugate function of (cos θ − t) on the rounding.
+    fn pressure(&self, angle: f64) -> f64 {
+        let Self { junction, ratio, half_width, .. } = *self;
+        let (end, apart) = (libm::acos(junction), libm::cos(angle) - junction);
+        let [sum, difference] = [angle + end, angle - end].map(|turn| libm::sin(0.5 * turn).abs());
+        let logarithm = if difference > 0.0 { apart * libm::log(sum / difference) } else { 0.0 };
+        let round = (end * libm::sin(angle) + logarithm) / PI;
+        half_width * (libm::sin(angle) + (1.0 / ratio - 1.0) * round)
+    }
+
+    fn spread(&self) -> Spread {
+        let angle = |look: u32| PI * f64::from(look) / f64::from(LOOKS);
+        let higher = |a: u32, b: u32| if self.pressure(angle(b)) > self.pressure(angle(a)) { b } else { a };
+        let best = (1..LOOKS).reduce(higher).unwrap_or(LOOKS / 2);
+        let [lower, guess, upper] = [best - 1, best, best + 1].map(angle);
+        let (top, pressure) = maximum(|angle| self.pressure(angle), lower, guess, upper, TOP);
+        let place = self.half_width * (libm::cos(top) - self.junction);
+        Spread { pressure, half_width: self.half_width, farther: -place - self.place, reaches: false }
     }
 }
 
@@ -66,10 +112,7 @@ impl Rounding {
     #[must_use]
     pub fn new(ratio: f64) -> Self {
         let beyond = -1.0 / ratio.sqrt();
-        let at = |place: f64| {
-            let t = bracketed(-1.0, 1.0, |t| Contact::new(t, ratio).place - place);
-            Contact::new(t.unwrap_or(if place < 0.0 { -1.0 } else { 1.0 }), ratio).more
-        };
+        let at = |place: f64| Contact::at(place, ratio).more;
         let more = [0, 1].map(|which| {
             let mut graded = Graded::default();
             // The least gap bends where the flanks would touch at the junction; at its ends a contact begins like a root.
@@ -93,6 +136,20 @@ impl Rounding {
         }
     }
 
+    /// How it spreads: as on the flank inside, as on the rounding beyond.
+    #[must_use]
+    pub fn spread(&self, place: f64) -> Spread {
+        let Self { ratio, beyond, .. } = *self;
+        if place >= 1.0 {
+            return Spread { pressure: 1.0, half_width: 1.0, farther: 0.0, reaches: false };
+        }
+        if place <= beyond {
+            let root = ratio.sqrt();
+            return Spread { pressure: 1.0 / root, half_width: root, farther: -place * (1.0 - ratio), reaches: false };
+        }
+        Contact::at(place, ratio).spread()
+    }
+
     /// λ from which on, inwards, none of the contact lies on the rounding.
     #[must_use]
     pub const fn far() -> f64 {
@@ -106,8 +163,8 @@ mod tests {
     use crate::numeric::elimination::solve;
 
     /// Ψ/k₀ by pressures that are constant on each of many strips; those that would pull are taken away. And between which
-    /// places there are any left.
-    fn by_strips(place: f64, ratio: f64, [from, to]: [f64; 2]) -> (f64, [f64; 2]) {
+    /// places there are any left, and where the largest is.
+    fn by_strips(place: f64, ratio: f64, [from, to]: [f64; 2]) -> (f64, [f64; 2], [f64; 2]) {
         const STRIPS: usize = 160;
         let gap = |x: f64| (x + place).powi(2) + (1.0 / ratio - 1.0) * x.max(0.0).powi(2);
         let width = (to - from) / STRIPS as f64;
@@ -134,7 +191,10 @@ mod tests {
             let pressed = |k: &usize| rows[*k][STRIPS + 1] >= 0.0;
             if (0..loaded.len()).all(|k| pressed(&k)) {
                 let ends = [end(loaded[0]), end(loaded[loaded.len() - 1] + 1)];
-                return (rows[size - 1][STRIPS + 1], ends);
+                let pressure = |k: usize| rows[k][STRIPS + 1];
+                let higher = |a: usize, b: usize| if pressure(b) > pressure(a) { b } else { a };
+                let top = (0..loaded.len()).reduce(higher).unwrap();
+                return (rows[size - 1][STRIPS + 1], ends, [pressure(top), end(loaded[top]) + 0.5 * width]);
             }
             loaded = (0..loaded.len()).filter(pressed).map(|k| loaded[k]).collect();
         }
@@ -147,8 +207,25 @@ mod tests {
             let rounding = Rounding::new(ratio);
             for place in [1.5, 0.9, 0.5, 0.1, 0.0, -0.2, -0.6, -1.1, -3.0, -7.0] {
                 let least = f64::min(place, 0.0).powi(2) * (1.0 - ratio);
-                let (_, coarse) = by_strips(place, ratio, [-place.max(0.0) - 1.1, (-place * ratio).max(0.0) + 1.1]);
-                let strips = by_strips(place, ratio, [coarse[0] - 1e-3, coarse[1] + 1e-3]).0 - least - LN_2 - 0.5;
+                let (_, coarse, _) = by_strips(place, ratio, [-place.max(0.0) - 1.1, (-place * ratio).max(0.0) + 1.1]);
+                let (strips, ends, [top, at]) = by_strips(place, ratio, [coarse[0] - 1e-3, coarse[1] + 1e-3]);
+                let strips = strips - least - LN_2 - 0.5;
+                let spread = rounding.spread(place);
+                let width = 0.5 * (ends[1] - ends[0]);
+                assert!(
+                    (spread.half_width / width - 1.0).abs() < 0.04,
+                    "{ratio} {place}: {spread:?}, by strips {width}"
+                );
+                let hertz = 2.0 / PI;
+                assert!(
+                    (spread.pressure * hertz / top - 1.0).abs() < 0.01,
+                    "{ratio} {place}: {spread:?}, by strips {top}"
+                );
+                let farther = -at - place;
+                assert!(
+                    (spread.farther - farther).abs() < 0.05 * width,
+                    "{ratio} {place}: {spread:?}, by strips {farther}"
+                );
                 let [found, _] = rounding.more(place);
                 assert!((found - strips).abs() < 1e-3, "{ratio} {place}: {found}, by strips {strips}");
             }

@@ -6,6 +6,7 @@
 
 use super::flattening::InSeries;
 use super::rounding::Rounding;
+use super::wedge::Spread;
 use super::wedge::Wedge;
 
 /// Newton's method stops here, in ln p: the error that is left is of second order in it.
@@ -29,6 +30,15 @@ impl Shape {
         match self {
             Self::Corner(wedge) => wedge.more(place),
             Self::Rounding(rounding) => rounding.more(place),
+        }
+    }
+
+    /// How a contact there spreads, against that of half planes.
+    #[must_use]
+    pub fn spread(&self, place: f64) -> Spread {
+        match self {
+            Self::Corner(wedge) => wedge.spread(place),
+            Self::Rounding(rounding) => rounding.spread(place),
         }
     }
 

@@ -11,9 +11,14 @@
 //! k₀ = Σ 2/(πE′): without corner Ψ/k₀ = ln 2 + ½ (Johnson, Contact Mechanics, 4.2). The ends of the contact are given and
 //! λ follows, since everything else in the equation is linear. Must not know: gears, loads.
 
+mod spread;
+
+pub use spread::Spread;
+
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
-use crate::numeric::chebyshev::Series;
+use self::spread::Spreads;
+use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::crossing::crossing;
 use crate::numeric::elimination::solve;
 
@@ -58,6 +63,8 @@ pub struct Wedge {
     rest: f64,
     /// At [`BEYOND`].
     last: f64,
+    /// How the contact spreads.
+    spreads: Spreads,
 }
 
 impl Wedge {
@@ -69,8 +76,8 @@ impl Wedge {
         let inside = |start: f64| Shape::new(start, ratio, &waves).inside();
         let (reached, roundest) = (at_corner.inside(), inside(ROUNDEST).place);
         let narrowest = at_corner.ending_at(NARROWEST).place;
-        let value = |place: f64| {
-            let found = if place >= reached.place {
+        let contact = |place: f64| {
+            if place >= reached.place {
                 let miss = |start: f64| inside(start).place - place;
                 let ends = [(0.0, reached.place - place), (ROUNDEST, roundest - place)];
                 inside(crossing(miss, ends[0], ends[1], CLOSE))
@@ -78,27 +85,30 @@ impl Wedge {
                 let miss = |end: f64| at_corner.ending_at(end).place - place;
                 let ends = [(NARROWEST, narrowest - place), (reached.end, reached.place - place)];
                 at_corner.ending_at(crossing(miss, ends[0], ends[1], CLOSE * NARROWEST))
-            };
-            // Above the least gap, which is at the corner where the top is beyond it.
+            }
+        };
+        // Above the least gap, which is at the corner where the top is beyond it.
+        let value = |place: f64, found: &Contact| {
             found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5
         };
-        let table = |lower: f64, upper: f64| {
-            let values = Series::fit(lower, upper, NODES, value);
+        let logs = [libm::log(-JOINTS[0]), libm::log(-BEYOND)];
+        let ranges = [logs, [JOINTS[0], 0.0], [0.0, reached.place], [reached.place, JOINTS[1]], [JOINTS[1], FAR]];
+        let places = |table: usize| {
+            let arguments = nodes(ranges[table][0], ranges[table][1], NODES).into_iter();
+            arguments.map(move |argument| if table == 0 { -libm::exp(argument) } else { argument })
+        };
+        let contacts: [Vec<Contact>; 5] = std::array::from_fn(|table| places(table).map(contact).collect());
+        let tables: [(Series, Series); 5] = std::array::from_fn(|table| {
+            let values: Vec<f64> =
+                places(table).zip(&contacts[table]).map(|(place, found)| value(place, found)).collect();
+            let values = Series::from_values(ranges[table][0], ranges[table][1], &values);
             let slopes = values.derivative();
             (values, slopes)
-        };
-        let beyond = Series::fit(libm::log(-JOINTS[0]), libm::log(-BEYOND), NODES, |log| value(-libm::exp(log)));
-        let slopes = beyond.derivative();
-        let tables = [
-            (beyond, slopes),
-            table(JOINTS[0], 0.0),
-            table(0.0, reached.place),
-            table(reached.place, JOINTS[1]),
-            table(JOINTS[1], FAR),
-        ];
+        });
+        let spreads = Spreads::new(&ranges, &contacts, &reached);
         let rest = (tables[4].0.value(FAR) + ratio * libm::log(FAR)) * FAR * FAR;
         let last = tables[0].0.value(libm::log(-BEYOND));
-        Self { ratio, tables, rest, last }
+        Self { ratio, tables, rest, last, spreads }
     }
 
     /// (Ψ − k₀ λ² where λ < 0)/k₀ − ln 2 − ½, and its slope over λ. Continuous; towards −B/k₀ ln λ far inside, and by
@@ -118,9 +128,20 @@ impl Wedge {
             let (values, slopes) = &self.tables[0];
             return [values.value(log), slopes.value(log) / place];
         }
-        let after = self.tables[1..4].iter().position(|(values, _)| place <= values.upper()).unwrap_or(3);
-        let (values, slopes) = &self.tables[1 + after];
+        let (values, slopes) = &self.tables[self.table(place)];
         [values.value(place), slopes.value(place)]
+    }
+
+    /// Which table λ is in, from the end of the first one to [`FAR`].
+    fn table(&self, place: f64) -> usize {
+        1 + self.tables[1..4].iter().position(|(values, _)| place <= values.upper()).unwrap_or(3)
+    }
+
+    /// How a contact with its top at λ spreads.
+    #[must_use]
+    pub fn spread(&self, place: f64) -> Spread {
+        let table = if place < JOINTS[0] { 0 } else { self.table(place) };
+        self.spreads.at(table, place)
     }
 
     /// What is left of [`Wedge::more`] far inside, besides −B/k₀ ln λ, times λ².
@@ -140,6 +161,7 @@ impl Wedge {
 /// term of the pressure.
 struct Shape {
     ratio: f64,
+    start: f64,
     places: [f64; TERMS],
     influence: [[f64; TERMS]; TERMS],
 }
@@ -153,6 +175,10 @@ struct Contact {
     above_corner: f64,
     /// How far from the corner it ends.
     end: f64,
+    /// How far from it it starts, over that.
+    start: f64,
+    /// Of the pressure times the sine of the angle whose cosine is the place, times half the width: a cosine series.
+    terms: [f64; TERMS],
 }
 
 /// cos(nθ) for the terms n: at the angles of the places, and at those of the points.
@@ -185,7 +211,7 @@ impl Shape {
                 own + summed
             })
         });
-        Self { ratio, places, influence }
+        Self { ratio, start, places, influence }
     }
 
     /// The contact that starts at the corner and ends at `end`, where the pressure is 0.
@@ -201,7 +227,14 @@ impl Shape {
         (rows[TERMS][0], rows[TERMS][TERMS + 2]) = (PI, 1.0);
         rows[TERMS + 1][..TERMS].fill(1.0);
         solve(&mut rows);
-        Contact { place: rows[TERMS][TERMS + 2], above_corner: rows[TERMS + 1][TERMS + 2], end }
+        let terms = std::array::from_fn(|n| rows[n][TERMS + 2]);
+        Contact {
+            place: rows[TERMS][TERMS + 2],
+            above_corner: rows[TERMS + 1][TERMS + 2],
+            end,
+            start: self.start,
+            terms,
+        }
     }
 
     /// The contact of this shape at both ends of which the pressure is 0.
@@ -220,7 +253,9 @@ impl Shape {
         solve(&mut rows);
         let [square, product, sum] = [0, 1, 2].map(|k| rows[TERMS + k][TERMS + 3]);
         let end = square.sqrt();
-        Contact { place: product / end, above_corner: sum - (1.0 + self.ratio) * libm::log(end), end }
+        let terms = std::array::from_fn(|n| rows[n][TERMS + 3]);
+        let above_corner = sum - (1.0 + self.ratio) * libm::log(end);
+        Contact { place: product / end, above_corner, end, start: self.start, terms }
     }
 }
 

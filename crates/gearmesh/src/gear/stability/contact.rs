@@ -98,7 +98,7 @@ pub(super) fn check(case: &Case, built: &Built, findings: &mut Vec<Finding>) -> 
         ));
     }
     let numbers = points.iter().flat_map(|point| {
-        let pressure = point.pressure.unwrap_or(0.0);
+        let pressure = point.pressed.map_or(0.0, |pressed| pressed.largest);
         let own = [point.transmission_error, point.unloaded_transmission_error, point.secant_stiffness, pressure];
         own.into_iter().chain([point.tangent_stiffness]).chain(point.loads)
     });

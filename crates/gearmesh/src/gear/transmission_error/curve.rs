@@ -3,9 +3,9 @@
 //! Must not know: tables, units other than SI.
 
 use super::load_case::{Equilibrium, LoadCase};
+use super::pressure::{LargestPressure, Pressed};
 use super::root_stress::LargestRootStress;
 use super::trace::{Extremum, NODES, Span, Trace};
-use crate::gear::contact::flattening::combined_radius;
 use crate::gear::geometry::Side;
 use crate::numeric::complementarity::PerSpring;
 use crate::numeric::harmonics;
@@ -37,8 +37,8 @@ pub struct Point {
     pub secant_stiffness: f64,
     /// dF/dδ \[N/m\]; NaN without load.
     pub tangent_stiffness: f64,
-    /// The largest Hertzian pressure of any pair \[Pa\], if it was asked for.
-    pub pressure: Option<f64>,
+    /// How hard the flanks press on each other, if it was asked for.
+    pub pressed: Option<Pressed>,
     /// The largest root stress of pinion and gear \[Pa\], if it was asked for and is known.
     pub root_stress: Option<[f64; 2]>,
 }
@@ -66,8 +66,8 @@ pub struct Summary {
     pub loaded_contact_ratio: f64,
     /// The largest share of the load that one pair carries.
     pub largest_load_share: f64,
-    /// The largest Hertzian pressure in the cycle \[Pa\], if it was asked for.
-    pub largest_pressure: Option<Extremum>,
+    /// The largest pressure in the cycle, if it was asked for.
+    pub largest_pressure: Option<LargestPressure>,
     /// The largest root stress of pinion and gear in the cycle, if it was asked for and is known.
     pub largest_root_stress: Option<[LargestRootStress; 2]>,
 }
@@ -77,7 +77,7 @@ pub struct Summary {
 pub struct Wanted {
     /// How many harmonics.
     pub harmonics: usize,
-    /// Whether the Hertzian pressure is found at every position.
+    /// Whether the pressure is found at every position.
     pub pressure: bool,
     /// Whether the stress at the roots is found at every position, of a cycle that knows what loads do to them.
     pub root_stress: bool,
@@ -133,7 +133,7 @@ impl LoadCase<'_> {
             let here = self.points(span, states, wanted);
             extend(&mut points, span, &here);
             if wanted.pressure {
-                pressure.spans.push((*span, here.map(|point| point.pressure.unwrap_or(0.0))));
+                pressure.spans.push((*span, here.map(|point| point.pressed.map_or(0.0, |pressed| pressed.largest))));
             }
             for (gear, root) in roots.iter_mut().enumerate().filter(|_| here[0].root_stress.is_some()) {
                 root.spans.push((*span, here.map(|point| point.root_stress.map_or(0.0, |of_gears| of_gears[gear]))));
@@ -160,9 +160,7 @@ impl LoadCase<'_> {
             unloaded_peak_to_peak: nominal.between(unloaded),
             loaded_contact_ratio: loaded / cycle.period(),
             largest_load_share: points.iter().map(Point::largest_share).fold(share, f64::max),
-            largest_pressure: wanted
-                .pressure
-                .then(|| pressure.largest(rows, |at, pairs| self.pressure(at, pairs, &self.state(at, pairs)))),
+            largest_pressure: wanted.pressure.then(|| self.largest_pressure(&pressure)),
             largest_root_stress: self.largest_root_stress(&roots),
         };
         (points, summary)
@@ -248,7 +246,7 @@ impl LoadCase<'_> {
             newest_load: loads[cycle.newest()],
             secant_stiffness: stiffness(self.force / state.balance.approach),
             tangent_stiffness: stiffness(state.balance.slope),
-            pressure: wanted.pressure.then(|| self.pressure(position, pairs, state)),
+            pressed: wanted.pressure.then(|| self.pressed(position, pairs, state)),
             root_stress: (wanted.root_stress.then(|| self.root_stress(position, pairs, state)).flatten())
                 .map(|of_gears| of_gears.map(|root| root.stress)),
         }
@@ -265,20 +263,6 @@ impl LoadCase<'_> {
         let state = self.state(point.cycle_position, point.pairs);
         let load = self.line_load(point.cycle_position, &state, spring);
         Some([tips.half_width * load.sqrt(), tips.widest])
-    }
-
-    /// The largest Hertzian pressure of any pair, with the flanks' curvature where it touches: ρ1 = s, ρ2 = L − s on the
-    /// line of action. At a tip corner it is that of the flank there: the corner's own radius is not known.
-    fn pressure(&self, position: f64, pairs: usize, state: &Equilibrium) -> f64 {
-        self.count.pressure();
-        let cycle = self.cycle;
-        (0..cycle.springs(pairs))
-            .filter(|spring| state.balance.loads[*spring] > 0.0)
-            .map(|spring| {
-                let radius = combined_radius(cycle.path.radii(cycle.path_position(position, spring)));
-                cycle.bodies.pressure(radius, self.line_load(position, state, spring))
-            })
-            .fold(0.0, f64::max)
     }
 }
 

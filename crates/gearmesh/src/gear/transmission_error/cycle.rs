@@ -30,6 +30,10 @@ use declare::work::Work;
 /// Zones shorter than this share of the base pitch are ignored: a contact ratio of 2 up to rounding is 2.
 const SHORTEST_ZONE: f64 = 1e-9;
 
+/// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
+/// rounding made of it.
+const BORDER: f64 = 1e-12;
+
 /// Pairs in corner contact: one before A and one after E.
 const CORNERS: usize = 2;
 
@@ -254,6 +258,13 @@ impl MeshCycle {
         self.springs.unwrap_or(pairs)
     }
 
+    /// Pairs inside the path of contact at a cycle position; nearer than rounding to where their number changes it is behind.
+    #[must_use]
+    pub fn pairs_behind(&self, position: f64) -> usize {
+        let border = BORDER * self.period();
+        self.zones.iter().find(|zone| position < zone.end - border).or(self.zones.last()).map_or(1, |zone| zone.pairs)
+    }
+
     /// Which of them is the newest one inside the path of contact; with corner contact one is before A.
     #[must_use]
     pub fn newest(&self) -> usize {
@@ -285,6 +296,12 @@ impl MeshCycle {
             Elasticity::Logarithmic { ends: Some(ends), .. } => Some(ends.tips(s)),
             _ => None,
         }
+    }
+
+    /// Whether the law of contact knows the corners of tips.
+    #[must_use]
+    pub fn knows_corners(&self) -> bool {
+        self.elasticity.is_resolved()
     }
 
     /// Whether any pair feels its neighbours' load.

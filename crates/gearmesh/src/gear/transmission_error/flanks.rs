@@ -8,7 +8,11 @@ use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::gap::Gaps;
 use crate::gear::modification::Design;
+use crate::numeric::lobatto::Rule;
 use crate::numeric::piecewise::Piecewise;
+
+/// Points within a strip of a surface.
+const POINTS: usize = 3;
 
 /// The flanks of a design.
 #[derive(Clone)]
@@ -29,6 +33,8 @@ pub(super) struct Flanks<'a> {
 struct FaceSection<'a> {
     /// Of the width.
     share: f64,
+    /// z \[m\].
+    z: f64,
     /// What the leads of both gears take off \[m\].
     lead: f64,
     /// None where flanks touch all over the path, without a gap.
@@ -39,32 +45,28 @@ struct FaceSection<'a> {
 
 impl<'a> Flanks<'a> {
     pub(super) fn new(cycle: &'a MeshCycle, design: &'a Design) -> Self {
-        let corners = cycle.settings.corner_contact == CornerContact::Exact;
-        let section = |share: f64, z: f64, lead: f64| {
-            let profiles = design.profiles(z);
-            let can_be_apart = corners || profiles.iter().any(|parts| !parts.is_empty());
-            let gaps = can_be_apart.then(|| Gaps::new(&cycle.pair, &profiles));
-            FaceSection { share, lead, gaps, copies: Piecewise::default() }
-        };
-        let middle = section(1.0, 0.0, 0.0);
+        let section = |(share, z): (f64, f64)| FaceSection::new(cycle, design, share, z, design.lead(z));
+        let middle = FaceSection::new(cycle, design, 1.0, 0.0, 0.0);
         if !design.varies_over_surface() {
             let face = Face::new(design, cycle.face_width, &cycle.slices);
             return Self { cycle, face, is_surface: false, middle, sections: Vec::new() };
         }
         let half = 0.5 * cycle.face_width;
         let places = match &cycle.across {
-            Some(across) => {
-                let strips = strips(cycle, design.lead_is_even());
-                let share = 1.0 / strips.len() as f64;
-                let within = |strip| Face::places(&Design::default(), strip, &across.rule);
-                strips.into_iter().flat_map(within).map(|(part, z)| (part * share, z)).collect()
-            }
+            Some(across) => places_in(&strips(cycle, design.lead_is_even()), &across.rule),
             None => Face::places(design, [-half, half], &cycle.slices),
         };
-        let sections = places.into_iter().map(|(share, z)| section(share, z, design.lead(z))).collect();
+        let sections = places.into_iter().map(section).collect();
         let mut flanks = Self { cycle, face: Face::flat(&cycle.slices), is_surface: true, middle, sections };
         flanks.face = flanks.face_at(cycle.pair.start_of_contact);
         flanks
+    }
+
+    /// Of a surface: the same with sections in each of these strips, which are equally wide, whatever else cuts the face.
+    pub(super) fn cut_into(&self, design: &'a Design, strips: &[[f64; 2]]) -> Self {
+        let section = |(share, z): (f64, f64)| FaceSection::new(self.cycle, design, share, z, design.lead(z));
+        let sections = places_in(strips, &Rule::new(POINTS)).into_iter().map(section).collect();
+        Self { sections, ..self.clone() }
     }
 
     /// Whether both flanks run parallel across the face at every position.
@@ -94,6 +96,16 @@ impl<'a> Flanks<'a> {
     /// The face of a surface at a path position, above its gap there.
     pub(super) fn face_at(&self, s: f64) -> Face<'a> {
         Face::of_slices(deviations(&self.sections, s), self.gap(s).unwrap_or(0.0), &self.cycle.slices)
+    }
+
+    /// z of the smallest deviation at a path position; none where the flanks run parallel.
+    pub(super) fn lowest(&self, s: f64) -> Option<f64> {
+        if !self.is_surface {
+            return self.face.lowest;
+        }
+        let deviation = |section: &FaceSection| section.deviation(s).unwrap_or(f64::INFINITY);
+        let lower = |one: &FaceSection, other: &FaceSection| deviation(other) < deviation(one);
+        self.sections.iter().reduce(|one, other| if lower(one, other) { other } else { one }).map(|section| section.z)
     }
 
     /// The mean deviation above the gap at a path position.
@@ -139,6 +151,13 @@ impl<'a> Flanks<'a> {
     }
 }
 
+/// Points within each of equal strips: shares of the width of them all, and z.
+fn places_in(strips: &[[f64; 2]], rule: &Rule) -> Vec<(f64, f64)> {
+    let share = 1.0 / strips.len() as f64;
+    let within = |strip: &[f64; 2]| Face::places(&Design::default(), *strip, rule);
+    strips.iter().flat_map(within).map(|(part, z)| (part * share, z)).collect()
+}
+
 /// Of each section, with its share of the width.
 fn deviations(sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
     let of = |section: &FaceSection| (section.share, section.deviation(s).unwrap_or(0.0));
@@ -148,12 +167,26 @@ fn deviations(sections: &[FaceSection], s: f64) -> Vec<(f64, f64)> {
 /// The strips into which the face is cut where slices hold each other \[m\]; of an even face those of one half.
 pub(super) fn strips(cycle: &MeshCycle, even: bool) -> Vec<[f64; 2]> {
     let count = cycle.settings.slices.max(1);
-    let kept = if even { count.div_ceil(2) } else { count };
-    let place = |index: usize| cycle.face_width * (index as f64 / count as f64 - 0.5);
-    (0..kept).map(|strip| [place(strip), place(strip + 1)]).collect()
+    let mut strips = equal_strips(cycle.face_width, count);
+    strips.truncate(if even { count.div_ceil(2) } else { count });
+    strips
 }
 
-impl FaceSection<'_> {
+/// So many strips of a face of this width \[m\].
+pub(super) fn equal_strips(width: f64, count: usize) -> Vec<[f64; 2]> {
+    let place = |index: usize| width * (index as f64 / count as f64 - 0.5);
+    (0..count).map(|strip| [place(strip), place(strip + 1)]).collect()
+}
+
+impl<'a> FaceSection<'a> {
+    fn new(cycle: &'a MeshCycle, design: &'a Design, share: f64, z: f64, lead: f64) -> Self {
+        let profiles = design.profiles(z);
+        let can_be_apart =
+            cycle.settings.corner_contact == CornerContact::Exact || profiles.iter().any(|parts| !parts.is_empty());
+        let gaps = can_be_apart.then(|| Gaps::new(&cycle.pair, &profiles));
+        Self { share, z, lead, gaps, copies: Piecewise::default() }
+    }
+
     #[inline]
     fn gap(&self, s: f64) -> Option<f64> {
         self.gaps.as_ref().map_or(Some(0.0), |gaps| self.copies.value(s).or_else(|| gaps.at(s)))

@@ -27,7 +27,8 @@ pub struct LoadCase<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
-    flanks: Arc<Flanks<'a>>,
+    pub(super) design: &'a Design,
+    pub(super) flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
     touching: Touching,
     /// Cycle positions at which a profile is not smooth, ascending.
@@ -124,6 +125,7 @@ impl<'a> LoadCase<'a> {
             count,
             levels,
             cycle,
+            design,
             force: torque / cycle.pair.pinion.base_radius,
             regime,
             flanks,
@@ -247,6 +249,16 @@ impl<'a> LoadCase<'a> {
         Some(slices.unexplained(self.cycle, &reach, [self.force, above]))
     }
 
+    /// Where slices hold each other: the load per width \[N/m\] of each slice of the whole face, of each pair within reach by
+    /// its spring.
+    pub(super) fn loads_of_slices(&self, position: f64, pairs: usize) -> Option<Vec<(usize, Vec<f64>)>> {
+        let slices = self.slices()?;
+        let reach = self.within_reach(position, pairs);
+        let above = self.alone(reach.nearest_position());
+        let loads = slices.line_loads(self.cycle, &reach, [self.force, above]);
+        Some(reach.springs().iter().copied().zip(loads).collect())
+    }
+
     /// The pairs that can touch at all; with corner contact, only those that come near enough.
     fn within_reach(&self, position: f64, pairs: usize) -> WithinReach {
         let mut reach = WithinReach::none();
@@ -352,6 +364,20 @@ impl<'a> LoadCase<'a> {
     /// A slice of the pair at `s` under a law of the load's logarithm.
     fn slice(&self, s: f64) -> InSeries<'_> {
         self.cycle.elasticity.series(s, None)
+    }
+
+    /// The mean load per width \[N/m\] of a part of the face of a pair, whose highest place is in by `penetration`.
+    pub(super) fn mean_load(&self, s: f64, face: &Face, penetration: f64) -> f64 {
+        if penetration <= 0.0 {
+            return 0.0;
+        }
+        match &self.cycle.elasticity {
+            Elasticity::Linear(stiffness) => stiffness.value(s) * face.passed(penetration).0 / self.cycle.face_width,
+            Elasticity::Logarithmic { .. } => {
+                let law = self.slice(s);
+                face.summed(penetration, |depth| law.load(depth)).0
+            }
+        }
     }
 
     /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.

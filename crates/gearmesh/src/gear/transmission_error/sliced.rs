@@ -120,6 +120,15 @@ impl<'a> Sliced<'a> {
         (balance, peaks)
     }
 
+    /// The load per width of each slice of the whole face, as a mean over it, pair by pair.
+    pub(super) fn line_loads(&self, cycle: &MeshCycle, reach: &WithinReach, known: [f64; 2]) -> Vec<Vec<f64>> {
+        let (found, _) = self.slices(cycle, reach, known);
+        let looked_at = |slice: usize| if slice < self.count() { slice } else { self.whole - 1 - slice };
+        let of_pair =
+            |loads: &[f64]| (0..self.whole).map(looked_at).map(|slice| loads[slice] / self.widths[slice]).collect();
+        found.loads.chunks(self.count()).map(of_pair).collect()
+    }
+
     /// Equilibrium of all slices, pair by pair, its approach counted from the smallest gap of a slice, and that gap.
     fn slices(&self, cycle: &MeshCycle, reach: &WithinReach, [force, above]: [f64; 2]) -> (many_springs::Balance, f64) {
         let (matrix, own) = self.matrix(cycle, reach.springs(), reach.positions());

@@ -5,6 +5,7 @@
 mod broken_tips;
 mod corner;
 mod extremes;
+mod pressure;
 mod root_stress;
 mod sampling;
 mod spans;
@@ -278,7 +279,7 @@ fn swapping_the_gears_changes_nothing() {
             close(here.peak_to_peak, there.peak_to_peak, 1e-9);
             close(here.mean, there.mean, 1e-10);
             close(here.variance, there.variance, 1e-7);
-            close(here.largest_pressure.unwrap().value, there.largest_pressure.unwrap().value, 1e-9);
+            close(here.largest_pressure.unwrap().extremum.value, there.largest_pressure.unwrap().extremum.value, 1e-9);
             for (a, b) in here.harmonics.iter().zip(&there.harmonics) {
                 assert!((a - b).abs() < 1e-7 * here.peak_to_peak, "{a} {b}");
             }

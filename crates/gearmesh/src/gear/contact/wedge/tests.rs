@@ -2,6 +2,8 @@
 
 use super::*;
 
+mod spread;
+
 /// Tier: closed form; the wedge of 180° is a half plane, that of 90° has 2 cos² and 2 sin² of 45° over π/2 ± 1; one that is
 /// loaded along its bisector moves as Michell's.
 #[test]
@@ -37,20 +39,21 @@ fn a_half_plane_that_ends_has_a_closed_form() {
 }
 
 /// Ψ/k₀ by pressures that are constant on each of many strips, which get thinner towards the corner; those that would pull
-/// are taken away until none is left.
-fn by_strips(place: f64, ratio: f64) -> f64 {
-    const STRIPS: usize = 90;
+/// are taken away until none is left. And the strips that press: between where, and how much.
+fn by_strips<const STRIPS: usize, const WIDTH: usize>(place: f64, ratio: f64) -> (f64, Vec<([f64; 2], f64)>) {
     let width = f64::max(place, 0.0) + 1.6;
-    let ends: [f64; STRIPS + 1] = std::array::from_fn(|k| {
-        let share = k as f64 / STRIPS as f64;
-        if place > 2.5 { place - 1.3 + 2.6 * share } else { width * share * share * share }
-    });
+    let ends: Vec<f64> = (0..=STRIPS)
+        .map(|k| {
+            let share = k as f64 / STRIPS as f64;
+            if place > 2.5 { place - 1.3 + 2.6 * share } else { width * share * share * share }
+        })
+        .collect();
     // ∫ ln|x − y| dy and the same with the sum, from the one end to the other.
     let moment = |x: f64| if x == 0.0 { 0.0 } else { x * (libm::log(x.abs()) - 1.0) };
     let mut loaded = [true; STRIPS];
     loop {
         let strips: Vec<usize> = (0..STRIPS).filter(|&k| loaded[k]).collect();
-        let mut rows = vec![[0.0; STRIPS + 2]; strips.len() + 1];
+        let mut rows = vec![[0.0; WIDTH]; strips.len() + 1];
         for (row, &on) in strips.iter().enumerate() {
             let x = 0.5 * (ends[on] + ends[on + 1]);
             for (column, &by) in strips.iter().enumerate() {
@@ -60,21 +63,22 @@ fn by_strips(place: f64, ratio: f64) -> f64 {
                 rows[row][column] = -direct - ratio * corner;
             }
             rows[row][strips.len()] = -1.0;
-            rows[row][STRIPS + 1] = -(x - place) * (x - place);
+            rows[row][WIDTH - 1] = -(x - place) * (x - place);
         }
         for (column, &by) in strips.iter().enumerate() {
             rows[strips.len()][column] = ends[by + 1] - ends[by];
         }
-        rows[strips.len()][STRIPS + 1] = 1.0;
+        rows[strips.len()][WIDTH - 1] = 1.0;
         // Unknowns that are not there are zero: their columns move out of the way.
         let size = strips.len() + 1;
         for row in &mut rows {
-            row.swap(size, STRIPS + 1);
+            row.swap(size, WIDTH - 1);
         }
         solve(&mut rows);
         let pulled: Vec<usize> = (0..strips.len()).filter(|&k| rows[k][size] < 0.0).map(|k| strips[k]).collect();
         if pulled.is_empty() {
-            return rows[strips.len()][size];
+            let presses = strips.iter().zip(&rows).map(|(&k, row)| ([ends[k], ends[k + 1]], row[size]));
+            return (rows[strips.len()][size], presses.collect());
         }
         for strip in pulled {
             loaded[strip] = false;
@@ -90,7 +94,7 @@ fn pressures_in_strips_give_the_same() {
         for place in [8.0, 3.0, 1.5, 1.0, 0.7, 0.2, 0.0, -0.4, -1.5, -6.0] {
             let [found, _] = wedge.more(place);
             let square = if place > 0.0 { 0.0 } else { place * place };
-            let strips = by_strips(place, ratio) - square - LN_2 - 0.5;
+            let strips = by_strips::<90, 92>(place, ratio).0 - square - LN_2 - 0.5;
             assert!((found - strips).abs() < 2e-3, "{ratio} {place}: {found}, by strips {strips}");
         }
     }

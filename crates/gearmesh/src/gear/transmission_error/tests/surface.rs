@@ -257,3 +257,44 @@ fn a_function_without_its_flag_is_refused() {
         assert!(message.contains(&format!("`forgetful` has a {name} that is not 0")), "{message}");
     }
 }
+
+/// Tier: second method; a surface that is a sum has the map of profile and lead, and a twisted flank one that adds up to the
+/// force as far as its slices do, and is largest at opposite ends of the face before and after its middle.
+#[test]
+fn maps_of_surfaces_are_those_of_their_slices() {
+    let pair = pair();
+    for slice_coupling in [SliceCoupling::None, SliceCoupling::Plate] {
+        let settings = Settings { slices: 33, slice_coupling, ..Settings::default() };
+        let cycle =
+            MeshCycle::new(&pair, &PairCompliance { contact: Some(ContactLaw::Resolved), ..coupled() }, settings)
+                .unwrap();
+        let [sum, surface] = [false, true].map(|as_surface| of(Relieved { start: [0.42], as_surface }));
+        let [one, two] = [&sum, &surface].map(|design| LoadCase::new(&cycle, design, 120.0).map(4, 33));
+        assert_eq!(one.len(), two.len());
+        let most = one.iter().map(|cell| cell.contact.load).fold(0.0, f64::max);
+        for (one, two) in one.iter().zip(&two) {
+            assert_eq!([one.step, one.strip.cast_signed()], [two.step, two.strip.cast_signed()]);
+            assert!((one.contact.load - two.contact.load).abs() < 1e-3 * most, "{one:?} {two:?}");
+        }
+        let twisted = of(Twist { middle: 0.3, rate: 4e-3 });
+        let loading = LoadCase::new(&cycle, &twisted, 60.0);
+        let cells = loading.map(8, 33);
+        let sums = |step: isize| -> f64 {
+            let here = cells.iter().filter(|cell| cell.step.rem_euclid(8) == step);
+            here.map(|cell| cell.contact.load * cycle.face_width / 33.0).sum()
+        };
+        let rounding = if slice_coupling == SliceCoupling::Plate { 1e-12 } else { 2e-3 };
+        (0..8).for_each(|step| close(sums(step), loading.force, rounding));
+        let top = |step: isize| {
+            let here = cells.iter().filter(|cell| cell.step == step);
+            here.max_by(|one, two| one.contact.load.total_cmp(&two.contact.load)).unwrap()
+        };
+        let middle = 0.3 * pair.pinion.base_radius - pair.start_of_contact;
+        for step in [1, 2, 3, 9, 10, 11] {
+            let cell = top(step);
+            assert_eq!(cell.z > 0.0, cell.path_position < middle, "{cell:?}");
+        }
+        let found = loading.summary(Wanted { pressure: true, ..Wanted::default() }).largest_pressure.unwrap();
+        assert!(found.across.unwrap().abs() > 0.4 * cycle.face_width, "{found:?}");
+    }
+}

@@ -80,7 +80,7 @@ fn half_of_an_even_face_stands_for_both() {
                 close(half.mean, whole.mean, 1e-12);
                 close(half.peak_to_peak, whole.peak_to_peak, 1e-9);
                 close(half.variance, whole.variance, 1e-9);
-                let pressure = |summary: &Summary| summary.largest_pressure.unwrap().value;
+                let pressure = |summary: &Summary| summary.largest_pressure.unwrap().extremum.value;
                 close(pressure(&half), pressure(&whole), 1e-9);
             }
         }

@@ -1,0 +1,206 @@
+//! Pressures of a stage of the kind `ste`: columns of its summary and its curve, the table `pressure`, what is warned of.
+//!
+//! Must not know: how a pressure is found.
+
+use super::Answer;
+use super::tables::{Keyed, PointRow, keyed};
+use crate::stage::names::{curve, summary};
+use crate::stage::{Context, Demand};
+use gearmesh::gear::transmission_error::cycle::MeshCycle;
+use gearmesh::gear::transmission_error::face_map::Cell;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::pressure::{LargestPressure, LineContact};
+use studygraph::table::columns::Columns;
+use studygraph::table::schema::Column;
+
+/// The table of path and face.
+pub const TABLE: &str = "pressure";
+
+/// A pair by how many pitches it is ahead of the newest one inside the path of contact.
+struct OfPair {
+    ahead: isize,
+    which: &'static str,
+    pressure: &'static str,
+    half_width: &'static str,
+}
+
+macro_rules! pairs {
+    ($($ahead:literal $name:literal $which:literal),* $(,)?) => {
+        [$(OfPair {
+            ahead: $ahead,
+            which: $which,
+            pressure: concat!($name, "_pressure"),
+            half_width: concat!($name, "_half_width"),
+        }),*]
+    };
+}
+
+/// All that a position may have: with corner contact there is one before A.
+const PAIRS: [OfPair; 7] = pairs![
+    -1 "coming" "the pair before A",
+    0 "newest" "the pair that came into contact last",
+    1 "second" "the pair one pitch ahead of the newest",
+    2 "third" "the pair two pitches ahead of the newest",
+    3 "fourth" "the pair three pitches ahead of the newest",
+    4 "fifth" "the pair four pitches ahead of the newest",
+    5 "sixth" "the pair five pitches ahead of the newest",
+];
+
+/// The contacts of all pairs of a position, as [`PAIRS`] has them.
+pub type Contacts = [LineContact; PAIRS.len()];
+
+/// Columns of the summary that take the pressure at every position.
+const OF_SUMMARY: [&str; 7] = [
+    summary::LARGEST_PRESSURE,
+    "pressure_position",
+    "pressure_roll_angle",
+    "pressure_pair",
+    "pressure_z",
+    "pressure_half_width",
+    "corner_load_share",
+];
+
+/// Whether anything that is demanded takes the contacts of all pairs of a curve.
+pub fn of_pairs_are_wanted(demand: &Demand) -> bool {
+    let wanted = |name: &str| demand.column(curve::TABLE, name);
+    PAIRS.iter().any(|pair| wanted(pair.pressure) || wanted(pair.half_width))
+}
+
+/// Whether anything that is demanded takes the pressure at every position.
+pub fn are_wanted(demand: &Demand) -> bool {
+    OF_SUMMARY.iter().any(|name| demand.column(summary::TABLE, name))
+        || demand.column(curve::TABLE, curve::PRESSURE)
+        || of_pairs_are_wanted(demand)
+        || demand.table(TABLE)
+}
+
+/// The largest pressure, where it is, and how much is on sharp corners.
+pub fn of_summary(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
+    let of = |get: fn(&LargestPressure) -> f64| {
+        move |row: &Keyed| row.2.summary.largest_pressure.as_ref().map_or(f64::NAN, get)
+    };
+    let [pressure, position, roll_angle, pair, z, half_width, corner] = OF_SUMMARY;
+    let about_roll = "The pinion's roll angle at that place; NaN without load.";
+    let about_pair = "How many pitches that pair is ahead of the newest inside the path of contact; -1 before A.";
+    let about_z = "Where across the face, from its middle; NaN where it is the same all across.";
+    let about_corner =
+        "Largest share of the load on a pair that the sharp corner of a tip touches: the pressure is infinite there.";
+    columns
+        .float(pressure, "MPa", "Largest pressure in the mesh cycle.", of(|largest| largest.extremum.value))
+        .but(Column::on_demand)
+        .float(
+            position,
+            "mm",
+            "Distance from where a pair starts contact, where that is.",
+            of(|largest| largest.extremum.position),
+        )
+        .but(|column| column.on_demand().tolerance(1e-6, 1e-9))
+        .float(roll_angle, "deg", about_roll, of(|largest| largest.roll_angle))
+        .but(|column| column.on_demand().allows_nan().tolerance(1e-4, 1e-9))
+        .integer(pair, about_pair, |row| row.2.summary.largest_pressure.map_or(0, |largest| largest.ahead))
+        .but(Column::on_demand)
+        .float(z, "mm", about_z, of(|largest| largest.across.unwrap_or(f64::NAN)))
+        .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
+        .float(half_width, "um", "Half the width of the contact there.", of(|largest| largest.contact.half_width))
+        .but(|column| column.on_demand().tolerance(1e-3, 1e-6))
+        .float(corner, "", about_corner, |row| row.2.cornered.as_ref().map_or(0.0, |cornered| cornered.share))
+        .but(|column| column.on_demand().tolerance(1e-9, 1e-6))
+}
+
+/// Pressure and half width of each pair, where its face is loaded most.
+pub fn of_curve(columns: Columns<PointRow<'_>>) -> Columns<PointRow<'_>> {
+    PAIRS.iter().enumerate().fold(columns, |columns, (index, pair)| {
+        let of = move |row: &PointRow| row.2.contacts.map(|contacts| contacts[index]);
+        let pressure = format!("Largest pressure of {}.", pair.which);
+        let half_width = format!("Half the width of the contact of {}, where its face is loaded most.", pair.which);
+        columns
+            .float(pair.pressure, "MPa", &pressure, move |row| of(row).map_or(f64::NAN, |contact| contact.pressure))
+            // Pressure and width go with the square root of a load that begins.
+            .but(|column| column.on_demand().tolerance(1e-3, 1e-9))
+            .float(pair.half_width, "um", &half_width, move |row| {
+                of(row).map_or(f64::NAN, |contact| contact.half_width)
+            })
+            .but(|column| column.on_demand().tolerance(1e-4, 1e-9))
+    })
+}
+
+/// The contacts at a position of a curve.
+pub fn contacts(loading: &LoadCase, position: f64, pairs: usize) -> Contacts {
+    let by_spring = loading.contacts(position, pairs, &loading.state(position, pairs));
+    let newest = loading.cycle.newest().cast_signed();
+    PAIRS.each_ref().map(|pair| {
+        let spring = usize::try_from(newest + pair.ahead).ok();
+        spring.and_then(|spring| by_spring.get(spring)).copied().unwrap_or_default()
+    })
+}
+
+/// A place of the map.
+pub type CellRow<'a> = Keyed<'a, Cell>;
+
+/// The map.
+pub fn map<'a>() -> Columns<CellRow<'a>> {
+    let description = "Load per width and pressure over the path of contact and the face, on a regular grid of both.";
+    let step = "Counts the positions of the pair: from 0 in A, so many in a base pitch; below 0 before A.";
+    let strip = "Counts the strips of the face, equally wide, from 1; one where nothing varies across it.";
+    let position = "Distance of the pair from A along the line of action.";
+    let corner = "Whether the sharp corner of a tip is in contact: the pressure is infinite there.";
+    keyed(TABLE, description)
+        .integer("step", step, |row: &CellRow| row.2.step)
+        .key()
+        .integer("strip", strip, |row| row.2.strip)
+        .key()
+        .float("path_position", "mm", position, |row| row.2.path_position)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("roll_angle", "deg", "The pinion's roll angle where the pair touches.", |row| row.2.roll_angle)
+        .float("z", "mm", "Middle of the strip, from the middle of the face.", |row| row.2.z)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("load_per_width", "N/mm", "Mean load per width of the strip.", |row| row.2.contact.load)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("pressure", "MPa", "Largest pressure under that load.", |row| row.2.contact.pressure)
+        .but(|column| column.tolerance(1e-3, 1e-9))
+        .float("half_width", "um", "Half the width of the contact under that load.", |row| row.2.contact.half_width)
+        .but(|column| column.tolerance(1e-4, 1e-9))
+        .flag("at_corner", corner, |row| row.2.contact.at_corner)
+        .on_demand()
+}
+
+/// Says of each design under which torques a sharp corner is in contact, with its load and where for the largest share.
+pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
+    for of_design in answers.chunk_by(|one, other| one.0 == other.0) {
+        let cornered: Vec<(f64, &Answer)> = of_design
+            .iter()
+            .filter(|(_, _, answer)| answer.cornered.is_some())
+            .map(|(_, torque, answer)| (*torque, answer))
+            .collect();
+        let share = |answer: &Answer| answer.cornered.as_ref().map_or(0.0, |cornered| cornered.share);
+        let Some((torque, most)) = cornered.iter().max_by(|one, other| share(one.1).total_cmp(&share(other.1))) else {
+            continue;
+        };
+        let (first, last) = (cornered[0].0, cornered[cornered.len() - 1].0);
+        let torques = match cornered.len() {
+            1 => format!("{first} N m"),
+            count => format!("{count} torques from {first} to {last} N m"),
+        };
+        let stretches = most.cornered.iter().flat_map(|cornered| &cornered.stretches);
+        let stretches: Vec<String> =
+            stretches.map(|[from, to]| format!("{:.3} to {:.3} mm", from * 1e3, to * 1e3)).collect();
+        let largest = |(_, answer): &(f64, &Answer)| {
+            answer.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner)
+        };
+        let largest = if cornered.iter().any(largest) { "; the largest pressure is one of them" } else { "" };
+        let what = if cycle.knows_corners() {
+            "the contact reaches the sharp corner of a tip, where the pressure is infinite; pressures there are those of a \
+             contact that just reaches it"
+        } else {
+            "the sharp corner of a tip touches, where the pressure is infinite; this law of contact does not know it, and \
+             pressures there are those of the flank beside it"
+        };
+        (context.warn)(format!(
+            "design `{}` at {torques}: {what}{largest}. It carries up to {:.1} % of the load, at {torque} N m, on {} of the mesh \
+             cycle",
+            of_design[0].0,
+            100.0 * share(most),
+            stretches.join(" and "),
+        ));
+    }
+}
