@@ -15,6 +15,7 @@ use rayon::prelude::*;
 use self::samples::{Sample, Samples};
 use self::tables::{Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
+use crate::stage::doubts::{self, Doubted};
 use crate::stage::names::{curve, summary};
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs, root_influences,
@@ -30,6 +31,7 @@ use gearmesh::gear::iso6336_root::nominal_root_stress;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::doubt::Doubt;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
@@ -120,8 +122,8 @@ struct Answer {
     settings: Settings,
     error: f64,
     seconds: f64,
-    /// As [`LoadCase::widest_contact`] has it.
-    widest: Option<[f64; 2]>,
+    /// As [`LoadCase::contact_doubt`] has it.
+    doubt: Option<Doubt>,
     /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
     iso6336: [f64; 2],
 }
@@ -159,12 +161,12 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
-        let widest = loading.widest_contact(&points);
+        let doubt = loading.contact_doubt();
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, widest, iso6336 }, points))
+        Ok((Answer { summary, settings, error, seconds, doubt, iso6336 }, points))
     }
 
-    /// Of approaches that no linear model is for, and of accuracies that were not reached.
+    /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
     fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
         for (name, torque, answer) in answers {
             let (largest, reached) = (answer.summary.largest.value, answer.error);
@@ -177,15 +179,6 @@ impl Ste {
                     module * 1e3,
                 ));
             }
-            if let Some([half, limit]) = answer.widest.filter(|[half, limit]| half > limit) {
-                (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the flanks touch {:.6} mm to either side, but are half planes up to \
-                     {:.6} mm only; beyond that the law of contact goes on along its tangent, and the numbers are those of \
-                     no tooth",
-                    half * 1e3,
-                    limit * 1e3,
-                ));
-            }
             match self.accuracy {
                 Some(accuracy) if reached > accuracy => (context.warn)(format!(
                     "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
@@ -196,6 +189,13 @@ impl Ste {
                 )),
                 _ => (),
             }
+        }
+        let doubted = answers.iter().filter_map(|(design, torque, answer)| {
+            let peak_to_peak = answer.summary.peak_to_peak;
+            answer.doubt.map(|doubt| Doubted { design, torque: *torque, doubt, peak_to_peak })
+        });
+        if let Some(sentence) = doubts::sentence(doubted) {
+            (context.warn)(sentence);
         }
     }
 }

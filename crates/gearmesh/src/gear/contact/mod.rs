@@ -5,10 +5,12 @@
 pub mod face;
 pub mod flattening;
 pub mod gap;
+pub mod patch;
 pub mod separation;
 pub mod slices;
 pub mod springs;
 pub mod tip;
+pub mod uneven;
 pub mod wedge;
 
 use declare::Words;

@@ -254,19 +254,6 @@ impl LoadCase<'_> {
         }
     }
 
-    /// Where contact is resolved: half the width of the contact that carries most at these points, and the one up to which
-    /// the flanks are half planes \[m\]. Beyond, the law goes on along its tangent.
-    #[must_use]
-    pub fn widest_contact(&self, points: &[Point]) -> Option<[f64; 2]> {
-        let most = |point: &Point| point.loads.iter().copied().fold(0.0, f64::max);
-        let point = points.iter().max_by(|one, two| most(one).total_cmp(&most(two)))?;
-        let spring = (0..point.loads.len()).max_by(|one, two| point.loads[*one].total_cmp(&point.loads[*two]))?;
-        let tips = self.cycle.tips(self.cycle.path_position(point.cycle_position, spring))?;
-        let state = self.state(point.cycle_position, point.pairs);
-        let load = self.line_load(point.cycle_position, &state, spring);
-        Some([tips.half_width * load.sqrt(), tips.widest])
-    }
-
     /// The largest Hertzian pressure of any pair, with the flanks' curvature where it touches: ρ1 = s, ρ2 = L − s on the
     /// line of action. At a tip corner it is that of the flank there: the corner's own radius is not known.
     fn pressure(&self, position: f64, pairs: usize, state: &Equilibrium) -> f64 {

@@ -27,7 +27,7 @@ pub struct LoadCase<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
-    flanks: Arc<Flanks<'a>>,
+    pub(super) flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
     touching: Touching,
     /// Cycle positions at which a profile is not smooth, ascending.

@@ -9,6 +9,7 @@ mod change;
 mod count;
 pub mod curve;
 pub mod cycle;
+pub mod doubt;
 mod ends;
 mod flanks;
 pub mod load_case;

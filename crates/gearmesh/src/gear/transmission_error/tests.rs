@@ -3,6 +3,7 @@
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
 mod corner;
+mod doubt;
 mod extremes;
 mod root_stress;
 mod sampling;
