@@ -12,6 +12,7 @@ mod reference;
 mod root_stress;
 mod tooth;
 mod wheel;
+mod wide;
 
 use gearmesh::gear::finite_elements::gear_model::GearModel;
 use gearmesh::gear::finite_elements::mesh::Sizing;

@@ -9,6 +9,7 @@ use rayon::prelude::*;
 
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
+use crate::stage::doubts::{self, Doubted};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Stage, common};
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
@@ -16,6 +17,7 @@ use declare::record::{Record, Value};
 use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -341,7 +343,23 @@ impl Optimizer {
         elements
     }
 
-    fn tables(&self, found: &Found, pair: &GearPair, cycle: &MeshCycle) -> Result<Vec<Table>, Failure> {
+    /// What the law of contact may be off by at the design that was found.
+    fn doubt(&self, design: &Design, cycle: &MeshCycle) -> Option<String> {
+        let doubted = self.stated.at.torque.iter().filter_map(|&torque| {
+            let loading = LoadCase::new(cycle, design, torque);
+            let doubt = loading.contact_doubt()?;
+            Some(Doubted { design: &self.stated.name, torque, doubt, peak_to_peak: loading.peak_to_peak() })
+        });
+        doubts::sentence(doubted)
+    }
+
+    fn tables(
+        &self,
+        context: &Context,
+        found: &Found,
+        pair: &GearPair,
+        cycle: &MeshCycle,
+    ) -> Result<Vec<Table>, Failure> {
         let search = &found.search;
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
@@ -354,6 +372,9 @@ impl Optimizer {
             .map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak())
             .fold(0.0, f64::max);
         let row = BestRow { name: &self.stated.name, found, best, peak_to_peak };
+        if let Some(sentence) = self.doubt(&design, cycle) {
+            (context.warn)(sentence);
+        }
         let design = NamedDesign { name: self.stated.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
@@ -407,7 +428,7 @@ impl Stage for Optimizer {
         if let Some(doubt) = found.search.doubt() {
             (context.warn)(doubt.to_owned());
         }
-        let mut tables = self.tables(&found, &pair, &base.sampled(found.settings))?;
+        let mut tables = self.tables(context, &found, &pair, &base.sampled(found.settings))?;
         if context.demand.table(EVALUATIONS) {
             let tried = (1..).zip(&found.tried).map(|(index, (point, value))| (index, point.as_slice(), *value));
             tables.push(

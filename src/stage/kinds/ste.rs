@@ -17,6 +17,7 @@ use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
 use self::tables::{Found, Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
+use crate::stage::doubts::{self, Doubted};
 use crate::stage::names::summary;
 use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs, root_influences,
@@ -32,6 +33,7 @@ use gearmesh::gear::iso6336_root::nominal_root_stress;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::doubt::Doubt;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::gear::transmission_error::pressure::Cornered;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
@@ -126,10 +128,10 @@ struct Answer {
     settings: Settings,
     error: f64,
     seconds: f64,
-    /// As [`LoadCase::widest_contact`] has it.
-    widest: Option<[f64; 2]>,
     /// Where sharp corners are in contact, if pressures were asked for.
     cornered: Option<Cornered>,
+    /// As [`LoadCase::contact_doubt`] has it.
+    doubt: Option<Doubt>,
     /// Nominal root stress by ISO 6336-3 \[Pa\], where it was asked for and holds.
     iso6336: [f64; 2],
 }
@@ -167,15 +169,15 @@ impl Ste {
             sampled.know(settings, summary.peak_to_peak);
         }
         let error = sampled.error(settings);
-        let widest = loading.widest_contact(&points);
+        let doubt = loading.contact_doubt();
         let cornered = loading.cornered(&points);
         let wanted = points.iter().filter(|_| of_pairs);
         let contacts = wanted.map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs)).collect();
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, widest, cornered, iso6336 }, (points, contacts)))
+        Ok((Answer { summary, settings, error, seconds, doubt, cornered, iso6336 }, (points, contacts)))
     }
 
-    /// Of approaches that no linear model is for, and of accuracies that were not reached.
+    /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
     fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
         for (name, torque, answer) in answers {
             let (largest, reached) = (answer.summary.largest.value, answer.error);
@@ -188,15 +190,6 @@ impl Ste {
                     module * 1e3,
                 ));
             }
-            if let Some([half, limit]) = answer.widest.filter(|[half, limit]| half > limit) {
-                (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the flanks touch {:.6} mm to either side, but are half planes up to \
-                     {:.6} mm only; beyond that the law of contact goes on along its tangent, and the numbers are those of \
-                     no tooth",
-                    half * 1e3,
-                    limit * 1e3,
-                ));
-            }
             match self.accuracy {
                 Some(accuracy) if reached > accuracy => (context.warn)(format!(
                     "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
@@ -207,6 +200,13 @@ impl Ste {
                 )),
                 _ => (),
             }
+        }
+        let doubted = answers.iter().filter_map(|(design, torque, answer)| {
+            let peak_to_peak = answer.summary.peak_to_peak;
+            answer.doubt.map(|doubt| Doubted { design, torque: *torque, doubt, peak_to_peak })
+        });
+        if let Some(sentence) = doubts::sentence(doubted) {
+            (context.warn)(sentence);
         }
     }
 }

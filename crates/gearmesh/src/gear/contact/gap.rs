@@ -125,6 +125,26 @@ impl<'a> Gaps<'a> {
         (spot != Spot::Nowhere).then_some(gap)
     }
 
+    /// Whether anything is taken off.
+    #[must_use]
+    pub fn is_modified(&self) -> bool {
+        self.modified
+    }
+
+    /// How far the flanks stand apart at a place beside the nominal point of contact, along the flanks and towards the pinion's
+    /// tip \[m\]; none beyond one of their tips, without bound beyond one of their base circles.
+    #[must_use]
+    pub fn beside(&self, s: f64, along: f64) -> Option<f64> {
+        let way = &self.ways[usize::from(along < 0.0)];
+        let nominal = way.facing.turned(way.side, s);
+        let Some(before) = way.facing.before(nominal, along.abs()) else { return Some(f64::INFINITY) };
+        if nominal + before < way.facing.start {
+            return None;
+        }
+        let touch = way.facing.touch(nominal + before, before);
+        (touch.curvature <= way.facing.end).then(|| touch.separation + way.depth(nominal + before, touch.curvature))
+    }
+
     fn touching(&self, s: f64) -> (f64, Spot) {
         let nominal = |way: &Way| way.facing.turned(way.side, s);
         for way in &self.ways {

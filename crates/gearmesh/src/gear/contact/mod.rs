@@ -5,11 +5,13 @@
 pub mod face;
 pub mod flattening;
 pub mod gap;
+pub mod patch;
 pub mod rounding;
 pub mod separation;
 pub mod slices;
 pub mod springs;
 pub mod tip;
+pub mod uneven;
 pub mod wedge;
 
 use declare::Words;

@@ -98,6 +98,16 @@ impl Facing {
         curvature / self.flank_radius
     }
 
+    /// How far before its own position the point is that lies `along` its flank from the nominal one, towards its root \[m\];
+    /// none beyond its base circle.
+    #[must_use]
+    pub fn before(&self, nominal: f64, along: f64) -> Option<f64> {
+        let roll = self.point_roll(nominal);
+        let square = roll * roll - 2.0 * along / self.point_radius;
+        // Half the difference of the squares is the length of an involute over its base radius.
+        (square >= 0.0 && roll >= 0.0).then(|| 2.0 * along / (roll + square.sqrt()))
+    }
+
     /// The point whose own position is `point`, `before` ≥ 0 before it comes there: relative to e²/2ρ exact to 1e-13,
     /// however small `before` is.
     #[must_use]

@@ -251,19 +251,6 @@ impl LoadCase<'_> {
                 .map(|of_gears| of_gears.map(|root| root.stress)),
         }
     }
-
-    /// Where contact is resolved: half the width of the contact that carries most at these points, and the one up to which
-    /// the flanks are half planes \[m\]. Beyond, the law goes on along its tangent.
-    #[must_use]
-    pub fn widest_contact(&self, points: &[Point]) -> Option<[f64; 2]> {
-        let most = |point: &Point| point.loads.iter().copied().fold(0.0, f64::max);
-        let point = points.iter().max_by(|one, two| most(one).total_cmp(&most(two)))?;
-        let spring = (0..point.loads.len()).max_by(|one, two| point.loads[*one].total_cmp(&point.loads[*two]))?;
-        let tips = self.cycle.tips(self.cycle.path_position(point.cycle_position, spring))?;
-        let state = self.state(point.cycle_position, point.pairs);
-        let load = self.line_load(point.cycle_position, &state, spring);
-        Some([tips.half_width * load.sqrt(), tips.widest])
-    }
 }
 
 /// Puts a point where it belongs by its position, among those with as many pairs.

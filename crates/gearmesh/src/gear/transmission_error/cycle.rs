@@ -85,6 +85,8 @@ pub struct MeshCycle {
     pub(super) path: Path,
     pub(super) bodies: Bodies,
     pub(super) elasticity: Elasticity,
+    /// The derivatives of what both teeth yield without the contact, over their roll angles \[m/(N rad)\].
+    pub(super) rates: Arc<[Option<Series>; 2]>,
     /// Where slices hold each other.
     pub(super) across: Option<Across>,
     /// C_jk by the number of pitches between j and k, less one; against the path position of the pair behind.
@@ -205,6 +207,7 @@ impl MeshCycle {
                 path.fit(ahead, &body)
             })
             .collect();
+        let rates = [&pinion_series, &gear_series].map(|series| series.as_ref().map(Series::derivative));
         let zones = zones(ratio, pair.base_pitch);
         let (rows, slices) = (SpanRule::new(), Rule::new(settings.slices));
         let springs = exact.then_some(springs);
@@ -219,6 +222,7 @@ impl MeshCycle {
             path,
             bodies,
             elasticity,
+            rates: Arc::new(rates),
             across,
             coupling,
             roots: None,

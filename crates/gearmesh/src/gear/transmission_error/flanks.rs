@@ -69,6 +69,16 @@ impl<'a> Flanks<'a> {
         Self { sections, ..self.clone() }
     }
 
+    /// The gaps in the middle of the face; none where the flanks touch all over the path.
+    pub(super) fn in_the_middle(&self) -> Option<&Gaps<'a>> {
+        self.middle.gaps.as_ref()
+    }
+
+    /// Whether nothing is taken off along the profiles.
+    pub(super) fn is_unmodified(&self) -> bool {
+        self.in_the_middle().is_none_or(|gaps| !gaps.is_modified())
+    }
+
     /// Whether both flanks run parallel across the face at every position.
     #[inline]
     pub(super) fn is_flat(&self) -> bool {

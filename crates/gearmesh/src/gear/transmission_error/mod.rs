@@ -9,6 +9,7 @@ mod change;
 mod count;
 pub mod curve;
 pub mod cycle;
+pub mod doubt;
 mod ends;
 pub mod face_map;
 mod flanks;

@@ -4,6 +4,7 @@
 
 mod broken_tips;
 mod corner;
+mod doubt;
 mod extremes;
 mod pressure;
 mod root_stress;

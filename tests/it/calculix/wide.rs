@@ -1,0 +1,69 @@
+//! Contacts that are wide: what resolved contact is off by, and what it says that it may be off by.
+//!
+//! One pair pressed together as far as its contact is a third of a module to either side. Turn and gaps are a small part of
+//! what they are ([`Case::share`]), so that displacements are small and the contact is as wide as it would be.
+
+use super::contact::pair;
+use super::press::{Case, Fineness, PENALTY, press};
+use gearmesh::gear::compliance::finite_element::FiniteElement;
+use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
+use gearmesh::gear::geometry::{GearPair, Side};
+use gearmesh::gear::material::Plane;
+use gearmesh::gear::modification::Design;
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::numeric::crossing::bracketed;
+
+/// What the mesh of this fineness is off by.
+const MESH: f64 = 2e-3;
+
+/// The force \[N\] under which our pair approaches so far at a path position, and what of the approach is in doubt there.
+fn ours(cycle: &MeshCycle, pair: &GearPair, s: f64, approach: f64) -> [f64; 3] {
+    let design = Design::default();
+    let position = s - pair.start_of_contact;
+    let at = |torque: f64| LoadCase::new(cycle, &design, torque).state(position, 1);
+    let torque = bracketed(0.1, 1e4, |torque| at(torque).transmission_error() - approach).unwrap();
+    let loading = LoadCase::new(cycle, &design, torque);
+    let doubt = loading.contact_doubt_at(position, 1).unwrap();
+    [torque / pair.pinion.base_radius, doubt.size / doubt.approach, doubt.widest[0]]
+}
+
+#[test]
+fn wide_contacts_are_as_far_off_as_is_said() {
+    let pair = pair();
+    let design = Design::default();
+    let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
+    let method = FiniteElement { plane: Plane::Strain, elements_across: 28 };
+    let compliance = method.tabulate(&pair, assumptions).unwrap().compliance;
+    let cycle = MeshCycle::new(&pair, &compliance, Settings::default()).unwrap();
+    let s = pair.zone_points().c;
+    for approach in [27.5e-6, 75e-6, 150e-6, 300e-6] {
+        let (part, level) = (27.5e-6 / approach, 6);
+        let path = [s];
+        let case = Case {
+            pair: &pair,
+            design: &design,
+            path: &path,
+            approach,
+            plane: Plane::Strain,
+            slave: Side::Pinion,
+            share: (0.25 * part).max(0.06),
+        };
+        let edge = 0.015 * 4.0 / level as f64 / part.sqrt();
+        let Some(found) = press(&case, Fineness { level, edge, penalty: PENALTY }) else { return };
+        // Where loaded teeth tilt, the flanks touch off the line of action: one arm is longer by what the other is shorter.
+        let [one, other] =
+            [Side::Pinion, Side::Gear].map(|side| found.torques[side as usize] / pair.side(side).base_radius);
+        let truth = 0.5 * (one + other) / (1.0 - found.overlap() / approach);
+        let [force, doubt, half] = ours(&cycle, &pair, s, approach);
+        let off = force / truth - 1.0;
+        println!(
+            "{:.1} um: half width {:.4} mm, {force:.1} N, off by {off:.5}, in doubt {doubt:.5}, {:?} edges",
+            approach * 1e6,
+            half * 1e3,
+            found.edges
+        );
+        // What other meshes, and the pair where nothing is wide, are off by.
+        assert!(off.abs() < doubt + MESH && doubt < 3.0 * off.abs(), "{approach}");
+    }
+}
