@@ -11,6 +11,7 @@ use std::sync::Arc;
 use super::across::Across;
 use super::count::Total;
 use super::ends::Ends;
+use super::load_case::CLOSEST;
 use super::path::Path;
 use super::root_stress::Roots;
 use super::trace::SpanRule;
@@ -18,7 +19,7 @@ use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
 use crate::gear::contact::tip::Tips;
 use crate::gear::contact::{CornerContact, SliceCoupling};
-use crate::gear::geometry::GearPair;
+use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::chebyshev::Series;
 use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
@@ -292,6 +293,25 @@ impl MeshCycle {
     #[must_use]
     pub fn radii(&self, s: f64) -> [f64; 2] {
         self.path.radii(s)
+    }
+
+    /// The same of what touches: beyond the end of its flank that of a rounding. And whose sharp corner touches by itself.
+    pub(super) fn touching(&self, s: f64) -> ([f64; 2], Option<Side>) {
+        let mut radii = self.path.radii(s);
+        let within = CLOSEST * self.pair.base_pitch;
+        let side = if s > self.pair.end_of_contact + within {
+            Side::Pinion
+        } else if s < self.pair.start_of_contact - within {
+            Side::Gear
+        } else {
+            return (radii, None);
+        };
+        let round = self.pair.side(side).flank_end.radius;
+        if round <= 0.0 {
+            return (radii, Some(side));
+        }
+        radii[side as usize] = round;
+        (radii, None)
     }
 
     /// Where contact is resolved: the tips of both teeth at a path position.

@@ -11,9 +11,12 @@ use super::load_case::LoadCase;
 use crate::gear::contact::flattening::combined_radius;
 use crate::gear::contact::gap::Gaps;
 use crate::gear::contact::patch::{Patch, Surface};
-use crate::gear::contact::tip::Tips;
+use crate::gear::contact::tip::{Corner, Tips};
 use crate::gear::contact::uneven::Uneven;
+use crate::gear::contact::wedge;
 use crate::gear::geometry::Side;
+use crate::gear::geometry::flank_end::FlankEnd;
+use crate::gear::geometry::outline::tip::Tip;
 
 /// How many positions of a stretch with as many pairs are looked at, its ends among them.
 const POSITIONS: usize = 5;
@@ -140,7 +143,8 @@ impl LoadCase<'_> {
     fn missed(&self, s: f64, line_load: f64, gaps: &Gaps) -> Missed {
         let cycle = self.cycle;
         let (bodies, radii) = (&cycle.bodies, cycle.radii(s));
-        let radius = combined_radius(radii);
+        let touching = self.cycle.reached(s, line_load);
+        let radius = combined_radius(touching);
         let half_width = bodies.half_width(radius) * line_load.sqrt();
         let rate = bodies.linear();
         let sides = [Side::Pinion, Side::Gear];
@@ -149,14 +153,15 @@ impl LoadCase<'_> {
             Surface {
                 compliance: material.plane_compliance(bodies.plane),
                 poisson_ratio: material.plane_poisson_ratio(bodies.plane),
-                radius: radii[side as usize],
+                radius: touching[side as usize],
                 depth: gear.flank(radii[side as usize] / gear.base_radius).half_thickness,
             }
         });
         let inside = s >= cycle.pair.start_of_contact && s <= cycle.pair.end_of_contact;
         let slope = if inside { cycle.slope(s, radii, half_width) } else { 0.0 };
         let patch = Patch { line_load, half_width, rate, slope, surfaces };
-        let by_width = patch.left_out() + cycle.beyond_law(s, line_load);
+        let by_width =
+            patch.left_out() + cycle.beyond_law(s, line_load) + cycle.beyond_chamfers(s, half_width, line_load);
         let wide = Missed { by_width, by_shape: 0.0, cause: Cause::Width, half_width };
         if !inside {
             return wide;
@@ -197,6 +202,39 @@ impl MeshCycle {
             self.face_width * rate / radii[side] + by_corner
         });
         of_pinion - of_gear
+    }
+
+    /// The radii of curvature of what the contact reaches: those of roundings, where a part of it lies on one.
+    fn reached(&self, s: f64, load: f64) -> [f64; 2] {
+        let mut radii = self.touching(s).0;
+        let half_width = self.bodies.half_width(combined_radius(self.path.radii(s))) * load.sqrt();
+        for (side, corner) in
+            [Side::Pinion, Side::Gear].into_iter().zip(self.tips(s).iter().flat_map(|tips| tips.corners))
+        {
+            let round = self.pair.side(side).flank_end.radius;
+            if round > 0.0 && corner.distance < half_width {
+                radii[side as usize] = round;
+            }
+        }
+        radii
+    }
+
+    /// By how much the approach may differ where a contact reaches the corner of a chamfer and is wider than that is long: what
+    /// yields is a tooth whose corner is not as blunt \[m\].
+    fn beyond_chamfers(&self, s: f64, half_width: f64, load: f64) -> f64 {
+        let Some(tips) = self.tips(s) else { return 0.0 };
+        let of = |(side, corner): (Side, &Corner)| {
+            let gear = self.pair.side(side);
+            let Tip::Chamfer(size) = gear.tip else { return 0.0 };
+            if size <= 0.0 || corner.distance >= half_width {
+                return 0.0;
+            }
+            let material = &self.bodies.materials[side as usize];
+            let sharp = FlankEnd::corner(gear.tip_roll()).interior_angle;
+            let rate = material.plane_compliance(self.bodies.plane) * wedge::softening(sharp);
+            load * rate * libm::log(2.0 * half_width / size).max(0.0)
+        };
+        [Side::Pinion, Side::Gear].into_iter().zip(&tips.corners).map(of).sum()
     }
 
     /// By how much the approach differs where the law is not followed, since a contact is wider than it has a meaning \[m\].

@@ -9,11 +9,10 @@
 
 use super::curve::Point;
 use super::cycle::MeshCycle;
-use super::load_case::{CLOSEST, Equilibrium, LoadCase};
+use super::load_case::{Equilibrium, LoadCase};
 use super::trace::{Extremum, Trace};
 use crate::gear::contact::flattening::combined_radius;
 use crate::gear::contact::tip::Tips;
-use crate::gear::geometry::Side;
 use crate::numeric::complementarity::MOST_SPRINGS;
 
 /// Of the distance of two positions, until the end of a stretch is found: to a millionth.
@@ -72,26 +71,12 @@ impl MeshCycle {
     /// What the flanks are like where a pair touches: their combined radius of curvature, and the tips, where those are known
     /// to the law of contact. And whether the corner of one touches by itself.
     fn flanks(&self, s: f64) -> (f64, Option<Tips<'_>>, bool) {
-        let mut radii = self.path.radii(s);
         let tips = self.tips(s);
         if tips.is_some() {
-            return (combined_radius(radii), tips, false);
+            return (combined_radius(self.path.radii(s)), tips, false);
         }
-        let within = CLOSEST * self.pair.base_pitch;
-        let beyond = [
-            (Side::Pinion, s > self.pair.end_of_contact + within),
-            (Side::Gear, s < self.pair.start_of_contact - within),
-        ];
-        let mut at_corner = false;
-        for (side, _) in beyond.into_iter().filter(|(_, beyond)| *beyond) {
-            let round = self.pair.side(side).flank_end.radius;
-            if round > 0.0 {
-                radii[side as usize] = round;
-            } else {
-                at_corner = true;
-            }
-        }
-        (combined_radius(radii), None, at_corner)
+        let (radii, corner) = self.touching(s);
+        (combined_radius(radii), None, corner.is_some())
     }
 
     /// The contact of a pair at a path position under a load per width.

@@ -101,3 +101,20 @@ fn a_rounding_takes_more_load_beyond_the_end_of_its_flank() {
     });
     assert!(carried.windows(2).all(|two| two[1] > two[0]) && carried[0] > 0.0, "{carried:?}");
 }
+
+/// Tier: invariant; a contact that is not narrow against the rounding or the chamfer that it reaches is in doubt, beside one that
+/// is, and the more the smaller that is.
+#[test]
+fn contacts_wider_than_a_broken_tip_are_in_doubt() {
+    let off = |tip: Tip| {
+        let pair = GearPair::with_tips(SPECIFICATIONS(), [tip; 2], None).unwrap();
+        let cycle = exact(&pair, &resolved(varying()), 24);
+        let found = LoadCase::new(&cycle, &Design::default(), 150.0).contact_doubt().unwrap();
+        (found.size - found.by_shape) / found.approach
+    };
+    for of in [Tip::Chamfer, Tip::Rounding] {
+        let [small, large] = [0.02e-3, 0.5e-3].map(|size| off(of(size)));
+        assert!(small > 2e-3 && small > 2.0 * large, "{:?}: {small} {large}", of(1.0));
+    }
+    assert!((off(Tip::Chamfer(0.5e-3)) / off(Tip::Land) - 1.0).abs() < 0.2);
+}
