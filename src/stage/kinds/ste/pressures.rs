@@ -2,7 +2,6 @@
 //!
 //! Must not know: how a pressure is found.
 
-use super::Answer;
 use super::tables::{Keyed, PointRow, keyed};
 use crate::stage::names::{curve, summary};
 use crate::stage::{Context, Demand};
@@ -164,43 +163,41 @@ pub fn map<'a>() -> Columns<CellRow<'a>> {
         .on_demand()
 }
 
-/// Says of each design under which torques a sharp corner is in contact, with its load and where for the largest share.
+/// So many curves are named one by one.
+const NAMED: usize = 6;
+
+/// Says of which designs under which torques a sharp corner is in contact, and of the one where it has the largest share of the
+/// load, how large that is and where.
 pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
-    for of_design in answers.chunk_by(|one, other| one.0 == other.0) {
-        let cornered: Vec<(f64, &Answer)> = of_design
-            .iter()
-            .filter(|(_, _, answer)| answer.cornered.is_some())
-            .map(|(_, torque, answer)| (*torque, answer))
-            .collect();
-        let share = |answer: &Answer| answer.cornered.as_ref().map_or(0.0, |cornered| cornered.share);
-        let Some((torque, most)) = cornered.iter().max_by(|one, other| share(one.1).total_cmp(&share(other.1))) else {
-            continue;
-        };
-        let (first, last) = (cornered[0].0, cornered[cornered.len() - 1].0);
-        let torques = match cornered.len() {
-            1 => format!("{first} N m"),
-            count => format!("{count} torques from {first} to {last} N m"),
-        };
-        let stretches = most.cornered.iter().flat_map(|cornered| &cornered.stretches);
-        let stretches: Vec<String> =
-            stretches.map(|[from, to]| format!("{:.3} to {:.3} mm", from * 1e3, to * 1e3)).collect();
-        let largest = |(_, answer): &(f64, &Answer)| {
-            answer.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner)
-        };
-        let largest = if cornered.iter().any(largest) { "; the largest pressure is one of them" } else { "" };
-        let what = if cycle.knows_corners() {
-            "the contact reaches the sharp corner of a tip, where the pressure is infinite; pressures there are those of a \
-             contact that just reaches it"
-        } else {
-            "the sharp corner of a tip touches, where the pressure is infinite; this law of contact does not know it, and \
-             pressures there are those of the flank beside it"
-        };
-        (context.warn)(format!(
-            "design `{}` at {torques}: {what}{largest}. It carries up to {:.1} % of the load, at {torque} N m, on {} of the mesh \
-             cycle",
-            of_design[0].0,
-            100.0 * share(most),
-            stretches.join(" and "),
-        ));
-    }
+    let curves = || answers.iter().filter_map(|row| Some((row, row.2.cornered.as_ref()?)));
+    let Some(((design, torque, _), most)) = curves().max_by(|one, other| one.1.share.total_cmp(&other.1.share)) else {
+        return;
+    };
+    let named: Vec<String> =
+        curves().take(NAMED).map(|((design, torque, _), _)| format!("`{design}` at {torque} N m")).collect();
+    let more = match curves().count() - named.len() {
+        0 => String::new(),
+        more => format!(" and {more} more curves"),
+    };
+    let what = if cycle.knows_corners() {
+        "the contact reaches the sharp corner of a tip, where the pressure is infinite; the pressures there are those of a \
+         contact that just reaches it"
+    } else {
+        "the sharp corner of a tip touches, where the pressure is infinite; this law of contact does not know it, and the \
+         pressures there are those of the flank beside it"
+    };
+    let is_largest = |row: &Keyed| row.2.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner);
+    let largest = match curves().filter(|(row, _)| is_largest(row)).count() {
+        0 => String::new(),
+        count => format!("; it is the largest pressure of {count} of these curves"),
+    };
+    let stretches: Vec<String> =
+        most.stretches.iter().map(|[from, to]| format!("{:.3} to {:.3} mm", from * 1e3, to * 1e3)).collect();
+    (context.warn)(format!(
+        "design {}{more}: {what}{largest}. Of the load it has up to {:.1} %, with `{design}` at {torque} N m on {} of the mesh \
+         cycle; `corner_load_share` tells of every curve",
+        named.join(", "),
+        100.0 * most.share,
+        stretches.join(" and "),
+    ));
 }

@@ -293,6 +293,10 @@ fn maps_of_surfaces_are_those_of_their_slices() {
         for step in [1, 2, 3, 9, 10, 11] {
             let cell = top(step);
             assert_eq!(cell.z > 0.0, cell.path_position < middle, "{cell:?}");
+            let place = cell.path_position.rem_euclid(cycle.period());
+            let spring = usize::from(step >= 8);
+            let most = loading.most_loaded(place, cycle.pairs_behind(place), spring).unwrap();
+            assert!((most - cell.z).abs() < cycle.face_width / 33.0, "{most} {cell:?}");
         }
         let found = loading.summary(Wanted { pressure: true, ..Wanted::default() }).largest_pressure.unwrap();
         assert!(found.across.unwrap().abs() > 0.4 * cycle.face_width, "{found:?}");
