@@ -7,6 +7,7 @@ mod orders;
 mod point_load;
 mod root_stress;
 mod whole_gear;
+mod wide_contact;
 
 use super::MeshError;
 use super::gear_model::GearModel;

@@ -69,6 +69,32 @@ fn the_error_estimate_holds() {
     }
 }
 
+/// Tier: second method; the same of resolved contact up to the largest ν, against 40 elements across.
+#[test]
+fn the_error_estimate_of_resolved_contact_holds_near_incompressibility() {
+    let resolved = Assumptions { contact: ContactLaw::Resolved, coupled: false, ..COUPLED };
+    for poisson_ratio in [0.4, 0.49] {
+        let gear =
+            |teeth| Specification { material: Material { poisson_ratio, ..STEEL }, ..standard(teeth, 3e-3, 1.4) };
+        let pair = GearPair::new(gear(17), gear(43), None).unwrap();
+        let fine = finite_element(&pair, 40, resolved).unwrap();
+        for across in [8, 16] {
+            let found = finite_element(&pair, across, resolved).unwrap();
+            let teeth = |found: &Tabulated| {
+                [found.compliance.pinion.body.node_values(), found.compliance.gear.body.node_values()]
+            };
+            for (mesh, (coarse, exact)) in found.meshes.iter().zip(teeth(&found).iter().zip(teeth(&fine))) {
+                let error = coarse.iter().zip(exact).map(|(a, b)| (a / b - 1.0).abs()).fold(0.0, f64::max);
+                assert!(
+                    error < mesh.error_estimate && mesh.error_estimate < 30.0 * error,
+                    "{poisson_ratio} {across}: {error} {}",
+                    mesh.error_estimate
+                );
+            }
+        }
+    }
+}
+
 #[test]
 fn an_accuracy_is_reached_and_named() {
     let pair = pair([17, 30], 1.4);

@@ -55,11 +55,15 @@ impl Half {
     /// The rest at the load in the middle of the top, against the axis. The block is all elements that do not touch the
     /// axis.
     fn rest(&self, top: f64, plane: Plane) -> f64 {
-        let elasticity = elasticity(plane, STEEL.poisson_ratio);
+        self.rest_of(&STEEL, top, plane)
+    }
+
+    fn rest_of(&self, material: &Material, top: f64, plane: Plane) -> f64 {
+        let elasticity = elasticity(plane, material.poisson_ratio);
         let is_low = |element: &[usize; NODES]| element.iter().any(|&node| self.nodes[node][1].abs() < 1e-9);
         let members: Vec<usize> = (0..self.elements.len()).filter(|&k| !is_low(&self.elements[k])).collect();
         let block = Block::new(&self.nodes, &self.elements, &members, &elasticity).unwrap();
-        let field = HalfPlane::new([0.0, top], [0.0, -1.0], &STEEL, plane);
+        let field = HalfPlane::new([0.0, top], [0.0, -1.0], material, plane);
         let taken = block.take(&self.nodes, &field);
         let mut numbers = Vec::new();
         let mut count = 0;
@@ -134,6 +138,19 @@ fn a_disc_between_two_loads() {
         for pair in errors.windows(2) {
             assert!((pair[0] / pair[1]).abs().log2() > 3.5, "{errors:?}");
         }
+    }
+}
+
+/// Tier: closed form; the same disc nearly incompressible in plane strain: elements do not lock, they converge
+/// as they do otherwise.
+#[test]
+fn a_disc_that_is_nearly_incompressible() {
+    for poisson_ratio in [0.45, 0.49] {
+        let material = Material { poisson_ratio, ..STEEL };
+        let exact = 2.0 * (2_f64.ln() - 1.0) / PI * (1.0 - poisson_ratio * poisson_ratio);
+        let errors = [4, 8, 16].map(|count| disc(count).rest_of(&material, 1.0, Plane::Strain) - exact);
+        assert!(errors[2].abs() < 1e-6 * exact.abs(), "{poisson_ratio}: {errors:?} of {exact}");
+        assert!((errors[0] / errors[2]).abs().log2() > 5.0, "{poisson_ratio}: {errors:?}");
     }
 }
 
