@@ -18,5 +18,6 @@ pub mod many_springs;
 pub mod panels;
 pub mod parabola;
 pub mod piecewise;
+pub mod quadratic;
 pub mod quadrature;
 pub mod surface;
