@@ -54,8 +54,7 @@ fn teeth<'a>() -> Columns<NodeRow<'a>> {
         .key()
         .float(names::compliance::ROLL_ANGLE, "rad", "Roll angle of the loaded point.", |row| row.roll)
         .float("radius", "mm", "Radius of the loaded point.", |row| row.radius);
-    let corner =
-        "B of resolved contact: −B ln(c/m) is added to the rest, c the distance to the tip's corner, B per width.";
+    let corner = "B of resolved contact: −B ln(c/m) is added to the rest, c the distance to the tip's corner, or to the one that a rounding takes away, B per width.";
     let columns = SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
         columns.float(name, unit, description, move |row| series(row.tooth).value(row.roll))
     });

@@ -46,6 +46,8 @@ tables! {
         YOUNGS_MODULUS = "youngs_modulus",
         POISSON_RATIO = "poisson_ratio",
         TIP_RADIUS = "tip_radius",
+        TIP_CHAMFER = "tip_chamfer",
+        TIP_ROUNDING = "tip_rounding",
     }
     pair of "geometry": "pair" { CENTRE_DISTANCE = "centre_distance" }
     outline of "geometry": "outline" {

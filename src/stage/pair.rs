@@ -7,6 +7,7 @@ use super::names;
 use crate::stage::{Inputs, Port};
 use declare::error::Failure;
 use declare::units::parse_unit;
+use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use studygraph::table::columns::Columns;
@@ -43,9 +44,18 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
             row.1.specification.material.youngs_modulus
         })
         .float(names::gears::POISSON_RATIO, "", "Poisson's ratio ν.", |row| row.1.specification.material.poisson_ratio)
+        .float(names::gears::TIP_CHAMFER, "mm", "Size of the chamfer at the tip; 0 without one.", |row| {
+            if let Tip::Chamfer(size) = row.1.tip { size } else { 0.0 }
+        })
+        .float(names::gears::TIP_ROUNDING, "mm", "Radius of the rounding at the tip; 0 without one.", |row| {
+            if let Tip::Rounding(radius) = row.1.tip { radius } else { 0.0 }
+        })
         .float("reference_radius", "mm", "Reference radius r.", |row| row.1.reference_radius)
         .float("base_radius", "mm", "Base radius r_b.", |row| row.1.base_radius)
         .float(names::gears::TIP_RADIUS, "mm", "Tip radius r_a.", |row| row.1.tip_radius)
+        .float("tip_form_radius", "mm", "Radius at which the flank ends towards the tip r_Fa.", |row| {
+            row.1.radius_at(row.1.flank_end.roll)
+        })
         .float("root_radius", "mm", "Root radius r_f.", |row| row.1.root_radius)
         .float("form_radius", "mm", form_radius, |row| row.1.form_radius)
         .float("tip_thickness", "mm", "Arc thickness of the tooth at the tip.", |row| row.1.tip_thickness())
@@ -86,9 +96,7 @@ pub fn of(inputs: &Inputs) -> Result<GearPair, Failure> {
 /// When the tables are not from a valid pair.
 pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
     let specification = |side: Side| -> Result<Specification, Failure> {
-        let name = side.name();
-        let row = gears.texts(names::gears::GEAR).iter().position(|gear| gear == name);
-        let row = row.ok_or_else(|| Failure::new(format!("the geometry has no row for the {name}")))?;
+        let row = row(gears, side)?;
         let value = |column: &str| si(gears, column, row);
         let teeth = u32::try_from(gears.integers(names::gears::TEETH)[row])
             .map_err(|_| Failure::new("the number of teeth is out of range"))?;
@@ -111,9 +119,26 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
             },
         })
     };
+    let tip = |side: Side| {
+        let row = row(gears, side)?;
+        let [chamfer, rounding] =
+            [names::gears::TIP_CHAMFER, names::gears::TIP_ROUNDING].map(|column| si(gears, column, row));
+        Ok::<_, Failure>(match (chamfer > 0.0, rounding > 0.0) {
+            (false, false) => Tip::Land,
+            (true, _) => Tip::Chamfer(chamfer),
+            (false, true) => Tip::Rounding(rounding),
+        })
+    };
     let distance = si(pair, names::pair::CENTRE_DISTANCE, 0);
-    GearPair::new(specification(Side::Pinion)?, specification(Side::Gear)?, Some(distance))
+    let specifications = [specification(Side::Pinion)?, specification(Side::Gear)?];
+    GearPair::with_tips(specifications, [tip(Side::Pinion)?, tip(Side::Gear)?], Some(distance))
         .map_err(|error| Failure::new(error.to_string()))
+}
+
+fn row(gears: &Table, side: Side) -> Result<usize, Failure> {
+    let name = side.name();
+    let row = gears.texts(names::gears::GEAR).iter().position(|gear| gear == name);
+    row.ok_or_else(|| Failure::new(format!("the geometry has no row for the {name}")))
 }
 
 /// A cell of a column of numbers in SI.

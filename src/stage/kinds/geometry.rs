@@ -24,7 +24,7 @@ use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
 use gearmesh::gear::geometry::outline::Outline;
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
-use gearmesh::gear::geometry::outline::tip;
+use gearmesh::gear::geometry::outline::tip::{self, Tip};
 use gearmesh::gear::geometry::validity::Mating;
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
@@ -100,6 +100,8 @@ struct StatedGear {
     pub tip_shortening: Option<f64>,
     /// Root of this gear's teeth in its outline, when it is not the common one.
     pub root: Option<Box<dyn Root>>,
+    /// Corners of this gear's tips, when they are not the common ones.
+    pub tip: Option<Box<dyn tip::Stated>>,
     /// Material of this gear, when it is not the common one.
     pub material: Option<Material>,
 }
@@ -110,7 +112,7 @@ struct StatedOutline {
     /// Root of the teeth.
     #[declared(default = "trochoid")]
     pub root: Box<dyn Root>,
-    /// What is done to the corners of the tip.
+    /// What is done to the corners of the tip: the flank, and contact with it, ends there.
     #[declared(default = "land")]
     pub tip: Box<dyn tip::Stated>,
     /// Modifications of the flanks, one or several.
@@ -166,6 +168,7 @@ fn place_of(error: &GeometryError, record: &Record) -> Place {
             Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
         },
         Subject::Root => inside(names.outline, StatedOutline::NAMES.root),
+        Subject::Tip if record.inside(gear).entry(own.tip).is_some() => inside(gear, own.tip),
         Subject::Tip => inside(names.outline, StatedOutline::NAMES.tip),
         Subject::Flank => inside(names.outline, StatedOutline::NAMES.flank),
     }
@@ -185,7 +188,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }
     let pinion = stated.specification(&stated.pinion);
     let (pair, design, built) = if let Some(gear) = &stated.gear {
-        let pair = GearPair::new(pinion, stated.specification(gear), stated.centre_distance)
+        let tips = [stated.tip(&stated.pinion), stated.tip(gear)];
+        let pair = GearPair::with_tips([pinion, stated.specification(gear)], tips, stated.centre_distance)
             .map_err(|error| refused(&error))?;
         let flank = stated.outline.flank.as_ref().map(Elements::template).transpose()?;
         let design = flank.map_or(Ok(Design::default()), |flank| flank.design(&pair, &[]))?;
@@ -193,7 +197,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         (Some(pair), design, built)
     } else {
         stated.check_alone(record)?;
-        let gear = Gear::new(&pinion).map_err(|error| refused(&error.on(Side::Pinion)))?;
+        let gear = Gear::new(&pinion).and_then(|gear| gear.with_tip(stated.tip(&stated.pinion)));
+        let gear = gear.map_err(|error| refused(&error.on(Side::Pinion)))?;
         (None, Design::default(), vec![gear])
     };
     let options = &stated.outline;
@@ -201,7 +206,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         let root = stated.root.as_ref().unwrap_or(&options.root);
         let outline = root
             .toe(&gear)
-            .and_then(|toe| Outline::new(&gear, toe, options.tip.tip(), design.relief(side)))
+            .and_then(|toe| Outline::new(&gear, toe, gear.tip, design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })
     };
@@ -226,6 +231,10 @@ impl Stated {
             return refused(record.inside(Self::NAMES.outline), StatedOutline::NAMES.flank, why);
         }
         Ok(())
+    }
+
+    fn tip(&self, gear: &StatedGear) -> Tip {
+        gear.tip.as_ref().unwrap_or(&self.outline.tip).tip()
     }
 
     fn specification(&self, gear: &StatedGear) -> Specification {

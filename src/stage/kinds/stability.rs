@@ -16,6 +16,8 @@ use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use declare::{Declared, Words};
+use gearmesh::gear::geometry::Side;
+use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::stability::{self, AXES, Case, Model, Point, Report, Rules};
 use gearmesh::optimize::latin_hypercube;
 use studygraph::stage::steps::Steps;
@@ -254,6 +256,13 @@ impl Stage for Stability {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
+        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(|side| pair.side(*side).tip != Tip::Land) {
+            return Err(Failure::new(format!(
+                "the {} has a chamfer or a rounding at its tip; the second evaluation knows tips with a land only: check a \
+                 geometry without `tip`",
+                side.name()
+            )));
+        }
         let mut base = Point::of(&pair);
         [base.torque, base.relief, base.relief_length, base.crowning] = self.load;
         let cases = self.cases(&base, context);

@@ -61,8 +61,8 @@ impl Flanks<'_> {
     /// Where the flanks come nearest to each other, both within their tips.
     pub fn nearest(&self) -> Nearest {
         let [own, other] = [self.of, self.of.other()].map(|side| self.pair.side(side));
-        let ends = [own.form_roll, own.tip_roll()];
-        let last = other.tip_roll() * (1.0 + 1e-9);
+        let ends = [own.form_roll, own.flank_end.roll];
+        let last = other.flank_end.roll * (1.0 + 1e-9);
         let looks = (0..=LOOKS).map(|look| ends[0] + (ends[1] - ends[0]) * look as f64 / LOOKS as f64);
         // The line of action itself, which may be between two looks, or beyond the tip.
         let nominal = self.pair.roll(self.of, self.s);

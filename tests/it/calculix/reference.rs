@@ -11,6 +11,7 @@ use super::press::{Case, Fineness, PENALTY, Pressed, press};
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::contact::CornerContact;
+use gearmesh::gear::geometry::outline::tip::Tip;
 use gearmesh::gear::geometry::root::RootShape;
 use gearmesh::gear::geometry::{GearPair, Side};
 use gearmesh::gear::material::Plane;
@@ -293,4 +294,32 @@ fn corner_within_the_contact() {
     };
     let Some(found) = corner.check(&pair) else { return };
     fine(&found, true);
+}
+
+/// Half of the contact, or all of it, on the rounding of the gear's tip, whose mesh has it too.
+#[test]
+fn rounded_tip() {
+    let [pinion, gear] = [Side::Pinion, Side::Gear].map(|side| pair().side(side).specification);
+    let level = env::var("GEARSTUDY_CALCULIX_LEVEL").map_or(4, |level| level.parse().unwrap());
+    for radius in [0.3e-3, 0.15e-3] {
+        let pair = GearPair::with_tips([pinion, gear], [Tip::Land, Tip::Rounding(radius)], None).unwrap();
+        for beside in [0.02e-3, -0.03e-3] {
+            let first = pair.start_of_contact + beside;
+            let rounded = Situation {
+                name: "rounded tip",
+                design: design(&pair, None),
+                path: &[first, first + pair.base_pitch],
+                approach: 20e-6,
+                slave: Side::Gear,
+                edge: 0.003,
+                penalty: 3.0 * PENALTY,
+                converged: [[0.0; 2]; 2],
+                resolved: None,
+            };
+            let case = rounded.case(&pair, Plane::Strain, 1.0);
+            let Some(found) = rounded.press(&case, level) else { return };
+            println!("{radius} {beside}: {:?}", ours(&case));
+            println!("{:?} {}", found.torques, found.loads[0] / found.loads.iter().sum::<f64>());
+        }
+    }
 }

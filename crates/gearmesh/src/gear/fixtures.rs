@@ -4,6 +4,8 @@
 
 use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use super::contact::flattening::Bodies;
+use super::geometry::flank_end::FlankEnd;
+use super::geometry::outline::tip::Tip;
 use super::geometry::{Gear, GearPair, Rack, Side, Specification};
 use super::material::{Material, Plane};
 use super::modification::{Design, family};
@@ -20,17 +22,20 @@ pub(crate) const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
 fn gear(teeth: u32, base_radius: f64, face_width: f64) -> Gear {
     let module = 3e-3;
     let reference_radius = 0.5 * module * f64::from(teeth);
+    let tip_radius = reference_radius + module;
     Gear {
         specification: Specification { face_width, ..standard(teeth, module, 2.0) },
         reference_radius,
         base_radius,
-        tip_radius: reference_radius + module,
+        tip_radius,
         root_radius: reference_radius - 1.25 * module,
         form_radius: base_radius,
         form_roll: 0.0,
         undercut: false,
         // (π/2)/z + inv 20°.
         half_base_angle: std::f64::consts::FRAC_PI_2 / f64::from(teeth) + 0.014_904_383_867_336_45,
+        tip: Tip::Land,
+        flank_end: FlankEnd::corner(((tip_radius / base_radius).powi(2) - 1.0).sqrt()),
     }
 }
 
@@ -113,6 +118,7 @@ pub(crate) fn pair_with_contact_ratio(ratio: f64) -> GearPair {
     pair.contact_ratio = ratio;
     pair.end_of_contact = pair.start_of_contact + ratio * BASE_PITCH;
     pair.pinion.tip_radius = libm::hypot(pair.pinion.base_radius, pair.end_of_contact);
+    pair.pinion.flank_end = FlankEnd::corner(pair.end_of_contact / pair.pinion.base_radius);
     pair.pinion.half_base_angle += involute(&pair) - before;
     pair
 }

@@ -125,9 +125,8 @@ pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f
     }
     let gear = pair.side(side);
     let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = gear.specification;
-    // Inside the tip, along the line of action, by what is shared with another pair.
-    let tip = (gear.tip_radius * gear.tip_radius - gear.base_radius * gear.base_radius).max(0.0).sqrt();
-    let length = tip - pair.base_pitch * (pair.contact_ratio - 1.0);
+    // Inside the end of the flank, along the line of action, by what is shared with another pair.
+    let length = gear.flank_end.roll * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;
     let found = section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })?;
     let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);

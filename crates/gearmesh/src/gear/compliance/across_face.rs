@@ -48,7 +48,7 @@ impl Layers {
     #[must_use]
     pub fn new(gear: &Gear, tooth: &ToothCompliance, face_width: f64) -> Self {
         let shape = SectionedTooth::new(gear, face_width);
-        let (lower, upper) = (tooth.body.lower(), gear.tip_roll());
+        let (lower, upper) = (tooth.body.lower(), gear.flank_end.roll);
         let nodes = (0..=2 * ROLLS).map(|node| lower + (upper - lower) * node as f64 / (2 * ROLLS) as f64);
         let body = nodes.map(|roll| tooth.body.value(roll)).fold(f64::INFINITY, f64::min).max(0.0);
         let (wind_up, wind_up_length) = ring(gear);

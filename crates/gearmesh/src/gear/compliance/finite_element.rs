@@ -9,7 +9,7 @@
 #[cfg(test)]
 mod tests;
 
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::PI;
 
 use super::{
     Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
@@ -19,6 +19,7 @@ use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::{MeshError, root_stress};
+use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::Root;
 use crate::gear::geometry::{Gear, GearPair, Side};
 use crate::gear::material::Plane;
@@ -47,6 +48,8 @@ const LENGTH: f64 = 0.25;
 const TIP_ROWS: f64 = 1.0 / 16.0;
 /// Rows of the body that make the block of a resolved load another one: what it gives must not depend on it.
 const OTHER_BLOCK: usize = 1;
+/// The least chamfer or rounding of a tip \[modules\]: it is smaller than the elements there, and than contacts are.
+const LEAST_TIP_BREAK: f64 = 0.01;
 /// Every so many loads have that block too.
 const OTHER_LOADS: usize = 5;
 
@@ -203,7 +206,14 @@ impl<'a> Task<'a> {
             return Err(ComplianceError::Incompressible { side, poisson_ratio, maximum: MOST_POISSON });
         }
         let resolved = assumptions.contact == ContactLaw::Resolved;
-        let rolls = nodes(root.form_roll, gear.tip_roll(), loads(assumptions.contact));
+        let minimum = LEAST_TIP_BREAK * gear.specification.module;
+        if let Tip::Chamfer(size) | Tip::Rounding(size) = gear.tip
+            && size > 0.0
+            && size < minimum
+        {
+            return Err(ComplianceError::SmallTipBreak { side, size, minimum });
+        }
+        let rolls = nodes(root.form_roll, gear.flank_end.roll, loads(assumptions.contact));
         Ok(Self {
             side,
             gear,
@@ -224,7 +234,7 @@ impl<'a> Task<'a> {
     fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
         let mut sizing = Sizing::even(across);
         if self.resolved {
-            let tip = self.gear.flank(self.gear.tip_roll());
+            let tip = self.gear.flank(self.gear.flank_end.roll);
             let [height, half] = [tip.height, tip.half_thickness].map(|length| length / self.gear.specification.module);
             sizing.focus = Some([TIP_ROWS * Sizing::along(half, across), height]);
         }
@@ -277,8 +287,15 @@ impl<'a> Task<'a> {
     }
 
     /// B for E = 1.
-    fn corner(&self) -> f64 {
-        self.half_plane() * wedge::softening(FRAC_PI_2 + libm::atan(self.gear.tip_roll()))
+    fn softening(&self) -> f64 {
+        self.half_plane() * wedge::softening(self.gear.last_corner().interior_angle)
+    }
+
+    /// B ln c at a roll angle, c its distance from that corner along the flank \[modules\].
+    fn hardened(&self, roll: f64) -> f64 {
+        let radius = self.gear.base_radius / self.gear.specification.module;
+        let corner = self.gear.last_corner().roll;
+        self.softening() * libm::log(0.5 * radius * (corner - roll) * (corner + roll))
     }
 
     /// What the tooth yields beside the half plane, and how much of it depends on the block of elements around the load, in
@@ -298,18 +315,14 @@ impl<'a> Task<'a> {
 
     /// What a tooth yields beside the half plane and beside −B ln c.
     fn beside(&self, rolls: &[f64], rests: &[f64]) -> Vec<f64> {
-        let (tip, corner) = (self.gear.tip_roll(), self.corner());
-        let radius = self.gear.base_radius / self.gear.specification.module;
-        let beside = |(roll, rest): (&f64, &f64)| {
-            let distance = 0.5 * radius * (tip - roll) * (tip + roll);
-            rest + corner * libm::log(distance) - 2.0 / PI * self.half_plane() * libm::log(LENGTH)
-        };
+        let half_planes = 2.0 / PI * self.half_plane() * libm::log(LENGTH);
+        let beside = |(roll, rest): (&f64, &f64)| rest + self.hardened(*roll) - half_planes;
         rolls.iter().zip(rests).map(beside).collect()
     }
 
     /// SI, over the whole face width.
     fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
-        let (lower, upper) = (self.root.form_roll, self.gear.tip_roll());
+        let (lower, upper) = (self.root.form_roll, self.gear.flank_end.roll);
         let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
         let nothing = || Series::from_values(lower, upper, &[0.0]);
@@ -320,7 +333,6 @@ impl<'a> Task<'a> {
                 .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
             depth
         };
-        let corner = if self.resolved { self.corner() } else { 0.0 };
         if self.resolved
             && let Some(place) = solution.own.iter().position(|own| *own <= 0.0)
         {
@@ -330,6 +342,7 @@ impl<'a> Task<'a> {
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [self.rolls.len(); 2], &scaled(&rows.concat())))
             .collect();
+        let corner = if self.resolved { self.softening() } else { 0.0 };
         Ok(ToothCompliance {
             bending: nothing(),
             shear: nothing(),
@@ -346,7 +359,7 @@ impl<'a> Task<'a> {
 fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
     let found = model.stress_influences(&task.rolls, task.neighbours)?;
     let module = task.gear.specification.module;
-    let (lower, upper) = (task.root.form_roll, task.gear.tip_roll());
+    let (lower, upper) = (task.root.form_roll, task.gear.flank_end.roll);
     let series = |loads: &Vec<Vec<f64>>, place: usize| {
         let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
         Series::from_values(lower, upper, &values)

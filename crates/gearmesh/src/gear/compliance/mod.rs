@@ -242,6 +242,16 @@ pub enum ComplianceError {
         /// s_a \[m\].
         thickness: f64,
     },
+    /// A broken tip that is narrower than contacts are.
+    #[error("{}: the chamfer or rounding at its tip is {}; resolved contact takes {} or more, or a tip without one: smaller ones are narrower than the contact", .side.name(), Millimetres(*.size), Millimetres(*.minimum))]
+    SmallTipBreak {
+        /// The gear with that tip.
+        side: Side,
+        /// Size of the chamfer or radius of the rounding \[m\].
+        size: f64,
+        /// The least \[m\].
+        minimum: f64,
+    },
     /// The bore is outside the range in which the formula of Sainsot, Velex and Duverger can be used for the gear body.
     #[error("{}: the root radius is {} times the bore radius, but must be {} to {} times it for the gear body formula; the body `ring` takes any bore", .side.name(), Plain(*.bore_ratio), Plain(.range[0]), Plain(.range[1]))]
     BoreOfFormula {

@@ -8,8 +8,10 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
+use beyond::Turn;
 use outline::Outline;
 
+mod beyond;
 mod convex;
 mod copy;
 mod outline;
@@ -65,6 +67,7 @@ struct Way<'a> {
     facing: Facing,
     point: Outline<'a>,
     flank: Outline<'a>,
+    turn: Turn,
 }
 
 /// The state of a search: the current point, its smooth piece, and the least gap so far.
@@ -88,11 +91,16 @@ impl<'a> Gaps<'a> {
         let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
         let is_convex = point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
-        let ways = [
-            Way { side: Side::Gear, facing: facings[0], point, flank },
-            Way { side: Side::Pinion, facing: facings[1], point: point_too, flank: flank_too },
+        let turn = Turn::default();
+        let mut ways = [
+            Way { side: Side::Gear, facing: facings[0], point, flank, turn },
+            Way { side: Side::Pinion, facing: facings[1], point: point_too, flank: flank_too, turn },
         ];
-        Self { ways, modified: !pinion.is_empty() || !gear.is_empty(), is_convex }
+        let modified = !pinion.is_empty() || !gear.is_empty();
+        for way in ways.iter_mut().filter(|way| modified && way.facing.round > 0.0) {
+            way.turn = way.turned();
+        }
+        Self { ways, modified, is_convex }
     }
 
     /// For a search that needs no convexity.
@@ -117,7 +125,7 @@ impl<'a> Gaps<'a> {
             let nominal = nominal(way);
             let before = way.facing.start - nominal;
             if before > 0.0 {
-                let touch = way.facing.corner(before);
+                let touch = way.tip(before);
                 if touch.curvature > way.facing.end {
                     return (f64::INFINITY, Spot::Nowhere);
                 }
@@ -127,9 +135,9 @@ impl<'a> Gaps<'a> {
                     return (gap, spot);
                 }
                 return if self.is_convex {
-                    way.descend(nominal, before, touch).unwrap_or((gap, spot))
+                    way.descend(nominal, before, way.facing.flank_end(before)).unwrap_or((gap, spot))
                 } else {
-                    way.search(nominal, before, touch, (gap, spot))
+                    way.search(nominal, before, way.facing.flank_end(before), (gap, spot))
                 };
             }
         }

@@ -5,6 +5,7 @@
 pub mod face;
 pub mod flattening;
 pub mod gap;
+pub mod rounding;
 pub mod separation;
 pub mod slices;
 pub mod springs;

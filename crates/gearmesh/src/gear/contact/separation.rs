@@ -22,10 +22,12 @@ pub struct Facing {
     /// r_b of the gear whose flank they meet.
     flank_radius: f64,
     tangent_length: f64,
-    /// Where the point is the tip corner.
+    /// Where the point is the end of its flank.
     pub start: f64,
     /// Where the other flank ends.
     pub end: f64,
+    /// Radius of the arc that follows the end of the point's flank; 0 at a corner.
+    pub round: f64,
 }
 
 /// A flank point and the place of the other flank that is nearest to it.
@@ -52,14 +54,16 @@ impl Facing {
         let (pinion, gear) = (pair.pinion.base_radius, pair.gear.base_radius);
         let tangent_length = pair.tangent_length;
         let (start, end) = (pair.start_of_contact, pair.end_of_contact);
+        let round = pair.side(side).flank_end.radius;
         match side {
-            Side::Gear => Self { point_radius: gear, flank_radius: pinion, tangent_length, start, end },
+            Side::Gear => Self { point_radius: gear, flank_radius: pinion, tangent_length, start, end, round },
             Side::Pinion => Self {
                 point_radius: pinion,
                 flank_radius: gear,
                 tangent_length,
                 start: tangent_length - end,
                 end: tangent_length - start,
+                round,
             },
         }
     }
@@ -166,17 +170,31 @@ impl Facing {
         -2.0 * turn * turn - over * (3.0 * turn + over * over * self.flank_radius)
     }
 
-    /// The tip corner, `before` ≥ 0 before its own position: contact before A or after E.
+    /// The end of the flank, `before` ≥ 0 before its own position.
     #[must_use]
-    pub fn corner(&self, before: f64) -> Touch {
+    pub fn flank_end(&self, before: f64) -> Touch {
         self.touch(self.start, before)
     }
 
-    /// How far before its own position the tip corner can meet the other flank, which ends at its own tip; at most
-    /// `maximum`.
+    /// What comes nearest when the flank ends `before` ≥ 0 before its own position, before A or after E: its corner, or the
+    /// arc that follows. The centre of an arc faces the other flank's parallel at the distance of the radius, an involute
+    /// of the same base circle.
+    #[must_use]
+    pub fn tip(&self, before: f64) -> Touch {
+        self.turned_tip(before, 0.0)
+    }
+
+    /// The same where the flank ends in another direction, so that the arc's own position is by `shift` farther inside.
+    #[must_use]
+    pub fn turned_tip(&self, before: f64, shift: f64) -> Touch {
+        let centre = self.touch(self.start + self.round + shift, before + shift);
+        Touch { curvature: centre.curvature - self.round, ..centre }
+    }
+
+    /// How far before its own position the tip can meet the other flank, which ends at its own tip; at most `maximum`.
     #[must_use]
     pub fn reach(&self, maximum: f64) -> f64 {
-        let room = |before: f64| self.end - self.corner(before).curvature;
+        let room = |before: f64| self.end - self.tip(before).curvature;
         if room(maximum) >= 0.0 {
             return maximum;
         }
@@ -236,7 +254,7 @@ mod tests {
         for (side, table) in [(Side::Gear, before), (Side::Pinion, after)] {
             let facing = Facing::new(&pair(), side);
             for (distance, micrometres) in table {
-                let found = facing.corner(distance * 1e-3).separation * 1e6;
+                let found = facing.tip(distance * 1e-3).separation * 1e6;
                 assert!((found - micrometres).abs() <= 0.000_5, "{side:?} {distance}: {found}");
             }
         }
@@ -367,7 +385,7 @@ mod tests {
     fn a_corner_reaches_to_the_other_tip_and_no_farther() {
         let facing = Facing::new(&pair(), Side::Gear);
         let reach = facing.reach(8.85e-3);
-        assert!((facing.corner(reach).curvature / facing.end - 1.0).abs() < 1e-12 && reach < 8.85e-3);
+        assert!((facing.tip(reach).curvature / facing.end - 1.0).abs() < 1e-12 && reach < 8.85e-3);
         assert!((facing.reach(1e-3) - 1e-3).abs() < 1e-18);
     }
 }

@@ -5,6 +5,7 @@
 //! flank, and what [`Wedge`] has near it and beyond. Must not know: how teeth bend, where on the path this is.
 
 use super::flattening::InSeries;
+use super::rounding::Rounding;
 use super::wedge::Wedge;
 
 /// Newton's method stops here, in ln p: the error that is left is of second order in it.
@@ -12,15 +13,53 @@ const CLOSE: f64 = 1e-8;
 /// Its most steps; about three are taken.
 const STEPS: usize = 50;
 
+/// What a flank ends in.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// Of the ratio B/k₀ = B/2β.
+    Corner(Box<Wedge>),
+    /// With B = 0.
+    Rounding(Rounding),
+}
+
+impl Shape {
+    /// By how much flanks approach more there, over k₀ p and beside the least gap, and its slope over λ.
+    #[must_use]
+    pub fn more(&self, place: f64) -> [f64; 2] {
+        match self {
+            Self::Corner(wedge) => wedge.more(place),
+            Self::Rounding(rounding) => rounding.more(place),
+        }
+    }
+
+    /// What is left of it far inside, besides −B/k₀ ln λ, times λ².
+    fn rest(&self) -> f64 {
+        match self {
+            Self::Corner(wedge) => wedge.rest(),
+            Self::Rounding(_) => 0.0,
+        }
+    }
+
+    /// λ from which on that is all.
+    fn far(&self) -> f64 {
+        match self {
+            Self::Corner(_) => Wedge::far(),
+            Self::Rounding(_) => Rounding::far(),
+        }
+    }
+}
+
 /// The tip of one of the teeth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Corner<'a> {
-    /// Of the ratio B/k₀ = B/2β.
-    pub wedge: &'a Wedge,
+    /// What the flank ends in.
+    pub shape: &'a Shape,
     /// B \[1/Pa\].
     pub rate: f64,
-    /// c: how far from the corner the flanks would touch without load \[m\], along the flank; negative beyond it.
+    /// c: how far from the end the flanks would touch without load \[m\], along the flank; negative beyond it.
     pub distance: f64,
+    /// What the tooth yields more on its way to a corner that a rounding takes away \[1/Pa\]; 0 at a corner that is there.
+    pub softened: f64,
 }
 
 /// Those of both teeth.
@@ -40,9 +79,9 @@ pub struct Tips<'a> {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct NearTips<'a> {
     tips: Tips<'a>,
-    /// C.
+    /// C, with what roundings add.
     compliance: f64,
-    /// What the corners add where they are far: Σ −B ln(c/m), of those that are not beyond.
+    /// What tips add to the compliance of both teeth where they are far: Σ −B ln(c/m), of those that are not beyond.
     pub(super) far: f64,
     /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
     rest: f64,
@@ -58,15 +97,17 @@ impl<'a> NearTips<'a> {
         let Tips { corners, half_width, unit, widest } = tips;
         let root = widest / half_width;
         let largest = root * root;
-        let mut near = Self { tips, compliance, far: 0.0, rest: 0.0, last_far: largest, largest };
+        let softened: f64 = corners.iter().map(|corner| corner.softened).sum();
+        let compliance = compliance + softened;
+        let mut near = Self { tips, compliance, far: softened, rest: 0.0, last_far: largest, largest };
         for corner in &corners {
             // A contact as wide as a tenth of it.
-            let reach = corner.distance.max(0.0) / (Wedge::far() * half_width);
+            let reach = corner.distance.max(0.0) / (corner.shape.far() * half_width);
             near.last_far = near.last_far.min(reach * reach);
             if corner.distance > 0.0 {
                 let share = half_width / corner.distance;
                 near.far -= corner.rate * libm::log(corner.distance / unit);
-                near.rest += 2.0 * rate * corner.wedge.rest() * share * share;
+                near.rest += 2.0 * rate * corner.shape.rest() * share * share;
             }
         }
         near
@@ -80,7 +121,7 @@ impl<'a> NearTips<'a> {
         let start = [self.compliance + series.law.constant - rate * log, -rate];
         self.tips.corners.iter().fold(start, |[sum, slope], corner| {
             let place = corner.distance / width;
-            let [more, by_place] = corner.wedge.more(place);
+            let [more, by_place] = corner.shape.more(place);
             let added = 2.0 * rate * more - corner.rate * log_width;
             [sum + added, slope - rate * by_place * place - 0.5 * corner.rate]
         })
@@ -138,35 +179,41 @@ mod tests {
     use crate::gear::contact::flattening::Logarithmic;
     use crate::gear::fixtures::STEELS;
 
-    fn series(wedges: &[Wedge; 2], distances: [f64; 2]) -> InSeries<'_> {
+    fn series(shapes: &[Shape; 2], distances: [f64; 2]) -> InSeries<'_> {
         let law = Logarithmic::half_planes(&STEELS, 7e-3, [0.75e-3; 2]);
         let corner = |side: usize| Corner {
-            wedge: &wedges[side],
-            rate: [0.15, 0.35][side] * 2.0 * law.rate,
+            shape: &shapes[side],
+            rate: if matches!(shapes[side], Shape::Corner(_)) { [0.15, 0.35][side] * 2.0 * law.rate } else { 0.0 },
             distance: distances[side],
+            softened: if matches!(shapes[side], Shape::Corner(_)) { 0.0 } else { 1e-12 },
         };
         let tips =
             Tips { corners: [corner(0), corner(1)], half_width: STEELS.half_width(7e-3), unit: 3e-3, widest: 0.75e-3 };
         law.in_series(5e-11).at_tips(tips)
     }
 
+    const DISTANCES: [[f64; 2]; 9] = [
+        [5e-3, 4e-3],
+        [5e-3, 1e-3],
+        [5e-3, 1e-4],
+        [5e-3, 1e-6],
+        [5e-3, 0.0],
+        [5e-3, -1e-9],
+        [5e-3, -1e-4],
+        [5e-3, -1e-3],
+        [1e-4, 2e-4],
+    ];
+
     /// Tier: invariant; the load has the penetration that it was found from, however near the corners are, and its slope is
     /// that of differences.
     #[test]
     fn the_law_inverts_at_every_load() {
-        let wedges = [0.15, 0.35].map(Wedge::new);
-        for distances in [
-            [5e-3, 4e-3],
-            [5e-3, 1e-3],
-            [5e-3, 1e-4],
-            [5e-3, 1e-6],
-            [5e-3, 0.0],
-            [5e-3, -1e-9],
-            [5e-3, -1e-4],
-            [5e-3, -1e-3],
-            [1e-4, 2e-4],
-        ] {
-            let series = series(&wedges, distances);
+        let wedges = [0.15, 0.35].map(|ratio| Shape::Corner(Box::new(Wedge::new(ratio))));
+        let roundings = [0.05, 0.3].map(|ratio| Shape::Rounding(Rounding::new(ratio)));
+        let mixed = [wedges[0].clone(), roundings[1].clone()];
+        let cases = [&wedges, &roundings, &mixed].map(|shapes| DISTANCES.map(|distances| (shapes, distances)));
+        for (shapes, distances) in cases.into_iter().flatten() {
+            let series = series(shapes, distances);
             let mut before = 0.0;
             for exponent in -60..=40 {
                 let load = libm::pow(10.0, f64::from(exponent) * 0.2 + 2.0);

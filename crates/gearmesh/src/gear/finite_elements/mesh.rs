@@ -8,10 +8,8 @@
 use super::MeshError;
 use super::element::{self, NODES, RULE};
 use super::outline::{Outline, divide};
+use super::tooth_rows::{ToothRows, chain};
 
-/// How much steeper than the circumference the cut curve dips at its ends \[rad\]: the angles about its end are then
-/// 45°, 67.5° and 67.5°.
-const DIP: f64 = std::f64::consts::PI / 8.0;
 /// Sizes for one element across; they are inversely proportional to the number of elements across.
 /// Length of an element along the flank over the tooth's thickness there.
 const ALONG: f64 = 1.2;
@@ -132,8 +130,8 @@ impl Mesh {
             })
         });
 
-        let rows = ToothRows::new(outline, &flank_points);
-        let top: Vec<[f64; 2]> = sizing.across.iter().map(|&part| rows.point(0, part)).collect();
+        let rows = ToothRows::new(outline, &flank_points, &sizing.across);
+        let top: Vec<[f64; 2]> = (0..sizing.across.len()).map(|place| rows.point(0, place)).collect();
         // From the left sector edge to the right one.
         let half = root_points.len() - 1;
         let rim: Vec<[f64; 2]> = (root_points.iter().take(half).map(|&[x, y]| [-x, y]))
@@ -171,7 +169,7 @@ impl Mesh {
                     tooth.numbers.push(NONE);
                 } else {
                     tooth.numbers.push(nodes.len());
-                    nodes.push(rows.point(row, sizing.across[across - 1 - column]));
+                    nodes.push(rows.point(row, across - 1 - column));
                 }
             }
         }
@@ -260,60 +258,6 @@ impl Mesh {
     #[must_use]
     pub fn corners(&self, element: usize) -> [[f64; 2]; NODES] {
         self.elements[element].map(|node| self.nodes[node])
-    }
-}
-
-/// The points of a chain of stretches; where two meet there is only one.
-fn chain(
-    stretches: &[super::outline::Stretch],
-    divide: impl Fn(&super::outline::Stretch) -> Vec<f64>,
-) -> Vec<[f64; 2]> {
-    let mut points: Vec<[f64; 2]> = Vec::new();
-    for stretch in stretches {
-        points.pop();
-        points.extend(divide(stretch).into_iter().map(|parameter| stretch.point(parameter)));
-    }
-    points
-}
-
-/// The rows of the tooth: arcs through both flanks, whose slope at the right end goes over from the cut to the tip.
-struct ToothRows<'a> {
-    points: &'a [[f64; 2]],
-    slopes: Vec<f64>,
-}
-
-impl<'a> ToothRows<'a> {
-    fn new(outline: &Outline, points: &'a [[f64; 2]]) -> Self {
-        let [x, y] = points[0];
-        let radius = libm::hypot(x, y);
-        let angle = libm::atan2(x, y);
-        // Not nearer to the bore than half way from the cut.
-        let highest = 2.0 * libm::atan((outline.bore_radius + 0.5 * (radius - outline.bore_radius) - y) / x);
-        let first = (angle - DIP).max(highest).min(angle);
-        let last = outline.tip_half_angle;
-        let mut lengths = vec![0.0];
-        for pair in points.windows(2) {
-            let step = libm::hypot(pair[1][0] - pair[0][0], pair[1][1] - pair[0][1]);
-            lengths.push(lengths[lengths.len() - 1] + step);
-        }
-        let total = lengths[lengths.len() - 1];
-        let slopes = lengths.iter().map(|length| first + (last - first) * length / total).collect();
-        Self { points, slopes }
-    }
-
-    /// The point of a row at a part of the way from the right flank to the left.
-    fn point(&self, row: usize, part: f64) -> [f64; 2] {
-        let ([x, y], slope) = (self.points[row], self.slopes[row]);
-        let place = 1.0 - 2.0 * part;
-        if part <= 0.0 || part >= 1.0 {
-            return [x * place, y];
-        }
-        if slope.abs() < 1e-9 {
-            return [x * place, y];
-        }
-        let sine = libm::sin(slope);
-        let rise = 2.0 * libm::sin(0.5 * slope * (1.0 + place)) * libm::sin(0.5 * slope * (1.0 - place)) / sine;
-        [x * libm::sin(slope * place) / sine, y + x * rise]
     }
 }
 

@@ -1,8 +1,8 @@
 //! Finite elements: a whole gear, clamped at its bore, from one meshed sector.
 //!
-//! `outline` is the exact boundary of half a tooth, `mesh` the sector, `element` the quadrilateral, `sector` its
-//! factorised stiffness, `wheel` the ring of sectors, `point_load` a load less its own field, `gear_model` what a load on
-//! a tooth does to it and its neighbours, `root_stress` the stress at its root.
+//! `outline` is the exact boundary of half a tooth, `mesh` the sector, `tooth_rows` the nodes of its tooth, `element` the
+//! quadrilateral, `sector` its factorised stiffness, `wheel` the ring of sectors, `point_load` a load less its own field,
+//! `gear_model` what a load on a tooth does to it and its neighbours, `root_stress` the stress at its root.
 //! Lengths in modules, E = 1, forces per width. Must not know: pairs, contact, tables.
 
 pub mod element;
@@ -14,6 +14,7 @@ pub mod root_stress;
 pub mod sector;
 #[cfg(test)]
 mod tests;
+mod tooth_rows;
 pub mod wheel;
 
 use super::geometry::error::{GeometryError, Millimetres, Plain};

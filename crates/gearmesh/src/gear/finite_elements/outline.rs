@@ -10,7 +10,6 @@ use crate::gear::geometry::Gear;
 use crate::gear::geometry::outline::Outline as Profile;
 use crate::gear::geometry::outline::curve::{Curve, OutlinePart, Segment};
 use crate::gear::geometry::outline::roots::Toe;
-use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::{Piece, Root};
 
 /// Samples of a curve from which its length and direction are taken.
@@ -39,6 +38,12 @@ impl Stretch {
         self.curve.point(parameter).map(|length| length / self.module)
     }
 
+    /// Its length \[modules\].
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        Samples::new(self).lengths[SAMPLES]
+    }
+
     fn between(&self, lower: f64, upper: f64) -> Self {
         Self { lower, upper, ..self.clone() }
     }
@@ -49,13 +54,16 @@ impl Stretch {
 pub struct Outline {
     /// From the middle of the root land upwards to the cut.
     pub body: Vec<Stretch>,
-    /// From the cut to the tip corner.
+    /// From the cut to the end of the flank, and to the middle of the rounding that follows it, if one does.
     pub tooth: Vec<Stretch>,
+    /// What is left of a broken tip, up to the tooth's centreline: half a rounding or a chamfer, and the land. Empty where
+    /// the corner is as it is: then the row that ends there is an arc through both corners.
+    pub top: Vec<Stretch>,
     /// Half a pitch \[rad\].
     pub half_pitch: f64,
     /// The bore \[modules\].
     pub bore_radius: f64,
-    /// ψ_a.
+    /// ψ_y where the tooth ends.
     pub tip_half_angle: f64,
 }
 
@@ -99,16 +107,18 @@ impl Outline {
         if !smooth {
             return Err(MeshError::SharpRoot);
         }
-        let profile = Profile::new(gear, Toe::of(root), Tip::Land, None)?;
+        let profile = Profile::new(gear, Toe::of(root), gear.tip, None)?;
         let half_pitch = profile.half_pitch();
         let is_none = |segment: &Segment| {
             segment.part == OutlinePart::RootLand && gear.root_radius * (segment.to - segment.from) <= NO_LAND * module
         };
-        let wanted =
-            profile.segments.into_iter().filter(|segment| segment.part != OutlinePart::TipLand && !is_none(segment));
-        let stretches: Vec<Stretch> = wanted
-            .map(|Segment { part, curve, from, to }| Stretch { part, curve, module, lower: from, upper: to })
-            .collect();
+        let stretch =
+            |Segment { part, curve, from, to }: Segment| Stretch { part, curve, module, lower: from, upper: to };
+        let (top, wanted): (Vec<Segment>, Vec<Segment>) =
+            (profile.segments.into_iter().filter(|segment| !is_none(segment)))
+                .partition(|segment| matches!(segment.part, OutlinePart::TipBreak | OutlinePart::TipLand));
+        let stretches: Vec<Stretch> = wanted.into_iter().map(stretch).collect();
+        let mut top: Vec<Stretch> = top.into_iter().map(stretch).collect();
 
         let (place, parameter) = cut(&stretches);
         let whole = &stretches[place];
@@ -116,8 +126,20 @@ impl Outline {
         body.push(whole.between(whole.lower, parameter));
         let mut tooth = vec![whole.between(parameter, whole.upper)];
         tooth.extend_from_slice(&stretches[place + 1..]);
+        let mut tip_half_angle = gear.half_angle_at_roll(gear.flank_end.roll);
+        if gear.flank_end.radius > 0.0 {
+            // The last row begins in its middle, so that neither its end nor the tip's elements are stretched along it.
+            let round = top.remove(0);
+            let middle = 0.5 * (round.lower + round.upper);
+            let [x, y] = round.point(middle);
+            tip_half_angle = libm::atan2(x, y);
+            tooth.push(round.between(round.lower, middle));
+            top.insert(0, round.between(middle, round.upper));
+        } else if top.len() < 2 {
+            top.clear();
+        }
         let bore_radius = gear.specification.bore_radius / module;
-        Ok(Self { body, tooth, half_pitch, bore_radius, tip_half_angle: gear.half_angle_at_roll(gear.tip_roll()) })
+        Ok(Self { body, tooth, top, half_pitch, bore_radius, tip_half_angle })
     }
 }
 

@@ -7,7 +7,9 @@ use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
 use std::ops::RangeInclusive;
 
 use super::error::{Degrees, GeometryError, Millimetres, Parameter, Plain, Problem};
+use super::flank_end::FlankEnd;
 use super::involute::involute;
+use super::outline::tip::Tip;
 use super::trochoid::{self, Trochoid};
 use super::{Gear, Specification};
 
@@ -50,7 +52,7 @@ impl Gear {
             ));
         }
         let (_, joint) = Trochoid::generate(specification, base_radius);
-        let gear = Self {
+        let mut gear = Self {
             specification: *specification,
             reference_radius,
             base_radius,
@@ -60,9 +62,21 @@ impl Gear {
             form_roll: joint.roll,
             undercut: joint.undercut,
             half_base_angle,
+            tip: Tip::Land,
+            flank_end: FlankEnd::corner(0.0),
         };
         gear.check()?;
+        gear.flank_end = FlankEnd::corner(gear.tip_roll());
         Ok(gear)
+    }
+
+    /// The same gear with another tip.
+    ///
+    /// # Errors
+    /// When the tooth has no room for it.
+    pub fn with_tip(self, tip: Tip) -> Result<Self, GeometryError> {
+        let flank_end = FlankEnd::of(&self, tip)?;
+        Ok(Self { tip, flank_end, ..self })
     }
 
     fn check(&self) -> Result<(), GeometryError> {

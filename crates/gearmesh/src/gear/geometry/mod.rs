@@ -3,6 +3,7 @@
 //! Must not know: stiffness, modification.
 
 pub mod error;
+pub mod flank_end;
 pub mod gear;
 pub mod involute;
 pub mod outline;
@@ -17,6 +18,8 @@ mod tests;
 
 use super::material::Material;
 use declare::Declared;
+use flank_end::FlankEnd;
+use outline::tip::Tip;
 
 /// Basic rack (ISO 53), in units of the module.
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
@@ -110,6 +113,10 @@ pub struct Gear {
     pub undercut: bool,
     /// ψ_b: half the angle of the tooth at the base circle \[rad\].
     pub half_base_angle: f64,
+    /// What becomes of the corner between flank and tip circle.
+    pub tip: Tip,
+    /// Where the flank ends because of that.
+    pub flank_end: FlankEnd,
 }
 
 /// Two gears on their centre distance. Path positions `s` \[m\] count from the pinion's tangent point T1.

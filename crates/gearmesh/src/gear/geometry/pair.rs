@@ -6,6 +6,7 @@
 
 use super::error::{GeometryError, Millimetres, Parameter, Plain, Problem, Reached};
 use super::involute::{inverse_involute, involute};
+use super::outline::tip::Tip;
 use super::{Gear, GearPair, Side, Specification};
 
 /// The named points of the path of contact, as path positions s \[m\].
@@ -35,8 +36,22 @@ impl GearPair {
         gear: Specification,
         centre_distance: Option<f64>,
     ) -> Result<Self, GeometryError> {
-        let pinion = Gear::new(&pinion).map_err(|error| error.on(Side::Pinion))?;
-        let gear = Gear::new(&gear).map_err(|error| error.on(Side::Gear))?;
+        Self::with_tips([pinion, gear], [Tip::Land; 2], centre_distance)
+    }
+
+    /// Pinion and gear, each with its tip: contact ends where the flanks do.
+    ///
+    /// # Errors
+    /// As [`GearPair::new`], and when a tooth has no room for its tip.
+    pub fn with_tips(
+        [pinion, gear]: [Specification; 2],
+        tips: [Tip; 2],
+        centre_distance: Option<f64>,
+    ) -> Result<Self, GeometryError> {
+        let made = |specification: &Specification, tip: Tip, side: Side| {
+            Gear::new(specification).and_then(|gear| gear.with_tip(tip)).map_err(|error| error.on(side))
+        };
+        let (pinion, gear) = (made(&pinion, tips[0], Side::Pinion)?, made(&gear, tips[1], Side::Gear)?);
         check_same_rack(&pinion, &gear)?;
         let without_backlash = angle_without_backlash(&pinion, &gear)?;
         let base_sum = pinion.base_radius + gear.base_radius;
@@ -50,8 +65,8 @@ impl GearPair {
         let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
         let base_pitch =
             std::f64::consts::PI * pinion.specification.module * libm::cos(pinion.specification.pressure_angle);
-        let start_of_contact = tangent_length - gear.base_radius * gear.tip_roll();
-        let end_of_contact = pinion.base_radius * pinion.tip_roll();
+        let start_of_contact = tangent_length - gear.base_radius * gear.flank_end.roll;
+        let end_of_contact = pinion.base_radius * pinion.flank_end.roll;
         let pair = Self {
             working_pressure_angle: libm::atan2(tangent_length, base_sum),
             contact_ratio: (end_of_contact - start_of_contact) / base_pitch,

@@ -92,7 +92,7 @@ impl Stated for FilletProblem {
             gear: gear.clone(),
             stated: self.clone(),
             roll: match self.load {
-                LoadPoint::Tip => gear.tip_roll(),
+                LoadPoint::Tip => gear.flank_end.roll,
                 LoadPoint::SingleContact => single_contact(pair, side),
             },
             active_radius: gear.radius_at(pair.lowest_roll(side)),
@@ -110,7 +110,7 @@ fn single_contact(pair: &GearPair, side: Side) -> f64 {
         Side::Pinion => (pair.start_of_contact + pair.base_pitch).min(pair.end_of_contact),
         Side::Gear => (pair.end_of_contact - pair.base_pitch).max(pair.start_of_contact),
     };
-    if pair.contact_ratio < 2.0 { pair.roll(side, s) } else { pair.side(side).tip_roll() }
+    if pair.contact_ratio < 2.0 { pair.roll(side, s) } else { pair.side(side).flank_end.roll }
 }
 
 struct Fillet {
@@ -134,7 +134,7 @@ impl Fillet {
         }
         let given = self.gear.specification;
         let rack = Rack { tip_radius: radius / given.module, ..given.rack };
-        let gear = Gear::new(&Specification { rack, ..given })?;
+        let gear = Gear::new(&Specification { rack, ..given })?.with_tip(self.gear.tip)?;
         let root = gear.root(RootShape::Trochoid)?;
         Ok((gear, root))
     }

@@ -53,9 +53,9 @@ impl Path {
     pub(super) fn radii(&self, s: f64) -> [f64; 2] {
         match &self.corners {
             Some([(facing, _), _]) if s < self.start => {
-                [facing.corner(self.start - s).curvature, self.tangent_length - self.start]
+                [facing.tip(self.start - s).curvature, self.tangent_length - self.start]
             }
-            Some([_, (facing, _)]) if s > self.end => [self.end, facing.corner(s - self.end).curvature],
+            Some([_, (facing, _)]) if s > self.end => [self.end, facing.tip(s - self.end).curvature],
             _ => [s, self.tangent_length - s],
         }
     }
@@ -67,8 +67,8 @@ impl Path {
         let beyond = |corner: Touch| -(2.0 * corner.separation * combined_radius([pinion, gear])).sqrt();
         let along = |tip: f64, here: f64, base: f64| 0.5 * (tip - here) * (tip + here) / base;
         match (side, &self.corners) {
-            (Side::Pinion, Some([_, (facing, _)])) if s > self.end => beyond(facing.corner(s - self.end)),
-            (Side::Gear, Some([(facing, _), _])) if s < self.start => beyond(facing.corner(self.start - s)),
+            (Side::Pinion, Some([_, (facing, _)])) if s > self.end => beyond(facing.flank_end(s - self.end)),
+            (Side::Gear, Some([(facing, _), _])) if s < self.start => beyond(facing.flank_end(self.start - s)),
             (Side::Pinion, _) => along(self.end, pinion, self.base_radii[0]),
             (Side::Gear, _) => along(self.tangent_length - self.start, gear, self.base_radii[1]),
         }

@@ -6,6 +6,7 @@ use super::{FiniteElement, difference};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::finite_elements::gear_model::Influences;
 use crate::gear::fixtures::{STEEL, STEELS, standard};
+use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use crate::gear::material::Material;
@@ -327,4 +328,29 @@ fn influences_on_roots_are_those_of_unit_loads() {
         assert!((stress / row.stress - 1.0).abs() < 1e-2, "{row:?}: {stress}");
         assert!((radius / row.radius - 1.0).abs() < 2e-3, "{row:?}: {radius}");
     }
+}
+
+/// Tier: second method; with broken tips too the estimate holds against a mesh much finer, up to the end of the flank.
+#[test]
+fn the_error_estimate_holds_with_broken_tips() {
+    let specification = |teeth| standard(teeth, 3e-3, 1.4);
+    for tip in [Tip::Chamfer(0.15e-3), Tip::Rounding(0.3e-3), Tip::Rounding(0.06e-3)] {
+        let pair = GearPair::with_tips([19, 48].map(specification), [tip; 2], None).unwrap();
+        let assumptions = Assumptions { contact: ContactLaw::Resolved, coupled: false, ..COUPLED };
+        let [found, fine] = [12, 40].map(|across| finite_element(&pair, across, assumptions).unwrap());
+        let teeth = |found: &Tabulated| [found.compliance.pinion.clone(), found.compliance.gear.clone()];
+        for (mesh, (coarse, fine)) in found.meshes.iter().zip(teeth(&found).iter().zip(&teeth(&fine))) {
+            let end = coarse.body.upper();
+            let error = (0..=20).map(|k| {
+                let roll = end - (end - coarse.body.lower()) * f64::from(k) / 20.0;
+                (coarse.body.value(roll) / fine.body.value(roll) - 1.0).abs()
+            });
+            let error = error.fold(0.0, f64::max);
+            let ratio = mesh.error_estimate / error;
+            assert!((1.0..40.0).contains(&ratio), "{tip:?}: {error} {}", mesh.error_estimate);
+        }
+    }
+    let pair = GearPair::with_tips([19, 48].map(specification), [Tip::Land, Tip::Chamfer(2e-5)], None).unwrap();
+    let refused = finite_element(&pair, 8, Assumptions { contact: ContactLaw::Resolved, ..COUPLED }).unwrap_err();
+    assert!(refused.to_string().contains("gear: the chamfer or rounding at its tip is 0.02 mm"), "{refused}");
 }

@@ -109,7 +109,7 @@ impl Way<'_> {
     pub(super) fn inside(&self, nominal: f64, pieces: [usize; 2]) -> Option<f64> {
         let from = (self.facing.start - nominal).max(0.0);
         if from > 0.0 {
-            let touch = self.facing.corner(from);
+            let touch = self.facing.flank_end(from);
             return self.fall(nominal, from, pieces, self.pull(nominal, from, &touch, pieces), 0.0);
         }
         let touch = self.facing.on_line(nominal);

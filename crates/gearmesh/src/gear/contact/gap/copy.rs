@@ -54,7 +54,7 @@ impl Gaps<'_> {
             Spot::OnLineOfAction => Some(self.on_line(s)),
             Spot::Corner { .. } => {
                 let way = self.ways.iter().find(|way| way.facing.start > nominal(way))?;
-                let touch = way.facing.corner(way.facing.start - nominal(way));
+                let touch = way.tip(way.facing.start - nominal(way));
                 Some(touch.separation + way.depth(way.facing.start, touch.curvature))
             }
             Spot::Beside { side, pieces, place } => {

