@@ -14,6 +14,7 @@ pub mod harmonics;
 pub mod lambert;
 pub mod layer;
 pub mod lobatto;
+pub mod logarithm;
 pub mod many_springs;
 pub mod panels;
 pub mod parabola;
