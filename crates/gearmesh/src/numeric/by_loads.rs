@@ -9,14 +9,17 @@ use super::complementarity::{Balance, Bordered, Coupling, MOST_SPRINGS, PerSprin
 /// Share of the total below which a spring is on the brink of losing its load.
 const BRINK: f64 = 0.02;
 /// Share of the total of a last step: what it leaves is of second order.
-const NEARLY: f64 = 1e-9;
-/// The most steps; three or four are taken.
+const NEARLY: f64 = 3e-8;
+/// Share of the total of a step that is taken with what penetrations bend, so that it leaves what is of third order.
+const BENT: f64 = 1e-5;
+/// The most steps; two or three are taken.
 const STEPS: usize = 12;
 
 /// Penetrations and their slopes as functions of the load.
 pub trait Yielding {
-    /// Penetration at a load > 0, and d penetration/d load: both increasing.
-    fn penetration(&self, spring: usize, load: f64) -> (f64, f64);
+    /// Penetration at a load > 0, d penetration/d load, and about d² penetration/d load², which only shortens the way: the
+    /// first increases with the load.
+    fn penetration(&self, spring: usize, load: f64) -> [f64; 3];
 }
 
 /// Equilibrium of springs that are well loaded or well open; `total` > 0, the smallest gap is 0. None where one of them is
@@ -25,7 +28,7 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
     let count = gaps.len();
     let mut found = Balance { approach: 0.0, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope: 0.0 };
     if let [gap] = gaps {
-        let (penetration, rate) = springs.penetration(0, total);
+        let [penetration, rate, _] = springs.penetration(0, total);
         (found.approach, found.loads[0], found.penetration[0]) = (penetration + gap, total, penetration);
         return Some(Balance { slope: 1.0 / rate, ..found });
     }
@@ -33,7 +36,7 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
     let even = total / count as f64;
     let mut stiffness = [0.0; MOST_SPRINGS];
     for (spring, stiffness) in stiffness[..count].iter_mut().enumerate() {
-        *stiffness = even / springs.penetration(spring, even).0;
+        *stiffness = even / springs.penetration(spring, even)[0];
     }
     found.approach = linear_approach(&stiffness, gaps, total);
     let mut loaded = [false; MOST_SPRINGS];
@@ -86,34 +89,51 @@ fn step(
     found: &mut Balance,
 ) -> Option<PerSpring> {
     let count = gaps.len();
-    let (mut residual, mut rises) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
+    let (mut residual, mut rises, mut bends) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
     for spring in (0..count).filter(|spring| loaded[*spring]) {
-        let (penetration, rate) = springs.penetration(spring, found.loads[spring]);
+        let [penetration, rate, bend] = springs.penetration(spring, found.loads[spring]);
         residual[spring] =
             penetration + by_others(coupling, &found.loads[..count], spring) + gaps[spring] - found.approach;
-        rises[spring] = 1.0 / rate;
+        (rises[spring], bends[spring]) = (1.0 / rate, bend);
     }
     let excess = found.loads[..count].iter().sum::<f64>() - total;
+    let (mut change, mut shift, slope) = linear_step(&residual, &rises, coupling, excess, count)?;
+    if change.iter().any(|change| change.abs() > BENT * total) {
+        for spring in 0..count {
+            residual[spring] += 0.5 * bends[spring] * change[spring] * change[spring];
+        }
+        (change, shift, _) = linear_step(&residual, &rises, coupling, excess, count)?;
+    }
+    found.slope = slope;
+    found.approach += shift;
+    found.approach.is_finite().then_some(change)
+}
+
+/// By how much loads and approach change as if penetrations were linear; and the slope of the total.
+#[inline]
+fn linear_step(
+    residual: &PerSpring,
+    rises: &PerSpring,
+    coupling: Option<&Coupling>,
+    excess: f64,
+    count: usize,
+) -> Option<(PerSpring, f64, f64)> {
     let mut change = [0.0; MOST_SPRINGS];
-    let shift = if let Some(coupling) = coupling {
-        let solved = Bordered::solve(coupling, &rises, &residual, count)?;
+    if let Some(coupling) = coupling {
+        let solved = Bordered::solve(coupling, rises, residual, count)?;
         let shift = (-excess - solved.offset) / solved.slope;
         for (spring, change) in change[..count].iter_mut().enumerate() {
             *change = solved.particular[spring] + solved.unit[spring] * shift;
         }
-        found.slope = solved.slope;
-        shift
-    } else {
-        found.slope = rises[..count].iter().sum();
-        let undone: f64 = residual[..count].iter().zip(&rises).map(|(residual, rise)| residual * rise).sum();
-        let shift = (undone - excess) / found.slope;
-        for (spring, change) in change[..count].iter_mut().enumerate() {
-            *change = (shift - residual[spring]) * rises[spring];
-        }
-        shift
-    };
-    found.approach += shift;
-    found.approach.is_finite().then_some(change)
+        return Some((change, shift, solved.slope));
+    }
+    let slope = rises[..count].iter().sum();
+    let undone: f64 = residual[..count].iter().zip(rises).map(|(residual, rise)| residual * rise).sum();
+    let shift = (undone - excess) / slope;
+    for (spring, change) in change[..count].iter_mut().enumerate() {
+        *change = (shift - residual[spring]) * rises[spring];
+    }
+    Some((change, shift, slope))
 }
 
 #[cfg(test)]
@@ -125,9 +145,9 @@ mod tests {
     struct Powers(PerSpring);
 
     impl Yielding for Powers {
-        fn penetration(&self, spring: usize, load: f64) -> (f64, f64) {
+        fn penetration(&self, spring: usize, load: f64) -> [f64; 3] {
             let penetration = self.0[spring] * load.powf(0.75);
-            (penetration, 0.75 * penetration / load)
+            [penetration, 0.75 * penetration / load, -0.1875 * penetration / (load * load)]
         }
     }
 
@@ -153,7 +173,7 @@ mod tests {
                     let chosen = coupled.then_some(&coupling);
                     let Some(found) = balance(&springs, &gaps, chosen, total) else { continue };
                     answers += 1;
-                    let above = 2.0 * springs.penetration(3, total).0 + 10.0;
+                    let above = 2.0 * springs.penetration(3, total)[0] + 10.0;
                     let exact = if coupled {
                         complementarity::balance_coupled(&springs, &gaps, &coupling, total, above)
                     } else {

@@ -13,7 +13,7 @@ pub fn solve<const WIDTH: usize>(rows: &mut [[f64; WIDTH]]) {
         let above = rows[column];
         for row in &mut rows[column + 1..] {
             let factor = row[column] / above[column];
-            for (value, pivot) in row.iter_mut().zip(above).skip(column) {
+            for (value, pivot) in row[column..].iter_mut().zip(&above[column..]) {
                 *value -= factor * pivot;
             }
         }

@@ -1,22 +1,28 @@
 //! A function that is smooth between known breaks as polynomials: its quick copy where it is evaluated some hundred times.
 //!
-//! A stretch that one polynomial of degree 9 does not follow is halved, a few times; what is left then has no copy. Nodes
-//! are where T_9 is 1 or −1, so that pieces meet at their ends as the function does. Source: Trefethen, Approximation Theory
+//! A stretch is followed by a polynomial of degree 6 or else, with as many nodes between, of degree 12; what neither follows
+//! is halved, a few times, and what is left then has no copy. Nodes are where T_12 is 1 or −1, every other of which is one of
+//! T_6, so that pieces meet at their ends as the function does. Source: Trefethen, Approximation Theory
 //! and Approximation Practice, chapters 2 and 3. Must not know: what the function is.
 
 use std::f64::consts::PI;
 
-const TERMS: usize = 10;
+const TERMS: usize = 13;
+/// Those of the polynomial that is tried first.
+const FEW: usize = TERMS / 2 + 1;
 /// How often a stretch is halved.
 const HALVINGS: u32 = 4;
-/// Where a polynomial is compared with the function: a node's distance from the middle and near an end, where interpolation
-/// errs the most.
-const PROBES: [f64; 2] = [-0.97, 0.03];
+/// Where a polynomial is compared with the function: between two nodes near the ends, where interpolation errs the most, and
+/// near the middle.
+const PROBES: [f64; 3] = [-0.924, 0.924, 0.13];
+/// How much larger than what may be left the last coefficient is where no comparison is needed: the polynomial does not follow.
+const HOPELESS: f64 = 1e3;
 
 /// Nodes on −1..=1, and what makes coefficients of values there.
 #[derive(Clone, Debug)]
 pub struct Rule {
     nodes: [f64; TERMS],
+    to_few: [[f64; FEW]; FEW],
     to_coefficients: [[f64; TERMS]; TERMS],
 }
 
@@ -50,17 +56,33 @@ impl Rule {
     #[must_use]
     pub fn new() -> Self {
         let last = TERMS - 1;
-        // Ascending: of the angles π, …, 0.
-        let cosine = |multiple: usize| libm::cos(PI * (multiple % (2 * last)) as f64 / last as f64);
-        let half_at_ends = |index: usize| if index == 0 || index == last { 0.5 } else { 1.0 };
-        let coefficient = |order: usize, index: usize| {
-            2.0 / last as f64 * half_at_ends(order) * half_at_ends(index) * cosine(order * (last - index))
-        };
         Self {
-            nodes: std::array::from_fn(|index| cosine(last - index)),
-            to_coefficients: std::array::from_fn(|order| std::array::from_fn(|index| coefficient(order, index))),
+            // Ascending: of the angles π, …, 0.
+            nodes: std::array::from_fn(|index| libm::cos(PI * (last - index) as f64 / last as f64)),
+            to_few: to_coefficients(),
+            to_coefficients: to_coefficients(),
         }
     }
+}
+
+/// From values at the nodes of the last of so many polynomials.
+fn to_coefficients<const N: usize>() -> [[f64; N]; N] {
+    let last = N - 1;
+    let cosine = |multiple: usize| libm::cos(PI * (multiple % (2 * last)) as f64 / last as f64);
+    let half_at_ends = |index: usize| if index == 0 || index == last { 0.5 } else { 1.0 };
+    let coefficient = |order: usize, index: usize| {
+        2.0 / last as f64 * half_at_ends(order) * half_at_ends(index) * cosine(order * (last - index))
+    };
+    std::array::from_fn(|order| std::array::from_fn(|index| coefficient(order, index)))
+}
+
+/// The coefficients of the polynomial through values at its nodes; those of higher order are 0.
+fn fitted<const N: usize>(to_coefficients: &[[f64; N]; N], values: impl Fn(usize) -> f64) -> [f64; TERMS] {
+    let mut coefficients = [0.0; TERMS];
+    for (coefficient, row) in coefficients.iter_mut().zip(to_coefficients) {
+        *coefficient = row.iter().enumerate().map(|(index, part)| part * values(index)).sum();
+    }
+    coefficients
 }
 
 impl Default for Rule {
@@ -140,16 +162,29 @@ impl Piecewise {
             index if index + 1 == TERMS => upper,
             index => middle + half * rule.nodes[index],
         };
-        let values: [f64; TERMS] = std::array::from_fn(|index| quick(place(index)));
+        let mut values = [0.0; TERMS];
+        for index in (0..TERMS).step_by(2) {
+            values[index] = quick(place(index));
+        }
         let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         let allowed = tolerance.relative * size + tolerance.absolute;
-        let coefficients = rule.to_coefficients.map(|row| row.iter().zip(&values).map(|(a, b)| a * b).sum());
-        let follows = |t: f64| (value(&coefficients, t) - function(middle + half * t)).abs() <= allowed;
-        let follows = PROBES.into_iter().all(follows);
-        if follows {
+        let follows = |coefficients: &[f64; TERMS], last: f64| {
+            let off = |t: f64| (value(coefficients, t) - function(middle + half * t)).abs();
+            last.abs() <= HOPELESS * allowed && PROBES.into_iter().all(|t| off(t) <= allowed)
+        };
+        let mut coefficients = fitted(&rule.to_few, |index| values[2 * index]);
+        let mut found = follows(&coefficients, coefficients[FEW - 1]);
+        if !found {
+            for index in (1..TERMS).step_by(2) {
+                values[index] = quick(place(index));
+            }
+            coefficients = fitted(&rule.to_coefficients, |index| values[index]);
+            found = follows(&coefficients, coefficients[TERMS - 1]);
+        }
+        if found {
             self.pieces.push(Piece { upper, middle, per_half: 1.0 / half, coefficients: Some(coefficients) });
         }
-        follows
+        found
     }
 
     /// The value at `x`; none where there is no copy.
@@ -166,12 +201,15 @@ impl Piecewise {
 
 /// The polynomials by T_(j+k) + T_(j−k) = 2 T_j T_k: short chains of dependent operations.
 #[inline]
-fn value([c0, c1, c2, c3, c4, c5, c6, c7, c8, c9]: &[f64; TERMS], t: f64) -> f64 {
+fn value([c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11, c12]: &[f64; TERMS], t: f64) -> f64 {
     let t2 = 2.0 * t * t - 1.0;
     let (t3, t4) = (2.0 * t * t2 - t, 2.0 * t2 * t2 - 1.0);
     let (t5, t6) = (2.0 * t2 * t3 - t, 2.0 * t3 * t3 - 1.0);
     let (t7, t8, t9) = (2.0 * t3 * t4 - t, 2.0 * t4 * t4 - 1.0, 2.0 * t4 * t5 - t);
-    ((c0 + c1 * t) + (c2 * t2 + c3 * t3)) + ((c4 * t4 + c5 * t5) + (c6 * t6 + c7 * t7)) + (c8 * t8 + c9 * t9)
+    let (t10, t11, t12) = (2.0 * t5 * t5 - 1.0, 2.0 * t5 * t6 - t, 2.0 * t6 * t6 - 1.0);
+    let low = (c0 + c1 * t) + (c2 * t2 + c3 * t3);
+    let middle = (c4 * t4 + c5 * t5) + (c6 * t6 + c7 * t7);
+    low + (middle + ((c8 * t8 + c9 * t9) + (c10 * t10 + (c11 * t11 + c12 * t12))))
 }
 
 #[cfg(test)]
@@ -219,8 +257,7 @@ mod tests {
         for degree in 0..TERMS {
             let function = |x: f64| libm::cos(degree as f64 * libm::acos(x.clamp(-1.0, 1.0)));
             let values = rule.nodes.map(function);
-            let coefficients: [f64; TERMS] =
-                rule.to_coefficients.map(|row| row.iter().zip(&values).map(|(a, b)| a * b).sum());
+            let coefficients = fitted(&rule.to_coefficients, |index| values[index]);
             for (order, found) in coefficients.iter().enumerate() {
                 assert!((found - f64::from(u8::from(order == degree))).abs() < 2e-15, "{degree}, {order}: {found}");
             }

@@ -157,13 +157,18 @@ impl<'a> InSeries<'a> {
 
     /// The penetration at a load per width p > 0, and dw/dp.
     #[must_use]
-    #[inline]
     pub fn at_load(&self, load: f64) -> (f64, f64) {
+        self.at_known_load(load, libm::log(load))
+    }
+
+    /// The same where ln p is known.
+    #[must_use]
+    #[inline]
+    pub fn at_known_load(&self, load: f64, log: f64) -> (f64, f64) {
         if let Some(tips) = &self.tips {
-            return tips.at_load(self, load);
+            return tips.at_load(self, load, log);
         }
         let Self { law: Logarithmic { constant, rate, .. }, compliance, .. } = *self;
-        let log = libm::log(load);
         if rate * (log + 1.0) > constant {
             return (compliance * load + rate * self.law.last(), compliance);
         }

@@ -8,20 +8,14 @@
 use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
-use crate::numeric::piecewise::{self, Piecewise, Tolerance};
 use beyond::Turn;
 use outline::Outline;
 
 mod beyond;
 mod convex;
+mod copy;
 mod outline;
 
-/// How well quick copies follow, over the largest value on a piece: complementarity holds to as much. And over the largest of
-/// all, to which depths are rounded.
-const ACCURACY: [f64; 2] = [1e-14, 1e-15];
-/// How near to where it vanishes, but for rounding, a gap has no copy: over the smooth stretch, and over the largest gap.
-const NEAR: f64 = 0.01;
-const VANISHES: f64 = 1e-12;
 /// Where the search for a minimum stops, in pieces; the error of the gap is of second order in it.
 const PLACE: f64 = 1e-6;
 /// Places between two known breaks, as shares of the way, at which the spot of contact is determined: denser towards
@@ -222,33 +216,6 @@ impl<'a> Gaps<'a> {
         known
     }
 
-    /// A quick copy of the gap between the first and the last of its [`Gaps::breaks`].
-    #[must_use]
-    pub fn copied(&self, rule: &piecewise::Rule, breaks: &[f64]) -> Piecewise {
-        let gap = |s: f64| self.at(s).unwrap_or(f64::NAN);
-        let largest = breaks.iter().map(|s| gap(*s)).fold(0.0, f64::max);
-        let tolerance = Tolerance { relative: ACCURACY[0], absolute: ACCURACY[1] * largest };
-        let mut copy = Piecewise::from(breaks.first().copied().unwrap_or(0.0));
-        for ends in breaks.windows(2) {
-            // The spot is the same all over the stretch.
-            let middle = 0.5 * (ends[0] + ends[1]);
-            let spot = self.touching(middle).1;
-            if spot == Spot::OnLineOfAction && self.is_unmodified(middle) {
-                // Not what rounding makes of its ends: deflections may be smaller than that.
-                copy.push(rule, ends[1], tolerance, |_| 0.0, |_| 0.0);
-                continue;
-            }
-            // Where a gap vanishes it is left as it is: what the copy is rounded to may be larger than a deflection.
-            let vanishing = NEAR * (ends[1] - ends[0]);
-            let [before, after] =
-                [ends[0], ends[1]].map(|end| if gap(end) <= VANISHES * largest { vanishing } else { 0.0 });
-            copy.skip(ends[0] + before);
-            copy.push(rule, ends[1] - after, tolerance, |s| self.at_spot(s, spot).unwrap_or_else(|| gap(s)), gap);
-            copy.skip(ends[1]);
-        }
-        copy
-    }
-
     /// The depths at the nominal point of contact.
     fn on_line(&self, s: f64) -> f64 {
         if self.is_unmodified(s) { 0.0 } else { self.ways[0].depth(s, s) }
@@ -258,32 +225,6 @@ impl<'a> Gaps<'a> {
     fn is_unmodified(&self, s: f64) -> bool {
         let Way { point, flank, .. } = &self.ways[0];
         point.is_zero(point.piece(s)) && flank.is_zero(flank.piece(s))
-    }
-
-    /// The gap where the flanks touch at a known spot, if that saves a search.
-    fn at_spot(&self, s: f64, spot: Spot) -> Option<f64> {
-        let nominal = |way: &Way| way.facing.turned(way.side, s);
-        match spot {
-            Spot::OnLineOfAction => Some(self.on_line(s)),
-            Spot::Corner { .. } => {
-                let way = self.ways.iter().find(|way| way.facing.start > nominal(way))?;
-                let touch = way.tip(way.facing.start - nominal(way));
-                Some(touch.separation + way.depth(way.facing.start, touch.curvature))
-            }
-            Spot::Beside { side, pieces, place: PieceLocation::EndOfPoint } => {
-                let way = self.ways.iter().find(|way| way.side == side)?;
-                let cut = way.point.cuts[pieces[0] + 1];
-                let touch = way.facing.touch(cut, cut - nominal(way));
-                Some(touch.separation + way.point.depth_at_end(pieces[0]) + way.flank.depth(touch.curvature))
-            }
-            Spot::Beside { side, pieces, place: PieceLocation::EndOfFlank } => {
-                let way = self.ways.iter().find(|way| way.side == side)?;
-                let wall = way.flank.cuts[pieces[1] + 1];
-                let (before, touch) = way.meet(nominal(way), wall)?;
-                Some(touch.separation + way.point.depth(nominal(way) + before) + way.flank.depth_at_end(pieces[1]))
-            }
-            Spot::Beside { .. } | Spot::Nowhere => None,
-        }
     }
 
     /// Places nearer than this are one.

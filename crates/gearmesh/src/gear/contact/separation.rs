@@ -86,6 +86,12 @@ impl Facing {
         self.tangent_length - roll * self.point_radius
     }
 
+    /// By how much the roll angles of points and of the flank grow with the position.
+    #[must_use]
+    pub fn roll_rates(&self) -> [f64; 2] {
+        [-1.0 / self.point_radius, 1.0 / self.flank_radius]
+    }
+
     /// The radius of curvature of the flank at this roll angle.
     #[must_use]
     pub fn flank_position(&self, roll: f64) -> f64 {
@@ -164,6 +170,14 @@ impl Facing {
             rate,
             rate_slope: (roll * roll - rate * rate + turned) / curvature,
         }
+    }
+
+    /// d³S/de³ at the nominal point of contact \[1/m²\].
+    #[must_use]
+    pub fn bend_slope(&self, nominal: f64) -> f64 {
+        let over = self.point_roll(nominal) / nominal.max(1e-12 * self.flank_radius);
+        let turn = 1.0 / self.point_radius;
+        -2.0 * turn * turn - over * (3.0 * turn + over * over * self.flank_radius)
     }
 
     /// The end of the flank, `before` ≥ 0 before its own position.
@@ -340,6 +354,20 @@ mod tests {
             assert!((rate(|touch| touch.slope) / middle.bend - 1.0).abs() < 1e-6);
             assert!((rate(|touch| touch.curvature) / middle.rate - 1.0).abs() < 1e-6);
             assert!((rate(|touch| touch.rate) / middle.rate_slope - 1.0).abs() < 1e-6);
+        }
+    }
+
+    /// Tier: second method; against differences, those of the bend from where e is 0.
+    #[test]
+    fn the_third_derivative_on_the_line_of_action_is_that_of_differences() {
+        for side in [Side::Gear, Side::Pinion] {
+            let facing = Facing::new(&pair(), side);
+            for nominal in [facing.start, 6e-3, 12e-3] {
+                let bend = |before: f64| facing.touch(nominal + before, before).bend;
+                let step = 1e-7 * nominal;
+                let difference = (-1.5 * bend(0.0) + 2.0 * bend(step) - 0.5 * bend(2.0 * step)) / step;
+                assert!((difference / facing.bend_slope(nominal) - 1.0).abs() < 1e-6, "{side:?} {nominal}");
+            }
         }
     }
 

@@ -2,10 +2,13 @@
 //!
 //! Stiffness in N/m over the common face width. Must not know: where in the mesh cycle the position is.
 
+use std::cell::Cell;
+
 use super::face::Face;
 use super::flattening::InSeries;
 use crate::numeric::by_loads::Yielding;
 use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
+use crate::numeric::logarithm::Known;
 
 /// The deviations across the common face.
 #[derive(Clone, Copy)]
@@ -60,34 +63,45 @@ impl Springs for LinearPairs<'_> {
 /// compliance of both teeth without the contact.
 pub struct LogarithmicPairs<'a> {
     /// Contact and teeth of each pair, per width.
-    pub slices: [InSeries<'a>; MOST_SPRINGS],
+    pub slices: &'a [Option<InSeries<'a>>; MOST_SPRINGS],
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.
     pub faces: Faces<'a>,
+    /// Loads per width that each pair had last, or may have, and their logarithms.
+    pub logs: [Cell<Known>; MOST_SPRINGS],
 }
 
-impl LogarithmicPairs<'_> {
+impl<'a> LogarithmicPairs<'a> {
+    #[inline]
+    fn slice(&self, pair: usize) -> &InSeries<'a> {
+        self.slices[pair].as_ref().expect("every pair within reach has a slice")
+    }
+
     /// The penetration at which a pair alone carries `total` or more, whatever the shape of the face: by the convexity
     /// of the response, that of a flat face plus the mean deviation.
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
-        self.slices[pair].penetration(total / self.width) + self.faces.of(pair).mean
+        self.slice(pair).penetration(total / self.width) + self.faces.of(pair).mean
     }
 }
 
 impl Yielding for LogarithmicPairs<'_> {
     /// On a flat face.
     #[inline]
-    fn penetration(&self, pair: usize, load: f64) -> (f64, f64) {
-        let (penetration, slope) = self.slices[pair].at_load(load / self.width);
-        (penetration, slope / self.width)
+    fn penetration(&self, pair: usize, load: f64) -> [f64; 3] {
+        let known = self.logs[pair].get().next(load / self.width);
+        self.logs[pair].set(known);
+        let slice = self.slice(pair);
+        let (penetration, slope) = slice.at_known_load(known.number, known.log);
+        // That of the law alone.
+        [penetration, slope / self.width, -slice.law.rate / (load * self.width)]
     }
 }
 
 impl Springs for LogarithmicPairs<'_> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slices[pair].load(depth));
+        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slice(pair).load(depth));
         (self.width * load, self.width * slope)
     }
 }
@@ -108,7 +122,9 @@ mod tests {
         for crown in [0.0, 2e-6, 30e-6] {
             let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
             let face = Face::new(&crowned, 18e-3, &rule);
-            let pairs = LogarithmicPairs { slices: [law; MOST_SPRINGS], width: 18e-3, faces: Faces::Same(&face) };
+            let logs = std::array::from_fn(|_| Cell::new(Known::new(1.0)));
+            let pairs =
+                LogarithmicPairs { slices: &[Some(law); MOST_SPRINGS], width: 18e-3, faces: Faces::Same(&face), logs };
             for load in [1.0, 300.0, 2e3, 1e5] {
                 let carried = pairs.response(0, pairs.above(0, load)).0;
                 assert!(carried >= load * (1.0 - 1e-12), "{carried} N of {load} N with a crown of {crown} m");

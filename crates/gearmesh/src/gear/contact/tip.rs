@@ -137,13 +137,13 @@ impl<'a> NearTips<'a> {
         })
     }
 
-    /// The penetration at a load per width > 0, and its slope.
+    /// The penetration at a load per width > 0 whose logarithm is `log`, and its slope.
     #[inline]
-    pub(super) fn at_load(&self, series: &InSeries, load: f64) -> (f64, f64) {
+    pub(super) fn at_load(&self, series: &InSeries, load: f64, log: f64) -> (f64, f64) {
         let rate = series.law.rate;
         if load < self.last_far {
             let rest = self.rest * load;
-            let total = series.compliance + series.law.constant - rate * libm::log(load) + rest;
+            let total = series.compliance + series.law.constant - rate * log + rest;
             return (load * total, total - rate + rest);
         }
         let held = load.min(self.largest);

@@ -43,6 +43,15 @@ pub(crate) enum Growth {
 }
 
 impl Growth {
+    /// a and 1 − a on the unit interval, of a quadratic.
+    #[must_use]
+    pub(crate) fn quadratic(self) -> Option<[f64; 2]> {
+        match self {
+            Self::Quadratic { linear } => Some([linear, 1.0 - linear]),
+            Self::Power { .. } => None,
+        }
+    }
+
     /// The value at t, 0 below and 1 above the unit interval.
     #[must_use]
     pub(crate) fn value(self, t: f64) -> f64 {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::flank::Flank;
 use super::{MOST_AMOUNT, Modification, Specified};
 use crate::gear::geometry::{GearPair, Side};
+use crate::numeric::quadratic::Quadratic;
 use declare::Declared;
 use declare::error::Diagnostic;
 use declare::units::LENGTH;
@@ -41,6 +42,11 @@ impl Modification for Parabola {
     fn depth(&self, roll: f64) -> f64 {
         let t = (roll - self.middle) * self.per_roll;
         self.amount * t * t
+    }
+
+    fn profile_quadratic(&self, _roll: f64) -> Option<Quadratic> {
+        let bend = self.amount * self.per_roll * self.per_roll;
+        Some(Quadratic { origin: self.middle, coefficients: [0.0, 0.0, bend] })
     }
 
     fn varies_along_profile(&self) -> bool {

@@ -7,6 +7,7 @@ use std::sync::Arc;
 use super::flank::Flank;
 use super::{MOST_AMOUNT, Modification, Specified};
 use crate::gear::geometry::{GearPair, Side};
+use crate::numeric::quadratic::Quadratic;
 use declare::Declared;
 use declare::error::Diagnostic;
 use declare::units::LENGTH;
@@ -41,6 +42,10 @@ struct Line {
 impl Modification for Line {
     fn depth(&self, roll: f64) -> f64 {
         (roll - self.kept) * self.per_roll
+    }
+
+    fn profile_quadratic(&self, _roll: f64) -> Option<Quadratic> {
+        Some(Quadratic { origin: self.kept, coefficients: [0.0, self.per_roll, 0.0] })
     }
 
     fn varies_along_profile(&self) -> bool {

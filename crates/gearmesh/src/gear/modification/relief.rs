@@ -7,6 +7,7 @@ use super::curve::{Curve, Growth};
 use super::flank::Flank;
 use super::{MOST_AMOUNT, Modification};
 use crate::gear::geometry::GearPair;
+use crate::numeric::quadratic::Quadratic;
 use declare::error::Diagnostic;
 use declare::units::{ANGLE, FORCE, LENGTH, SPECIFIC_STIFFNESS};
 use declare::{Alternatives, Declared, Words};
@@ -241,6 +242,19 @@ impl Modification for Ramp {
     fn depth(&self, roll: f64) -> f64 {
         let t = (roll - self.breaks[0]) * self.rate;
         if t <= 0.0 { 0.0 } else { self.amount * self.growth.value(t) }
+    }
+
+    fn profile_quadratic(&self, roll: f64) -> Option<Quadratic> {
+        let [start, end] = self.breaks;
+        let t = (roll - start) * self.rate;
+        if t <= 0.0 {
+            return Some(Quadratic::ZERO);
+        }
+        if t >= 1.0 {
+            return Some(Quadratic { origin: end, coefficients: [self.amount, 0.0, 0.0] });
+        }
+        let [linear, bend] = self.growth.quadratic()?.map(|of_growth| self.amount * of_growth);
+        Some(Quadratic { origin: start, coefficients: [0.0, linear * self.rate, bend * self.rate * self.rate] })
     }
 
     fn profile_breaks(&self) -> &[f64] {

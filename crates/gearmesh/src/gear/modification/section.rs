@@ -5,6 +5,7 @@
 
 use super::{Design, Modification, NamedModification};
 use crate::gear::geometry::Side;
+use crate::numeric::quadratic::Quadratic;
 
 /// A modification in one section.
 #[derive(Clone, Copy, Debug)]
@@ -28,6 +29,12 @@ impl<'a> Section<'a> {
     pub fn depth(&self, roll: f64) -> f64 {
         let depth = self.modification.depth(roll);
         self.z.map_or(depth, |z| depth + self.modification.surface(roll, z))
+    }
+
+    /// The quadratic in the roll angle that it is between the breaks on either side of one, if it is known to be one there.
+    #[must_use]
+    pub fn quadratic(&self, roll: f64) -> Option<Quadratic> {
+        if self.z.is_some() { None } else { self.modification.profile_quadratic(roll) }
     }
 
     /// Roll angles at which that is not smooth.

@@ -187,6 +187,44 @@ fn end_relief_starts_on_the_face_and_its_quadratic_is_its_lead() {
     }
 }
 
+/// Tier: second method; between breaks what a family says to be its quadratic is its depth, and a curve that is none says so.
+#[test]
+fn the_quadratics_of_profiles_are_their_depths() {
+    let pair = pair();
+    let ramp =
+        |curve: &'static str| [("amount", Quantity(AMOUNT)), ("length", Quantity(4e-3)), ("curve", Choice(curve))];
+    let crown = [("amount", Quantity(AMOUNT))];
+    let mut of_quadratics = 0;
+    for (name, values) in [
+        ("tip_relief", &ramp("linear")[..]),
+        ("tip_relief", &ramp("parabolic")),
+        ("root_relief", &ramp("parabolic")),
+        ("profile_crowning", &crown),
+        ("profile_slope", &crown),
+    ] {
+        for side in ["pinion", "gear"] {
+            let design = design(&pair, &[(name, side, values)]).unwrap();
+            let part = &design.side(if side == "gear" { Side::Gear } else { Side::Pinion })[0].modification;
+            let flank = super::flank::Flank::new(&pair, if side == "gear" { Side::Gear } else { Side::Pinion });
+            for step in -10..=110 {
+                let roll = flank.root_roll + (flank.tip_roll - flank.root_roll) * f64::from(step) * 0.01;
+                let value = part.profile_quadratic(roll).unwrap().value(roll);
+                let off = (value - part.depth(roll)).abs();
+                assert!(off <= 4e-16 * AMOUNT + 1e-15 * value.abs(), "{name} of the {side} at {roll}: {off:e}");
+                of_quadratics += u32::from(value != 0.0);
+            }
+        }
+    }
+    assert!(of_quadratics > 600);
+    let [amount, length, _] = ramp("power");
+    let power = [amount, length, ("curve", Choice("power")), ("exponent", Number(1.5))];
+    let design = design(&pair, &[("tip_relief", "pinion", &power)]).unwrap();
+    let flank = super::flank::Flank::new(&pair, Side::Pinion);
+    let part = &design.pinion[0].modification;
+    assert!(part.profile_quadratic(flank.tip_roll - 1e-3).is_none());
+    assert_eq!(part.profile_quadratic(flank.root_roll).map(|quadratic| quadratic.is_zero()), Some(true));
+}
+
 #[test]
 fn reliefs_add_up() {
     let pair = pair();

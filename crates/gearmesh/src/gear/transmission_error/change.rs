@@ -37,7 +37,18 @@ impl LoadCase<'_> {
                     let closest = self.closest();
                     let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
                     let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
-                    let at = crossing(above, (from, before), (to, after), 0.1 * closest);
+                    let at = if touch.is_some() {
+                        let pressed = |at: f64| self.pressed_by_others(at, span.pairs, pair);
+                        // Where it is not loaded, that is its penetration.
+                        let smooth = |at: f64, value: f64| {
+                            let pressed = if value > 0.0 { pressed(at) } else { None };
+                            (at, pressed.filter(|pressed| *pressed > 0.0).unwrap_or(value))
+                        };
+                        let value = |at: f64| pressed(at).unwrap_or_else(|| above(at));
+                        crossing(value, smooth(from, before), smooth(to, after), 0.1 * closest)
+                    } else {
+                        crossing(above, (from, before), (to, after), 0.1 * closest)
+                    };
                     if at - span.start > closest && span.end - at > closest {
                         return Some((at, touch));
                     }

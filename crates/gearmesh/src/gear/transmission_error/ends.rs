@@ -2,6 +2,7 @@
 //!
 //! Must not know: modification, load.
 
+use super::closed::Closed;
 use super::path::Path;
 use crate::gear::compliance::{PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, combined_radius};
@@ -18,8 +19,8 @@ pub(super) struct Ends {
     /// B \[1/Pa\].
     rates: [f64; 2],
     /// From the corners along the flanks \[m\].
-    distances: [Graded; 2],
-    half_width: Graded,
+    distances: [Closed; 2],
+    half_width: Closed,
     /// By corners that roundings take away \[1/Pa\].
     softened: [Option<Graded>; 2],
     /// m.
@@ -57,8 +58,8 @@ impl Ends {
             shapes,
             softened,
             rates: [Side::Pinion, Side::Gear].map(|side| if is_rounded(side) { 0.0 } else { corners[side as usize] }),
-            distances: [Side::Pinion, Side::Gear].map(|side| fit(&|s| path.corner_distance(side, s))),
-            half_width: fit(&|s| bodies.half_width(combined_radius(path.radii(s)))),
+            distances: [Side::Pinion, Side::Gear].map(|side| Closed::distance(path, side)),
+            half_width: Closed::half_width(path, bodies.half_width(1.0)),
             module: pair.pinion.specification.module,
             widest: depth(&compliance.pinion).min(depth(&compliance.gear)),
         }

@@ -2,6 +2,7 @@
 //!
 //! Must not know: which positions are computed, what is done with the values.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
 use super::count::Count;
@@ -16,6 +17,7 @@ use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
 use crate::numeric::by_loads;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
+use crate::numeric::logarithm::Known;
 
 /// Places closer than this share of the base pitch are one.
 pub(super) const CLOSEST: f64 = 1e-10;
@@ -27,6 +29,8 @@ pub struct LoadCase<'a> {
     pub cycle: &'a MeshCycle,
     /// F = T / r_b1 \[N\].
     pub force: f64,
+    /// F over the face width \[N/m\], and its logarithm.
+    line_load: Known,
     pub(super) design: &'a Design,
     pub(super) flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
@@ -121,12 +125,14 @@ impl<'a> LoadCase<'a> {
             None if cycle.coupled() => Regime::CoupledPairs,
             None => Regime::Pairs,
         };
+        let force = torque / cycle.pair.pinion.base_radius;
         let mut load_case = Self {
             count,
             levels,
             cycle,
             design,
-            force: torque / cycle.pair.pinion.base_radius,
+            force,
+            line_load: Known::new(force / cycle.face_width),
             regime,
             flanks,
             touching: Touching::LineOfAction,
@@ -239,6 +245,28 @@ impl<'a> LoadCase<'a> {
         Equilibrium { unloaded, balance, peaks: peaks.map(|peaks| spread(&peaks, 0.0)) }
     }
 
+    /// How far the loads of all others would press the flanks of a pair into each other, if it carried nothing: of the sign of
+    /// its penetration, but smooth where it takes up load. None where slices hold each other, or there are no others.
+    pub(super) fn pressed_by_others(&self, position: f64, pairs: usize, spring: usize) -> Option<f64> {
+        if matches!(self.regime, Regime::Unloaded | Regime::CoupledSlices(_)) {
+            return None;
+        }
+        let s = self.cycle.path_position(position, spring);
+        let gap = self.gap(s)?;
+        let reach = self.within_reach_but(position, pairs, Some(spring));
+        if reach.springs().is_empty() {
+            return None;
+        }
+        let balance = self.balance(&reach).0;
+        let by_others = if matches!(self.regime, Regime::Pairs) {
+            0.0
+        } else {
+            let others = reach.springs().iter().zip(reach.positions()).zip(&balance.loads);
+            others.map(|((&other, &at), load)| load * self.cycle.coupling(s.min(at), spring.abs_diff(other))).sum()
+        };
+        Some(reach.smallest - gap + balance.approach - by_others)
+    }
+
     /// Where slices hold each other: the load, over the force, that a slice carries and its recomputed penetration does not
     /// explain, and its limit in roundings.
     #[must_use]
@@ -261,8 +289,12 @@ impl<'a> LoadCase<'a> {
 
     /// The pairs that can touch at all; with corner contact, only those that come near enough.
     fn within_reach(&self, position: f64, pairs: usize) -> WithinReach {
+        self.within_reach_but(position, pairs, None)
+    }
+
+    fn within_reach_but(&self, position: f64, pairs: usize, left_out: Option<usize>) -> WithinReach {
         let mut reach = WithinReach::none();
-        for spring in 0..self.cycle.springs(pairs) {
+        for spring in (0..self.cycle.springs(pairs)).filter(|spring| Some(*spring) != left_out) {
             let s = self.cycle.path_position(position, spring);
             if let Some(gap) = self.gap(s) {
                 reach.push(spring, s, gap);
@@ -279,10 +311,12 @@ impl<'a> LoadCase<'a> {
     /// this pair alone. For loads λ_j of least complementary energy U, x F = Σ w_j λ_j + Σ gap_j λ_j ≤ 2 U since
     /// approaches bend down with the load, and U ≤ F w(F) of any one pair alone.
     fn alone(&self, s: f64) -> f64 {
-        let width = self.cycle.face_width;
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
-            Elasticity::Logarithmic { .. } => self.slice(s).penetration(self.force / width),
+            Elasticity::Logarithmic { .. } if self.force > 0.0 => {
+                self.slice(s).at_known_load(self.line_load.number, self.line_load.log).0
+            }
+            Elasticity::Logarithmic { .. } => 0.0,
         };
         2.0 * (alone + self.flanks.mean(s))
     }
@@ -319,11 +353,14 @@ impl<'a> LoadCase<'a> {
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } => {
-                let mut slices = [InSeries::NONE; MOST_SPRINGS];
+                let mut slices = [None; MOST_SPRINGS];
                 for (slot, s) in slices.iter_mut().zip(reach.positions()) {
-                    *slot = self.slice(*s);
+                    *slot = Some(self.slice(*s));
                 }
-                let pairs = LogarithmicPairs { slices, width: self.cycle.face_width, faces };
+                // As if all carried alike.
+                let even = self.line_load.over(reach.springs().len());
+                let logs = std::array::from_fn(|_| Cell::new(even));
+                let pairs = LogarithmicPairs { slices: &slices, width: self.cycle.face_width, faces, logs };
                 if faces.are_flat() {
                     let coupling = self.coupling_of(reach);
                     let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);

@@ -6,6 +6,7 @@
 
 mod across;
 mod change;
+mod closed;
 mod count;
 pub mod curve;
 pub mod cycle;

@@ -49,6 +49,11 @@ impl Path {
         (self.start - before, self.end + after)
     }
 
+    /// Whether unmodified flanks touch on the line of action there.
+    pub(super) fn is_inside(&self, s: f64) -> bool {
+        s >= self.start && s <= self.end
+    }
+
     /// The flanks' radii of curvature where they touch, pinion and gear.
     pub(super) fn radii(&self, s: f64) -> [f64; 2] {
         match &self.corners {

@@ -9,7 +9,7 @@ use super::{Gaps, PieceLocation, Spot, Way};
 use crate::gear::contact::separation::Touch;
 use crate::numeric::crossing::bracketed;
 
-/// What is left of the search may be off by this share of the separation.
+/// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
@@ -76,8 +76,9 @@ impl Way<'_> {
             if rates[1] >= 0.0 {
                 return best;
             }
-            if let Some(found) = self.fall(nominal, from, pieces, rates) {
-                return Some(found);
+            let third = if from > 0.0 { 0.0 } else { self.third_on_line(nominal, &touch, pieces[1]) };
+            if let Some(gap) = self.fall(nominal, from, pieces, rates, third) {
+                return Some((gap, Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside }));
             }
             let (end, at_end, ended) = self.piece_end(nominal, from, &touch, pieces);
             if self.pull(nominal, end, &at_end, pieces)[1] > 0.0 {
@@ -104,6 +105,24 @@ impl Way<'_> {
         (rates(at)[0], Spot::Beside { side: self.side, pieces, place: PieceLocation::Inside })
     }
 
+    /// The least gap inside known pieces, if a few steps lead there.
+    pub(super) fn inside(&self, nominal: f64, pieces: [usize; 2]) -> Option<f64> {
+        let from = (self.facing.start - nominal).max(0.0);
+        if from > 0.0 {
+            let touch = self.facing.flank_end(from);
+            return self.fall(nominal, from, pieces, self.pull(nominal, from, &touch, pieces), 0.0);
+        }
+        let touch = self.facing.on_line(nominal);
+        let third = self.third_on_line(nominal, &touch, pieces[1]);
+        self.fall(nominal, 0.0, pieces, self.pull(nominal, 0.0, &touch, pieces), third)
+    }
+
+    /// About the third derivative of the gap on the line of action, for the length of a step.
+    fn third_on_line(&self, nominal: f64, touch: &Touch, flank: usize) -> f64 {
+        let bend = if self.flank.is_zero(flank) { 0.0 } else { self.flank.rates(touch.curvature, flank)[2] };
+        self.facing.bend_slope(nominal) + 3.0 * bend * touch.rate * touch.rate_slope
+    }
+
     /// The least gap on these pieces, from a place on where it falls; none where it falls to their end.
     fn fall(
         &self,
@@ -111,11 +130,15 @@ impl Way<'_> {
         from: f64,
         pieces: [usize; 2],
         [_, mut slope, mut bend]: [f64; 3],
-    ) -> Option<(f64, Spot)> {
-        let [last, wall] = [self.point.cuts[pieces[0] + 1] - nominal, self.flank.cuts[pieces[1] + 1]];
+        mut third: f64,
+    ) -> Option<f64> {
+        let [first, last] = [0, 1].map(|end| self.point.cuts[pieces[0] + end] - nominal);
+        let [floor, wall] = [0, 1].map(|end| self.flank.cuts[pieces[1] + end]);
         let mut at = from;
         for _ in 0..STEPS {
-            let step = -slope / bend;
+            // By the series of the slope to the second order.
+            let newton = -slope / bend;
+            let step = newton * (1.0 - (0.5 * third * newton / bend).clamp(-0.5, 0.5));
             at += step;
             if !(bend > 0.0 && at >= from && at <= last) {
                 return None;
@@ -127,14 +150,15 @@ impl Way<'_> {
             let (before, gap);
             (before, [gap, slope, bend]) = (bend, self.pull(nominal, at, &touch, pieces));
             let left = -slope / bend;
-            if touch.curvature + touch.rate * left > wall || at + left > last {
+            let (place, curvature) = (at + left, touch.curvature + touch.rate * left);
+            if curvature > wall || place > last {
                 return None;
             }
-            // Of the Taylor series to the second order, the rest by how the second derivative has changed.
-            let rest = (bend - before) / step * left * left * left;
-            if rest.abs() <= 6.0 * CLOSE * touch.separation {
-                let place = PieceLocation::Inside;
-                return Some((gap + 0.5 * slope * left, Spot::Beside { side: self.side, pieces, place }));
+            // Of the Taylor series to the third order, its last term by how the second derivative has changed.
+            third = (bend - before) / step;
+            let rest = third * left * left * left / 6.0;
+            if rest.abs() <= CLOSE * touch.separation {
+                return (place >= first && curvature >= floor).then_some(gap + 0.5 * slope * left + rest);
             }
         }
         None
@@ -145,7 +169,9 @@ impl Way<'_> {
     fn change(&self, kink: f64, piece: usize, is_point: bool) -> Result<Option<f64>, NotFound> {
         // The slope of the gap at the kink when this is the nominal position, which vanishes where it ceases to fall.
         let slope = |nominal: f64| {
-            let (before, touch) = if is_point {
+            let (before, touch) = if nominal.to_bits() == kink.to_bits() {
+                (0.0, self.facing.on_line(kink))
+            } else if is_point {
                 (kink - nominal, self.facing.touch(kink, kink - nominal))
             } else {
                 self.meet(nominal, kink).ok_or(NotFound)?

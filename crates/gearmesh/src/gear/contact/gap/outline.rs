@@ -5,6 +5,7 @@
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::extremum::maximum;
+use crate::numeric::quadratic::Quadratic;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -19,6 +20,8 @@ const BEND: f64 = 1e-12;
 /// By how much of its largest slope a profile may bend back at a kink: slopes are those of parabolas, and the gap is off by
 /// the square of it.
 const KINK: f64 = 1e-5;
+/// Roundings of a position.
+const ROUNDINGS: f64 = 4.0;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
 const STEP: f64 = 1e-3;
 
@@ -30,10 +33,17 @@ pub(super) struct Outline<'a> {
     is_point: bool,
     /// Where it is not smooth, with both ends, ascending.
     pub(super) cuts: Vec<f64>,
-    /// By piece.
-    shapes: Vec<Convexity>,
+    pieces: Vec<Piece>,
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
+}
+
+/// A smooth one, between two cuts.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    shape: Convexity,
+    /// What it is against the position, where it is a quadratic.
+    quadratic: Option<Quadratic>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +63,17 @@ impl Convexity {
         let bends_back = depths.windows(3).any(|d| d[0] - 2.0 * d[1] + d[2] < -BEND * largest);
         if bends_back { Self::Other } else { Self::Convex }
     }
+
+    /// Between two places, as samples would tell.
+    fn of_quadratic(quadratic: &Quadratic, ends: &[f64]) -> Self {
+        if quadratic.is_zero() {
+            return Self::Zero;
+        }
+        let depths = [0, 1, 2].map(|index| quadratic.value(share(ends, index, 2)));
+        let step = (ends[1] - ends[0]) / WAVE_SAMPLES as f64;
+        let bends_back = 2.0 * quadratic.coefficients[2] * step * step < -BEND * largest(&depths);
+        if bends_back { Self::Other } else { Self::Convex }
+    }
 }
 
 impl<'a> Outline<'a> {
@@ -62,11 +83,11 @@ impl<'a> Outline<'a> {
             facing,
             is_point,
             cuts: vec![facing.start, facing.end],
-            shapes: Vec::new(),
+            pieces: Vec::new(),
             minimum: Vec::new(),
         };
         for roll in parts.iter().flat_map(Section::breaks).copied() {
-            let position = if is_point { facing.point_position(roll) } else { facing.flank_position(roll) };
+            let position = outline.position(roll);
             if position > facing.start && position < facing.end {
                 outline.cuts.push(position);
             }
@@ -74,44 +95,80 @@ impl<'a> Outline<'a> {
         outline.cuts.sort_by(f64::total_cmp);
         // Nearer than this two cuts are one.
         let closest = 1e-9 * (facing.end - facing.start);
-        outline.cuts.dedup_by(|next, kept| *next - *kept <= closest);
+        let mut farthest = 0.0_f64;
+        outline.cuts.dedup_by(|next, kept| {
+            let apart = *next - *kept;
+            if apart <= closest {
+                farthest = farthest.max(apart);
+            }
+            apart <= closest
+        });
         if let Some(last) = outline.cuts.last_mut() {
             *last = facing.end;
         }
-        outline.find_shapes();
+        outline.find_pieces(farthest <= ROUNDINGS * f64::EPSILON * facing.end);
         outline
     }
 
     /// The same profile with points for the flank, or the reverse.
     pub(super) fn mirrored(&self, facing: Facing) -> Self {
-        let place = |cut: &f64| facing.start + (self.facing.end - cut);
-        let mut cuts: Vec<f64> = self.cuts.iter().rev().map(place).collect();
+        let place = |cut: f64| facing.start + (self.facing.end - cut);
+        let mut cuts: Vec<f64> = self.cuts.iter().rev().map(|cut| place(*cut)).collect();
         if let Some(last) = cuts.last_mut() {
             *last = facing.end;
         }
-        let shapes = self.shapes.iter().rev().copied().collect();
-        Self { parts: self.parts.clone(), facing, is_point: !self.is_point, cuts, shapes, minimum: Vec::new() }
+        let turned = |piece: &Piece| {
+            let quadratic = piece.quadratic.map(|quadratic| quadratic.against(place(quadratic.origin), -1.0));
+            Piece { quadratic, ..*piece }
+        };
+        let pieces = self.pieces.iter().rev().map(turned).collect();
+        Self { parts: self.parts.clone(), facing, is_point: !self.is_point, cuts, pieces, minimum: Vec::new() }
     }
 
-    /// Tells the shape of every piece, and cuts waves where they turn.
-    fn find_shapes(&mut self) {
+    /// The position of a roll angle, and the reverse.
+    fn position(&self, roll: f64) -> f64 {
+        if self.is_point { self.facing.point_position(roll) } else { self.facing.flank_position(roll) }
+    }
+
+    fn roll(&self, position: f64) -> f64 {
+        if self.is_point { self.facing.point_roll(position) } else { self.facing.flank_roll(position) }
+    }
+
+    /// The sum of the parts between two cuts, if each is a quadratic there.
+    fn quadratic(&self, ends: &[f64]) -> Option<Quadratic> {
+        let roll = self.roll(share(ends, 1, 2));
+        let [of_point, of_flank] = self.facing.roll_rates();
+        let rate = if self.is_point { of_point } else { of_flank };
+        self.parts.iter().try_fold(Quadratic::ZERO, |sum, part| {
+            let part = part.quadratic(roll)?;
+            Some(sum.plus(&part.against(self.position(part.origin), rate)))
+        })
+    }
+
+    /// Tells the shape of every piece, and cuts waves where they turn. Parts have no break inside a piece if it is `whole`.
+    fn find_pieces(&mut self, whole: bool) {
         let mut cuts = vec![self.facing.start];
         for ends in self.cuts.windows(2) {
+            if let Some(quadratic) = if whole { self.quadratic(ends) } else { None } {
+                cuts.push(ends[1]);
+                self.pieces
+                    .push(Piece { shape: Convexity::of_quadratic(&quadratic, ends), quadratic: Some(quadratic) });
+                continue;
+            }
             let depths: [f64; WAVE_SAMPLES + 1] =
-                std::array::from_fn(|index| self.depth(share(ends, index, WAVE_SAMPLES)));
+                std::array::from_fn(|index| self.sum(share(ends, index, WAVE_SAMPLES)));
             let shape = Convexity::of(&depths);
             if shape == Convexity::Other {
                 cuts.extend(turns(&depths).into_iter().map(|index| share(ends, index, WAVE_SAMPLES)));
                 cuts.push(ends[1]);
-                let first = self.shapes.len();
+                let first = self.pieces.len();
                 for ends in cuts[first..].windows(2) {
-                    let depths: [f64; SAMPLES + 1] =
-                        std::array::from_fn(|index| self.depth(share(ends, index, SAMPLES)));
-                    self.shapes.push(Convexity::of(&depths));
+                    let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.sum(share(ends, index, SAMPLES)));
+                    self.pieces.push(Piece { shape: Convexity::of(&depths), quadratic: None });
                 }
             } else {
                 cuts.push(ends[1]);
-                self.shapes.push(shape);
+                self.pieces.push(Piece { shape, quadratic: None });
             }
         }
         self.cuts = cuts;
@@ -144,10 +201,13 @@ impl<'a> Outline<'a> {
 
     /// Whether the profile bends back nowhere, at a kink neither.
     pub(super) fn is_convex(&self) -> bool {
-        if self.shapes.contains(&Convexity::Other) {
+        if self.pieces.iter().any(|piece| piece.shape == Convexity::Other) {
             return false;
         }
         // At both ends of every piece.
+        if self.parts.is_empty() {
+            return true;
+        }
         let slopes: Vec<[f64; 2]> = (0..self.pieces())
             .map(|piece| [piece, piece + 1].map(|end| self.rates(self.cuts[end], piece)[1]))
             .collect();
@@ -156,14 +216,23 @@ impl<'a> Outline<'a> {
     }
 
     pub(super) fn depth(&self, position: f64) -> f64 {
-        let roll = if self.is_point { self.facing.point_roll(position) } else { self.facing.flank_roll(position) };
+        self.depth_on(position, self.piece(position))
+    }
+
+    /// The depth on a known piece.
+    pub(super) fn depth_on(&self, position: f64, piece: usize) -> f64 {
+        self.pieces[piece].quadratic.map_or_else(|| self.sum(position), |quadratic| quadratic.value(position))
+    }
+
+    fn sum(&self, position: f64) -> f64 {
+        let roll = self.roll(position);
         self.parts.iter().map(|part| part.depth(roll)).sum()
     }
 
     /// The depth where a piece ends: none at all where a relief starts, whatever rounding makes of its place.
     pub(super) fn depth_at_end(&self, piece: usize) -> f64 {
         let starts = piece + 1 < self.pieces() && self.is_zero(piece + 1);
-        if starts || self.is_zero(piece) { 0.0 } else { self.depth(self.cuts[piece + 1]) }
+        if starts || self.is_zero(piece) { 0.0 } else { self.depth_on(self.cuts[piece + 1], piece) }
     }
 
     pub(super) fn least_from(&self, position: f64) -> f64 {
@@ -175,15 +244,15 @@ impl<'a> Outline<'a> {
     }
 
     pub(super) fn pieces(&self) -> usize {
-        self.shapes.len()
+        self.pieces.len()
     }
 
     pub(super) fn is_zero(&self, piece: usize) -> bool {
-        self.shapes[piece] == Convexity::Zero
+        self.pieces[piece].shape == Convexity::Zero
     }
 
     pub(super) fn bends_back(&self, piece: usize) -> bool {
-        self.shapes[piece] == Convexity::Other
+        self.pieces[piece].shape == Convexity::Other
     }
 
     pub(super) fn piece(&self, position: f64) -> usize {
@@ -191,18 +260,22 @@ impl<'a> Outline<'a> {
         cuts.partition_point(|cut| *cut <= position)
     }
 
-    /// Depth, and its first and second derivative, those of the parabola through three points of the piece.
+    /// Depth, and its first and second derivative; of what is no quadratic those of the parabola through three points of the
+    /// piece.
     pub(super) fn rates(&self, position: f64, piece: usize) -> [f64; 3] {
+        if let Some(quadratic) = &self.pieces[piece].quadratic {
+            return quadratic.rates(position);
+        }
         if self.is_zero(piece) {
             return [0.0; 3];
         }
         let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);
         let step = STEP * (upper - lower);
         let middle = position.clamp(lower + step, upper - step);
-        let [before, at, after] = [middle - step, middle, middle + step].map(|place| self.depth(place));
+        let [before, at, after] = [middle - step, middle, middle + step].map(|place| self.sum(place));
         let (slope, bend) = (0.5 * (after - before) / step, (before - 2.0 * at + after) / (step * step));
         let off = position - middle;
-        [if off == 0.0 { at } else { self.depth(position) }, slope + bend * off, bend]
+        [if off == 0.0 { at } else { self.sum(position) }, slope + bend * off, bend]
     }
 }
 

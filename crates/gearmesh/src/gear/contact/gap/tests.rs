@@ -344,3 +344,82 @@ fn pinion_and_gear_may_change_places() {
         }
     }
 }
+
+/// Another modification of which nobody says what it is.
+#[derive(Debug)]
+struct Untold(Arc<dyn Modification>);
+
+impl Modification for Untold {
+    fn depth(&self, roll: f64) -> f64 {
+        self.0.depth(roll)
+    }
+
+    fn profile_breaks(&self) -> &[f64] {
+        self.0.profile_breaks()
+    }
+
+    fn varies_along_profile(&self) -> bool {
+        self.0.varies_along_profile()
+    }
+
+    fn resolved(&self) -> Vec<(&'static str, f64)> {
+        self.0.resolved()
+    }
+}
+
+/// Tier: second method; depths, slopes and shapes from samples of the same profiles.
+#[test]
+fn profiles_known_to_be_quadratics_have_the_gaps_of_sampled_ones() {
+    let pair = pair();
+    let window = (pair.start_of_contact - 3e-3, pair.end_of_contact + 3e-3);
+    for (index, design) in designs(&pair).iter().enumerate() {
+        let untold = |parts: &[crate::gear::modification::NamedModification]| {
+            let hidden = |part: &crate::gear::modification::NamedModification| {
+                let modification: Arc<dyn Modification> = Arc::new(Untold(part.modification.clone()));
+                crate::gear::modification::NamedModification { modification, ..*part }
+            };
+            parts.iter().map(hidden).collect()
+        };
+        let sampled = Design { pinion: untold(&design.pinion), gear: untold(&design.gear) };
+        let (profiles, others) = (design.profiles(0.0), sampled.profiles(0.0));
+        let (known, found) = (Gaps::new(&pair, &profiles), Gaps::new(&pair, &others));
+        for s in positions(&pair, 400) {
+            let (one, two) = (known.at(s).unwrap(), found.at(s).unwrap());
+            assert!((one - two).abs() <= 2e-16 + 2e-12 * two, "{index} {s}: {one:e} {two:e}");
+        }
+        let (one, two) = (known.breaks(window), found.breaks(window));
+        assert_eq!(one.len(), two.len(), "{index}: {one:?} {two:?}");
+        for (one, two) in one.iter().zip(&two) {
+            assert!((one - two).abs() < 2e-11, "{index}: {one} {two}");
+        }
+    }
+}
+
+/// Tier: invariant; a copy is the gap to what is said of it, wherever there is one, which is nearly everywhere.
+#[test]
+fn quick_copies_are_the_gap() {
+    let pair = pair();
+    let window = (pair.start_of_contact - 1e-3, pair.end_of_contact + 1e-3);
+    let rule = crate::numeric::piecewise::Rule::new();
+    for (index, design) in designs(&pair).iter().enumerate() {
+        let profiles = design.profiles(0.0);
+        let gaps = Gaps::new(&pair, &profiles);
+        let breaks = gaps.breaks(window);
+        let copy = gaps.copied(&rule, &breaks);
+        let largest = breaks.iter().map(|s| gaps.at(*s).unwrap()).fold(0.0, f64::max);
+        let (mut missing, mut worst) = (0, 0.0_f64);
+        for ends in breaks.windows(2) {
+            let places = (0..200).map(|step| ends[0] + (ends[1] - ends[0]) * (f64::from(step) + 0.313) / 200.0);
+            let found: Vec<_> = places.map(|s| (gaps.at(s).unwrap(), copy.value(s))).collect();
+            let most = found.iter().map(|(gap, _)| *gap).fold(0.0, f64::max) + 0.1 * largest;
+            for (gap, copied) in found {
+                match copied {
+                    Some(copied) => worst = worst.max((copied - gap).abs() / most),
+                    None => missing += 1,
+                }
+            }
+        }
+        // Between the places that were compared it may be a few times as far off.
+        assert!(missing <= 80 && worst < 4e-14, "{index}: {worst:e}, {missing} without a copy");
+    }
+}
