@@ -209,6 +209,9 @@ impl Bordered {
             loaded[size] = spring;
             size += 1;
         }
+        if size <= 2 {
+            return Self::solve_two(coupling, rises, residual, &loaded[..size]);
+        }
         let mut factor = [[0.0; MOST_SPRINGS]; MOST_SPRINGS];
         let (mut a, mut b) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
         for i in 0..size {
@@ -239,6 +242,36 @@ impl Bordered {
             (solved.particular[loaded[i]], solved.unit[loaded[i]]) = (a[i], b[i]);
             solved.offset += a[i];
             solved.slope += b[i];
+        }
+        (solved.slope > 0.0).then_some(solved)
+    }
+}
+
+impl Bordered {
+    /// The same of one or two loaded springs, by their determinant.
+    fn solve_two(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, loaded: &[usize]) -> Option<Self> {
+        let mut solved = Self { particular: [0.0; MOST_SPRINGS], unit: [0.0; MOST_SPRINGS], offset: 0.0, slope: 0.0 };
+        match *loaded {
+            [one] => (solved.particular[one], solved.unit[one]) = (-residual[one] * rises[one], rises[one]),
+            [one, two] => {
+                // Of the matrix whose rows are times the springs' stiffnesses.
+                let [towards_one, towards_two] = [one, two].map(|spring| coupling[one][two] * rises[spring]);
+                let determinant = 1.0 - towards_one * towards_two;
+                if determinant <= 0.0 || !determinant.is_finite() {
+                    return None;
+                }
+                let pair = |a: f64, b: f64| {
+                    let (a, b) = (a * rises[one], b * rises[two]);
+                    [(a - towards_one * b) / determinant, (b - towards_two * a) / determinant]
+                };
+                [solved.particular[one], solved.particular[two]] = pair(-residual[one], -residual[two]);
+                [solved.unit[one], solved.unit[two]] = pair(1.0, 1.0);
+            }
+            _ => {}
+        }
+        for spring in loaded {
+            solved.offset += solved.particular[*spring];
+            solved.slope += solved.unit[*spring];
         }
         (solved.slope > 0.0).then_some(solved)
     }

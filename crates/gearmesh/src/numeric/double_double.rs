@@ -21,6 +21,8 @@ pub struct Double {
 const SPLITTER: f64 = 134_217_729.0;
 /// Times an angle is halved, or an exponent divided by two, before its series is summed.
 const HALVINGS: usize = 6;
+/// What π/4 is then, nearly: up to there a series needs no halves.
+const SMALL: f64 = 0.0123;
 
 fn quick_sum(a: f64, b: f64) -> Double {
     let high = a + b;
@@ -108,12 +110,14 @@ impl Double {
         let quarter = Self::PI.half();
         let turns = (self.high / quarter.high).round();
         let rest = self - quarter * turns;
-        let small = rest.times_power_of_two(0.015_625);
+        // A small angle needs no halves.
+        let (halvings, share) = if rest.high.abs() <= SMALL { (0, 1.0) } else { (HALVINGS, 0.015_625) };
+        let small = rest.times_power_of_two(share);
         let square = small.square();
         // sin x and 1 − cos x, so that doubling the angle loses nothing; the last terms are those of x¹⁷ and x¹⁶.
         let mut sine = small * series(-square, 9, |k| (2 * k + 2) * (2 * k + 3));
         let mut versine = square.half() * series(-square, 8, |k| (2 * k + 3) * (2 * k + 4));
-        for _ in 0..HALVINGS {
+        for _ in 0..halvings {
             (sine, versine) =
                 (sine.times_power_of_two(2.0) * (Self::ONE - versine), sine.square().times_power_of_two(2.0));
         }
@@ -226,13 +230,10 @@ impl Mul for Double {
 impl Div for Double {
     type Output = Self;
     fn div(self, other: Self) -> Self {
-        // Long division, three digits of the size of an `f64`.
+        // Long division, two digits of the size of an `f64`: the next one is below the last.
         let first = self.high / other.high;
         let rest = self - other * first;
-        let second = rest.high / other.high;
-        let third = (rest - other * second).high / other.high;
-        let sum = quick_sum(first, second);
-        sum + Self::from(third)
+        quick_sum(first, rest.high / other.high)
     }
 }
 
@@ -261,7 +262,9 @@ impl Mul<f64> for Double {
 impl Div<f64> for Double {
     type Output = Self;
     fn div(self, other: f64) -> Self {
-        self / Self::from(other)
+        let first = self.high / other;
+        let rest = self - exact_product(first, other);
+        quick_sum(first, rest.high / other)
     }
 }
 

@@ -47,8 +47,21 @@ struct Piece {
     upper: f64,
     middle: f64,
     per_half: f64,
-    /// Of Chebyshev's polynomials of the distance from the middle, in halves of the piece; none where no polynomial follows.
-    coefficients: Option<[f64; TERMS]>,
+    follows: Follows,
+    /// Of Chebyshev's polynomials of the distance from the middle, in halves of the piece.
+    coefficients: [f64; TERMS],
+}
+
+/// What follows the function on a piece.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Follows {
+    /// No polynomial does.
+    Nothing,
+    /// It is 0.
+    Zero,
+    /// The first few polynomials.
+    Few,
+    All,
 }
 
 impl Rule {
@@ -117,7 +130,8 @@ impl Piecewise {
     /// Leaves a stretch up to `upper` without a copy.
     pub fn skip(&mut self, upper: f64) {
         if upper > self.upper() {
-            self.pieces.push(Piece { upper, middle: upper, per_half: 0.0, coefficients: None });
+            let (follows, coefficients) = (Follows::Nothing, [0.0; TERMS]);
+            self.pieces.push(Piece { upper, middle: upper, per_half: 0.0, follows, coefficients });
         }
     }
 
@@ -168,21 +182,23 @@ impl Piecewise {
         }
         let size = values.iter().fold(0.0_f64, |size, value| size.max(value.abs()));
         let allowed = tolerance.relative * size + tolerance.absolute;
-        let follows = |coefficients: &[f64; TERMS], last: f64| {
+        let is_close = |coefficients: &[f64; TERMS], last: f64| {
             let off = |t: f64| (value(coefficients, t) - function(middle + half * t)).abs();
             last.abs() <= HOPELESS * allowed && PROBES.into_iter().all(|t| off(t) <= allowed)
         };
         let mut coefficients = fitted(&rule.to_few, |index| values[2 * index]);
-        let mut found = follows(&coefficients, coefficients[FEW - 1]);
+        let mut found = is_close(&coefficients, coefficients[FEW - 1]);
+        let mut follows = if size == 0.0 { Follows::Zero } else { Follows::Few };
         if !found {
             for index in (1..TERMS).step_by(2) {
                 values[index] = quick(place(index));
             }
             coefficients = fitted(&rule.to_coefficients, |index| values[index]);
-            found = follows(&coefficients, coefficients[TERMS - 1]);
+            found = is_close(&coefficients, coefficients[TERMS - 1]);
+            follows = Follows::All;
         }
         if found {
-            self.pieces.push(Piece { upper, middle, per_half: 1.0 / half, coefficients: Some(coefficients) });
+            self.pieces.push(Piece { upper, middle, per_half: 1.0 / half, follows, coefficients });
         }
         found
     }
@@ -195,8 +211,23 @@ impl Piecewise {
             return None;
         }
         let piece = self.pieces.get(self.pieces.partition_point(|piece| piece.upper < x))?;
-        piece.coefficients.as_ref().map(|coefficients| value(coefficients, (x - piece.middle) * piece.per_half))
+        let place = || (x - piece.middle) * piece.per_half;
+        match piece.follows {
+            Follows::Nothing => None,
+            Follows::Zero => Some(0.0),
+            Follows::Few => Some(few(&piece.coefficients, place())),
+            Follows::All => Some(value(&piece.coefficients, place())),
+        }
     }
+}
+
+/// The first few polynomials, as in [`value`].
+#[inline]
+fn few([c0, c1, c2, c3, c4, c5, c6, ..]: &[f64; TERMS], t: f64) -> f64 {
+    let t2 = 2.0 * t * t - 1.0;
+    let (t3, t4) = (2.0 * t * t2 - t, 2.0 * t2 * t2 - 1.0);
+    let (t5, t6) = (2.0 * t2 * t3 - t, 2.0 * t3 * t3 - 1.0);
+    (c0 + c1 * t) + (c2 * t2 + c3 * t3) + ((c4 * t4 + c5 * t5) + c6 * t6)
 }
 
 /// The polynomials by T_(j+k) + T_(j−k) = 2 T_j T_k: short chains of dependent operations.
@@ -263,6 +294,7 @@ mod tests {
             }
             for x in [-1.0, -0.77, 0.0, 0.31, 1.0] {
                 assert!((value(&coefficients, x) - function(x)).abs() < 1e-14, "{degree} at {x}");
+                assert!(degree >= FEW || (few(&coefficients, x) - function(x)).abs() < 1e-14, "{degree} at {x}");
             }
         }
     }

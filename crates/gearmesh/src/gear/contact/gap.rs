@@ -236,6 +236,12 @@ impl<'a> Gaps<'a> {
     fn change(&self, (mut lower, spot): (f64, Spot), mut upper: f64) -> (f64, Spot) {
         let closest = self.closest();
         let mut next = self.touching(upper).1;
+        if let Some(at) = self.leaves_corner(lower, upper) {
+            let [from, to] = [at - closest, at + closest].map(|s| self.touching(s.clamp(lower, upper)).1);
+            if from == spot && to != spot {
+                return ((at + closest).min(upper), to);
+            }
+        }
         while upper - lower > closest {
             let middle = 0.5 * (lower + upper);
             let here = self.touching(middle).1;

@@ -120,37 +120,39 @@ impl Facing {
     pub fn touch(&self, point: f64, before: f64) -> Touch {
         let Self { point_radius, flank_radius, tangent_length, .. } = *self;
         // Line of action along x from the flank's tangent point; the flank's centre is r_b below, the point's above.
-        let roll = (tangent_length - point) / point_radius;
-        let angle = -before / point_radius;
-        let (sine, lift) = sine_and_lift(angle);
+        let per_point = 1.0 / point_radius;
+        let roll = (tangent_length - point) * per_point;
+        let angle = -before * per_point;
+        let (sine, lift, lag) = sine_lift_and_defect(angle);
         let cosine = 1.0 - lift;
         // Of second order: how far the point is from the nominal contact along the line of action.
-        let along = point_radius * (roll * lift - defect(angle));
+        let along = point_radius * (roll * lift - lag);
         let (x, y) = (point - before + along, point_radius * (lift - roll * sine));
         let beyond = y * (y + 2.0 * flank_radius);
         let curvature = (x * x + beyond).max(0.0).sqrt();
         let excess = if x > 0.0 { beyond / (curvature + x) } else { curvature - x };
-        let flank_roll = curvature / flank_radius;
+        let per_flank = 1.0 / flank_radius;
+        let flank_roll = curvature * per_flank;
         // The turn of the tangent to the base circle through the point, against the line of action.
         let (up, across) = (-(excess + flank_roll * y), y + flank_radius + x * flank_roll);
-        let length = flank_radius * (1.0 + flank_roll * flank_roll);
-        let (sine_turn, cosine_turn) = (up / length, across / length);
+        let per_length = per_flank / (1.0 + flank_roll * flank_roll);
+        let (sine_turn, cosine_turn) = (up * per_length, across * per_length);
         let bulge = x * sine_turn * sine_turn / (1.0 + cosine_turn);
         let sine_sum = sine * cosine_turn + cosine * sine_turn;
         let cosine_sum = cosine * cosine_turn - sine * sine_turn;
         // A flank that is met at its base circle has no curvature there; then the rates are only very large.
-        let curved = curvature.max(1e-12 * flank_radius);
-        let over = roll * cosine_sum / curved;
-        let rate = roll * ((y + flank_radius) * cosine - x * sine) / curved;
-        let (forward, sideways) = ((sine + roll * cosine) / point_radius, (roll * sine - cosine) / point_radius);
+        let per_curved = 1.0 / curvature.max(1e-12 * flank_radius);
+        let over = roll * cosine_sum * per_curved;
+        let rate = roll * ((y + flank_radius) * cosine - x * sine) * per_curved;
+        let (forward, sideways) = ((sine + roll * cosine) * per_point, (roll * sine - cosine) * per_point);
         let turned = x * forward + (y + flank_radius) * sideways;
         Touch {
             separation: along + flank_radius * arc_excess(sine_turn, cosine_turn) - bulge - y * sine_turn,
             slope: -roll * sine_sum,
-            bend: sine_sum / point_radius + roll * cosine_sum * (1.0 / point_radius + over),
+            bend: sine_sum * per_point + roll * cosine_sum * (per_point + over),
             curvature,
             rate,
-            rate_slope: (roll * roll - rate * rate + turned) / curved,
+            rate_slope: (roll * roll - rate * rate + turned) * per_curved,
         }
     }
 
@@ -215,17 +217,24 @@ impl Facing {
 /// Angles up to which the series below are good to rounding; flanks touch within it.
 const SMALL: f64 = 0.1;
 
-/// sin t and 1 − cos t.
-fn sine_and_lift(angle: f64) -> (f64, f64) {
+/// Squares of angles up to which three terms after the first are.
+const TINY: f64 = 1e-4;
+
+/// sin t, 1 − cos t and t − sin t.
+#[inline]
+fn sine_lift_and_defect(angle: f64) -> (f64, f64, f64) {
+    let lag = defect(angle);
     if angle.abs() > SMALL {
         let half = libm::sin(0.5 * angle);
-        return (libm::sin(angle), 2.0 * half * half);
+        return (libm::sin(angle), 2.0 * half * half, lag);
     }
     let q = angle * angle;
-    (angle - defect(angle), 0.5 * q * nested(q, [-1.0 / 12.0, -1.0 / 30.0, -1.0 / 56.0, -1.0 / 90.0, -1.0 / 132.0]))
+    let lift = 0.5 * q * nested(q, [-1.0 / 12.0, -1.0 / 30.0, -1.0 / 56.0, -1.0 / 90.0, -1.0 / 132.0]);
+    (angle - lag, lift, lag)
 }
 
 /// t − sin t.
+#[inline]
 fn defect(angle: f64) -> f64 {
     if angle.abs() > 0.5 {
         return angle - libm::sin(angle);
@@ -236,6 +245,7 @@ fn defect(angle: f64) -> f64 {
 }
 
 /// The same of the angle with this sine and cosine.
+#[inline]
 fn arc_excess(sine: f64, cosine: f64) -> f64 {
     if sine.abs() > SMALL || cosine < 0.0 {
         return defect(libm::atan2(sine, cosine));
@@ -247,7 +257,11 @@ fn arc_excess(sine: f64, cosine: f64) -> f64 {
 }
 
 /// A power series in q as the ratios of its coefficients: 1 + r q (1 + r′ q (…)).
+#[inline]
 fn nested<const N: usize>(q: f64, ratios: [f64; N]) -> f64 {
+    if q <= TINY {
+        return 1.0 + ratios[0] * q * (1.0 + ratios[1] * q * (1.0 + ratios[2] * q));
+    }
     ratios.iter().rev().fold(1.0, |sum, ratio| 1.0 + ratio * q * sum)
 }
 
@@ -307,7 +321,7 @@ mod tests {
             let t = 0.005 * f64::from(share);
             for angle in [t, -t] {
                 let (sine, cosine) = angle.sin_cos();
-                let (found, lift) = sine_and_lift(angle);
+                let (found, lift, _) = sine_lift_and_defect(angle);
                 assert!((found / sine - 1.0).abs() < 4e-16, "sine of {angle}");
                 let half = (0.5 * angle).sin();
                 assert!((lift / (2.0 * half * half) - 1.0).abs() < 1e-15, "1 − cosine of {angle}");

@@ -31,6 +31,8 @@ pub struct LoadCase<'a> {
     pub force: f64,
     /// F over the face width \[N/m\], and its logarithm.
     line_load: Known,
+    /// The slice that was asked for last, and where: of the nearest pair it is asked for twice.
+    last_slice: Cell<Option<(f64, InSeries<'a>)>>,
     pub(super) design: &'a Design,
     pub(super) flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
@@ -133,6 +135,7 @@ impl<'a> LoadCase<'a> {
             design,
             force,
             line_load: Known::new(force / cycle.face_width),
+            last_slice: Cell::new(None),
             regime,
             flanks,
             touching: Touching::LineOfAction,
@@ -314,7 +317,9 @@ impl<'a> LoadCase<'a> {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
             Elasticity::Logarithmic { .. } if self.force > 0.0 => {
-                self.slice(s).at_known_load(self.line_load.number, self.line_load.log).0
+                let slice = self.slice(s);
+                self.last_slice.set(Some((s, slice)));
+                slice.at_known_load(self.line_load.number, self.line_load.log).0
             }
             Elasticity::Logarithmic { .. } => 0.0,
         };
@@ -399,7 +404,12 @@ impl<'a> LoadCase<'a> {
     }
 
     /// A slice of the pair at `s` under a law of the load's logarithm.
-    fn slice(&self, s: f64) -> InSeries<'_> {
+    fn slice(&self, s: f64) -> InSeries<'a> {
+        if let Some((at, slice)) = self.last_slice.get()
+            && at.to_bits() == s.to_bits()
+        {
+            return slice;
+        }
         self.cycle.elasticity.series(s, None)
     }
 

@@ -7,7 +7,7 @@
 
 use super::{Gaps, PieceLocation, Spot, Way};
 use crate::gear::contact::separation::Touch;
-use crate::numeric::crossing::bracketed;
+use crate::numeric::crossing::{bracketed, crossing};
 
 /// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
@@ -49,6 +49,26 @@ impl Gaps<'_> {
             }
         }
         Some(found)
+    }
+
+    /// Between two places before A or after E: where the gap begins or ceases to fall from the end of a flank inwards.
+    pub(super) fn leaves_corner(&self, lower: f64, upper: f64) -> Option<f64> {
+        let way = self.ways.iter().find(|way| {
+            let [one, two] = [lower, upper].map(|s| way.facing.turned(way.side, s));
+            one < way.facing.start && two < way.facing.start
+        })?;
+        if !self.is_convex {
+            return None;
+        }
+        let slope = |s: f64| {
+            let nominal = way.facing.turned(way.side, s);
+            let before = way.facing.start - nominal;
+            let touch = way.facing.flank_end(before);
+            way.pull(nominal, before, &touch, way.pieces(way.facing.start, &touch))[1]
+        };
+        let ends = [lower, upper].map(|s| (s, slope(s)));
+        let turns = ends[0].1 * ends[1].1 < 0.0;
+        turns.then(|| crossing(slope, ends[0], ends[1], 0.1 * self.closest()))
     }
 
     /// Between two breaks inside the path of contact: where the depth is least, and the flanks touch on the line of action.

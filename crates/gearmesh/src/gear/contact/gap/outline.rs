@@ -262,13 +262,17 @@ impl<'a> Outline<'a> {
 
     /// Depth, and its first and second derivative; of what is no quadratic those of the parabola through three points of the
     /// piece.
+    #[inline]
     pub(super) fn rates(&self, position: f64, piece: usize) -> [f64; 3] {
-        if let Some(quadratic) = &self.pieces[piece].quadratic {
-            return quadratic.rates(position);
+        let Piece { shape, quadratic } = &self.pieces[piece];
+        match (shape, quadratic) {
+            (Convexity::Zero, _) => [0.0; 3],
+            (_, Some(quadratic)) => quadratic.rates(position),
+            (_, None) => self.sampled_rates(position, piece),
         }
-        if self.is_zero(piece) {
-            return [0.0; 3];
-        }
+    }
+
+    fn sampled_rates(&self, position: f64, piece: usize) -> [f64; 3] {
         let (lower, upper) = (self.cuts[piece], self.cuts[piece + 1]);
         let step = STEP * (upper - lower);
         let middle = position.clamp(lower + step, upper - step);

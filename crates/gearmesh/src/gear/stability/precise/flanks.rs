@@ -9,8 +9,9 @@ use crate::numeric::double_double::Double;
 
 /// Steps of the secant method, more than it takes to the last digit that matters.
 const STEPS: usize = 40;
-/// Where it stops, over the length of the path; the error of the gap is of second order in it.
-const PLACE: f64 = 1e-15;
+/// The last step, over the length of the path: what it leaves is smaller by as much as it is smaller than the one before. The
+/// error of the gap is of second order in that.
+const PLACE: f64 = 1e-12;
 
 /// A linear tip relief: its depth at the tip, and its roll length.
 #[derive(Clone, Copy)]
@@ -80,9 +81,13 @@ impl Flanks {
         let end = [self.tangent_length - self.path[0], self.path[1]][point];
         let mut relieved = [self.start(point) < self.tangent_length - nominal, self.start(1 - point) <= nominal];
         let on_line = || self.depth(point, self.tangent_length - nominal) + self.depth(1 - point, nominal);
-        let at_once = Least { gap: on_line(), spot: Spot::OnLineOfAction };
-        if !relieved[0] || way.slope(&way.on_line(), relieved).high >= 0.0 {
-            return at_once;
+        let at_once = || Least { gap: on_line(), spot: Spot::OnLineOfAction };
+        if !relieved[0] {
+            return at_once();
+        }
+        let mut slope = way.slope(&way.on_line(), relieved).high;
+        if slope >= 0.0 {
+            return at_once();
         }
         let limit = end - nominal;
         let (mut from, mut starts) = (Double::ZERO, 0);
@@ -96,14 +101,15 @@ impl Flanks {
                 place = way.place(to);
             }
             if way.slope(&place, relieved).high > 0.0 {
-                let slope = |before: Double| way.slope(&way.place(before), relieved);
-                let guess = from - slope(from).high / way.bend();
-                let place = secant([from, to], guess, PLACE * end.high, slope);
+                let guess = from - slope / way.bend();
+                let near = PLACE * end.high;
+                let place = secant([from, to], slope, guess, near, |before| way.slope(&way.place(before), relieved));
                 return Least { gap: way.gap(&way.place(place)), spot: Spot::Beside { point, starts } };
             }
             let ends = to >= limit || (!of_point && wall >= end);
             relieved[usize::from(!of_point)] = !of_point;
-            if ends || way.slope(&place, relieved).high >= 0.0 {
+            slope = way.slope(&place, relieved).high;
+            if ends || slope >= 0.0 {
                 return Least { gap: way.gap(&place), spot: Spot::Start { point, starts } };
             }
             (from, starts) = (to, starts + 1);
@@ -185,13 +191,20 @@ impl Way<'_> {
 
     /// Where the flank has this radius of curvature.
     fn meets(&self, wall: Double, [from, to]: [Double; 2]) -> Double {
-        secant([from, to], (from + to).half(), PLACE * wall.high, |before| self.place(before).curvature - wall)
+        let miss = |before: Double| self.place(before).curvature - wall;
+        secant([from, to], miss(from).high, (from + to).half(), PLACE * wall.high, miss)
     }
 }
 
-/// Where a function that rises from below to above zero is zero: by secants, and by halves where they lead away.
-fn secant([mut low, mut high]: [Double; 2], guess: Double, near: f64, function: impl Fn(Double) -> Double) -> Double {
-    let (mut last, mut at_last) = (low, function(low).high);
+/// Where a function that rises from `at_low`, below zero, to above is zero: by secants, and by halves where they lead away.
+fn secant(
+    [mut low, mut high]: [Double; 2],
+    at_low: f64,
+    guess: Double,
+    near: f64,
+    function: impl Fn(Double) -> Double,
+) -> Double {
+    let (mut last, mut at_last) = (low, at_low);
     let mut next = if guess > low && guess < high { guess } else { high };
     for _ in 0..STEPS {
         let (here, at_here) = (next, function(next).high);
