@@ -41,6 +41,22 @@ fn a_half_plane_that_ends_has_a_closed_form() {
 /// Ψ/k₀ by pressures that are constant on each of many strips, which get thinner towards the corner; those that would pull
 /// are taken away until none is left. And the strips that press: between where, and how much.
 fn by_strips<const STRIPS: usize, const WIDTH: usize>(place: f64, ratio: f64) -> (f64, Vec<([f64; 2], f64)>) {
+    by_strips_with::<STRIPS, WIDTH>(place, ratio, |x, [from, to]| {
+        moment(to + x) - moment(from + x) - LN_2 * (to - from)
+    })
+}
+
+/// ∫ ln|x| dx.
+fn moment(x: f64) -> f64 {
+    if x == 0.0 { 0.0 } else { x * (libm::log(x.abs()) - 1.0) }
+}
+
+/// The same with what the corner adds at x under a strip that presses, over −B/k₀.
+fn by_strips_with<const STRIPS: usize, const WIDTH: usize>(
+    place: f64,
+    ratio: f64,
+    corner: impl Fn(f64, [f64; 2]) -> f64,
+) -> (f64, Vec<([f64; 2], f64)>) {
     let width = f64::max(place, 0.0) + 1.6;
     let ends: Vec<f64> = (0..=STRIPS)
         .map(|k| {
@@ -48,8 +64,6 @@ fn by_strips<const STRIPS: usize, const WIDTH: usize>(place: f64, ratio: f64) ->
             if place > 2.5 { place - 1.3 + 2.6 * share } else { width * share * share * share }
         })
         .collect();
-    // ∫ ln|x − y| dy and the same with the sum, from the one end to the other.
-    let moment = |x: f64| if x == 0.0 { 0.0 } else { x * (libm::log(x.abs()) - 1.0) };
     let mut loaded = [true; STRIPS];
     loop {
         let strips: Vec<usize> = (0..STRIPS).filter(|&k| loaded[k]).collect();
@@ -59,8 +73,7 @@ fn by_strips<const STRIPS: usize, const WIDTH: usize>(place: f64, ratio: f64) ->
             for (column, &by) in strips.iter().enumerate() {
                 let (from, to) = (ends[by], ends[by + 1]);
                 let direct = moment(to - x) - moment(from - x);
-                let corner = moment(to + x) - moment(from + x) - LN_2 * (to - from);
-                rows[row][column] = -direct - ratio * corner;
+                rows[row][column] = -direct - ratio * corner(x, [from, to]);
             }
             rows[row][strips.len()] = -1.0;
             rows[row][WIDTH - 1] = -(x - place) * (x - place);

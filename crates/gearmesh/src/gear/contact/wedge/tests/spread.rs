@@ -71,6 +71,55 @@ fn pressures_in_strips_spread_alike() {
     }
 }
 
+/// What a unit load on one side of a wedge does there, normal to it, over ln(ξ/η): its Fourier transform, E′ = 1 (from Airy's
+/// function as powers of the distance from the corner, Timoshenko and Goodier, 43).
+fn transform(interior: f64, wave: f64) -> f64 {
+    let (stretched, sine) = (wave * interior, wave * libm::sin(interior));
+    let below = libm::sinh(stretched) * libm::sinh(stretched) - sine * sine;
+    (libm::sinh(2.0 * stretched) + wave * libm::sin(2.0 * interior)) / (wave * below)
+}
+
+/// Tier: second method; the kernel of the wedge itself instead of ln((ξ + η)/2): that is ½ ln ξη and a function of ln(ξ/η), which
+/// is 0 on the diagonal. What is nearer to a half plane has less of either; the corner is reached a little sooner.
+#[test]
+fn the_kernel_of_the_wedge_itself_gives_nearly_the_same() {
+    const APART: f64 = 10.0;
+    for degrees in [110.0_f64, 125.0] {
+        let interior = degrees.to_radians();
+        let softening = softening(interior);
+        let waves = (0..3000).map(|k| 0.01 * (f64::from(k) + 0.5));
+        let parts: Vec<[f64; 2]> =
+            waves.map(|wave| [wave, 0.01 * (transform(interior, wave) - transform(PI, wave)) / PI]).collect();
+        let exact = |t: f64| -> f64 {
+            let sum: f64 = parts.iter().map(|[wave, part]| part * (1.0 - libm::cos(wave * t))).sum();
+            sum / softening
+        };
+        let near = Series::fit(0.0, APART, 40, exact);
+        let beside = |t: f64| near.value(t.abs().min(APART)) + 0.5 * (t.abs() - APART).max(0.0);
+        // Far apart it goes on with half of the logarithm, and nowhere it is more than 0.15 off.
+        assert!((beside(APART) - beside(APART - 1.0) - 0.5).abs() < 2e-3, "{degrees}");
+        for step in 0..=100 {
+            let t = 0.01 * APART * f64::from(step);
+            assert!((beside(t) - libm::log(libm::cosh(0.5 * t))).abs() < 0.15, "{degrees} {t}");
+        }
+        // Both bodies of one material.
+        let ratio = softening * PI / 4.0;
+        let wedge = Wedge::new(ratio);
+        for place in [3.0, 2.0, 1.5, 1.2, 1.0] {
+            let found = wedge.spread(place);
+            let corner = |x: f64, [from, to]: [f64; 2]| {
+                let y = 0.5 * (from + to);
+                (to - from) * (0.5 * libm::log(x * y) + beside(libm::log(x / y)))
+            };
+            let (_, strips) = by_strips_with::<200, 202>(place, ratio, corner);
+            let largest = strips.iter().map(|(_, pressure)| 0.5 * PI * pressure).fold(0.0, f64::max);
+            let more = (largest - 1.0) / (found.pressure - 1.0);
+            assert!(found.pressure - largest > 0.0 && found.pressure - largest < 5e-3, "{degrees} {place}: {largest}");
+            assert!((0.79..0.92).contains(&more), "{degrees} {place}: {more}");
+        }
+    }
+}
+
 /// Tier: invariant; where tables join nothing jumps but the place, which goes to the corner.
 #[test]
 fn spreads_join() {
