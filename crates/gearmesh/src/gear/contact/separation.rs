@@ -158,6 +158,12 @@ impl Facing {
         self.touch(self.start, before)
     }
 
+    /// By how much the other flank's normal there is turned from that of the corner's own flank, towards its root \[rad\].
+    #[must_use]
+    pub fn inclination(&self, before: f64) -> f64 {
+        libm::asin((self.corner(before).slope / self.point_roll(self.start)).clamp(-1.0, 1.0))
+    }
+
     /// How far before its own position the tip corner can meet the other flank, which ends at its own tip; at most
     /// `maximum`.
     #[must_use]

@@ -17,10 +17,23 @@ const STEPS: usize = 50;
 pub struct Corner<'a> {
     /// Of the ratio B/k₀ = B/2β.
     pub wedge: &'a Wedge,
-    /// B \[1/Pa\].
+    /// B \[1/Pa\]; where the load is inclined at the corner, of that load.
     pub rate: f64,
+    /// What the load's inclination does as it changes along the contact.
+    pub turned: Turned,
     /// c: how far from the corner the flanks would touch without load \[m\], along the flank; negative beyond it.
     pub distance: f64,
+}
+
+/// A load is along the normal of the other flank, which turns along the contact: half of what a compliance gains per angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// D: that of the tooth, at the corner and without the part of B \[1/Pa\].
+    pub tooth: f64,
+    /// D_B: that of B \[1/Pa\].
+    pub rate: f64,
+    /// 1/ρ of the contact \[1/m\]: how fast it turns.
+    pub curvature: f64,
 }
 
 /// Those of both teeth.
@@ -34,6 +47,34 @@ pub struct Tips<'a> {
     pub unit: f64,
     /// Half the width up to which the law holds \[m\]: beyond, it is continued by its tangent.
     pub widest: f64,
+}
+
+impl Corner<'_> {
+    /// What the turn of the load along the contact adds to w/p, where half the width is so much, and its slope over ln p.
+    fn turned(&self, width: f64, unit: f64) -> [f64; 2] {
+        let Turned { tooth, rate, curvature } = self.turned;
+        if curvature == 0.0 {
+            return [0.0; 2];
+        }
+        let place = self.distance / width;
+        let [[g, h], [by_place, h_by_place]] = self.wedge.turned(place);
+        let (share, here) = (width * curvature, tooth - rate * libm::log(width / unit));
+        let added = share * (here * g - rate * h);
+        // Half the width grows as √p, and λ falls as it grows.
+        let moved = place * (here * by_place - rate * h_by_place);
+        [added, 0.5 * (added - share * (rate * g + moved))]
+    }
+}
+
+/// A value and its slope, held below twice a size that it hardly ever reaches: it is of first order, and where it is as large
+/// as the half planes' own change a law would end that it is only to correct.
+fn held([value, slope]: [f64; 2], size: f64) -> [f64; 2] {
+    let over = value.abs() / size - 1.0;
+    if over <= 0.0 {
+        return [value, slope];
+    }
+    let share = 1.0 + over;
+    [value.signum() * size * (1.0 + over / share), slope / (share * share)]
 }
 
 /// The same, prepared for many loads.
@@ -67,6 +108,9 @@ impl<'a> NearTips<'a> {
                 let share = half_width / corner.distance;
                 near.far -= corner.rate * libm::log(corner.distance / unit);
                 near.rest += 2.0 * rate * corner.wedge.rest() * share * share;
+                // It grows with the square of the width where the corner is far; this one is narrow enough.
+                let width = 0.5 * corner.distance / Wedge::far();
+                near.rest += corner.turned(width, unit)[0] * (half_width / width) * (half_width / width);
             }
         }
         near
@@ -80,9 +124,15 @@ impl<'a> NearTips<'a> {
         let start = [self.compliance + series.law.constant - rate * log, -rate];
         self.tips.corners.iter().fold(start, |[sum, slope], corner| {
             let place = corner.distance / width;
-            let [more, by_place] = corner.wedge.more(place);
-            let added = 2.0 * rate * more - corner.rate * log_width;
-            [sum + added, slope - rate * by_place * place - 0.5 * corner.rate]
+            let [mut more, mut by_place] = corner.wedge.more(place);
+            if place < 0.0 {
+                let change = 0.5 * corner.rate / rate - corner.wedge.ratio();
+                let [by_ratio, slope] = corner.wedge.by_ratio(place);
+                (more, by_place) = (more + change * by_ratio, by_place + change * slope);
+            }
+            let [turned, by_log] = held(corner.turned(width, self.tips.unit), 0.5 * rate);
+            let added = 2.0 * rate * more - corner.rate * log_width + turned;
+            [sum + added, slope - rate * by_place * place - 0.5 * corner.rate + by_log]
         })
     }
 
@@ -105,9 +155,15 @@ impl<'a> NearTips<'a> {
         let Self { rest, last_far, largest, .. } = *self;
         let rate = series.law.rate;
         if load < last_far {
-            // The rest of Ψ is small: one step of Newton's method.
-            let load = load - load * load * rest / (penetration / load - rate + 2.0 * rest * load);
-            return (load, 1.0 / (penetration / load - rate + rest * load));
+            // What grows with the load is small: two steps of Newton's method.
+            let (start, mut load) = (load, load);
+            for _ in 0..2 {
+                let here = penetration / start - rate * libm::log(load / start) + rest * load;
+                load += (penetration - load * here) / (here - rate + rest * load);
+            }
+            if load < last_far {
+                return (load, 1.0 / (penetration / load - rate + rest * load));
+            }
         }
         let mut load = load.min(largest);
         let wanted = libm::log(penetration);
@@ -143,6 +199,7 @@ mod tests {
         let corner = |side: usize| Corner {
             wedge: &wedges[side],
             rate: [0.15, 0.35][side] * 2.0 * law.rate,
+            turned: Turned { tooth: -[0.2, 1.0][side] * 1e-11, rate: -[2e-13, 1e-12][side], curvature: 1.0 / 7e-3 },
             distance: distances[side],
         };
         let tips =
