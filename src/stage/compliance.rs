@@ -8,7 +8,7 @@ use super::pair::si;
 use crate::stage::{Inputs, Port};
 use declare::declared::Words;
 use declare::error::Failure;
-use gearmesh::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use gearmesh::gear::compliance::{ContactLaw, Inclined, PairCompliance, ToothCompliance};
 use gearmesh::gear::material::Plane;
 use gearmesh::numeric::chebyshev::{Series, nodes};
 use gearmesh::numeric::surface::Surface;
@@ -31,6 +31,35 @@ const SERIES: &[(&str, &str, &str, Getter)] = &[
         |tooth| &tooth.contact_depth,
     ),
 ];
+
+/// Column and meaning of what loads do at the corner of the tip that are turned from the flank's normal towards the root.
+const INCLINED: &[(&str, &str, &str, fn(&Inclined) -> f64)] = &[
+    (
+        "tip_across",
+        "nm/N",
+        "Of resolved contact: displacement of the tip's corner along the flank, towards the root, per load normal to it, \
+         and the reverse; without the part of B.",
+        |inclined| inclined.own[0],
+    ),
+    (
+        "tip_along",
+        "nm/N",
+        "The corner's displacement along the flank under a load along it, less that along the normal under one normal to it; \
+         without the part of B.",
+        |inclined| inclined.own[1],
+    ),
+    (
+        "corner_across",
+        "nm mm/N",
+        "B of a load normal to the flank for displacements along it, and the reverse.",
+        |inclined| inclined.corner[0],
+    ),
+    ("corner_along", "nm mm/N", "B of a load along the flank, less that of one normal to it.", |inclined| {
+        inclined.corner[1]
+    }),
+];
+
+const AT_TIP: &str = "further_tip";
 
 /// Instead of a contact law, where the compliances of the teeth include the contact.
 const INCLUDED: &str = "included";
@@ -58,7 +87,12 @@ fn teeth<'a>() -> Columns<NodeRow<'a>> {
     let columns = SERIES.iter().fold(columns, |columns, &(name, unit, description, series)| {
         columns.float(name, unit, description, move |row| series(row.tooth).value(row.roll))
     });
-    columns.float(names::compliance::CORNER, "nm mm/N", corner, |row| row.tooth.corner)
+    INCLINED.iter().fold(
+        columns.float(names::compliance::CORNER, "nm mm/N", corner, |row| row.tooth.corner),
+        |columns, &(name, unit, description, value)| {
+            columns.float(name, unit, description, move |row| row.tooth.inclined.as_ref().map_or(0.0, value))
+        },
+    )
 }
 
 /// Two nodes of two teeth of a gear, the first tooth's before the further one's.
@@ -70,11 +104,14 @@ struct NeighbourRow {
     nodes: [usize; 2],
     rolls: [f64; 2],
     compliance: f64,
+    at_tip: f64,
 }
 
 fn neighbours() -> Columns<NeighbourRow> {
     let further_roll = "Roll angle on the further tooth, where roll angles grow.";
     let compliance = "Deflection along the load line of one per load on the other; symmetric.";
+    let at_tip = "Of resolved contact: deflection of the first tooth per load along the flank, towards the root, at the corner of \
+                  the further tooth's tip.";
     Columns::new(names::neighbours::TABLE, "Deflection of a tooth per load on a neighbour, through the gear body.")
         .text(names::neighbours::GEAR, "Which gear: pinion or gear.", |row: &NeighbourRow| row.gear)
         .key()
@@ -89,6 +126,7 @@ fn neighbours() -> Columns<NeighbourRow> {
         })
         .float(names::neighbours::FURTHER_ROLL_ANGLE, "rad", further_roll, |row| row.rolls[1])
         .float(names::neighbours::COMPLIANCE, "nm/N", compliance, |row| row.compliance)
+        .float(AT_TIP, "nm/N", at_tip, |row| row.at_tip)
 }
 
 /// What compliances were made with.
@@ -140,11 +178,13 @@ pub fn write(
         }));
         for (surface, neighbour) in tooth.neighbours.iter().zip(1..) {
             let [first, further] = surface_nodes(surface);
+            let inclined = tooth.inclined.as_ref().and_then(|inclined| inclined.neighbours.get(neighbour - 1));
             let mut values = surface.node_values().into_iter();
             for (&roll, node) in first.iter().zip(1..) {
+                let at_tip = inclined.map_or(0.0, |series| series.value(roll));
                 for ((&further, other), compliance) in further.iter().zip(1..).zip(&mut values) {
                     let (nodes, rolls) = ([node, other], [roll, further]);
-                    of_neighbours.push(NeighbourRow { gear, neighbour, nodes, rolls, compliance });
+                    of_neighbours.push(NeighbourRow { gear, neighbour, nodes, rolls, compliance, at_tip });
                 }
             }
         }
@@ -190,18 +230,24 @@ pub fn read(compliance: &Table, neighbours: &Table, model: &Table) -> Result<Pai
     };
     let plane = model.texts(names::model::PLANE).first().map_or("", String::as_str);
     Ok(PairCompliance {
-        pinion: tooth("pinion", compliance, neighbours)?,
-        gear: tooth("gear", compliance, neighbours)?,
+        pinion: tooth("pinion", compliance, neighbours, contact)?,
+        gear: tooth("gear", compliance, neighbours, contact)?,
         contact,
         plane: Plane::of(plane).ok_or_else(|| Failure::new(format!("unknown plane state `{plane}`")))?,
         coupled: model.texts(names::model::COUPLING).first().is_some_and(|coupling| coupling == "body"),
     })
 }
 
-fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothCompliance, Failure> {
+fn tooth(
+    name: &str,
+    table: &Table,
+    neighbours: &Table,
+    contact: Option<ContactLaw>,
+) -> Result<ToothCompliance, Failure> {
     let rows: Vec<usize> = (0..table.rows()).filter(|&row| table.texts(names::compliance::GEAR)[row] == name).collect();
     let series = |column: &str| series_from(table, column, &rows);
-    let mut across = Vec::new();
+    let resolved = contact == Some(ContactLaw::Resolved);
+    let (mut across, mut at_tip) = (Vec::new(), Vec::new());
     for neighbour in 1.. {
         let rows: Vec<usize> = (0..neighbours.rows())
             .filter(|&row| {
@@ -213,14 +259,25 @@ fn tooth(name: &str, table: &Table, neighbours: &Table) -> Result<ToothComplianc
             break;
         }
         across.push(surface_from(neighbours, &rows));
+        if resolved {
+            at_tip.push(at_tip_from(neighbours, &rows));
+        }
     }
+    let first = rows.first().copied().unwrap_or_default();
+    let constant = |column: &str| si(table, column, first);
+    let inclined = resolved.then(|| Inclined {
+        own: [constant("tip_across"), constant("tip_along")],
+        corner: [constant("corner_across"), constant("corner_along")],
+        neighbours: at_tip,
+    });
     Ok(ToothCompliance {
         bending: series("bending")?,
         shear: series("shear")?,
         axial: series("axial")?,
         body: series("body")?,
         contact_depth: series("contact_depth")?,
-        corner: si(table, names::compliance::CORNER, rows.first().copied().unwrap_or_default()),
+        corner: constant(names::compliance::CORNER),
+        inclined,
         neighbours: across,
     })
 }
@@ -265,6 +322,17 @@ fn surface_from(table: &Table, rows: &[usize]) -> Surface {
     )
 }
 
+/// The same of loads along the flank at the further tooth's tip.
+fn at_tip_from(table: &Table, rows: &[usize]) -> Series {
+    let nodes = table.integers(names::neighbours::NODE);
+    let across = rows.iter().take_while(|&&row| nodes[row] == nodes[rows[0]]).count();
+    let firsts: Vec<usize> = rows.iter().step_by(across).copied().collect();
+    let rolls: Vec<f64> = firsts.iter().map(|&row| table.floats(names::neighbours::ROLL_ANGLE)[row]).collect();
+    let values: Vec<f64> = firsts.iter().map(|&row| si(table, AT_TIP, row)).collect();
+    let (lower, upper) = interval(&rolls);
+    Series::from_values(lower, upper, &values)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -278,6 +346,14 @@ mod tests {
             body: Series::fit(0.07, 0.62, 24, |u| scale * 9e-10 * libm::cos(u)),
             contact_depth: Series::fit(0.07, 0.62, 24, |u| scale * 1e-3 * (2.0 - u)),
             corner: scale * 1.7e-12,
+            inclined: Some(Inclined {
+                own: [scale * -3e-10, scale * 2e-11],
+                corner: [scale * -2e-12, scale * 3e-12],
+                neighbours: vec![
+                    Series::fit(0.07, 0.62, 12, |u| scale * -1e-10 * (1.0 + u * u)),
+                    Series::from_values(0.07, 0.62, &[scale * -8e-11]),
+                ],
+            }),
             neighbours: vec![
                 Surface::fit([0.07; 2], [0.62; 2], [12, 9], |u, v| scale * 3e-10 * (1.0 - u * v)),
                 Surface::from_values([0.07; 2], [0.62; 2], [1, 1], &[scale * 2e-10]),
@@ -297,7 +373,18 @@ mod tests {
         for contact in [Some(ContactLaw::Linear), Some(ContactLaw::Resolved), None] {
             assert_eq!(round(&PairCompliance { contact, ..pair.clone() }).contact, contact);
         }
+        let resolved = round(&PairCompliance { contact: Some(ContactLaw::Resolved), ..pair.clone() });
+        let inclined = |pair: &PairCompliance| {
+            let tooth = &pair.gear;
+            let of_corner = tooth.inclined.as_ref().map_or([0.0; 2], |inclined| inclined.corner);
+            let neighbours = [0, 1].map(|index| tooth.neighbour(index, [0.15, 0.62], 0.3));
+            [tooth.added(0.2), tooth.added(-0.1), neighbours[0], neighbours[1], of_corner[0], of_corner[1]]
+        };
+        for (back, written) in inclined(&resolved).into_iter().zip(inclined(&pair)) {
+            assert!((back / written - 1.0).abs() < 1e-13, "{back:e} for {written:e}");
+        }
         let back = round(&pair);
+        assert!(back.gear.inclined.is_none(), "of resolved contact alone");
         assert!(back.coupled && back.plane == Plane::Stress && back.contact == Some(ContactLaw::LoadDependent));
         for roll in [0.07, 0.2, 0.41, 0.62] {
             assert!((back.gear.total(roll) / pair.gear.total(roll) - 1.0).abs() < 1e-14);

@@ -199,6 +199,7 @@ fn harris_relations_hold_through_the_stage() {
         body: constant(0.0),
         contact_depth: constant(2.5e-3),
         corner: 0.0,
+        inclined: None,
         neighbours: Vec::new(),
     };
     let elastic = PairCompliance {

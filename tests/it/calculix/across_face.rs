@@ -208,6 +208,7 @@ fn compare(height: f64, bounds: [f64; 4]) {
         body: constant(plane),
         contact_depth: constant(0.0),
         corner: 0.0,
+        inclined: None,
         neighbours: Vec::new(),
     };
     let layers = Layers::new(&gear, &tooth, WIDTH);

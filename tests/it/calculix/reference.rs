@@ -253,8 +253,8 @@ fn two_pairs_one_of_them_relieved() {
     assert!(found.nearest[0].gap < 1e-12 && found.nearest[1].gap > 5e-6);
 }
 
-/// The gear's tip 0.2 mm before A. The law has the force along the normal of the gear's flank, which is 3° off: it is too
-/// soft there. Pressure grows without bound towards it, as far as mesh and overlap allow.
+/// The gear's tip 0.2 mm before A. The force is along the normal of the pinion's flank, 3° away from that of the gear's.
+/// Pressure grows without bound towards the corner, as far as mesh and overlap allow.
 #[test]
 fn corner_before_a() {
     let pair = pair();
@@ -268,7 +268,7 @@ fn corner_before_a() {
         edge: 0.002,
         penalty: 10.0 * PENALTY,
         converged: [[27.80, 0.327], [25.90, 0.328]],
-        resolved: Some([0.02, 0.015]),
+        resolved: Some([2e-3, 1e-3]),
     };
     let Some(found) = corner.check(&pair) else { return };
     fine(&found, true);
@@ -290,7 +290,7 @@ fn corner_within_the_contact() {
         edge: 0.003,
         penalty: 3.0 * PENALTY,
         converged: [[27.57, 0.4048], [25.69, 0.4048]],
-        resolved: Some([0.01, 6e-3]),
+        resolved: Some([5e-3, 2.5e-3]),
     };
     let Some(found) = corner.check(&pair) else { return };
     fine(&found, true);

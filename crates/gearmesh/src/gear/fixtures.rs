@@ -2,7 +2,7 @@
 //!
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
-use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
+use super::compliance::{ContactLaw, Inclined, PairCompliance, ToothCompliance};
 use super::contact::flattening::Bodies;
 use super::geometry::flank_end::FlankEnd;
 use super::geometry::outline::tip::Tip;
@@ -144,6 +144,7 @@ pub(crate) fn tooth(value: impl Fn(f64) -> f64) -> ToothCompliance {
         body: nothing(),
         contact_depth: Series::from_values(0.0, 2.0, &[2.5e-3]),
         corner: 1.6e-12,
+        inclined: None,
         neighbours: Vec::new(),
     }
 }
@@ -181,6 +182,17 @@ pub(crate) fn coupled() -> PairCompliance {
             .collect();
     }
     PairCompliance { coupled: true, ..compliance }
+}
+
+/// The same, and loads at the corners of tips that may be inclined.
+pub(crate) fn inclined(mut compliance: PairCompliance) -> PairCompliance {
+    for tooth in [&mut compliance.pinion, &mut compliance.gear] {
+        let neighbours =
+            (1..5).map(|pitches| Series::fit(0.0, 2.0, 3, |u| -0.18e-9 / f64::from(pitches) * (1.0 + 0.3 * u)));
+        tooth.inclined =
+            Some(Inclined { own: [-0.8e-9, 0.05e-9], corner: [-2e-12, 3e-12], neighbours: neighbours.collect() });
+    }
+    compliance
 }
 
 /// A record of the family `name`.

@@ -268,5 +268,8 @@ fn tabulate_side(
             cross / own.sqrt() * (body_at(first) * body_at(further)).sqrt()
         }));
     }
-    Ok((ToothCompliance { bending, shear, axial, body, contact_depth, corner: 0.0, neighbours }, warning))
+    Ok((
+        ToothCompliance { bending, shear, axial, body, contact_depth, corner: 0.0, inclined: None, neighbours },
+        warning,
+    ))
 }

@@ -6,17 +6,19 @@
 //! the load line, to which the contact law adds the approach of the flank, over the depth `contact_depth`. Either way
 //! nothing is counted twice. Must not know: how it is solved.
 
+mod inclined;
 #[cfg(test)]
 mod tests;
 
 use std::f64::consts::PI;
 
+use self::inclined::AtTip;
 use super::{
-    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
-    RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, Inclined, MeshFacts, Method, PairCompliance, RootInfluences,
+    RootStress, RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
-use crate::gear::finite_elements::gear_model::{GearModel, Influences};
+use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};
 use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::finite_elements::{MeshError, root_stress};
 use crate::gear::geometry::outline::tip::Tip;
@@ -178,6 +180,24 @@ fn loads(contact: ContactLaw) -> usize {
     if contact == ContactLaw::Resolved { RESOLVED_ROLLS } else { ROLLS }
 }
 
+/// What loads on a gear do.
+#[derive(Clone, Debug, PartialEq)]
+struct Solution {
+    influences: Influences,
+    /// Those at the corner of the tip that are inclined, where contact is resolved.
+    tip: Option<AtTip>,
+}
+
+impl Solution {
+    /// The largest difference from that of another mesh, in units of the teeth's own.
+    fn difference(&self, coarse: &Self) -> f64 {
+        let normal = difference(&self.influences, &coarse.influences);
+        let own = &self.influences.own;
+        let inclined = self.tip.as_ref().zip(coarse.tip.as_ref()).map_or(0.0, |(fine, coarse)| fine.difference(coarse));
+        normal.max(inclined / own[own.len() - 1])
+    }
+}
+
 /// One gear, and how it is to be solved.
 struct Task<'a> {
     side: Side,
@@ -242,14 +262,15 @@ impl<'a> Task<'a> {
         GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
-    fn at(&self, across: usize, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
+    fn at(&self, across: usize, work: &mut Work) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
         let model = self.model(across, work)?;
         work.add(&Work::of(&COMPLIANCE_EVALUATIONS, self.rolls.len()));
         let failed = |error| self.failed(across, error);
         let (found, other_block) = if self.resolved {
             self.rests(&model).map_err(failed)?
         } else {
-            (model.influences(&self.rolls, self.neighbours).map_err(failed)?, 0.0)
+            let influences = model.influences(&self.rolls, self.neighbours).map_err(failed)?;
+            (Solution { influences, tip: None }, 0.0)
         };
         let facts = MeshFacts {
             side: self.side,
@@ -262,12 +283,12 @@ impl<'a> Task<'a> {
     }
 
     /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
-    fn solve(&self, work: &mut Work) -> Result<(Influences, MeshFacts, GearModel<'_>), ComplianceError> {
+    fn solve(&self, work: &mut Work) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
         let mut across = self.across;
         loop {
             let coarse = even(across / 2).max(LEAST);
             let (found, mut facts, model) = self.at(across, work)?;
-            let change = difference(&found, &self.at(coarse, work)?.0);
+            let change = found.difference(&self.at(coarse, work)?.0);
             facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
             let Some(accuracy) = self.accuracy else { return Ok((found, facts, model)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
@@ -286,42 +307,66 @@ impl<'a> Task<'a> {
         material.plane_compliance(self.plane) * material.youngs_modulus
     }
 
-    /// B for E = 1.
-    fn softening(&self) -> f64 {
-        self.half_plane() * wedge::softening(self.gear.last_corner().interior_angle)
+    /// The angle of the corner in which the flank ends \[rad\], or which a rounding takes away.
+    fn angle(&self) -> f64 {
+        self.gear.last_corner().interior_angle
     }
 
-    /// B ln c at a roll angle, c its distance from that corner along the flank \[modules\].
-    fn hardened(&self, roll: f64) -> f64 {
-        let radius = self.gear.base_radius / self.gear.specification.module;
-        let corner = self.gear.last_corner().roll;
-        self.softening() * libm::log(0.5 * radius * (corner - roll) * (corner + roll))
+    /// B for E = 1.
+    fn corner(&self) -> f64 {
+        self.half_plane() * wedge::softening(self.angle())
+    }
+
+    /// What inclined loads have of it.
+    fn inclined_corner(&self) -> [f64; 2] {
+        wedge::inclined_softening(self.angle()).map(|value| value * self.half_plane())
+    }
+
+    /// How far a place of the flank is from that corner \[modules\].
+    fn distance(&self, roll: f64) -> f64 {
+        let (tip, radius) = (self.gear.last_corner().roll, self.gear.base_radius / self.gear.specification.module);
+        0.5 * radius * (tip - roll) * (tip + roll)
     }
 
     /// What the tooth yields beside the half plane, and how much of it depends on the block of elements around the load, in
     /// units of the tooth's own.
-    fn rests(&self, model: &GearModel) -> Result<(Influences, f64), MeshError> {
+    fn rests(&self, model: &GearModel) -> Result<(Solution, f64), MeshError> {
         let count = self.rolls.len();
-        let others = self.rolls.iter().step_by(OTHER_LOADS).map(|&roll| (OTHER_BLOCK, roll));
-        let loads: Vec<(usize, f64)> = self.rolls.iter().map(|&roll| (0, roll)).chain(others).collect();
-        let Influences { own, further } = model.rests_in_blocks(&loads, self.neighbours)?;
-        let (own, others) = own.split_at(count);
+        let nearest = self.rolls[count - 1];
+        let others = self
+            .rolls
+            .iter()
+            .step_by(OTHER_LOADS)
+            .map(|&roll| FlankLoad { rows: OTHER_BLOCK, ..FlankLoad::normal(roll) });
+        let at_tip = inclined::loads(nearest);
+        let own = self.rolls.iter().map(|&roll| FlankLoad::normal(roll));
+        let loads: Vec<FlankLoad> = own.chain(at_tip).chain(others).collect();
+        let all = model.rests_of(&loads, self.neighbours)?;
+        let bodies = [self.half_plane(), self.gear.specification.material.plane_poisson_ratio(self.plane)];
+        let apart = (libm::log(self.distance(nearest)), self.inclined_corner());
+        let tip = AtTip::new(&all, [count, count], apart, bodies);
+        let Influences { own, further } = all;
+        let (own, others) = (&own[..count], &own[count + at_tip.len()..]);
         let found = self.beside(&self.rolls, own);
         let changes = others.iter().zip(own.iter().zip(&found).step_by(OTHER_LOADS));
         let change = changes.map(|(other, (own, found))| ((other - own) / found).abs()).fold(0.0, f64::max);
         let of_rolls = |rows: &Vec<Vec<f64>>| rows[..count].iter().map(|row| row[..count].to_vec()).collect();
-        Ok((Influences { own: found, further: further.iter().map(of_rolls).collect() }, change))
+        let influences = Influences { own: found, further: further.iter().map(of_rolls).collect() };
+        Ok((Solution { influences, tip: Some(tip) }, change))
     }
 
     /// What a tooth yields beside the half plane and beside −B ln c.
     fn beside(&self, rolls: &[f64], rests: &[f64]) -> Vec<f64> {
-        let half_planes = 2.0 / PI * self.half_plane() * libm::log(LENGTH);
-        let beside = |(roll, rest): (&f64, &f64)| rest + self.hardened(*roll) - half_planes;
+        let corner = self.corner();
+        let beside = |(&roll, rest): (&f64, &f64)| {
+            rest + corner * libm::log(self.distance(roll)) - 2.0 / PI * self.half_plane() * libm::log(LENGTH)
+        };
         rolls.iter().zip(rests).map(beside).collect()
     }
 
     /// SI, over the whole face width.
-    fn tables(&self, solution: &Influences) -> Result<ToothCompliance, ComplianceError> {
+    fn tables(&self, solution: &Solution) -> Result<ToothCompliance, ComplianceError> {
+        let Solution { influences: solution, tip } = solution;
         let (lower, upper) = (self.root.form_roll, self.gear.flank_end.roll);
         let scale = 1.0 / (self.gear.specification.material.youngs_modulus * self.gear.specification.face_width);
         let scaled = |values: &[f64]| values.iter().map(|value| value * scale).collect::<Vec<f64>>();
@@ -333,8 +378,14 @@ impl<'a> Task<'a> {
                 .ok_or(ComplianceError::Unresolved { side: self.side, thickness: self.gear.tip_thickness() })?;
             depth
         };
+        let corner = if self.resolved { self.corner() } else { 0.0 };
+        let last = solution.own.len() - 1;
+        let is_stiff = |place: &usize| {
+            let own = solution.own[*place];
+            own <= 0.0 || (*place == last && tip.as_ref().is_some_and(|tip| tip.is_stiff(own)))
+        };
         if self.resolved
-            && let Some(place) = solution.own.iter().position(|own| *own <= 0.0)
+            && let Some(place) = (0..=last).find(is_stiff)
         {
             let length = LENGTH * self.gear.specification.module;
             return Err(ComplianceError::Stiff { side: self.side, roll: self.rolls[place], length });
@@ -342,7 +393,6 @@ impl<'a> Task<'a> {
         let neighbours = (solution.further.iter())
             .map(|rows| Surface::from_values([lower; 2], [upper; 2], [self.rolls.len(); 2], &scaled(&rows.concat())))
             .collect();
-        let corner = if self.resolved { self.softening() } else { 0.0 };
         Ok(ToothCompliance {
             bending: nothing(),
             shear: nothing(),
@@ -350,6 +400,11 @@ impl<'a> Task<'a> {
             body: Series::from_values(lower, upper, &scaled(&solution.own)),
             contact_depth,
             corner: corner / self.gear.specification.material.youngs_modulus,
+            inclined: tip.as_ref().map(|tip| Inclined {
+                own: tip.own.map(|own| own * scale),
+                corner: self.inclined_corner().map(|own| own / self.gear.specification.material.youngs_modulus),
+                neighbours: tip.neighbours.iter().map(|row| Series::from_values(lower, upper, &scaled(row))).collect(),
+            }),
             neighbours,
         })
     }

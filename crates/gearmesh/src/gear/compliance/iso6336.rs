@@ -159,6 +159,7 @@ impl Method for Iso6336 {
                 body: nothing(),
                 contact_depth: nothing(),
                 corner: 0.0,
+                inclined: None,
                 neighbours: Vec::new(),
             })
         };

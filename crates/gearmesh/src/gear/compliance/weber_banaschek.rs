@@ -96,7 +96,7 @@ fn tabulate_side(
              {chord:.3} mm thick at its root"
         ));
     }
-    Ok(ToothCompliance { bending, shear, axial, body: own, contact_depth, corner: 0.0, neighbours })
+    Ok(ToothCompliance { bending, shear, axial, body: own, contact_depth, corner: 0.0, inclined: None, neighbours })
 }
 
 /// The roll angle of the section, on the involute or its continuation, at which the load line of a roll angle crosses

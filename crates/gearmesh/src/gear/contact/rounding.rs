@@ -17,8 +17,11 @@ use crate::numeric::crossing::bracketed;
 use crate::numeric::extremum::maximum;
 use crate::numeric::graded::Graded;
 
-/// How well the tables follow.
+/// How well the tables follow; those of slopes from differences.
 const ACCURACY: f64 = 1e-12;
+const COARSE: f64 = 1e-6;
+/// Of those differences.
+const STEP: f64 = 1e-5;
 
 /// By how much a flank that ends in a rounding approaches more than one that goes on.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,6 +32,8 @@ pub struct Rounding {
     beyond: f64,
     /// Over λ, and its slope.
     more: [Graded; 2],
+    /// g of what turns, over λ, and its slope.
+    turned: [Graded; 2],
 }
 
 /// Places at which the largest pressure is looked for, and how well it is found \[rad\].
@@ -86,6 +91,22 @@ impl Contact {
         Self::new(t.unwrap_or(if place < 0.0 { -1.0 } else { 1.0 }), ratio)
     }
 
+    /// How much farther inside the mean place of the load is than the flanks would touch without load, and its slope over λ:
+    /// the mean of cos θ is a² g sin³ θ/(3π) with θ at the junction.
+    fn beside(&self) -> [f64; 2] {
+        let Self { junction: t, ratio, half_width: a, place, .. } = *self;
+        let (g, sine) = (1.0 / ratio - 1.0, ((1.0 - t) * (1.0 + t)).sqrt());
+        let angle = libm::acos(t);
+        let cube = g * sine * sine * sine / (3.0 * PI);
+        let mean = a * t - a * a * a * cube;
+        let touch = if place < 0.0 { ratio } else { 1.0 };
+        let a_slope = a * a * a * g * sine / PI;
+        let q = g * (sine - t * angle) / PI;
+        let place_slope = a_slope * (t - q) + a * (1.0 + g * angle / PI);
+        let mean_slope = a_slope * (t - 3.0 * a * a * cube) + a + a * a * a * g * t * sine / PI;
+        [mean - touch * place, mean_slope / place_slope - touch]
+    }
+
     /// The pressure over Hertz' at the angle θ: a sin θ and the same of the conjugate function of (cos θ − t) on the rounding.
     fn pressure(&self, angle: f64) -> f64 {
         let Self { junction, ratio, half_width, .. } = *self;
@@ -120,7 +141,24 @@ impl Rounding {
             graded.push((0.0, 1.0), [false, true], ACCURACY, |place| at(place)[which]);
             graded
         });
-        Self { ratio, beyond, more }
+        let g = |place: f64| {
+            let [beside, slope] = Contact::at(place, ratio).beside();
+            2.5 * beside - 0.5 * place * slope
+        };
+        // The slope has no bound where the contact just reaches the junction.
+        let g_slope = |place: f64| {
+            let near = place.clamp(beyond + 2.0 * STEP, 1.0 - 2.0 * STEP);
+            (g(near + STEP) - g(near - STEP)) / (2.0 * STEP)
+        };
+        let functions: [&dyn Fn(f64) -> f64; 2] = [&g, &g_slope];
+        let turned = [0, 1].map(|which: usize| {
+            let mut graded = Graded::default();
+            let accuracy = [ACCURACY, COARSE][which];
+            graded.push((beyond, 0.0), [true, false], accuracy, functions[which]);
+            graded.push((0.0, 1.0), [false, true], accuracy, functions[which]);
+            graded
+        });
+        Self { ratio, beyond, more, turned }
     }
 
     /// (Ψ/k₀ above the least gap) − ln 2 − ½, and its slope over λ: 0 inside, −½ ln κ beyond, where it is a contact of
@@ -134,6 +172,18 @@ impl Rounding {
         } else {
             [self.more[0].value(place), self.more[1].value(place)]
         }
+    }
+
+    /// What the normal of the other flank adds to the approach as it turns along the contact, as [`Wedge::turned`] has it;
+    /// a rounding has no B. Nothing where all of the contact lies on one side of the junction.
+    ///
+    /// [`Wedge::turned`]: super::wedge::Wedge::turned
+    #[must_use]
+    pub fn turned(&self, place: f64) -> [[f64; 2]; 2] {
+        if place >= 1.0 || place <= self.beyond {
+            return [[0.0; 2]; 2];
+        }
+        [[self.turned[0].value(place), 0.0], [self.turned[1].value(place), 0.0]]
     }
 
     /// How it spreads: as on the flank inside, as on the rounding beyond.
@@ -163,8 +213,8 @@ mod tests {
     use crate::numeric::elimination::solve;
 
     /// Ψ/k₀ by pressures that are constant on each of many strips; those that would pull are taken away. And between which
-    /// places there are any left, and where the largest is.
-    fn by_strips(place: f64, ratio: f64, [from, to]: [f64; 2]) -> (f64, [f64; 2], [f64; 2]) {
+    /// places there are any left; the largest, its place, and the mean place.
+    fn by_strips(place: f64, ratio: f64, [from, to]: [f64; 2]) -> (f64, [f64; 2], [f64; 3]) {
         const STRIPS: usize = 160;
         let gap = |x: f64| (x + place).powi(2) + (1.0 / ratio - 1.0) * x.max(0.0).powi(2);
         let width = (to - from) / STRIPS as f64;
@@ -194,7 +244,9 @@ mod tests {
                 let pressure = |k: usize| rows[k][STRIPS + 1];
                 let higher = |a: usize, b: usize| if pressure(b) > pressure(a) { b } else { a };
                 let top = (0..loaded.len()).reduce(higher).unwrap();
-                return (rows[size - 1][STRIPS + 1], ends, [pressure(top), end(loaded[top]) + 0.5 * width]);
+                let middle = |k: usize| end(loaded[k]) + 0.5 * width;
+                let mean = (0..loaded.len()).map(|k| width * pressure(k) * middle(k)).sum();
+                return (rows[size - 1][STRIPS + 1], ends, [pressure(top), middle(top), mean]);
             }
             loaded = (0..loaded.len()).filter(pressed).map(|k| loaded[k]).collect();
         }
@@ -208,7 +260,7 @@ mod tests {
             for place in [1.5, 0.9, 0.5, 0.1, 0.0, -0.2, -0.6, -1.1, -3.0, -7.0] {
                 let least = f64::min(place, 0.0).powi(2) * (1.0 - ratio);
                 let (_, coarse, _) = by_strips(place, ratio, [-place.max(0.0) - 1.1, (-place * ratio).max(0.0) + 1.1]);
-                let (strips, ends, [top, at]) = by_strips(place, ratio, [coarse[0] - 1e-3, coarse[1] + 1e-3]);
+                let (strips, ends, [top, at, mean]) = by_strips(place, ratio, [coarse[0] - 1e-3, coarse[1] + 1e-3]);
                 let strips = strips - least - LN_2 - 0.5;
                 let spread = rounding.spread(place);
                 let width = 0.5 * (ends[1] - ends[0]);
@@ -221,6 +273,11 @@ mod tests {
                     (spread.pressure * hertz / top - 1.0).abs() < 0.01,
                     "{ratio} {place}: {spread:?}, by strips {top}"
                 );
+                let [beside, _] = Contact::at(place.max(rounding.beyond), ratio).beside();
+                if place > rounding.beyond && place < 1.0 {
+                    let touch = if place < 0.0 { ratio * place } else { place };
+                    assert!((beside - (-mean - touch)).abs() < 2e-3, "{ratio} {place}: {beside}, by strips {mean}");
+                }
                 let farther = -at - place;
                 assert!(
                     (spread.farther - farther).abs() < 0.05 * width,

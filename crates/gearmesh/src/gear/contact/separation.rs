@@ -203,6 +203,13 @@ impl Facing {
         Touch { curvature: centre.curvature - self.round, ..centre }
     }
 
+    /// By how much the other flank's normal there is turned from that of the end of the own flank, towards its root \[rad\].
+    #[must_use]
+    pub fn inclination(&self, before: f64) -> f64 {
+        let sine = self.tip(before).slope / self.point_roll(self.start + self.round);
+        libm::asin(sine.clamp(-1.0, 1.0))
+    }
+
     /// How far before its own position the tip can meet the other flank, which ends at its own tip; at most `maximum`.
     #[must_use]
     pub fn reach(&self, maximum: f64) -> f64 {

@@ -33,6 +33,27 @@ impl Shape {
         }
     }
 
+    /// The same of another ratio B/k₀, for an inclined load beyond the corner.
+    fn more_of(&self, place: f64, ratio: f64) -> [f64; 2] {
+        let [mut more, mut by_place] = self.more(place);
+        if let Self::Corner(wedge) = self
+            && place < 0.0
+        {
+            let change = ratio - wedge.ratio();
+            let [by_ratio, slope] = wedge.by_ratio(place);
+            (more, by_place) = (more + change * by_ratio, by_place + change * slope);
+        }
+        [more, by_place]
+    }
+
+    /// What the turn of the other flank's normal along the contact adds, as [`Wedge::turned`] has it.
+    fn turned(&self, place: f64) -> [[f64; 2]; 2] {
+        match self {
+            Self::Corner(wedge) => wedge.turned(place),
+            Self::Rounding(rounding) => rounding.turned(place),
+        }
+    }
+
     /// How a contact there spreads, against that of half planes.
     #[must_use]
     pub fn spread(&self, place: f64) -> Spread {
@@ -64,12 +85,25 @@ impl Shape {
 pub struct Corner<'a> {
     /// What the flank ends in.
     pub shape: &'a Shape,
-    /// B \[1/Pa\].
+    /// B \[1/Pa\]; where the load is inclined at the corner, of that load.
     pub rate: f64,
+    /// What the load's inclination does as it changes along the contact.
+    pub turned: Turned,
     /// c: how far from the end the flanks would touch without load \[m\], along the flank; negative beyond it.
     pub distance: f64,
     /// What the tooth yields more on its way to a corner that a rounding takes away \[1/Pa\]; 0 at a corner that is there.
     pub softened: f64,
+}
+
+/// A load is along the normal of the other flank, which turns along the contact: half of what a compliance gains per angle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Turned {
+    /// D: that of the tooth, at the corner and without the part of B \[1/Pa\].
+    pub tooth: f64,
+    /// D_B: that of B \[1/Pa\].
+    pub rate: f64,
+    /// 1/ρ of the contact \[1/m\]: how fast it turns.
+    pub curvature: f64,
 }
 
 /// Those of both teeth.
@@ -83,6 +117,34 @@ pub struct Tips<'a> {
     pub unit: f64,
     /// Half the width up to which the law holds \[m\]: beyond, it is continued by its tangent.
     pub widest: f64,
+}
+
+impl Corner<'_> {
+    /// What the turn of the load along the contact adds to w/p, where half the width is so much, and its slope over ln p.
+    fn turned(&self, width: f64, unit: f64) -> [f64; 2] {
+        let Turned { tooth, rate, curvature } = self.turned;
+        if curvature == 0.0 {
+            return [0.0; 2];
+        }
+        let place = self.distance / width;
+        let [[g, h], [by_place, h_by_place]] = self.shape.turned(place);
+        let (share, here) = (width * curvature, tooth - rate * libm::log(width / unit));
+        let added = share * (here * g - rate * h);
+        // Half the width grows as √p, and λ falls as it grows.
+        let moved = place * (here * by_place - rate * h_by_place);
+        [added, 0.5 * (added - share * (rate * g + moved))]
+    }
+}
+
+/// A value and its slope, held below twice a size that it hardly ever reaches: it is of first order, and where it is as large
+/// as the half planes' own change a law would end that it is only to correct.
+fn held([value, slope]: [f64; 2], size: f64) -> [f64; 2] {
+    let over = value.abs() / size - 1.0;
+    if over <= 0.0 {
+        return [value, slope];
+    }
+    let share = 1.0 + over;
+    [value.signum() * size * (1.0 + over / share), slope / (share * share)]
 }
 
 /// The same, prepared for many loads.
@@ -118,6 +180,9 @@ impl<'a> NearTips<'a> {
                 let share = half_width / corner.distance;
                 near.far -= corner.rate * libm::log(corner.distance / unit);
                 near.rest += 2.0 * rate * corner.shape.rest() * share * share;
+                // It grows with the square of the width where the corner is far; this one is narrow enough.
+                let width = 0.5 * corner.distance / corner.shape.far();
+                near.rest += corner.turned(width, unit)[0] * (half_width / width) * (half_width / width);
             }
         }
         near
@@ -131,9 +196,10 @@ impl<'a> NearTips<'a> {
         let start = [self.compliance + series.law.constant - rate * log, -rate];
         self.tips.corners.iter().fold(start, |[sum, slope], corner| {
             let place = corner.distance / width;
-            let [more, by_place] = corner.shape.more(place);
-            let added = 2.0 * rate * more - corner.rate * log_width;
-            [sum + added, slope - rate * by_place * place - 0.5 * corner.rate]
+            let [more, by_place] = corner.shape.more_of(place, 0.5 * corner.rate / rate);
+            let [turned, by_log] = held(corner.turned(width, self.tips.unit), 0.5 * rate);
+            let added = 2.0 * rate * more - corner.rate * log_width + turned;
+            [sum + added, slope - rate * by_place * place - 0.5 * corner.rate + by_log]
         })
     }
 
@@ -156,9 +222,15 @@ impl<'a> NearTips<'a> {
         let Self { rest, last_far, largest, .. } = *self;
         let rate = series.law.rate;
         if load < last_far {
-            // The rest of Ψ is small: one step of Newton's method.
-            let load = load - load * load * rest / (penetration / load - rate + 2.0 * rest * load);
-            return (load, 1.0 / (penetration / load - rate + rest * load));
+            // What grows with the load is small: two steps of Newton's method.
+            let (start, mut load) = (load, load);
+            for _ in 0..2 {
+                let here = penetration / start - rate * libm::log(load / start) + rest * load;
+                load += (penetration - load * here) / (here - rate + rest * load);
+            }
+            if load < last_far {
+                return (load, 1.0 / (penetration / load - rate + rest * load));
+            }
         }
         let mut load = load.min(largest);
         let wanted = libm::log(penetration);
@@ -194,6 +266,7 @@ mod tests {
         let corner = |side: usize| Corner {
             shape: &shapes[side],
             rate: if matches!(shapes[side], Shape::Corner(_)) { [0.15, 0.35][side] * 2.0 * law.rate } else { 0.0 },
+            turned: Turned { tooth: -[0.2, 1.0][side] * 1e-11, rate: -[2e-13, 1e-12][side], curvature: 1.0 / 7e-3 },
             distance: distances[side],
             softened: if matches!(shapes[side], Shape::Corner(_)) { 0.0 } else { 1e-12 },
         };

@@ -9,7 +9,13 @@
 //! (ξ − λ)² − ∫ [ln|ξ − η| + B/k₀ ln((ξ + η)/2)] p dη = Ψ/k₀, ∫ p = 1, p ≥ 0, ξ ≥ 0,
 //!
 //! k₀ = Σ 2/(πE′): without corner Ψ/k₀ = ln 2 + ½ (Johnson, Contact Mechanics, 4.2). The ends of the contact are given and
-//! λ follows, since everything else in the equation is linear. Must not know: gears, loads.
+//! λ follows, since everything else in the equation is linear.
+//!
+//! The load at ξ acts along the normal of the other flank, which is turned against the wedge's side by (ξ − λ) b/ρ towards
+//! the inside, ρ the parabola's radius; beyond the corner by −λ b/ρ at the corner itself, which is not counted here. To first
+//! order that adds P² b/ρ (D ξ̄ − D_B M) to the energy of the load P, ξ̄ the mean of ξ, less λ where that is above 0, M the
+//! mean of that times ln((ξ + η)/2), and with D − D_B ln c half of what the compliance at c gains per angle. What it adds to
+//! the approach, with b ∝ √P and λ ∝ 1/b, are [`Wedge::turned`]. Must not know: gears, loads.
 
 mod spread;
 
@@ -41,15 +47,30 @@ const NARROWEST: f64 = 1e-3;
 /// Start over end of a contact, when λ is above [`FAR`].
 const ROUNDEST: f64 = 0.95;
 
+/// By how much the end of a wedge moves under a load there along its bisector and under one across it, times E′, for each
+/// factor e of the distance.
+fn principal(interior: f64) -> [f64; 2] {
+    let (half, shear) = (0.5 * interior, 0.5 * libm::sin(interior));
+    [1.0 / (half + shear), 1.0 / (half - shear)]
+}
+
 /// B E′: near a corner of the angle `interior`, > 0 and < 2π \[rad\], the surface yields by −B ln c more than that of a half
 /// plane to a load on one of its sides, normal to it, at the distance c from the corner. 0 for a half plane.
 #[must_use]
 pub fn softening(interior: f64) -> f64 {
-    let half = 0.5 * interior;
+    let [along, across] = principal(interior);
     // The load against the bisector.
-    let (sine, cosine) = libm::sincos(FRAC_PI_2 - half);
-    let shear = 0.5 * libm::sin(interior);
-    cosine * cosine / (half + shear) + sine * sine / (half - shear) - 2.0 / PI
+    let (sine, cosine) = libm::sincos(FRAC_PI_2 - 0.5 * interior);
+    cosine * cosine * along + sine * sine * across - 2.0 / PI
+}
+
+/// The same of loads that are turned from the normal, towards the inside: along the side by a load normal to it, and by one
+/// along it less by one normal to it. A half plane yields alike in all directions.
+#[must_use]
+pub fn inclined_softening(interior: f64) -> [f64; 2] {
+    let [along, across] = principal(interior);
+    let (sine, cosine) = libm::sincos(PI - interior);
+    [0.5 * sine * (along - across), cosine * (across - along)]
 }
 
 /// By how much a parabola approaches a wedge more than a half plane.
@@ -57,15 +78,20 @@ pub fn softening(interior: f64) -> f64 {
 pub struct Wedge {
     /// B/k₀.
     ratio: f64,
-    /// In order, each with its slope; the first one over ln(−λ).
-    tables: [(Series, Series); 5],
+    /// In order; the first one over ln(−λ).
+    tables: [Table; 5],
     /// Times 1/λ² beyond [`FAR`].
     rest: f64,
     /// At [`BEYOND`].
-    last: f64,
+    last: [f64; 4],
+    /// At [`FAR`].
+    first: [f64; 4],
     /// How the contact spreads.
     spreads: Spreads,
 }
+
+/// A stretch of λ: [`Wedge::more`], what it grows by per B/k₀, and [`Wedge::turned`], each with its slope.
+type Table = [(Series, Series); 4];
 
 impl Wedge {
     /// `ratio`: B/k₀, 0 or more, below 1.
@@ -88,27 +114,56 @@ impl Wedge {
             }
         };
         // Above the least gap, which is at the corner where the top is beyond it.
-        let value = |place: f64, found: &Contact| {
-            found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5
+        let values = |place: f64, found: &Contact| {
+            let more = found.above_corner + if place < 0.0 { 0.0 } else { place * place } - LN_2 - 0.5;
+            let [mean, logarithm, product] = found.means(&waves);
+            let inside = place.max(0.0);
+            [more, logarithm, mean - inside, product - inside * logarithm]
         };
         let logs = [libm::log(-JOINTS[0]), libm::log(-BEYOND)];
         let ranges = [logs, [JOINTS[0], 0.0], [0.0, reached.place], [reached.place, JOINTS[1]], [JOINTS[1], FAR]];
-        let places = |table: usize| {
+        // λ at the nodes of a table, and what turns a slope of it into λ d/dλ.
+        let places: [Vec<[f64; 2]>; 5] = std::array::from_fn(|table| {
             let arguments = nodes(ranges[table][0], ranges[table][1], NODES).into_iter();
-            arguments.map(move |argument| if table == 0 { -libm::exp(argument) } else { argument })
-        };
-        let contacts: [Vec<Contact>; 5] = std::array::from_fn(|table| places(table).map(contact).collect());
-        let tables: [(Series, Series); 5] = std::array::from_fn(|table| {
-            let values: Vec<f64> =
-                places(table).zip(&contacts[table]).map(|(place, found)| value(place, found)).collect();
-            let values = Series::from_values(ranges[table][0], ranges[table][1], &values);
-            let slopes = values.derivative();
-            (values, slopes)
+            arguments.map(|at| if table == 0 { [-libm::exp(at), 1.0] } else { [at; 2] }).collect()
+        });
+        let contacts: [Vec<Contact>; 5] =
+            std::array::from_fn(|table| places[table].iter().map(|[place, _]| contact(*place)).collect());
+        let tables: [Table; 5] = std::array::from_fn(|table| {
+            let found = places[table].iter().zip(&contacts[table]).map(|([place, _], found)| values(*place, found));
+            tabulated(ranges[table], &places[table], &found.collect::<Vec<_>>())
         });
         let spreads = Spreads::new(&ranges, &contacts, &reached);
-        let rest = (tables[4].0.value(FAR) + ratio * libm::log(FAR)) * FAR * FAR;
-        let last = tables[0].0.value(libm::log(-BEYOND));
-        Self { ratio, tables, rest, last, spreads }
+        let [first, last] = [(4, FAR), (0, logs[1])]
+            .map(|(table, at): (usize, f64)| std::array::from_fn(|k| tables[table][k].0.value(at)));
+        let rest = (first[0] + ratio * libm::log(FAR)) * FAR * FAR;
+        Self { ratio, tables, rest, last, first, spreads }
+    }
+
+    /// B/k₀.
+    #[must_use]
+    pub const fn ratio(&self) -> f64 {
+        self.ratio
+    }
+
+    /// Where it is looked up: the table, its variable, and the rate of that.
+    fn place(&self, place: f64) -> (&Table, f64, f64) {
+        if place < JOINTS[0] {
+            return (&self.tables[0], libm::log(-place), 1.0 / place);
+        }
+        (&self.tables[self.table(place)], place, 1.0)
+    }
+
+    /// Which table λ is in, from the end of the first one to [`FAR`].
+    fn table(&self, place: f64) -> usize {
+        1 + self.tables[1..4].iter().position(|table| place <= table[0].0.upper()).unwrap_or(3)
+    }
+
+    /// How a contact with its top at λ spreads.
+    #[must_use]
+    pub fn spread(&self, place: f64) -> Spread {
+        let table = if place < JOINTS[0] { 0 } else { self.table(place) };
+        self.spreads.at(table, place)
     }
 
     /// (Ψ − k₀ λ² where λ < 0)/k₀ − ln 2 − ½, and its slope over λ. Continuous; towards −B/k₀ ln λ far inside, and by
@@ -119,29 +174,43 @@ impl Wedge {
             let square = self.rest / (place * place);
             return [square - self.ratio * libm::log(place), -(2.0 * square + self.ratio) / place];
         }
-        if place < JOINTS[0] {
-            let log = libm::log(-place);
-            if place < BEYOND {
-                let slope = 1.0 + self.ratio;
-                return [self.last + slope * (log - libm::log(-BEYOND)), slope / place];
-            }
-            let (values, slopes) = &self.tables[0];
-            return [values.value(log), slopes.value(log) / place];
+        if place < BEYOND {
+            let slope = 1.0 + self.ratio;
+            return [self.last[0] + slope * libm::log(place / BEYOND), slope / place];
         }
-        let (values, slopes) = &self.tables[self.table(place)];
-        [values.value(place), slopes.value(place)]
+        let (table, at, rate) = self.place(place);
+        [table[0].0.value(at), table[0].1.value(at) * rate]
     }
 
-    /// Which table λ is in, from the end of the first one to [`FAR`].
-    fn table(&self, place: f64) -> usize {
-        1 + self.tables[1..4].iter().position(|(values, _)| place <= values.upper()).unwrap_or(3)
-    }
-
-    /// How a contact with its top at λ spreads.
+    /// How much [`Wedge::more`] grows per B/k₀ at λ < 0, and the slope of that over λ.
     #[must_use]
-    pub fn spread(&self, place: f64) -> Spread {
-        let table = if place < JOINTS[0] { 0 } else { self.table(place) };
-        self.spreads.at(table, place)
+    pub fn by_ratio(&self, place: f64) -> [f64; 2] {
+        if place < BEYOND {
+            return [self.last[1] + libm::log(place / BEYOND), 1.0 / place];
+        }
+        let (table, at, rate) = self.place(place);
+        [table[1].0.value(at), table[1].1.value(at) * rate]
+    }
+
+    /// What the normal of the other flank adds to the approach as it turns along the contact, [g, h], and their slopes over
+    /// λ: b/ρ [(D − D_B ln b) g − D_B h] per load. Far from the corner it falls as 1/λ; far inside so that it is D − D_B ln c
+    /// that counts.
+    #[must_use]
+    pub fn turned(&self, place: f64) -> [[f64; 2]; 2] {
+        let far = |[g, h]: [f64; 2]| [[g, h], [-g / place, -h / place]];
+        if place > FAR {
+            let [values, slopes] = far([self.first[2], self.first[3]].map(|value| value * FAR / place));
+            let log = libm::log(place / FAR);
+            return [
+                [values[0], values[1] + log * values[0]],
+                [slopes[0], slopes[1] + log * slopes[0] + values[0] / place],
+            ];
+        }
+        if place < BEYOND {
+            return far([self.last[2], self.last[3]].map(|value| value * BEYOND / place));
+        }
+        let (table, at, rate) = self.place(place);
+        [[2, 3].map(|k| table[k].0.value(at)), [2, 3].map(|k| table[k].1.value(at) * rate)]
     }
 
     /// What is left of [`Wedge::more`] far inside, besides −B/k₀ ln λ, times λ².
@@ -155,6 +224,31 @@ impl Wedge {
     pub const fn far() -> f64 {
         FAR
     }
+}
+
+/// The tables of a stretch of a variable, from λ at its nodes, with what turns slopes into λ d/dλ, and what was found there.
+fn tabulated([lower, upper]: [f64; 2], places: &[[f64; 2]], found: &[[f64; 4]]) -> Table {
+    let series = |values: &dyn Fn(usize) -> f64| {
+        Series::from_values(lower, upper, &(0..NODES).map(values).collect::<Vec<f64>>())
+    };
+    let rates = [1, 2, 3].map(|which| {
+        let slope = series(&|k| found[k][which]).derivative();
+        nodes(lower, upper, NODES)
+            .iter()
+            .zip(places)
+            .map(|(at, place)| slope.value(*at) * place[1])
+            .collect::<Vec<f64>>()
+    });
+    let with_slope = |values: Series| {
+        let slope = values.derivative();
+        (values, slope)
+    };
+    [
+        with_slope(series(&|k| found[k][0])),
+        with_slope(series(&|k| 0.25 * rates[0][k] - found[k][1] - 0.25)),
+        with_slope(series(&|k| 2.5 * found[k][2] - 0.5 * rates[1][k])),
+        with_slope(series(&|k| 2.5 * found[k][3] - 0.5 * rates[2][k] + 0.5 * found[k][2])),
+    ]
 }
 
 /// A contact from `start` to 1 by what its pressures do to it: −∫ [ln|x − y| + B/k₀ ln((x + y)/2)] at places x, for each
@@ -175,10 +269,28 @@ struct Contact {
     above_corner: f64,
     /// How far from the corner it ends.
     end: f64,
-    /// How far from it it starts, over that.
+    /// Where it starts over where it ends.
     start: f64,
     /// Of the pressure times the sine of the angle whose cosine is the place, times half the width: a cosine series.
     terms: [f64; TERMS],
+}
+
+impl Contact {
+    /// The means of ξ, of ln((ξ + η)/2) and of ξ times that, under the pressures at ξ and η.
+    fn means(&self, waves: &Waves) -> [f64; 3] {
+        let (middle, half) = (0.5 * (1.0 + self.start), 0.5 * (1.0 - self.start));
+        let places = waves.points[1].map(|cosine| self.end * (middle + half * cosine));
+        let part = |k: usize| self.terms.iter().zip(&waves.points).map(|(term, wave)| term * wave[k]).sum::<f64>();
+        let parts: [f64; POINTS] = std::array::from_fn(|k| PI / POINTS as f64 * part(k));
+        let mut means = [0.0; 3];
+        for (x, on) in places.iter().zip(&parts) {
+            let by = places.iter().zip(&parts).map(|(y, by)| by * libm::log(0.5 * (x + y))).sum::<f64>();
+            for (mean, value) in means.iter_mut().zip([*x, by, x * by]) {
+                *mean += on * value;
+            }
+        }
+        means
+    }
 }
 
 /// cos(nθ) for the terms n: at the angles of the places, and at those of the points.
@@ -227,13 +339,12 @@ impl Shape {
         (rows[TERMS][0], rows[TERMS][TERMS + 2]) = (PI, 1.0);
         rows[TERMS + 1][..TERMS].fill(1.0);
         solve(&mut rows);
-        let terms = std::array::from_fn(|n| rows[n][TERMS + 2]);
         Contact {
             place: rows[TERMS][TERMS + 2],
             above_corner: rows[TERMS + 1][TERMS + 2],
             end,
             start: self.start,
-            terms,
+            terms: std::array::from_fn(|n| rows[n][TERMS + 2]),
         }
     }
 
@@ -253,9 +364,13 @@ impl Shape {
         solve(&mut rows);
         let [square, product, sum] = [0, 1, 2].map(|k| rows[TERMS + k][TERMS + 3]);
         let end = square.sqrt();
-        let terms = std::array::from_fn(|n| rows[n][TERMS + 3]);
-        let above_corner = sum - (1.0 + self.ratio) * libm::log(end);
-        Contact { place: product / end, above_corner, end, start: self.start, terms }
+        Contact {
+            place: product / end,
+            above_corner: sum - (1.0 + self.ratio) * libm::log(end),
+            end,
+            start: self.start,
+            terms: std::array::from_fn(|n| rows[n][TERMS + 3]),
+        }
     }
 }
 

@@ -37,6 +37,25 @@ pub struct GearModel<'a> {
     pub sector: Sector,
 }
 
+/// A unit load on the right flank.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FlankLoad {
+    /// Roll angle of its place \[rad\].
+    pub roll: f64,
+    /// By how much it is turned from the flank's normal towards the root \[rad\].
+    pub inclination: f64,
+    /// How many rows of the body its block of elements has beside the tooth.
+    pub rows: usize,
+}
+
+impl FlankLoad {
+    /// Along the flank's normal, in the block of the tooth alone.
+    #[must_use]
+    pub const fn normal(roll: f64) -> Self {
+        Self { roll, inclination: 0.0, rows: 0 }
+    }
+}
+
 /// The effects of loads at several places of a flank.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Influences {
@@ -101,25 +120,27 @@ impl<'a> GearModel<'a> {
         Ok(spread(edge, place, self.direction(roll)))
     }
 
-    /// The field of a half plane under a unit load on the right flank at a roll angle.
-    fn field(&self, roll: f64) -> HalfPlane {
+    /// The field of a half plane under a unit load on the right flank at a roll angle, inclined by so much.
+    fn field(&self, roll: f64, inclination: f64) -> HalfPlane {
         let height = self.gear.flank(roll).height / self.gear.specification.module;
         let (edge, place) = find(&self.mesh, &self.mesh.flank, height);
         let shares = edge_shape(place);
         let at = [0, 1].map(|axis| (0..3).map(|k| shares[k] * self.mesh.nodes[edge.nodes[k]][axis]).sum());
-        HalfPlane::new(at, self.direction(roll), &self.gear.specification.material, self.plane)
+        let ([x, y], (sine, cosine)) = (self.direction(roll), libm::sincos(inclination));
+        let along = [x * cosine - y * sine, y * cosine + x * sine];
+        HalfPlane::new(at, along, &self.gear.specification.material, self.plane)
     }
 
-    /// A unit load on the right flank at a roll angle, less that field.
-    fn taken(&self, block: &Block, roll: f64) -> Taken {
-        block.take(&self.mesh.nodes, &self.field(roll))
+    /// A unit load on the right flank, less that field.
+    fn taken(&self, block: &Block, roll: f64, inclination: f64) -> Taken {
+        block.take(&self.mesh.nodes, &self.field(roll, inclination))
     }
 
     /// The forces of a unit load at a roll angle, less its own field in the tooth, as [`Self::stress_influences`] has it.
     #[cfg(test)]
     pub(super) fn load_without_field(&self, roll: f64) -> Option<NodalForces> {
         let block = Block::new(&self.mesh.nodes, &self.mesh.elements, &self.mesh.tooth(0), &self.elasticity)?;
-        Some(self.taken(&block, roll).forces)
+        Some(self.taken(&block, roll, 0.0).forces)
     }
 
     /// The influences of unit loads at `rolls`, on themselves and on as many neighbours as are asked for. Own is what is
@@ -130,24 +151,24 @@ impl<'a> GearModel<'a> {
     /// # Errors
     /// When the gear is not held to rounding.
     pub fn rests(&self, rolls: &[f64], neighbours: u32, rows: usize) -> Result<Influences, MeshError> {
-        let loads: Vec<(usize, f64)> = rolls.iter().map(|&roll| (rows, roll)).collect();
-        self.rests_in_blocks(&loads, neighbours)
+        let loads: Vec<FlankLoad> = rolls.iter().map(|&roll| FlankLoad { rows, ..FlankLoad::normal(roll) }).collect();
+        self.rests_of(&loads, neighbours)
     }
 
-    /// The same of loads that each have a block of their own.
+    /// The same of loads that each have a block and an inclination of their own: displacements are those along each load.
     ///
     /// # Errors
     /// As [`Self::rests`].
-    pub fn rests_in_blocks(&self, loads: &[(usize, f64)], neighbours: u32) -> Result<Influences, MeshError> {
+    pub fn rests_of(&self, loads: &[FlankLoad], neighbours: u32) -> Result<Influences, MeshError> {
         let Mesh { nodes, elements, .. } = &self.mesh;
-        let most = loads.iter().map(|load| load.0).max().unwrap_or(0);
+        let most = loads.iter().map(|load| load.rows).max().unwrap_or(0);
         // No element is folded over: they were factorised.
         let block =
             |rows| Block::new(nodes, elements, &self.mesh.tooth(rows), &self.elasticity).ok_or(MeshError::Singular);
         let blocks = (0..=most).map(block).collect::<Result<Vec<_>, _>>()?;
         let (forces, own): (Vec<NodalForces>, Vec<f64>) = loads
             .iter()
-            .map(|&(rows, roll)| self.taken(&blocks[rows], roll))
+            .map(|load| self.taken(&blocks[load.rows], load.roll, load.inclination))
             .map(|taken| (taken.forces, taken.own))
             .unzip();
         let responses = self.sector.responses(&forces);
@@ -252,7 +273,7 @@ impl GearModel<'_> {
     pub fn stress_influences(&self, rolls: &[f64], neighbours: u32) -> Result<StressInfluences, MeshError> {
         let Mesh { nodes, elements, root, flank, .. } = &self.mesh;
         let block = Block::new(nodes, elements, &self.mesh.tooth(0), &self.elasticity).ok_or(MeshError::Singular)?;
-        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.taken(&block, roll).forces).collect();
+        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.taken(&block, roll, 0.0).forces).collect();
         let fillet = flank.iter().take_while(|edge| nodes[edge.nodes[2]][1] <= self.form);
         // The nodes of the first edge belong to two sectors.
         let edges: Vec<Edge> = root.iter().chain(fillet).skip(1).copied().collect();
@@ -277,7 +298,7 @@ impl GearModel<'_> {
                 return held;
             }
             // In the block the mesh has the rest alone.
-            let field = self.field(rolls[load]);
+            let field = self.field(rolls[load], 0.0);
             held + field.stretch(gauge.place, gauge.along) - gauge.stress(|node| block.at_shared(nodes, &field, node))
         };
         let stresses = (found.iter().zip(&steps))

@@ -3,6 +3,7 @@
 mod convergence;
 mod elements;
 mod extremes;
+mod inclined;
 mod orders;
 mod point_load;
 mod root_stress;

@@ -59,7 +59,11 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
         if found.gaps[j] < FAR {
             found.largest_gap = found.largest_gap.max(found.gaps[j]);
         }
-        let teeth = compliance.pinion.total(pinion) + compliance.gear.total(gear);
+        let [of_pinion, of_gear] = cycle.inclinations(s(j));
+        let teeth = compliance.pinion.total(pinion)
+            + compliance.pinion.added(of_pinion)
+            + compliance.gear.total(gear)
+            + compliance.gear.added(of_gear);
         let contact =
             if compliance.contact == Some(ContactLaw::Linear) { bodies.linear() / cycle.face_width } else { 0.0 };
         found.compliance[j][j] = teeth + contact;
@@ -73,9 +77,8 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
         }
         for k in 0..j {
             let [behind, ahead] = [rolls(k), rolls(j)];
-            let surfaces = [&compliance.pinion.neighbours, &compliance.gear.neighbours].map(|all| all.get(j - k - 1));
-            let pinion = surfaces[0].map_or(0.0, |surface| surface.value(behind[0], ahead[0]));
-            let gear = surfaces[1].map_or(0.0, |surface| surface.value(ahead[1], behind[1]));
+            let pinion = compliance.pinion.neighbour(j - k - 1, [behind[0], ahead[0]], of_pinion);
+            let gear = compliance.gear.neighbour(j - k - 1, [ahead[1], behind[1]], cycle.inclinations(s(k))[1]);
             let cross = if compliance.coupled { pinion + gear } else { 0.0 };
             (found.compliance[j][k], found.compliance[k][j]) = (cross, cross);
         }

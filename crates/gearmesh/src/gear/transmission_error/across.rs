@@ -9,7 +9,7 @@ use super::path::Path;
 use crate::gear::compliance::PairCompliance;
 use crate::gear::compliance::across_face::Layers;
 use crate::gear::contact::flattening::Bodies;
-use crate::gear::geometry::GearPair;
+use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
 use declare::error::Failure;
@@ -52,7 +52,8 @@ impl Across {
         let gears = [(&pair.pinion, &compliance.pinion), (&pair.gear, &compliance.gear)];
         let layers = gears.map(|(gear, tooth)| Layers::new(gear, tooth, face_width));
         let rolls = |side: usize, s: f64| if side == 0 { path.rolls(s).0 } else { path.rolls(s).1 };
-        let tooth = |side: usize, s: f64| gears[side].1.total(rolls(side, s)) - layers[side].wind_up;
+        let added = |side: usize, s: f64| gears[side].1.added(path.inclination([Side::Pinion, Side::Gear][side], s));
+        let tooth = |side: usize, s: f64| gears[side].1.total(rolls(side, s)) + added(side, s) - layers[side].wind_up;
         let length = |side: usize, s: f64| layers[side].length(rolls(side, s), tooth(side, s)) / face_width;
         let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
         let wind_up = layers[0].wind_up + layers[1].wind_up;

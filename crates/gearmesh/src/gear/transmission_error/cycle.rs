@@ -162,7 +162,10 @@ impl MeshCycle {
         };
         let teeth = |s: f64| {
             let (pinion, gear) = path.rolls(s);
-            total(&pinion_series, &compliance.pinion, pinion) + total(&gear_series, &compliance.gear, gear)
+            total(&pinion_series, &compliance.pinion, pinion)
+                + total(&gear_series, &compliance.gear, gear)
+                + compliance.pinion.added(path.inclination(Side::Pinion, s))
+                + compliance.gear.added(path.inclination(Side::Gear, s))
         };
         let fit = |function: &dyn Fn(f64) -> f64| path.fit(0.0, function).unwrap_or_default();
         let law = |new: fn(&Bodies, f64, [f64; 2]) -> Logarithmic, s: f64| {
@@ -198,12 +201,13 @@ impl MeshCycle {
             .map_while(|index| {
                 let ahead = pair.base_pitch * (index + 1) as f64;
                 let body = |s: f64| {
-                    // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
-                    let (behind, ahead) = (path.rolls(s), path.rolls(s + ahead));
-                    let value = |tooth: &ToothCompliance, first: f64, further: f64| {
-                        tooth.neighbours.get(index).map_or(0.0, |surface| surface.value(first, further))
-                    };
-                    value(&compliance.pinion, behind.0, ahead.0) + value(&compliance.gear, ahead.1, behind.1)
+                    // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear: the tooth at
+                    // whose tip a corner touches is the further one of either gear.
+                    let (behind, ahead) = (path.rolls(s), (s + ahead, path.rolls(s + ahead)));
+                    let pinion = path.inclination(Side::Pinion, ahead.0);
+                    let gear = path.inclination(Side::Gear, s);
+                    compliance.pinion.neighbour(index, [behind.0, ahead.1.0], pinion)
+                        + compliance.gear.neighbour(index, [ahead.1.1, behind.1], gear)
                 };
                 path.fit(ahead, &body)
             })
@@ -287,6 +291,12 @@ impl MeshCycle {
     #[must_use]
     pub fn rolls(&self, s: f64) -> [f64; 2] {
         self.path.rolls(s).into()
+    }
+
+    /// By how much the loads on pinion and gear are turned from the normals of their flanks there \[rad\].
+    #[must_use]
+    pub fn inclinations(&self, s: f64) -> [f64; 2] {
+        [Side::Pinion, Side::Gear].map(|side| self.path.inclination(side, s))
     }
 
     /// The flanks' radii of curvature there, pinion and gear.

@@ -79,6 +79,16 @@ impl Path {
         }
     }
 
+    /// By how much the load on a gear is turned from the normal of its flank towards the root \[rad\]: at the corner of its
+    /// tip it is along the normal of the other flank. 0 from A to E.
+    pub(super) fn inclination(&self, side: Side, s: f64) -> f64 {
+        match (side, &self.corners) {
+            (Side::Pinion, Some([_, (facing, _)])) if s > self.end => facing.inclination(s - self.end),
+            (Side::Gear, Some([(facing, _), _])) if s < self.start => facing.inclination(self.start - s),
+            _ => 0.0,
+        }
+    }
+
     /// The roll angles of the points that touch, pinion and gear.
     pub(super) fn rolls(&self, s: f64) -> (f64, f64) {
         let [pinion, gear] = self.radii(s);

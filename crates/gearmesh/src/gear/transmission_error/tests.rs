@@ -19,7 +19,7 @@ use super::load_case::LoadCase;
 use super::stiffness::stiffness;
 use crate::gear::compliance::{ContactLaw, PairCompliance};
 use crate::gear::fixtures::{
-    BASE_PITCH, constant, coupled, design, least_gap, pair, pair_with_contact_ratio, swapped, varying,
+    BASE_PITCH, constant, coupled, design, inclined, least_gap, pair, pair_with_contact_ratio, swapped, varying,
 };
 use crate::gear::geometry::GearPair;
 use crate::gear::geometry::Side::Pinion;
@@ -168,7 +168,7 @@ fn stiffness_of_varying_teeth_is_the_sum_over_pairs() {
 fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     let pair = pair();
     let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
-    let resolved = PairCompliance { contact: Some(ContactLaw::Resolved), ..coupled() };
+    let resolved = PairCompliance { contact: Some(ContactLaw::Resolved), ..inclined(coupled()) };
     let power =
         [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
     let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
@@ -265,7 +265,7 @@ fn swapping_the_gears_changes_nothing() {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root), ("end_relief", one, &face)]).unwrap()
     };
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent, ContactLaw::Resolved] {
-        for compliance in [varying(), coupled()] {
+        for compliance in [varying(), coupled(), inclined(coupled())] {
             let compliance = PairCompliance { contact: Some(contact), ..compliance };
             let mirrored = PairCompliance {
                 pinion: compliance.gear.clone(),

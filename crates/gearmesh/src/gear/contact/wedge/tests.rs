@@ -19,6 +19,21 @@ fn a_wedge_yields_as_its_closed_form() {
     }
 }
 
+/// Tier: closed form; the softening of an inclined load is that of its angle to the bisector.
+#[test]
+fn inclined_loads_yield_by_their_angle_to_the_bisector() {
+    for interior in [0.6_f64, 1.6, 2.1, 3.0] {
+        let (half, shear) = (0.5 * interior, 0.5 * interior.sin());
+        let [across, along] = inclined_softening(interior);
+        for turn in [-0.7, -0.1, 0.05, 0.5, FRAC_PI_2] {
+            let angle = FRAC_PI_2 - half - turn;
+            let exact = angle.cos().powi(2) / (half + shear) + angle.sin().powi(2) / (half - shear) - 2.0 / PI;
+            let found = softening(interior) + (2.0 * turn).sin() * across + turn.sin().powi(2) * along;
+            assert!((found - exact).abs() < 1e-13 * exact.abs().max(1.0), "{interior} {turn}: {found} for {exact}");
+        }
+    }
+}
+
 /// Tier: closed form; a half plane that ends, but yields as if it did not: a parabola that touches it from 0 to e presses
 /// with √((e − ξ)/ξ) (a + ξ). The moments of that are ¾ e² − λ e = 1 and Ψ/k₀ − λ² = ⅜ e² − λ e + ln(4/e).
 #[test]
@@ -38,12 +53,32 @@ fn a_half_plane_that_ends_has_a_closed_form() {
     }
 }
 
+/// Tier: closed form; of the same contacts the mean place is (e³ − λ e²)/4.
+#[test]
+fn a_half_plane_that_ends_is_loaded_beside_the_top() {
+    let wedge = Wedge::new(0.0);
+    let beside = |place: f64| {
+        let end = (place + (place * place + 3.0).sqrt()) / 1.5;
+        0.25 * (end - place) * end * end - if place > 0.0 { place } else { 0.0 }
+    };
+    for step in -290..100 {
+        let place = 0.1 * f64::from(step) + 0.05;
+        let (low, high) = (beside(place - 1e-4), beside(place + 1e-4));
+        let exact = if place < 1.0 { 2.5 * beside(place) - 0.5 * place * (high - low) / 2e-4 } else { 0.0 };
+        let [[found, _], _] = wedge.turned(place);
+        assert!((found - exact).abs() < 2e-4, "{place}: {found} for {exact}");
+    }
+}
+
 /// Ψ/k₀ by pressures that are constant on each of many strips, which get thinner towards the corner; those that would pull
 /// are taken away until none is left. And the strips that press: between where, and how much.
 fn by_strips<const STRIPS: usize, const WIDTH: usize>(place: f64, ratio: f64) -> (f64, Vec<([f64; 2], f64)>) {
-    by_strips_with::<STRIPS, WIDTH>(place, ratio, |x, [from, to]| {
-        moment(to + x) - moment(from + x) - LN_2 * (to - from)
-    })
+    by_strips_with::<STRIPS, WIDTH>(place, ratio, of_corner)
+}
+
+/// What the corner adds at x under a strip that presses, over −B/k₀.
+fn of_corner(x: f64, [from, to]: [f64; 2]) -> f64 {
+    moment(to + x) - moment(from + x) - LN_2 * (to - from)
 }
 
 /// ∫ ln|x| dx.
@@ -51,7 +86,7 @@ fn moment(x: f64) -> f64 {
     if x == 0.0 { 0.0 } else { x * (libm::log(x.abs()) - 1.0) }
 }
 
-/// The same with what the corner adds at x under a strip that presses, over −B/k₀.
+/// The same with another one that adds, over −B/k₀.
 fn by_strips_with<const STRIPS: usize, const WIDTH: usize>(
     place: f64,
     ratio: f64,
@@ -61,7 +96,7 @@ fn by_strips_with<const STRIPS: usize, const WIDTH: usize>(
     let ends: Vec<f64> = (0..=STRIPS)
         .map(|k| {
             let share = k as f64 / STRIPS as f64;
-            if place > 2.5 { place - 1.3 + 2.6 * share } else { width * share * share * share }
+            if place > 1.4 { place - 1.3 + 2.6 * share } else { width * share * share * share }
         })
         .collect();
     let mut loaded = [true; STRIPS];
@@ -113,13 +148,58 @@ fn pressures_in_strips_give_the_same() {
     }
 }
 
+/// Tier: second method; a load that turns along the contact, by what it adds to the influences of strips; and B that is
+/// another one.
+#[test]
+fn influences_that_turn_along_the_contact_give_the_same() {
+    let ratio = 0.25;
+    let wedge = Wedge::new(ratio);
+    for place in [3.0, 1.5, 1.0, 0.7, 0.2, 0.0, -0.4, -1.5, -6.0] {
+        let inside = f64::max(place, 0.0);
+        let change = |added: &dyn Fn(f64, f64) -> f64| {
+            let [low, high] = [-0.02, 0.02].map(|size| {
+                let corner = |x: f64, strip: [f64; 2]| {
+                    let more = size * added(x, 0.5 * (strip[0] + strip[1])) * (strip[1] - strip[0]);
+                    of_corner(x, strip) - more / ratio
+                };
+                by_strips_with::<160, 162>(place, ratio, corner).0
+            });
+            (high - low) / 0.04
+        };
+        let turn = |x: f64, y: f64| x + y - 2.0 * inside;
+        let logarithm = |x: f64, y: f64| libm::log(0.5 * (x + y));
+        let [values, _] = wedge.turned(place);
+        let exact = [change(&turn), change(&|x, y| turn(x, y) * logarithm(x, y))];
+        for (found, exact) in values.into_iter().zip(exact) {
+            assert!((found - exact).abs() < 5e-3, "{place}: {values:?}, by strips {exact}");
+        }
+        if place < 0.0 {
+            let exact = change(&|x, y| -logarithm(x, y));
+            let [found, _] = wedge.by_ratio(place);
+            assert!((found - exact).abs() < 3e-3, "{place}: {found}, by strips {exact}");
+        }
+    }
+}
+
+/// Tier: second method; B that is less by two fifths, as 5° of inclination make it, is nearly a linear change.
+#[test]
+fn another_wedge_is_a_linear_change() {
+    let (wedge, other) = (Wedge::new(0.22), Wedge::new(0.13));
+    for step in 0..400 {
+        let place = -0.1 * f64::from(step);
+        let found = wedge.more(place)[0] - 0.09 * wedge.by_ratio(place)[0];
+        let exact = other.more(place)[0];
+        assert!((found - exact).abs() < 5e-3, "{place}: {found} for {exact}");
+    }
+}
+
 /// Tier: invariant; values join, slopes are those of differences, and both ends go over into what is beyond.
 #[test]
 fn the_tables_join() {
     for ratio in [0.0, 0.05, 0.29, 0.8] {
         let wedge = Wedge::new(ratio);
         let joints: Vec<f64> =
-            wedge.tables[1..].iter().flat_map(|(values, _)| [values.lower(), values.upper()]).collect();
+            wedge.tables[1..].iter().flat_map(|table| [table[0].0.lower(), table[0].0.upper()]).collect();
         for joint in joints.into_iter().chain([BEYOND]) {
             let [below, above] = [-1e-9, 1e-9].map(|step| wedge.more(joint + step));
             assert!((below[0] - above[0]).abs() < 1e-5, "{ratio}: values at {joint}: {below:?} {above:?}");
@@ -128,6 +208,22 @@ fn the_tables_join() {
         for place in [-80.0, -20.0, -1.1, 0.3, 1.4, 6.0, 30.0] {
             let [low, high] = [-1e-5, 1e-5].map(|step| wedge.more(place + step)[0]);
             assert!(((high - low) / 2e-5 - wedge.more(place)[1]).abs() < 1e-6, "{ratio}: slope at {place}");
+        }
+        for joint in [BEYOND, JOINTS[0], 0.0, JOINTS[1], FAR] {
+            let [below, above] = [-1e-9, 1e-9].map(|step| wedge.turned(joint + step)[0]);
+            for (below, above) in below.into_iter().zip(above) {
+                assert!((below - above).abs() < 3e-4, "{ratio}: turned at {joint}: {below} {above}");
+            }
+        }
+        for place in [-80.0, -20.0, -1.1, 0.3, 1.4, 6.0, 30.0] {
+            let [low, high] = [-1e-5, 1e-5].map(|step| wedge.turned(place + step)[0]);
+            for (k, slope) in wedge.turned(place)[1].into_iter().enumerate() {
+                assert!(((high[k] - low[k]) / 2e-5 - slope).abs() < 1e-5, "{ratio}: slope at {place}");
+            }
+            if place < 0.0 {
+                let [low, high] = [-1e-5, 1e-5].map(|step| wedge.by_ratio(place + step)[0]);
+                assert!(((high - low) / 2e-5 - wedge.by_ratio(place)[1]).abs() < 1e-6, "{ratio}: slope at {place}");
+            }
         }
     }
 }

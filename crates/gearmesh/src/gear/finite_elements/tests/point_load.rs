@@ -193,7 +193,8 @@ fn the_rest_does_not_depend_on_the_block() {
     }
 }
 
-/// Tier: order of convergence; in elements across, against four times as fine ones. The mesh is too stiff.
+/// Tier: order of convergence; in elements across, against four times as fine ones: 3 or more where the mesh is coarse, and
+/// then towards 4, or twice the exponent of the tip's corner if that is less: 3.88 with 12 teeth. The mesh is too stiff.
 #[test]
 fn the_rest_converges() {
     for (teeth, shift) in [(12, 0.5), (48, 0.0)] {
@@ -202,9 +203,9 @@ fn the_rest_converges() {
             let errors = rests.iter().zip(&fine).map(|(rest, fine)| rest - fine);
             errors.collect::<Vec<f64>>()
         });
-        for pair in errors.windows(2) {
+        for (pair, order) in errors.windows(2).zip([3.0, 3.6]) {
             for (coarse, fine) in pair[0].iter().zip(&pair[1]) {
-                assert!(*coarse < 0.0 && (coarse / fine).log2() > 3.0, "z {teeth}: {errors:?}");
+                assert!(*coarse < 0.0 && (coarse / fine).log2() > order, "z {teeth}: {errors:?}");
             }
         }
     }

@@ -36,6 +36,7 @@ fn models() -> Vec<PairCompliance> {
     for contact in [ContactLaw::LoadDependent, ContactLaw::Resolved] {
         models.extend([with(contact, coupled()), with(contact, varying())]);
     }
+    models.push(with(ContactLaw::Resolved, inclined(coupled())));
     models
 }
 
@@ -91,6 +92,34 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
                 }
             }
         }
+    }
+}
+
+/// By how much the normals of both flanks differ where a corner touches, by the angles of both, pinion's corner and gear's.
+fn inclinations_by_hand(pair: &GearPair, s: f64) -> [f64; 2] {
+    let (one, two, length) = (pair.pinion.base_radius, pair.gear.base_radius, pair.tangent_length);
+    let corner = |own: f64, other: f64, position: f64, nominal: f64| {
+        let (roll, angle) = ((length - position) / own, (position - nominal).max(0.0) / own);
+        let x = length - own * (roll * angle.cos() + angle.sin());
+        let y = own + other - own * (angle.cos() - roll * angle.sin());
+        angle - (x.atan2(y) - ((x * x + y * y) / (other * other) - 1.0).sqrt().atan())
+    };
+    [corner(one, two, length - pair.end_of_contact, length - s), corner(two, one, pair.start_of_contact, s)]
+}
+
+/// Tier: second method; and the sense: a corner that has left the line of action is pressed more towards its root.
+#[test]
+fn loads_at_corners_are_normal_to_the_other_flank() {
+    let pair = pair();
+    let cycle = exact(&pair, &varying(), 24);
+    for step in -30..=230 {
+        let s = pair.start_of_contact + 0.05e-3 * f64::from(step) * pair.contact_ratio;
+        for (found, exact) in cycle.inclinations(s).into_iter().zip(inclinations_by_hand(&pair, s)) {
+            let inside = s >= pair.start_of_contact && s <= pair.end_of_contact;
+            assert!(if inside { found == 0.0 } else { (found - exact).abs() < 1e-12 }, "{s}: {found} for {exact}");
+        }
+        let [pinion, gear] = cycle.inclinations(s);
+        assert!((gear > 0.0) == (s < pair.start_of_contact) && (pinion > 0.0) == (s > pair.end_of_contact));
     }
 }
 
@@ -155,7 +184,7 @@ fn unmodified_gears_agree_with_a_brute_grid() {
 #[test]
 fn loads_balance_and_fulfil_complementarity() {
     let pair = pair_with_contact_ratio(2.3);
-    let compliance = coupled();
+    let compliance = inclined(coupled());
     let cycle = exact(&pair, &compliance, 24);
     let contact = 4.0 * 0.91 / (std::f64::consts::PI * 206e9 * 18e-3);
     let mut corners = 0;
@@ -170,16 +199,34 @@ fn loads_balance_and_fulfil_complementarity() {
             let springs: Vec<_> = places.enumerate().filter(|(_, s)| gaps.at(*s).is_some()).collect();
             for &(j, s) in &springs {
                 let (_, u1, u2) = by_hand(&pair, s);
-                let mut deflection =
-                    point.loads[j] * (compliance.pinion.total(u1) + compliance.gear.total(u2) + contact);
+                let turned = |s: f64| {
+                    let outside = s < pair.start_of_contact || s > pair.end_of_contact;
+                    inclinations_by_hand(&pair, s).map(|turn| if outside { turn } else { 0.0 })
+                };
+                // A tooth of 0.8 across for 1 along its normal.
+                let own = |turn: f64| (2.0 * turn).sin() * -0.8e-9 + turn.sin().powi(2) * 0.05e-9;
+                let [of_pinion, of_gear] = turned(s);
+                let mut deflection = point.loads[j]
+                    * (compliance.pinion.total(u1)
+                        + own(of_pinion)
+                        + compliance.gear.total(u2)
+                        + own(of_gear)
+                        + contact);
                 for &(k, other) in springs.iter().filter(|(k, _)| *k != j) {
                     let (_, v1, v2) = by_hand(&pair, other);
-                    let of = |tooth: &crate::gear::compliance::ToothCompliance, first: f64, further: f64| {
-                        tooth.neighbours.get(j.abs_diff(k) - 1).map_or(0.0, |surface| surface.value(first, further))
+                    let of = |tooth: &crate::gear::compliance::ToothCompliance, first: f64, further: f64, turn: f64| {
+                        let pitches = j.abs_diff(k);
+                        let at_tip = -0.18e-9 / pitches as f64 * (1.0 + 0.3 * first);
+                        let normal = tooth.neighbours.get(pitches - 1);
+                        normal.map_or(0.0, |normal| turn.cos() * normal.value(first, further) + turn.sin() * at_tip)
                     };
                     let ahead = k > j;
-                    let pinion = of(&compliance.pinion, if ahead { u1 } else { v1 }, if ahead { v1 } else { u1 });
-                    let gear = of(&compliance.gear, if ahead { v2 } else { u2 }, if ahead { u2 } else { v2 });
+                    let (behind_s, ahead_s) = if ahead { (s, other) } else { (other, s) };
+                    let turns = [turned(ahead_s)[0], turned(behind_s)[1]];
+                    let pinion = if ahead { [u1, v1] } else { [v1, u1] };
+                    let gear = if ahead { [v2, u2] } else { [u2, v2] };
+                    let pinion = of(&compliance.pinion, pinion[0], pinion[1], turns[0]);
+                    let gear = of(&compliance.gear, gear[0], gear[1], turns[1]);
                     deflection += point.loads[k] * (pinion + gear);
                 }
                 let open = gaps.at(s).unwrap() + deflection - point.transmission_error;
