@@ -4,7 +4,8 @@ use super::super::energy::{Energy, GearBody};
 use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStress, RootStresses, Tabulated};
 use super::{FiniteElement, difference};
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
-use crate::gear::finite_elements::gear_model::Influences;
+use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};
+use crate::gear::finite_elements::mesh::Sizing;
 use crate::gear::fixtures::{STEEL, STEELS, standard};
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::RootShape;
@@ -319,6 +320,37 @@ fn a_gear_with_nothing_below_its_contact_is_refused() {
     let refused = tabulate(0.1).unwrap_err().to_string();
     assert!(refused.contains("`contact: load_dependent` takes it"), "{refused}");
     assert!(tabulate(2.0).is_ok());
+}
+
+/// Tier: second method; an inclined load at another place near the tip, on another mesh, with what the half plane and the
+/// wedge have there: the tables add that to a normal one's, and what it does to the tooth before.
+#[test]
+fn inclined_loads_are_those_of_the_tables() {
+    let pair = pair([17, 43], 1.4);
+    let resolved = Assumptions { contact: ContactLaw::Resolved, ..COUPLED };
+    for plane in [Plane::Strain, Plane::Stress] {
+        let tooth = method(plane, 16).tabulate(&pair, resolved).unwrap().compliance.pinion;
+        let gear = &pair.pinion;
+        let root = gear.root(RootShape::Trochoid).unwrap();
+        let tip = gear.flank(gear.tip_roll()).height / 3e-3;
+        let sizing = Sizing { focus: Some([5e-3, tip]), ..Sizing::even(24) };
+        let model = GearModel::new(gear, &root, plane, &sizing).unwrap();
+        let (distance, turn, before) = (0.015, 0.15_f64, 0.6 * gear.tip_roll());
+        let roll = (gear.tip_roll().powi(2) - 2.0 * distance * 3e-3 / gear.base_radius).sqrt();
+        let inclined = FlankLoad { inclination: turn, ..FlankLoad::normal(roll) };
+        let found = model.rests_of(&[FlankLoad::normal(before), FlankLoad::normal(roll), inclined], 1).unwrap();
+        let (modulus, width) = (206e9, gear.specification.face_width);
+        let [a, nu] = if plane == Plane::Strain { [0.91, 3.0 / 7.0] } else { [1.0, 0.3] };
+        let half_plane = a * (1.0 + nu) / std::f64::consts::PI * turn.sin().powi(2);
+        let exact = (found.own[2] - found.own[1] + half_plane) / modulus;
+        let [across, along] = tooth.inclined.as_ref().unwrap().corner;
+        let wedge = ((2.0 * turn).sin() * across + turn.sin().powi(2) * along) * distance.ln();
+        let tabulated = tooth.added(turn) * width - wedge;
+        assert!((tabulated / exact - 1.0).abs() < 5e-3, "{plane:?}: {tabulated:e} for {exact:e}");
+        let exact = found.further[0][0][2] / modulus / width;
+        let other = tooth.neighbour(0, [before, gear.tip_roll()], turn);
+        assert!((other / exact - 1.0).abs() < 5e-3, "{plane:?}: {other:e} for {exact:e}");
+    }
 }
 
 /// Counted: influences on roots come from the factorisations that the compliances take, which are the same with them.

@@ -123,6 +123,32 @@ fn loads_at_corners_are_normal_to_the_other_flank() {
     }
 }
 
+/// Tier: second method; where a corner lies in the contact, half of what both teeth yield more farther from it, along the
+/// flanks: by differences of arcs, r_b u²/2.
+#[test]
+fn teeth_change_along_the_contact() {
+    let pair = pair();
+    let compliance = PairCompliance { contact: Some(ContactLaw::Resolved), ..coupled() };
+    let cycle = exact(&pair, &compliance, 24);
+    for s in [0.1e-3, 3e-3, 9e-3].map(|after| pair.start_of_contact + after) {
+        let radii = [s, pair.tangent_length - s];
+        let bases = [pair.pinion.base_radius, pair.gear.base_radius];
+        // Away from the corner of the gear's tip.
+        let teeth = |x: f64| {
+            let roll = |side: usize, x: f64| (radii[side].powi(2) + 2.0 * bases[side] * x).sqrt() / bases[side];
+            18e-3 * (compliance.pinion.total(roll(0, x)) + compliance.gear.total(roll(1, -x)))
+        };
+        let exact = 0.5 * (teeth(1e-6) - teeth(-1e-6)) / 2e-6;
+        let [pinion, gear] = cycle.tips(s).unwrap().corners.map(|corner| corner.turned.tooth * corner.turned.curvature);
+        let combined = radii[0] * radii[1] / (radii[0] + radii[1]);
+        assert!((cycle.tips(s).unwrap().corners[0].turned.curvature * combined - 1.0).abs() < 1e-10);
+        for (found, exact) in [(gear, exact), (pinion, -exact)] {
+            // Flanks that are hardly curved, near the base circle, are not followed to the last.
+            assert!((found / exact - 1.0).abs() < 2e-2, "{s}: {found:e} for {exact:e}");
+        }
+    }
+}
+
 /// Separation and rolls by polar coordinates, as in no line of the program.
 fn by_hand(pair: &GearPair, s: f64) -> (f64, f64, f64) {
     let (one, two, length) = (pair.pinion.base_radius, pair.gear.base_radius, pair.tangent_length);
