@@ -1,4 +1,5 @@
-//! What is said of transmission errors that the law of contact is in doubt about: once for a stage, of the worst design.
+//! What is said of transmission errors that the law of contact is in doubt about: once for all that is computed together, of the
+//! worst design.
 //!
 //! Must not know: how large a doubt is, whose designs they are.
 
