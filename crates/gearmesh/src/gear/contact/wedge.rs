@@ -181,10 +181,10 @@ struct Contact {
     terms: [f64; TERMS],
 }
 
-/// cos(nθ) for the terms n: at the angles of the places, and at those of the points.
+/// cos(nθ) for the terms n: at the angles of the places, term by term, and at those of the points, point by point.
 struct Waves {
     places: [[f64; TERMS]; TERMS],
-    points: [[f64; POINTS]; TERMS],
+    points: [[f64; TERMS]; POINTS],
 }
 
 impl Waves {
@@ -192,7 +192,7 @@ impl Waves {
         let wave = |n: usize, k: usize, count: usize| libm::cos(PI * n as f64 * (k as f64 + 0.5) / count as f64);
         Self {
             places: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, TERMS))),
-            points: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, POINTS))),
+            points: std::array::from_fn(|k| std::array::from_fn(|n| wave(n, k, POINTS))),
         }
     }
 }
@@ -201,14 +201,19 @@ impl Shape {
     fn new(start: f64, ratio: f64, waves: &Waves) -> Self {
         let (middle, half) = (0.5 * (1.0 + start), 0.5 * (1.0 - start));
         let places = waves.places[1].map(|cosine| middle + half * cosine);
-        let points = waves.points[1].map(|cosine| middle + half * cosine);
+        let points = waves.points.map(|waves| middle + half * waves[1]);
         let weight = -ratio * PI / POINTS as f64;
         let influence = std::array::from_fn(|row| {
-            let corner = points.map(|y| weight * libm::log(0.5 * (places[row] + y)));
+            let mut summed = [0.0; TERMS];
+            for (y, waves) in points.iter().zip(&waves.points) {
+                let part = weight * libm::log(0.5 * (places[row] + y));
+                for (sum, wave) in summed.iter_mut().zip(waves) {
+                    *sum += part * wave;
+                }
+            }
             std::array::from_fn(|n| {
-                let summed: f64 = corner.iter().zip(&waves.points[n]).map(|(part, wave)| part * wave).sum();
                 let own = if n == 0 { -PI * libm::log(0.5 * half) } else { PI / n as f64 * waves.places[n][row] };
-                own + summed
+                own + summed[n]
             })
         });
         Self { ratio, start, places, influence }
