@@ -279,8 +279,8 @@ impl Contact {
     /// The means of ξ, of ln((ξ + η)/2) and of ξ times that, under the pressures at ξ and η.
     fn means(&self, waves: &Waves) -> [f64; 3] {
         let (middle, half) = (0.5 * (1.0 + self.start), 0.5 * (1.0 - self.start));
-        let places = waves.points[1].map(|cosine| self.end * (middle + half * cosine));
-        let part = |k: usize| self.terms.iter().zip(&waves.points).map(|(term, wave)| term * wave[k]).sum::<f64>();
+        let places = waves.points.map(|waves| self.end * (middle + half * waves[1]));
+        let part = |k: usize| self.terms.iter().zip(&waves.points[k]).map(|(term, wave)| term * wave).sum::<f64>();
         let parts: [f64; POINTS] = std::array::from_fn(|k| PI / POINTS as f64 * part(k));
         let mut means = [0.0; 3];
         for (x, on) in places.iter().zip(&parts) {
@@ -293,10 +293,10 @@ impl Contact {
     }
 }
 
-/// cos(nθ) for the terms n: at the angles of the places, and at those of the points.
+/// cos(nθ) for the terms n: at the angles of the places, term by term, and at those of the points, point by point.
 struct Waves {
     places: [[f64; TERMS]; TERMS],
-    points: [[f64; POINTS]; TERMS],
+    points: [[f64; TERMS]; POINTS],
 }
 
 impl Waves {
@@ -304,7 +304,7 @@ impl Waves {
         let wave = |n: usize, k: usize, count: usize| libm::cos(PI * n as f64 * (k as f64 + 0.5) / count as f64);
         Self {
             places: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, TERMS))),
-            points: std::array::from_fn(|n| std::array::from_fn(|k| wave(n, k, POINTS))),
+            points: std::array::from_fn(|k| std::array::from_fn(|n| wave(n, k, POINTS))),
         }
     }
 }
@@ -313,14 +313,19 @@ impl Shape {
     fn new(start: f64, ratio: f64, waves: &Waves) -> Self {
         let (middle, half) = (0.5 * (1.0 + start), 0.5 * (1.0 - start));
         let places = waves.places[1].map(|cosine| middle + half * cosine);
-        let points = waves.points[1].map(|cosine| middle + half * cosine);
+        let points = waves.points.map(|waves| middle + half * waves[1]);
         let weight = -ratio * PI / POINTS as f64;
         let influence = std::array::from_fn(|row| {
-            let corner = points.map(|y| weight * libm::log(0.5 * (places[row] + y)));
+            let mut summed = [0.0; TERMS];
+            for (y, waves) in points.iter().zip(&waves.points) {
+                let part = weight * libm::log(0.5 * (places[row] + y));
+                for (sum, wave) in summed.iter_mut().zip(waves) {
+                    *sum += part * wave;
+                }
+            }
             std::array::from_fn(|n| {
-                let summed: f64 = corner.iter().zip(&waves.points[n]).map(|(part, wave)| part * wave).sum();
                 let own = if n == 0 { -PI * libm::log(0.5 * half) } else { PI / n as f64 * waves.places[n][row] };
-                own + summed
+                own + summed[n]
             })
         });
         Self { ratio, start, places, influence }
