@@ -147,7 +147,8 @@ mod tests {
     /// ends but yields as if it did not.
     #[test]
     fn beyond_a_base_circle_there_is_no_flank() {
-        for end in [0.0, 0.5] {
+        // Between two strips, which know no better where it ends.
+        for end in [0.05, 0.55] {
             let found = Uneven::of(|x| Some(if x < -end { f64::INFINITY } else { x * x }), 3.0);
             let exact = Wedge::new(0.0).more(end)[0];
             assert!((found.change - exact).abs() < 0.08 * exact, "{end}: {found:?} {exact}");
