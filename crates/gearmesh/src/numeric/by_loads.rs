@@ -4,7 +4,8 @@
 //! other way round, Newton's method for the loads has nothing to invert. It is for springs that are well loaded or well
 //! open; next to where one begins to touch the other way is taken. Must not know: what the springs are.
 
-use super::complementarity::{Balance, Bordered, Coupling, MOST_SPRINGS, PerSpring, linear_approach};
+use super::complementarity::bordered::Bordered;
+use super::complementarity::{Balance, Coupling, MOST_SPRINGS, PerSpring, linear_approach};
 
 /// Share of the total below which a spring is on the brink of losing its load.
 const BRINK: f64 = 0.02;

@@ -6,7 +6,10 @@
 //! energy; semismooth Newton finds them, and where it should cycle, relaxation inside a bracket does. Gaps are measured
 //! from the smallest one: then x keeps all its digits however small the load. Must not know: what the springs are.
 
+use self::bordered::Bordered;
 use super::crossing::crossing;
+
+pub(super) mod bordered;
 
 /// The most springs one problem may have.
 pub const MOST_SPRINGS: usize = 6;
@@ -189,92 +192,6 @@ fn newton(
 
 fn deflection(coupling: &Coupling, loads: &PerSpring, at: usize, count: usize) -> f64 {
     (0..count).filter(|other| *other != at).map(|other| coupling[at][other] * loads[other]).sum()
-}
-
-/// Load changes of the loaded springs: `particular` undoes the residual, `unit` follows a unit of approach.
-pub(super) struct Bordered {
-    pub(super) particular: PerSpring,
-    pub(super) unit: PerSpring,
-    pub(super) offset: f64,
-    pub(super) slope: f64,
-}
-
-impl Bordered {
-    /// Cholesky's factorisation of the compliance matrix of the loaded springs; `None` when it is not positive definite
-    /// or nothing is loaded.
-    pub(super) fn solve(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, count: usize) -> Option<Self> {
-        let mut loaded = [0; MOST_SPRINGS];
-        let mut size = 0;
-        for (spring, _) in rises[..count].iter().enumerate().filter(|(_, rise)| **rise > 0.0) {
-            loaded[size] = spring;
-            size += 1;
-        }
-        if size <= 2 {
-            return Self::solve_two(coupling, rises, residual, &loaded[..size]);
-        }
-        let mut factor = [[0.0; MOST_SPRINGS]; MOST_SPRINGS];
-        let (mut a, mut b) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
-        for i in 0..size {
-            for k in 0..=i {
-                let (row, column) = (loaded[i], loaded[k]);
-                let entry = if i == k { 1.0 / rises[row] } else { coupling[row][column] };
-                let rest = entry - (0..k).map(|m| factor[i][m] * factor[k][m]).sum::<f64>();
-                if i == k {
-                    if rest <= 0.0 || !rest.is_finite() {
-                        return None;
-                    }
-                    factor[i][i] = rest.sqrt();
-                } else {
-                    factor[i][k] = rest / factor[k][k];
-                }
-            }
-            let below = |y: &PerSpring| (0..i).map(|m| factor[i][m] * y[m]).sum::<f64>();
-            (a[i], b[i]) = ((-residual[loaded[i]] - below(&a)) / factor[i][i], (1.0 - below(&b)) / factor[i][i]);
-        }
-        let mut solved = Self { particular: [0.0; MOST_SPRINGS], unit: [0.0; MOST_SPRINGS], offset: 0.0, slope: 0.0 };
-        for i in (0..size).rev() {
-            for k in i + 1..size {
-                a[i] -= factor[k][i] * a[k];
-                b[i] -= factor[k][i] * b[k];
-            }
-            a[i] /= factor[i][i];
-            b[i] /= factor[i][i];
-            (solved.particular[loaded[i]], solved.unit[loaded[i]]) = (a[i], b[i]);
-            solved.offset += a[i];
-            solved.slope += b[i];
-        }
-        (solved.slope > 0.0).then_some(solved)
-    }
-}
-
-impl Bordered {
-    /// The same of one or two loaded springs, by their determinant.
-    fn solve_two(coupling: &Coupling, rises: &PerSpring, residual: &PerSpring, loaded: &[usize]) -> Option<Self> {
-        let mut solved = Self { particular: [0.0; MOST_SPRINGS], unit: [0.0; MOST_SPRINGS], offset: 0.0, slope: 0.0 };
-        match *loaded {
-            [one] => (solved.particular[one], solved.unit[one]) = (-residual[one] * rises[one], rises[one]),
-            [one, two] => {
-                // Of the matrix whose rows are times the springs' stiffnesses.
-                let [towards_one, towards_two] = [one, two].map(|spring| coupling[one][two] * rises[spring]);
-                let determinant = 1.0 - towards_one * towards_two;
-                if determinant <= 0.0 || !determinant.is_finite() {
-                    return None;
-                }
-                let pair = |a: f64, b: f64| {
-                    let (a, b) = (a * rises[one], b * rises[two]);
-                    [(a - towards_one * b) / determinant, (b - towards_two * a) / determinant]
-                };
-                [solved.particular[one], solved.particular[two]] = pair(-residual[one], -residual[two]);
-                [solved.unit[one], solved.unit[two]] = pair(1.0, 1.0);
-            }
-            _ => {}
-        }
-        for spring in loaded {
-            solved.offset += solved.particular[*spring];
-            solved.slope += solved.unit[*spring];
-        }
-        (solved.slope > 0.0).then_some(solved)
-    }
 }
 
 /// For a given approach, each load in turn against the others (coordinate descent on the complementary energy); the

@@ -44,8 +44,7 @@ impl Known {
     #[inline]
     pub fn next(&self, number: f64) -> Self {
         let z = (number - self.number) / (number + self.number);
-        // NaN too, of numbers that are not finite.
-        if !(z.abs() <= REACH) {
+        if z.abs() > REACH || z.is_nan() {
             return Self::new(number);
         }
         let q = z * z;
