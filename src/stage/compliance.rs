@@ -17,6 +17,7 @@ use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
 
 type Getter = fn(&ToothCompliance) -> &Series;
+type InclinedGetter = fn(&Inclined) -> f64;
 
 /// Column and meaning of each series of a tooth.
 const SERIES: &[(&str, &str, &str, Getter)] = &[
@@ -33,7 +34,7 @@ const SERIES: &[(&str, &str, &str, Getter)] = &[
 ];
 
 /// Column and meaning of what loads do at the corner of the tip that are turned from the flank's normal towards the root.
-const INCLINED: &[(&str, &str, &str, fn(&Inclined) -> f64)] = &[
+const INCLINED: &[(&str, &str, &str, InclinedGetter)] = &[
     (
         "tip_across",
         "nm/N",
