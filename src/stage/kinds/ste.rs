@@ -174,7 +174,7 @@ impl Ste {
         let wanted = points.iter().filter(|_| of_pairs);
         let contacts = wanted.map(|point| pressures::contacts(&loading, point.cycle_position, point.pairs)).collect();
         let seconds = began.elapsed().as_secs_f64();
-        Ok((Answer { summary, settings, error, seconds, doubt, cornered, iso6336 }, (points, contacts)))
+        Ok((Answer { summary, settings, error, seconds, cornered, doubt, iso6336 }, (points, contacts)))
     }
 
     /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
