@@ -2,7 +2,8 @@
 //!
 //! Must not know: the constructors of gears and compliances, so that a mistake there cannot hide one here.
 
-use super::compliance::{ContactLaw, Inclined, PairCompliance, ToothCompliance};
+use super::compliance::inclined::Inclined;
+use super::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use super::contact::flattening::Bodies;
 use super::geometry::flank_end::FlankEnd;
 use super::geometry::outline::tip::Tip;

@@ -13,9 +13,10 @@ mod tests;
 use std::f64::consts::PI;
 
 use self::inclined::AtTip;
+use super::inclined::Inclined;
 use super::{
-    Assumptions, ComplianceError, ContactLaw, Foreseen, Inclined, MeshFacts, Method, PairCompliance, RootInfluences,
-    RootStress, RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
+    Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
+    RootStresses, Tabulated, ToothCompliance, neighbours, of_both,
 };
 use crate::gear::contact::wedge;
 use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};

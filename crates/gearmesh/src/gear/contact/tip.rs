@@ -120,6 +120,14 @@ pub struct Tips<'a> {
 }
 
 impl Corner<'_> {
+    /// What the turn of the load adds to w/p over the square of half the width, where the corner is far; `log`: ln(c/m).
+    fn turned_far(&self, log: f64) -> f64 {
+        let Shape::Corner(wedge) = self.shape else { return 0.0 };
+        let Turned { tooth, rate, curvature } = self.turned;
+        let ([g, h, log_place], place) = (wedge.turned_far(), 2.0 * Wedge::far());
+        curvature * place / self.distance * ((tooth - rate * (log - log_place)) * g - rate * h)
+    }
+
     /// What the turn of the load along the contact adds to w/p, where half the width is so much, and its slope over ln p.
     fn turned(&self, width: f64, unit: f64) -> [f64; 2] {
         let Turned { tooth, rate, curvature } = self.turned;
@@ -178,11 +186,10 @@ impl<'a> NearTips<'a> {
             near.last_far = near.last_far.min(reach * reach);
             if corner.distance > 0.0 {
                 let share = half_width / corner.distance;
-                near.far -= corner.rate * libm::log(corner.distance / unit);
+                let log = libm::log(corner.distance / unit);
+                near.far -= corner.rate * log;
                 near.rest += 2.0 * rate * corner.shape.rest() * share * share;
-                // It grows with the square of the width where the corner is far; this one is narrow enough.
-                let width = 0.5 * corner.distance / corner.shape.far();
-                near.rest += corner.turned(width, unit)[0] * (half_width / width) * (half_width / width);
+                near.rest += half_width * half_width * corner.turned_far(log);
             }
         }
         near

@@ -86,6 +86,8 @@ pub struct Wedge {
     last: [f64; 4],
     /// At [`FAR`].
     first: [f64; 4],
+    /// [`Wedge::turned`] at twice [`FAR`], and the logarithm of that.
+    second: [f64; 3],
     /// How the contact spreads.
     spreads: Spreads,
 }
@@ -137,7 +139,10 @@ impl Wedge {
         let [first, last] = [(4, FAR), (0, logs[1])]
             .map(|(table, at): (usize, f64)| std::array::from_fn(|k| tables[table][k].0.value(at)));
         let rest = (first[0] + ratio * libm::log(FAR)) * FAR * FAR;
-        Self { ratio, tables, rest, last, first, spreads }
+        let mut wedge = Self { ratio, tables, rest, last, first, second: [0.0; 3], spreads };
+        let [[g, h], _] = wedge.turned(2.0 * FAR);
+        wedge.second = [g, h, libm::log(2.0 * FAR)];
+        wedge
     }
 
     /// B/k₀.
@@ -211,6 +216,12 @@ impl Wedge {
         }
         let (table, at, rate) = self.place(place);
         [[2, 3].map(|k| table[k].0.value(at)), [2, 3].map(|k| table[k].1.value(at) * rate)]
+    }
+
+    /// g and h at twice the λ from which on they fall as 1/λ, and the logarithm of that λ.
+    #[must_use]
+    pub const fn turned_far(&self) -> [f64; 3] {
+        self.second
     }
 
     /// What is left of [`Wedge::more`] far inside, besides −B/k₀ ln λ, times λ².

@@ -4,7 +4,8 @@
 
 use super::closed::Closed;
 use super::path::Path;
-use crate::gear::compliance::{Inclined, PairCompliance, ToothCompliance};
+use crate::gear::compliance::inclined::Inclined;
+use crate::gear::compliance::{PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, combined_radius};
 use crate::gear::contact::rounding::Rounding;
 use crate::gear::contact::tip::{Corner, Shape, Tips, Turned};

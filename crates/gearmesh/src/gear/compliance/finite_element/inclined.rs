@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::super::Inclined;
+use super::super::inclined::Inclined;
 use crate::gear::finite_elements::gear_model::{FlankLoad, Influences};
 
 /// By how much the loads are turned \[rad\].
