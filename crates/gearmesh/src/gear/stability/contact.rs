@@ -207,6 +207,9 @@ impl Pairs<'_> {
         let crown = case.crown();
         let width = built.cycle.face_width;
         let balance = &state.balance;
+        // Of a path position, over which a relief grows.
+        let rounding = f64::EPSILON * built.pair.tangent_length;
+        let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
         let mut worst = (0.0_f64, ROUNDING);
         for j in 0..self.count {
             if self.gaps[j] > 0.5 * FAR {
@@ -230,7 +233,8 @@ impl Pairs<'_> {
                 ((share * (w - crown * share * share / 3.0) / own - balance.loads[j]).abs(), share / own)
             };
             let taken = balance.approach + self.largest_gap + others.abs();
-            let limit = ROUNDING + (ROUNDING + TABLE) * (1.0 + stiffness * taken / force);
+            let moved = stiffness * rounding * ramps / force;
+            let limit = ROUNDING + (ROUNDING + TABLE) * (1.0 + stiffness * taken / force) + moved;
             if value / force * worst.1 >= worst.0 * limit {
                 worst = (value / force, limit);
             }
