@@ -34,6 +34,8 @@ struct Running {
     share: f64,
     /// Seconds after which that share was done.
     done_after: f64,
+    /// How often it warned.
+    warned: usize,
 }
 
 impl Running {
@@ -81,6 +83,8 @@ fn left(share: f64, done_after: f64, elapsed: f64) -> Option<f64> {
     ((0.02..1.0).contains(&share) && elapsed >= 2.0 && left > 0.0).then_some(left)
 }
 
+/// Warnings of a stage that are told one by one.
+const MOST_WARNINGS: usize = 5;
 /// How often those are told how it stands who have no bars to look at.
 const EVERY: Duration = Duration::from_secs(10);
 /// How often bars are drawn where nothing happens.
@@ -175,12 +179,13 @@ impl Watcher {
         Some(bar)
     }
 
-    fn end(&self, stage: &str) -> String {
-        let Running { bar, why, .. } = self.running().remove(stage).unwrap_or_default();
+    /// Why it ran, and how often it warned.
+    fn end(&self, stage: &str) -> (String, usize) {
+        let Running { bar, why, warned, .. } = self.running().remove(stage).unwrap_or_default();
         if let Some(bar) = bar {
             bar.finish_and_clear();
         }
-        why
+        (why, warned)
     }
 }
 
@@ -191,7 +196,8 @@ impl Observer for Watcher {
             Event::Started { stage, why, .. } => {
                 let bar = self.bar(stage);
                 let (why, since) = ((*why).to_owned(), Some(Instant::now()));
-                self.running().insert((*stage).to_owned(), Running { bar, why, since, share: 0.0, done_after: 0.0 });
+                self.running()
+                    .insert((*stage).to_owned(), Running { bar, why, since, share: 0.0, done_after: 0.0, warned: 0 });
             }
             Event::Progressed { stage, share } => {
                 let now = Instant::now();
@@ -204,9 +210,21 @@ impl Observer for Watcher {
                 let mut writing = self.writing.lock().unwrap_or_else(PoisonError::into_inner);
                 *writing = Some((*file).to_owned());
             }
-            Event::Warned { stage, message } => self.stage(stage, "warning", message),
+            Event::Warned { stage, message } => {
+                let count = self.running().get_mut(*stage).map_or(0, |running| {
+                    running.warned += 1;
+                    running.warned
+                });
+                if count <= MOST_WARNINGS {
+                    self.stage(stage, "warning", message);
+                }
+            }
             Event::Finished { stage, seconds } => {
-                let why = self.end(stage);
+                let (why, warned) = self.end(stage);
+                if warned > MOST_WARNINGS {
+                    let more = warned - MOST_WARNINGS;
+                    self.stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all"));
+                }
                 self.stage(stage, "ran", &format!("{:>9}  {why}", duration(*seconds)));
             }
             Event::Failed { stage, fault } => {
