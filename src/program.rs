@@ -4,6 +4,7 @@
 
 use std::path::Path;
 
+use crate::stage::foreign::FOREIGN;
 use crate::stage::kinds::KINDS;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
@@ -13,6 +14,7 @@ use studygraph::study::{self, LoadError, Study};
 /// What studies are run with.
 pub static PROGRAM: Program = Program {
     kinds: KINDS,
+    foreign: FOREIGN,
     code_of: code_digest,
     counters: &COUNTERS,
     about: About {

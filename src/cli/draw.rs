@@ -8,7 +8,8 @@ use std::io::{IsTerminal, Write};
 use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource, Report};
 
 use super::progress::{is_hidden, plain};
-use studygraph::study::LoadError;
+use declare::error::Diagnostic;
+use studygraph::study::{LoadError, MOST_TOLD};
 
 /// Writes the message to standard error.
 pub fn invalid_study(error: &LoadError) {
@@ -22,7 +23,15 @@ pub fn invalid_study(error: &LoadError) {
 }
 
 fn framed(error: &LoadError) -> String {
-    let diagnostic = &error.diagnostic;
+    let told: Vec<String> = error.each().take(MOST_TOLD).map(|found| framed_one(error, found)).collect();
+    let more = match error.others.len().saturating_sub(MOST_TOLD - 1) {
+        0 => String::new(),
+        more => format!("and {more} more\n"),
+    };
+    told.concat() + &more
+}
+
+fn framed_one(error: &LoadError, diagnostic: &Diagnostic) -> String {
     let mut drawn = MietteDiagnostic::new(plain(&diagnostic.message));
     if let Some(help) = &diagnostic.help {
         drawn = drawn.with_help(plain(help));

@@ -8,7 +8,7 @@ use studygraph::diff::markdown::escaped;
 use studygraph::store::csv::{heading, write_cells};
 use studygraph::table::data::{Cell, Table};
 use studygraph::table::schema::Type;
-use studygraph::table::select::{parse_conditions, rows_where, unknown_column};
+use studygraph::table::select::{parse_conditions, rows_where, unknown_column, why_none};
 
 /// Rows to print, wherever they come from.
 pub struct Grid<'a> {
@@ -30,13 +30,16 @@ pub struct Heading {
 /// The rows and columns that were asked for, as text.
 ///
 /// # Errors
-/// An unknown column or a condition that does not fit, with the nearest known name.
+/// An unknown column, a condition that does not fit or that no row meets, with the nearest known name.
 pub fn table(table: &Table, conditions: &[String], columns: &[String], format: Format) -> Result<String, String> {
     let mut parsed = Vec::new();
     for condition in conditions {
         parsed.extend(parse_conditions(condition)?);
     }
     let rows = rows_where(table, &parsed)?;
+    if rows.is_empty() && !parsed.is_empty() {
+        return Err(why_none(table, &parsed)?);
+    }
     let chosen: Vec<usize> = if columns.is_empty() {
         (0..table.schema().columns.len()).collect()
     } else {

@@ -135,7 +135,12 @@ fn run_one(
 
 /// What is wrong with a study that was read, to show the line.
 fn error_in(study: &Study, wrong: &Diagnostic) -> LoadError {
-    LoadError { path: study.path.clone(), text: study.text.clone(), diagnostic: Box::new(wrong.clone()) }
+    LoadError {
+        path: study.path.clone(),
+        text: study.text.clone(),
+        diagnostic: Box::new(wrong.clone()),
+        others: Vec::new(),
+    }
 }
 
 /// What somebody else had changed.

@@ -3,7 +3,7 @@
 //! Must not know: execution.
 
 use std::fs::{File, OpenOptions};
-use std::io::{Read, Write};
+use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::Ending;
@@ -33,7 +33,15 @@ pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
     // Nothing is left of some names, and YAML reads `null` otherwise.
     let text = Some(named(name)).filter(|text| load_text(text, file).is_ok()).unwrap_or_else(|| named("study"));
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));
-    let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(cannot)?;
+    let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(|error| {
+        if error.kind() == ErrorKind::AlreadyExists {
+            let shown = file.display();
+            return Ending::Usage(format!(
+                "{shown} is there already and stays as it is; give another name, or remove it first: rm {shown}"
+            ));
+        }
+        cannot(error)
+    })?;
     opened.write_all(text.as_bytes()).map_err(cannot)?;
     out(&format!("wrote {0}; next: gearstudy run {0}\n", file.display()));
     Ok(())

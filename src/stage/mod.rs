@@ -7,6 +7,7 @@ pub mod common;
 pub mod compliance;
 pub mod designs;
 pub mod doubts;
+pub mod foreign;
 pub mod kinds;
 pub mod names;
 pub mod pair;

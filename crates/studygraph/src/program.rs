@@ -6,10 +6,22 @@ use crate::about::About;
 use crate::stage::Kind;
 use declare::work::Counter;
 
+/// A word that users of other programs and other textbooks know for a field of this one.
+#[derive(Clone, Copy)]
+pub struct Foreign {
+    pub word: &'static str,
+    /// The field that is meant, where there is one.
+    pub field: Option<&'static str>,
+    /// What else is to be said: that a radius is half of the diameter, or why there is no such thing.
+    pub remark: &'static str,
+}
+
 /// A program that runs studies.
 pub struct Program {
     /// Every kind of stage, in the order in which they are listed to the user.
     pub kinds: &'static [&'static Kind],
+    /// What others call its fields.
+    pub foreign: &'static [Foreign],
     /// The digest of the code that the tables of a kind, called by its name, come from; part of every cache key.
     pub code_of: fn(&str) -> String,
     /// What its stages count of their work.

@@ -239,8 +239,10 @@ impl Spec {
     }
 }
 
-static PROGRAM: Program = Program { kinds: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT };
-static OTHER: Program = Program { kinds: &[], code_of: |_| String::from("other code"), counters: &[], about: ABOUT };
+static PROGRAM: Program =
+    Program { kinds: &[], foreign: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT };
+static OTHER: Program =
+    Program { kinds: &[], foreign: &[], code_of: |_| String::from("other code"), counters: &[], about: ABOUT };
 
 /// A folder with a cache, and the studies run on it.
 struct Bench {

@@ -9,7 +9,7 @@ use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
 use super::words::{alternatives, quote};
-use super::{Node, Source, Study, links, settings};
+use super::{Faults, Node, Source, Study, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -48,15 +48,15 @@ pub static KEYS: &[Field] = &[
 /// Makes a study of a text.
 ///
 /// # Errors
-/// The first thing that is wrong with it.
-pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study, Diagnostic> {
+/// What is wrong with it.
+pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study, Faults> {
     let start = Place { line: 1, column: 1, ..Place::default() };
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
-        return Err(Diagnostic::new(message).at(root.place));
+        return Err(Diagnostic::new(message).at(root.place).into());
     };
     let start = pairs.first().map_or(root.place, |pair| pair.place);
     let belong = ranges_belong(program.kinds);
@@ -67,13 +67,16 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
     let stages = pairs.iter().find(|pair| pair.key == "stages").ok_or_else(|| {
         Diagnostic::new("the study has no `stages`").at(start).help("stages are written `NAME: { kind: KIND, … }`")
     })?;
-    let drafts = drafts(stages, program.kinds, &belong)?;
+    let drafts = drafts(stages, program, &belong)?;
     links::check_references(&drafts)?;
-    let mut nodes = Vec::with_capacity(drafts.len());
+    let (mut nodes, mut wrong) = (Vec::with_capacity(drafts.len()), Vec::new());
     for Draft { name, place, kind, record, .. } in drafts {
-        let stage = (kind.build)(&record).map_err(|found| found.or_at(place))?;
-        nodes.push(Node { name, place, kind, record, stage });
+        match (kind.build)(&record) {
+            Ok(stage) => nodes.push(Node { name, place, kind, record, stage }),
+            Err(found) => wrong.push(found.or_at(place)),
+        }
     }
+    Faults::all(wrong)?;
     links::check_ports(&nodes)?;
     let tolerances = tolerances(&keys)?;
     links::check_tolerances(&tolerances, &nodes)?;
@@ -106,23 +109,32 @@ fn tolerances(keys: &Record) -> Result<Vec<(Allowance, Place)>, Diagnostic> {
     keys.maybe_map("tolerances").unwrap_or_default().iter().map(read).collect()
 }
 
-fn drafts(stages: &KeyValue, kinds: &[&'static Kind], belong: &str) -> Result<Vec<Draft>, Diagnostic> {
+fn drafts(stages: &KeyValue, program: &'static Program, belong: &str) -> Result<Vec<Draft>, Faults> {
     let written = "stages are written `NAME: { kind: KIND, … }`";
     let pairs = match &stages.node.content {
         Content::Mapping(pairs) if !pairs.is_empty() => pairs,
         Content::Mapping(_) => {
-            return Err(Diagnostic::new("a study has at least one stage").at(stages.node.place).help(written));
+            return Err(Diagnostic::new("a study has at least one stage").at(stages.node.place).help(written).into());
         }
         _ => {
             let message = format!("`stages` is {}; a mapping from names to stages is expected", stages.node.describe());
-            return Err(Diagnostic::new(message).at(stages.node.place).help(written));
+            return Err(Diagnostic::new(message).at(stages.node.place).help(written).into());
         }
     };
-    let stages = Stages { pairs, kinds };
-    pairs.iter().map(|pair| draft(pair, stages, belong)).collect()
+    let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
+    let (mut drafts, mut wrong) = (Vec::with_capacity(pairs.len()), Vec::new());
+    for pair in pairs {
+        match draft(pair, stages, belong, &mut wrong) {
+            Ok(draft) => drafts.push(draft),
+            Err(found) => wrong.push(found),
+        }
+    }
+    Faults::all(wrong)?;
+    Ok(drafts)
 }
 
-fn draft(pair: &KeyValue, stages: Stages, belong: &str) -> Result<Draft, Diagnostic> {
+/// One stage; what is wrong besides the error goes to `wrong`.
+fn draft(pair: &KeyValue, stages: Stages, belong: &str, wrong: &mut Vec<Diagnostic>) -> Result<Draft, Diagnostic> {
     let kinds = stages.kinds;
     let (name, place) = (&pair.key, pair.place);
     check_name("stage", name, place)?;
@@ -139,7 +151,9 @@ fn draft(pair: &KeyValue, stages: Stages, belong: &str) -> Result<Draft, Diagnos
     };
     let kind = kind_named(wanted, kinds)?;
     let mut decoder = Decoder::new(belong, stages);
-    let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(name), place)?;
+    let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(name), place);
+    wrong.append(&mut decoder.faults);
+    let record = record?;
     Ok(Draft { name: name.clone(), place, kind, record, references: decoder.references })
 }
 

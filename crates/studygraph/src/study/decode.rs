@@ -7,6 +7,7 @@ use super::document::{Content, KeyValue, Node, nothing, parse};
 use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::Measure;
+use super::unknown;
 use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape};
@@ -26,6 +27,8 @@ pub struct Reference {
 /// Reads fields, and gathers the references among them.
 pub struct Decoder<'a> {
     pub references: Vec<Reference>,
+    /// Whatever is wrong besides what was returned as an error.
+    pub faults: Vec<Diagnostic>,
     /// Where `[least, most]` belongs: `` in the `design` of an `optimizer` stage ``.
     pub ranges_belong: &'a str,
     /// All stages as written, for fields that override those of another one.
@@ -42,13 +45,13 @@ struct Owner<'a> {
 
 impl<'a> Decoder<'a> {
     pub fn new(ranges_belong: &'a str, stages: Stages<'a>) -> Self {
-        Self { references: Vec::new(), ranges_belong, stages, chooses: false }
+        Self { references: Vec::new(), faults: Vec::new(), ranges_belong, stages, chooses: false }
     }
 
     /// Reads the fields of a mapping called `label` that stands at `place`; `others` are keys that somebody else reads.
     ///
     /// # Errors
-    /// When a field is unknown, missing or wrong.
+    /// The first field that is unknown, missing or wrong; the others are among the faults.
     pub fn record(
         &mut self,
         node: &Node,
@@ -64,18 +67,59 @@ impl<'a> Decoder<'a> {
             Content::Scalar { .. } if node.is_null() => &[],
             _ => return Err(not_fields(node, fields, others, label)),
         };
-        let known = || others.iter().copied().chain(fields.iter().map(|field| field.name));
-        if let Some(pair) = pairs.iter().find(|pair| !known().any(|name| name == pair.key)) {
-            let message = format!("unknown field {} of {label}", quote(&pair.key));
-            return Err(Diagnostic::new(message).at(pair.place).help(suggest(&pair.key, known().collect::<Vec<_>>())));
+        let is_known =
+            |pair: &KeyValue| others.contains(&pair.key.as_str()) || fields.iter().any(|field| field.name == pair.key);
+        let mut wrong = Vec::new();
+        if !pairs.iter().all(is_known) {
+            let known: Vec<_> = others.iter().copied().chain(fields.iter().map(|field| field.name)).collect();
+            wrong = unknown::fields(pairs, &known, label, self.stages.foreign);
         }
+        let is_renamed = !wrong.is_empty();
         let mut record = Record { fields: Vec::with_capacity(fields.len()), place };
         for field in fields {
-            if let Some(entry) = self.field(field, pairs, &owner)? {
-                record.fields.push((field.name, entry));
+            // What is missing may stand there under another name.
+            let is_missing = || !pairs.iter().any(|pair| pair.key == field.name);
+            if is_renamed && field.presence == Presence::Required && is_missing() {
+                continue;
+            }
+            // The first half of a number with a comma has been told.
+            let is_told = |pair: &KeyValue| {
+                wrong.iter().any(|found| found.place.is_some_and(|place| place.offset == pair.node.place.offset))
+            };
+            if is_renamed && pairs.iter().any(|pair| pair.key == field.name && is_told(pair)) {
+                continue;
+            }
+            match self.field(field, pairs, &owner) {
+                Ok(Some(entry)) => record.fields.push((field.name, entry)),
+                Ok(None) => {}
+                Err(found) => wrong.push(found),
             }
         }
-        Ok(record)
+        self.all_right(record, wrong)
+    }
+
+    /// What was read, or the first fault; the others are kept.
+    fn all_right<T>(&mut self, read: T, wrong: Vec<Diagnostic>) -> Result<T, Diagnostic> {
+        let mut wrong = wrong.into_iter();
+        let Some(first) = wrong.next() else { return Ok(read) };
+        self.faults.extend(wrong);
+        Err(first)
+    }
+
+    /// Reads each of several, whatever is wrong with the others.
+    fn each<N, T>(
+        &mut self,
+        nodes: impl IntoIterator<Item = N>,
+        mut read: impl FnMut(&mut Self, N) -> Result<T, Diagnostic>,
+    ) -> Result<Vec<T>, Diagnostic> {
+        let (mut all, mut wrong) = (Vec::new(), Vec::new());
+        for node in nodes {
+            match read(self, node) {
+                Ok(one) => all.push(one),
+                Err(found) => wrong.push(found),
+            }
+        }
+        self.all_right(all, wrong)
     }
 
     fn field(
@@ -155,18 +199,14 @@ impl<'a> Decoder<'a> {
                     Content::Sequence(items) => items.as_slice(),
                     _ => std::slice::from_ref(node),
                 };
-                Value::List(
-                    items.iter().map(|node| self.value(node, item, field, name, key)).collect::<Result<_, _>>()?,
-                )
+                Value::List(self.each(items, |decoder, node| decoder.value(node, item, field, name, key))?)
             }
             Shape::Map(item) => {
                 let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
-                let mut entries = Vec::with_capacity(pairs.len());
-                for pair in pairs {
+                Value::Map(self.each(pairs, |decoder, pair| {
                     check_label(name, pair)?;
-                    entries.push((pair.key.clone(), self.value(&pair.node, item, field, &pair.key, pair.place)?));
-                }
-                Value::Map(entries)
+                    Ok((pair.key.clone(), decoder.value(&pair.node, item, field, &pair.key, pair.place)?))
+                })?)
             }
             Shape::Group(fields) => Value::Group(self.record(node, fields, &[], &quote(name), key)?),
             Shape::Member(members) => {

@@ -12,6 +12,7 @@ use serde_saphyr::granit_parser::{
 
 use super::characters;
 use super::place::place_at;
+use super::structure;
 use super::words::quote;
 use declare::error::{Diagnostic, Place};
 use declare::text::unfit;
@@ -286,6 +287,9 @@ impl<'a> Tree<'a> {
     /// What the parser found wrong, in words for somebody who does not know its grammar.
     fn refused(&self, error: &ScanError) -> Diagnostic {
         let place = self.point(*error.marker());
+        if let Some(cause) = structure::cause(self.text, error.kind(), place) {
+            return cause;
+        }
         let quotes = "put a text that holds such characters in quotes, and look at the indentation";
         match error.kind() {
             ErrorKind::RecursionLimitExceeded => too_deep().at(place),

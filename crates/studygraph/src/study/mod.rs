@@ -17,8 +17,10 @@ mod quantity;
 mod read;
 pub mod schema;
 pub mod settings;
+mod structure;
 #[cfg(test)]
 mod tests;
+mod unknown;
 mod words;
 
 use std::fmt;
@@ -68,6 +70,9 @@ pub struct Node {
     pub stage: Box<dyn Stage>,
 }
 
+/// Mistakes that are told at once.
+pub const MOST_TOLD: usize = 10;
+
 /// Why a file is not a study. Shown as `file:line:column: message`, with the help on a line of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct LoadError {
@@ -75,24 +80,67 @@ pub struct LoadError {
     /// What was read, to show the line; places count in it.
     pub text: String,
     pub diagnostic: Box<Diagnostic>,
+    /// What else is wrong, as far as that can be told, in the order of the text.
+    pub others: Vec<Diagnostic>,
 }
 
 impl LoadError {
-    fn new(path: &Path, text: String, diagnostic: Diagnostic) -> Self {
-        Self { path: path.to_owned(), text, diagnostic: Box::new(diagnostic) }
+    fn new(path: &Path, text: String, wrong: impl Into<Faults>) -> Self {
+        let Faults { mut first, mut others } = wrong.into();
+        let at = |found: &Diagnostic| found.place.map_or(0, |place| place.offset);
+        others.sort_by_key(at);
+        if let Some(earlier) = others.first_mut().filter(|other| at(other) < at(&first)) {
+            std::mem::swap(earlier, &mut first);
+            others.sort_by_key(at);
+        }
+        Self { path: path.to_owned(), text, diagnostic: Box::new(first), others }
+    }
+
+    /// Everything that is wrong.
+    pub fn each(&self) -> impl Iterator<Item = &Diagnostic> {
+        [self.diagnostic.as_ref()].into_iter().chain(&self.others)
+    }
+}
+
+/// What is wrong with a study: something, and whatever else was found with it.
+struct Faults {
+    first: Diagnostic,
+    others: Vec<Diagnostic>,
+}
+
+impl From<Diagnostic> for Faults {
+    fn from(first: Diagnostic) -> Self {
+        Self { first, others: Vec::new() }
+    }
+}
+
+impl Faults {
+    /// Nothing, or all of them.
+    fn all(found: Vec<Diagnostic>) -> Result<(), Self> {
+        let mut found = found.into_iter();
+        match found.next() {
+            Some(first) => Err(Self { first, others: found.collect() }),
+            None => Ok(()),
+        }
     }
 }
 
 impl fmt::Display for LoadError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}:", self.path.display())?;
-        if let Some(place) = self.diagnostic.place {
-            write!(formatter, "{}:{}:", place.line, place.column)?;
+        for (at, found) in self.each().take(MOST_TOLD).enumerate() {
+            let line = if at == 0 { "" } else { "\n" };
+            write!(formatter, "{line}{}:", self.path.display())?;
+            if let Some(place) = found.place {
+                write!(formatter, "{}:{}:", place.line, place.column)?;
+            }
+            write!(formatter, " {}", found.message)?;
+            if let Some(help) = &found.help {
+                write!(formatter, "\n  help: {help}")?;
+            }
         }
-        write!(formatter, " {}", self.diagnostic.message)?;
-        match &self.diagnostic.help {
-            Some(help) => write!(formatter, "\n  help: {help}"),
-            None => Ok(()),
+        match self.others.len().saturating_sub(MOST_TOLD - 1) {
+            0 => Ok(()),
+            more => write!(formatter, "\n{}: and {more} more", self.path.display()),
         }
     }
 }
@@ -102,7 +150,7 @@ impl std::error::Error for LoadError {}
 /// Reads and checks a study of this program.
 ///
 /// # Errors
-/// One message for the first thing that is wrong with it.
+/// What is wrong with it: of its fields and stages all that can be told by itself, else the first thing.
 pub fn load(path: &Path, program: &'static Program) -> Result<Study, LoadError> {
     load_text(&read::read(path)?, path, program)
 }
@@ -112,5 +160,5 @@ pub fn load(path: &Path, program: &'static Program) -> Result<Study, LoadError> 
 /// # Errors
 /// As [`load`].
 pub fn load_text(text: &str, path: &Path, program: &'static Program) -> Result<Study, LoadError> {
-    assemble::study(text, path, program).map_err(|diagnostic| LoadError::new(path, text.to_owned(), diagnostic))
+    assemble::study(text, path, program).map_err(|wrong| LoadError::new(path, text.to_owned(), wrong))
 }

@@ -4,6 +4,9 @@
 //! and programs differ to this day, so what only some of them take for the same number is refused, never guessed. Must not
 //! know: what a number is for.
 
+/// Of a comma in a number.
+pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousands";
+
 /// What to write instead of a text that is, or begins with, a number in another notation; nothing where it is not.
 pub fn help(text: &str) -> Option<String> {
     let text = text.trim();
@@ -25,7 +28,7 @@ pub fn help(text: &str) -> Option<String> {
         return Some("nothing is counted in sixties: write one number in decimal digits, `1.5` for `1:30`".to_owned());
     }
     if number.contains(',') {
-        return Some("the decimal sign is a point, and nothing parts thousands".to_owned());
+        return Some(COMMA.to_owned());
     }
     if number.contains('_') {
         let plain = number.replace('_', "");
@@ -66,7 +69,7 @@ mod tests {
             ("00", "write `0`, without zeros in front"),
             ("-007.5 mm", "write `-7.5 mm`, without zeros in front"),
             ("1_000 mm", "nothing parts thousands: write `1000 mm`"),
-            ("1,5 mm", "the decimal sign is a point, and nothing parts thousands"),
+            ("1,5 mm", COMMA),
             ("1:30", "nothing is counted in sixties: write one number in decimal digits, `1.5` for `1:30`"),
         ] {
             assert_eq!(help(text).as_deref(), Some(says), "{text}");

@@ -5,15 +5,17 @@
 
 use super::document::{Content, KeyValue, Node};
 use super::words::quote;
+use crate::program::Foreign;
 use crate::stage::Kind;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Shape};
 
-/// The stages of a study as written, and the kinds there are.
+/// The stages of a study as written, the kinds there are, and what others call their fields.
 #[derive(Clone, Copy, Default)]
 pub struct Stages<'a> {
     pub pairs: &'a [KeyValue],
     pub kinds: &'a [&'static Kind],
+    pub foreign: &'a [Foreign],
 }
 
 impl Stages<'_> {

@@ -2,9 +2,11 @@
 //!
 //! Must not know: where tables come from. Values with a unit are converted to the column's; numbers match within 1e-9.
 
-use super::data::{Data, Table};
+use std::collections::BTreeSet;
+
+use super::data::{Cell, Data, Table};
 use super::schema::{Column, Schema, Type};
-use declare::error::suggest;
+use declare::error::{nearest, suggest};
 use declare::units::{in_unit, parse_quantity, parse_unit};
 
 /// `stage.table[key=value, …].column`; the column is empty when a whole table is meant.
@@ -139,6 +141,48 @@ pub fn rows_where(table: &Table, conditions: &[(String, String)]) -> Result<Vec<
     Ok((0..table.rows()).filter(|&row| holds(row)).collect())
 }
 
+/// Values that a message lists.
+const MOST_VALUES: usize = 12;
+
+/// Why no row meets the conditions: the first that leaves none, and the values that its column has in the rows until then.
+///
+/// # Errors
+/// As [`check_conditions`].
+pub fn why_none(table: &Table, conditions: &[(String, String)]) -> Result<String, String> {
+    let mut rows: Vec<usize> = (0..table.rows()).collect();
+    for ((name, value), (column, test)) in conditions.iter().zip(tests(table.schema(), conditions)?) {
+        let data = &table.columns()[column];
+        let kept: Vec<usize> = rows.iter().copied().filter(|&row| test.holds(data, row)).collect();
+        if kept.is_empty() {
+            let values = distinct(&table.schema().columns[column], data, &rows);
+            let names = values.iter().map(String::as_str);
+            let near = if let Test::Text(_) = test { nearest(value, names.clone()) } else { None };
+            let more = values.len().saturating_sub(MOST_VALUES);
+            let mut listed: Vec<String> = names.take(MOST_VALUES).map(|value| format!("`{value}`")).collect();
+            if more > 0 {
+                listed.push(format!("and {more} more"));
+            }
+            let near = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+            return Ok(format!("no row has `{name}={value}`; {near}there: {}", listed.join(", ")));
+        }
+        rows = kept;
+    }
+    Ok("the table has no rows".to_owned())
+}
+
+/// The values of a column in some rows, as a condition has them, in the order in which they come.
+fn distinct(column: &Column, data: &Data, rows: &[usize]) -> Vec<String> {
+    let mut seen = BTreeSet::new();
+    let unit = if column.unit.is_empty() { String::new() } else { format!(" {}", column.unit) };
+    let texts = rows.iter().map(|&row| match data.cell(row) {
+        Cell::Text(text) => text,
+        Cell::Float(value) => format!("{value}{unit}"),
+        Cell::Integer(value) => value.to_string(),
+        Cell::Flag(value) => value.to_string(),
+    });
+    texts.filter(|text| seen.insert(text.clone())).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -179,6 +223,18 @@ mod tests {
         assert!(rows_where(&table(), &[("torque".into(), "50 mm".into())]).unwrap_err().contains("N m"));
         assert!(CellName::parse("nonsense").is_err());
         assert!(CellName::parse("a.b[x=1]").is_err());
+    }
+
+    #[test]
+    fn conditions_that_no_row_meets_say_what_there_is() {
+        let why = |conditions: &[(&str, &str)]| {
+            let owned: Vec<_> = conditions.iter().map(|(name, value)| ((*name).into(), (*value).into())).collect();
+            why_none(&table(), &owned).unwrap()
+        };
+        assert_eq!(why(&[("design", "isso")]), "no row has `design=isso`; did you mean `iso`? there: `iso`, `none`");
+        assert_eq!(why(&[("torque", "55 N m")]), "no row has `torque=55 N m`; there: `25 N m`, `50 N m`");
+        // Of the rows that met what came before.
+        assert_eq!(why(&[("design", "none"), ("torque", "25")]), "no row has `torque=25`; there: `50 N m`");
     }
 
     #[test]

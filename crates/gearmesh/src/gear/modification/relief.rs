@@ -9,7 +9,7 @@ use super::{MOST_AMOUNT, Modification};
 use crate::gear::geometry::GearPair;
 use crate::numeric::quadratic::Quadratic;
 use declare::error::Diagnostic;
-use declare::units::{ANGLE, FORCE, LENGTH, SPECIFIC_STIFFNESS};
+use declare::units::{ANGLE, FORCE, LENGTH, RATIO, SPECIFIC_STIFFNESS};
 use declare::{Alternatives, Declared, Words};
 
 /// How deep a relief is at its end.
@@ -50,7 +50,7 @@ pub enum Start {
     #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, range)]
     Length(f64),
     /// Instead of `length`: length over p_b(ε_α − 1); 1 is long relief, 0.5 short relief.
-    #[declared(minimum = 0.0, maximum = 10.0, range)]
+    #[declared(dimension = RATIO, minimum = 0.0, maximum = 10.0, range)]
     Fraction(f64),
     /// Instead of `length`: roll angle where the relief starts.
     #[declared(name = "start_roll_angle", dimension = ANGLE, minimum = 0.0, maximum = 10.0, range)]

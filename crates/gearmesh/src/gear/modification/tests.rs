@@ -80,7 +80,7 @@ fn the_four_ways_to_give_a_start_agree() {
     let diameter = 2.0 * pair.pinion.base_radius * (1.0 + roll * roll).sqrt();
     let starts = [
         ("length", Quantity(length)),
-        ("fraction", Number(0.5)),
+        ("fraction", Quantity(0.5)),
         ("start_roll_angle", Quantity(roll)),
         ("start_diameter", Quantity(diameter)),
     ];
@@ -115,7 +115,7 @@ fn the_iso_amount_is_the_printed_formula() {
         }
         fields.push(("mesh_stiffness", Quantity(19.05e9)));
         let group = record_of(IsoAmount::MEMBER.fields, &fields);
-        let values = [("iso_amount", Group(group)), ("fraction", Number(1.0))];
+        let values = [("iso_amount", Group(group)), ("fraction", Quantity(1.0))];
         pinion_depth("tip_relief", &values, pair.end_of_contact)
     };
     assert!((iso(&[]) - 3.11e-6).abs() < 0.005e-6, "{:e}", iso(&[]));
@@ -228,7 +228,7 @@ fn the_quadratics_of_profiles_are_their_depths() {
 #[test]
 fn reliefs_add_up() {
     let pair = pair();
-    let relief = [("amount", Quantity(AMOUNT)), ("fraction", Number(1.0))];
+    let relief = [("amount", Quantity(AMOUNT)), ("fraction", Quantity(1.0))];
     let slope = [("amount", Quantity(2e-6))];
     let all = design(&pair, &[("tip_relief", "both", &relief), ("profile_slope", "pinion", &slope)]).unwrap();
     let roll = pair.roll(Side::Pinion, pair.end_of_contact);
@@ -241,7 +241,7 @@ fn contradictions_and_impossible_reliefs_are_refused_with_the_range() {
     let amount = ("amount", Quantity(AMOUNT));
     let message = refused("tip_relief", std::slice::from_ref(&amount));
     assert!(message.contains("exactly one of `length`"), "{message}");
-    let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("fraction", Number(1.0))]);
+    let message = refused("tip_relief", &[amount.clone(), ("length", Quantity(1e-3)), ("fraction", Quantity(1.0))]);
     assert!(message.contains("not both `length` and `fraction`"), "{message}");
     assert!(refused("tip_relief", &[("length", Quantity(1e-3))]).contains("`iso_amount`"));
     let message = refused("root_relief", &[amount.clone(), ("length", Quantity(14.6e-3))]);
@@ -341,7 +341,7 @@ fn more_than_half_of_the_tooth_is_refused_with_what_may_be_taken() {
     let fields = [("application_factor", Number(10.0)), ("tangential_load", Quantity(1e9))];
     let more = [("face_width", Quantity(1e-4)), ("mesh_stiffness", Quantity(1e6))];
     let iso = Group(record_of(IsoAmount::MEMBER.fields, &[fields, more].concat()));
-    assert!(refused("tip_relief", &[("iso_amount", iso), ("fraction", Number(1.0))]).contains("half of the tooth"));
+    assert!(refused("tip_relief", &[("iso_amount", iso), ("fraction", Quantity(1.0))]).contains("half of the tooth"));
 }
 
 /// Powers that overlap are deepest where none of them ends.
@@ -421,7 +421,7 @@ fn a_template_opens_the_ranges_and_closes_them_with_values() {
         ("gear", Choice("both")),
         ("amount", Range(0.0, 1e-6)),
         ("length", Range(0.0, 1e-3)),
-        ("fraction", Number(1.0)),
+        ("fraction", Quantity(1.0)),
     ];
     assert!(Template::new(&members_of(&[("tip_relief", &both)])).is_err());
 }

@@ -37,7 +37,7 @@ fn torque(force: f64) -> f64 {
 }
 
 fn relief(pair: &GearPair, amount: f64, fraction: f64) -> Design {
-    design(pair, &[("tip_relief", "both", &[("amount", Quantity(amount)), ("fraction", Number(fraction))])]).unwrap()
+    design(pair, &[("tip_relief", "both", &[("amount", Quantity(amount)), ("fraction", Quantity(fraction))])]).unwrap()
 }
 
 fn crowned(pair: &GearPair, amount: f64) -> Design {
@@ -171,7 +171,7 @@ fn peak_to_peak_does_not_depend_on_the_number_of_positions() {
     let resolved = PairCompliance { contact: Some(ContactLaw::Resolved), ..inclined(coupled()) };
     let power =
         [("amount", Quantity(9e-6)), ("length", Quantity(4e-3)), ("curve", Choice("power")), ("exponent", Number(2.5))];
-    let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.7))];
+    let root = [("amount", Quantity(5e-6)), ("fraction", Quantity(0.7))];
     let mixed = design(
         &pair,
         &[
@@ -259,7 +259,7 @@ fn swapping_the_gears_changes_nothing() {
     let pair = pair();
     let swapped = swapped(&pair);
     let tip = [("amount", Quantity(8e-6)), ("length", Quantity(4e-3)), ("curve", Choice("parabolic"))];
-    let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
+    let root = [("amount", Quantity(5e-6)), ("fraction", Quantity(0.5))];
     let face = [("amount", Quantity(6e-6)), ("length", Quantity(4e-3))];
     let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root), ("end_relief", one, &face)]).unwrap()

@@ -5,6 +5,7 @@ mod files;
 mod messages;
 mod notation;
 mod properties;
+mod structure;
 mod texts;
 mod units;
 mod values;
@@ -13,7 +14,7 @@ use std::path::Path;
 
 use super::{LoadError, Study, load_text};
 use crate::about::ABOUT;
-use crate::program::Program;
+use crate::program::{Foreign, Program};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Stage, Want};
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
@@ -164,7 +165,14 @@ static KIND_OPTIMIZER: Kind = kind!("optimizer", OPTIMIZER);
 static KIND_STE: Kind = kind!("ste", STE);
 static KIND_REPORT: Kind = kind!("report", REPORT);
 
-static PROGRAM: Program = Program { kinds: KINDS, code_of: |_| String::new(), counters: &[], about: ABOUT };
+static FOREIGN: &[Foreign] = &[
+    Foreign { word: "z", field: Some("teeth"), remark: "" },
+    Foreign { word: "bore_diameter", field: Some("bore_radius"), remark: "half of it" },
+    Foreign { word: "diameter", field: Some("teeth"), remark: "a length over the module" },
+    Foreign { word: "helix_angle", field: None, remark: "spur gears only" },
+];
+static PROGRAM: Program =
+    Program { kinds: KINDS, foreign: FOREIGN, code_of: |_| String::new(), counters: &[], about: ABOUT };
 pub static KINDS: &[&Kind] = &[&KIND_GEOMETRY, &KIND_MODIFICATION, &KIND_OPTIMIZER, &KIND_STE, &KIND_REPORT];
 
 /// A valid study that uses every shape.

@@ -43,7 +43,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3,5 mm",
-        "8:13: `3,5 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: the decimal sign is a point, and nothing parts thousands",
+        "8:13: `3,5 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: a decimal point, not a comma, and nothing parts thousands",
     ),
     (
         "value: 2.316 um",

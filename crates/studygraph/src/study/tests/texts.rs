@@ -25,10 +25,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("study: a", "1:1: the study has no `stages`\n  help: stages are written `NAME: { kind: KIND, … }`"),
     ("study: a\nstages:\n\tpair: 3", "3:1: a tab stands where YAML allows only spaces\n  help: indent with spaces"),
     ("study: a\n\tb: c", "2:1: a tab stands where YAML allows only spaces\n  help: indent with spaces"),
-    (
-        "a: b: c",
-        "1:5: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
-    ),
+    ("a: b: c", "1:1: a second `:` stands in the value of `a`\n  help: put the text in quotes: `a: \"b: c\"`"),
     ("a: \"b", "1:4: a quote is opened and never closed"),
     ("a: [b", "1:4: `[` is opened and never closed"),
     ("a: *b", "1:4: this alias has no anchor (`&name`) before it"),
@@ -43,10 +40,7 @@ const TEXTS: &[(&str, &str)] = &[
     ("? [a]\n: b", "1:3: a name is expected before the colon"),
     (": b", "1:1: a name is missing before the colon"),
     ("a: &a b\n<<: 3\n", "2:1: `<<` merges a mapping, or a list of mappings"),
-    (
-        "µ: ä: b",
-        "1:5: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
-    ),
+    ("µ: ä: b", "1:1: a second `:` stands in the value of `µ`\n  help: put the text in quotes: `µ: \"ä: b\"`"),
     (
         "study: µ\r\ntitle: b\r\nstages:\r\n  ä: 3",
         "1:8: `µ` cannot be the name of a study\n  help: lower-case letters, digits, `-` and `_` make a name, at most 64 of them",
@@ -57,7 +51,7 @@ const TEXTS: &[(&str, &str)] = &[
     ),
     (
         "study: a\nstages: {pair: {kind: geometry, module: 'µµµ\n  µ'}}",
-        "2:41: `µµµ µ` is not a number; a length (for example `3 mm`) is expected",
+        "2:10: `pair` has no `pinion`; a mapping with the fields `teeth`, `face_width` is expected\n  help: The driving gear.\nt.yaml:2:41: `µµµ µ` is not a number; a length (for example `3 mm`) is expected",
     ),
     (
         "\u{feff}µ: 3",
@@ -125,12 +119,9 @@ const TEXTS: &[(&str, &str)] = &[
     ),
     (
         "- a\nb: c",
-        "2:1: not valid YAML: while parsing a block collection, did not find expected '-' indicator\n  help: put a text that holds such characters in quotes, and look at the indentation",
+        "2:1: `b: c` has no dash, and stands in a list\n  help: write `- b: c` for another item, or indent it by 2 spaces if it belongs to the item in line 1",
     ),
-    (
-        "a:\n  b\n c: d",
-        "3:3: a `:` cannot stand here\n  help: put a text that holds such characters in quotes, and look at the indentation",
-    ),
+    ("a:\n  b\n c: d", "2:3: `b` has no `:` between a name and its value\n  help: write `b: …`"),
 ];
 
 #[test]

@@ -9,7 +9,7 @@ use crate::gear::modification::lead_crowning::LeadCrowning;
 use crate::gear::modification::relief::{Amount, FromTip, Start};
 use crate::gear::modification::tip_relief::TipRelief;
 use crate::gear::modification::{Design, Gears, Modification, NamedModification, family};
-use declare::record::Value::{Choice, Number, Quantity};
+use declare::record::Value::{Choice, Quantity};
 
 /// So much over the whole flank, as a surface and as a lead.
 #[derive(Debug)]
@@ -77,7 +77,7 @@ fn a_refused_modification_is_not_kept() {
     let against = TipRelief { counted_from: FromTip::SingleZone, ..relief(9e-6, Start::RollAngle(0.5)) };
     assert!(design.add(Gears::Both, &against, &pair).is_err_and(|error| error.field == Some("counted_from")));
     let record =
-        record("tip_relief", &[("gear", Choice("both")), ("amount", Quantity(3e-3)), ("fraction", Number(1.0))]);
+        record("tip_relief", &[("gear", Choice("both")), ("amount", Quantity(3e-3)), ("fraction", Quantity(1.0))]);
     assert!(design.add_record(family("tip_relief").unwrap(), &record, &pair).is_err());
     assert_eq!([design.pinion.len(), design.gear.len()], [1, 1]);
 }

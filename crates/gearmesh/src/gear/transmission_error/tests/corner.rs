@@ -276,7 +276,7 @@ fn swapping_the_gears_mirrors_the_curve() {
     let pair = pair();
     let swapped = swapped(&pair);
     let tip = [("amount", Quantity(30e-6)), ("length", Quantity(2e-3)), ("curve", Choice("parabolic"))];
-    let root = [("amount", Quantity(5e-6)), ("fraction", Number(0.5))];
+    let root = [("amount", Quantity(5e-6)), ("fraction", Quantity(0.5))];
     let of = |pair: &GearPair, one: &'static str, two: &'static str| {
         design(pair, &[("tip_relief", one, &tip), ("root_relief", two, &root)]).unwrap()
     };

@@ -36,7 +36,7 @@ fn a_face_is_cut_into_slices_only_where_no_closed_form_exists() {
     let slices = |contact, parts: &[NamedModification]| counted(contact, settings, parts, false).1[0];
     for contact in [ContactLaw::Linear, ContactLaw::LoadDependent] {
         assert_eq!(slices(contact, &[]), 1, "nothing varies across the face");
-        assert_eq!(slices(contact, &[("tip_relief", "both", &[amount(8e-6), ("fraction", Number(0.5))])]), 1);
+        assert_eq!(slices(contact, &[("tip_relief", "both", &[amount(8e-6), ("fraction", Quantity(0.5))])]), 1);
     }
     assert_eq!(slices(ContactLaw::Linear, &[("lead_crowning", "pinion", &crown)]), 1, "the closed form");
     assert_eq!(slices(ContactLaw::LoadDependent, &[("lead_crowning", "pinion", &crown)]), 9, "half of the face");

@@ -1,0 +1,214 @@
+//! Where lines and brackets do not fit together: what is wrong in the words of somebody who wrote them.
+//!
+//! The parser tells where it stopped and which rule of YAML's grammar it could not go on with; the lines around tell
+//! what was most likely meant: a line that stands between two levels, a list that goes on without its dash, a bracket
+//! that is still open. Must not know: fields, stages.
+
+use serde_saphyr::granit_parser::ErrorKind;
+
+use super::place::place_at;
+use super::words::{alternatives, quote};
+use declare::error::{Diagnostic, Place};
+
+/// The cause of what the parser refused at `place`; none where it is not one of structure.
+pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
+    let at = |line: &Line| place_at(text, line.offset + line.indent, line.body.len());
+    let lines = Line::all(text);
+    let stopped = lines.iter().position(|line| line.number >= place.line)?;
+    let (line, before) = (&lines[stopped], &lines[..stopped]);
+    let flow = matches!(
+        kind,
+        ErrorKind::ExpectedFlowMappingSeparator
+            | ErrorKind::ExpectedFlowSequenceSeparator
+            | ErrorKind::InvalidColonPlacement
+            | ErrorKind::InvalidFlowScalarIndent
+            | ErrorKind::BlockEntryInFlowCollection
+            | ErrorKind::UnexpectedEofFlowMapping
+            | ErrorKind::UnexpectedEofFlowSequence
+    );
+    if flow && let Some((bracket, offset)) = open_bracket(text, place.offset) {
+        let opened = place_at(text, offset, 1);
+        let closing = if bracket == '{' { '}' } else { ']' };
+        let message = format!("`{bracket}` is opened in line {} and not closed here", opened.line);
+        let help = format!("close it with `{closing}`, or put a comma between its items");
+        return Some(Diagnostic::new(message).at(place).help(help));
+    }
+    match kind {
+        ErrorKind::MisplacedFlowCollectionEnd => {
+            Some(Diagnostic::new("this bracket closes nothing: none like it is open").at(place).help("remove it"))
+        }
+        ErrorKind::MismatchedFlowCollectionEnd { open, close } => {
+            let message = format!("`{open}` is opened here and closed by `{close}`");
+            Some(Diagnostic::new(message).at(place))
+        }
+        ErrorKind::InvalidQuotedScalarIndent => {
+            let opened = before.iter().chain([line]).rev().find(|line| line.has_open_quote())?;
+            Some(Diagnostic::new("a quote is opened and not closed in its line").at(at(opened)))
+        }
+        ErrorKind::SimpleKeyExpected => Some(without_colon(line).at(at(line))),
+        ErrorKind::MappingValueNotAllowed => value_below_value(line, before, place).map(|found| match found {
+            Deeper(found) => found.at(at(line)),
+            Above(found, above) => found.at(at(above)),
+        }),
+        ErrorKind::ExpectedBlockMappingKey
+        | ErrorKind::ExpectedBlockSequenceEntry
+        | ErrorKind::InvalidIndentation
+        | ErrorKind::BlockSequenceEntryNotAllowed => between_levels(line, before).map(|found| found.at(at(line))),
+        _ => None,
+    }
+}
+
+/// A line that says something.
+struct Line<'a> {
+    number: usize,
+    offset: usize,
+    indent: usize,
+    /// Without indentation, and without spaces at its end.
+    body: &'a str,
+}
+
+impl<'a> Line<'a> {
+    fn all(text: &'a str) -> Vec<Self> {
+        let (mut offset, mut all) = (0, Vec::new());
+        for (number, line) in (1..).zip(text.split_inclusive('\n')) {
+            let body = line.trim();
+            if !body.is_empty() && !body.starts_with('#') {
+                all.push(Self { number, offset, indent: line.len() - line.trim_start().len(), body });
+            }
+            offset += line.len();
+        }
+        all
+    }
+
+    fn is_item(&self) -> bool {
+        self.body == "-" || self.body.starts_with("- ")
+    }
+
+    /// Where keys of its own mapping stand: behind the dash, where there is one.
+    fn keys_at(&self) -> usize {
+        let behind = self.body.strip_prefix('-').map_or(0, |rest| self.body.len() - rest.trim_start().len());
+        self.indent + if self.is_item() { behind } else { 0 }
+    }
+
+    fn has_open_quote(&self) -> bool {
+        let count = |mark: char| self.body.chars().filter(|&c| c == mark).count();
+        count('"') % 2 == 1 || count('\'') % 2 == 1
+    }
+
+    /// Key and value, where it has both.
+    fn pair(&self) -> Option<(&str, &str)> {
+        let (key, value) = self.body.trim_start_matches("- ").split_once(": ")?;
+        let value = value.split(" #").next().unwrap_or("").trim();
+        (!value.is_empty()).then_some((key, value))
+    }
+}
+
+enum Misplaced<'a> {
+    /// The line itself.
+    Deeper(Diagnostic),
+    /// A line above it.
+    Above(Diagnostic, &'a Line<'a>),
+}
+use Misplaced::{Above, Deeper};
+
+/// `kind geometry`, `module:3 mm`.
+fn without_colon(line: &Line) -> Diagnostic {
+    let shown = line.body.trim_start_matches("- ");
+    match shown.split_once(':') {
+        Some((key, value)) if !value.starts_with(' ') => {
+            let message = format!("a space is missing behind the `:` of {}", quote(shown));
+            Diagnostic::new(message).help(format!("write {}", quote(&format!("{key}: {value}"))))
+        }
+        _ => {
+            let message = format!("{} has no `:` between a name and its value", quote(shown));
+            let (key, value) = shown.split_once(' ').unwrap_or((shown, "…"));
+            Diagnostic::new(message).help(format!("write {}", quote(&format!("{key}: {value}"))))
+        }
+    }
+}
+
+/// A `:` where none can stand: a second one in a line, a line below one that has its value already or has no `:` itself.
+fn value_below_value<'a>(line: &Line, before: &'a [Line<'a>], place: Place) -> Option<Misplaced<'a>> {
+    let column = place.offset.saturating_sub(line.offset + line.indent);
+    if let Some((key, value)) = line.pair().filter(|_| line.body.get(..column).is_some_and(|left| left.contains(": ")))
+    {
+        let message = format!("a second `:` stands in the value of {}", quote(key));
+        return Some(Deeper(Diagnostic::new(message).help(format!("put the text in quotes: `{key}: \"{value}\"`"))));
+    }
+    let above = before.last()?;
+    if !above.body.contains(':') && !above.is_item() {
+        return Some(Above(without_colon(above), above));
+    }
+    let (key, _) = above.pair().filter(|_| line.indent > above.keys_at())?;
+    let message =
+        format!("{} is indented further than {} above it, which has its value already", quote(line.body), quote(key));
+    Some(Deeper(Diagnostic::new(message).help(format!("indent it by {} spaces, as {}", above.keys_at(), quote(key)))))
+}
+
+/// A line that belongs to no level that is open above it.
+fn between_levels(line: &Line, before: &[Line]) -> Option<Diagnostic> {
+    let mut levels: Vec<(usize, &Line)> = Vec::new();
+    let mut least = usize::MAX;
+    for above in before.iter().rev() {
+        for level in [above.keys_at(), above.indent] {
+            if level < least {
+                levels.push((level, above));
+                least = level;
+            }
+        }
+    }
+    // A list goes on with dashes.
+    let item = levels.iter().find(|(level, above)| *level == line.indent && above.is_item() && above.indent == *level);
+    if let Some((_, above)) = item.filter(|_| !line.is_item()) {
+        let message = format!("{} has no dash, and stands in a list", quote(line.body));
+        let help = format!(
+            "write {} for another item, or indent it by {} spaces if it belongs to the item in line {}",
+            quote(&format!("- {}", line.body)),
+            above.keys_at(),
+            above.number
+        );
+        return Some(Diagnostic::new(message).help(help));
+    }
+    if levels.iter().any(|(level, _)| *level == line.indent) {
+        if line.is_item() {
+            let message = format!("{} is an item of a list, and stands among names", quote(line.body));
+            return Some(Diagnostic::new(message).help("indent it further than the name that the list belongs to"));
+        }
+        return None;
+    }
+    let below = levels.iter().find(|(level, _)| *level < line.indent);
+    let above = levels.iter().rev().find(|(level, _)| *level > line.indent);
+    let near = [below, above].into_iter().flatten();
+    let levels: Vec<String> = near.map(|(level, _)| level.to_string()).collect();
+    let message = format!(
+        "{} is indented by {} spaces, which no line above it that it could belong to is",
+        quote(line.body),
+        line.indent
+    );
+    let help = format!("indent it by {} spaces", alternatives(levels.iter().map(String::as_str)).replace('`', ""));
+    Some(Diagnostic::new(message).help(help))
+}
+
+/// The innermost bracket that is open before `end`, and where.
+fn open_bracket(text: &str, end: usize) -> Option<(char, usize)> {
+    let (mut open, mut quote, mut before, mut comment) = (Vec::new(), None, '\n', false);
+    for (offset, c) in text.char_indices().take_while(|(offset, _)| *offset < end) {
+        match (quote, c) {
+            (_, '\n') => comment = false,
+            _ if comment => {}
+            (Some(mark), _) => {
+                if c == mark {
+                    quote = None;
+                }
+            }
+            (None, '#') if before.is_whitespace() => comment = true,
+            // In the middle of a word it is an apostrophe.
+            (None, '"' | '\'') if !before.is_alphanumeric() => quote = Some(c),
+            (None, '{' | '[') => open.push((c, offset)),
+            (None, '}' | ']') => drop(open.pop()),
+            _ => {}
+        }
+        before = c;
+    }
+    open.pop()
+}
