@@ -205,8 +205,11 @@ pub enum Command {
         #[arg(long, value_name = "ID")]
         stage: Option<String>,
     },
-    /// List the kinds of stages, or say everything about one.
-    Kinds { kind: Option<String> },
+    /// List the kinds of stages, or say everything about one, or about a field of it.
+    Kinds {
+        /// `optimizer`, or `optimizer.design.tip_relief` for what it says of that.
+        kind: Option<String>,
+    },
     /// Print the JSON schema of a study, for editors.
     Schema,
 }

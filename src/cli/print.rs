@@ -46,17 +46,21 @@ pub fn table(table: &Table, conditions: &[String], columns: &[String], format: F
         let find = |name: &String| table.schema().position(name).ok_or_else(|| unknown_column(table.schema(), name));
         columns.iter().map(find).collect::<Result<_, _>>()?
     };
-    let headings = chosen.iter().map(|&index| {
+    grid(table, &chosen, &rows).text(format)
+}
+
+/// Some columns and rows of a table.
+fn grid<'a>(table: &'a Table, columns: &'a [usize], rows: &'a [usize]) -> Grid<'a> {
+    let headings = columns.iter().map(|&index| {
         let column = &table.schema().columns[index];
         let is_number = matches!(column.kind, Type::Float | Type::Integer);
         Heading { name: column.name.clone(), shown: heading(column), is_number }
     });
-    let grid = Grid {
+    Grid {
         columns: headings.collect(),
         rows: rows.len(),
-        cell: Box::new(|row, column| Some(table.columns()[chosen[column]].cell(rows[row]))),
-    };
-    grid.text(format)
+        cell: Box::new(|row, column| Some(table.columns()[columns[column]].cell(rows[row]))),
+    }
 }
 
 impl Grid<'_> {
@@ -75,19 +79,57 @@ impl Grid<'_> {
         (0..self.columns.len()).map(move |column| (self.cell)(row, column))
     }
 
+    /// On a terminal as many columns as fit it, whole: text that is broken into letters says nothing.
     fn pretty(&self) -> String {
+        self.pretty_in(Drawn::new().width())
+    }
+
+    /// `width` is that of a terminal; elsewhere there is room for all.
+    fn pretty_in(&self, width: Option<u16>) -> String {
+        let rows: Vec<Vec<String>> =
+            (0..self.rows).map(|row| self.row(row).map(|cell| shown(cell.as_ref())).collect()).collect();
+        let fitting = width.map_or(self.columns.len(), |width| self.fitting(&rows, usize::from(width)));
         let mut drawn = Drawn::new();
         drawn.load_style(presets::UTF8_BORDERS_ONLY).set_content_arrangement(ContentArrangement::Dynamic);
-        drawn.set_header(self.columns.iter().map(|column| &column.shown));
-        for row in 0..self.rows {
-            let cell = |(cell, column): (Option<Cell>, &Heading)| {
+        if let Some(width) = width {
+            drawn.set_width(width);
+        }
+        drawn.set_header(self.columns[..fitting].iter().map(|column| &column.shown));
+        for row in &rows {
+            let cell = |(text, column): (&String, &Heading)| {
                 let align = if column.is_number { CellAlignment::Right } else { CellAlignment::Left };
-                DrawnCell::new(shown(cell.as_ref())).set_alignment(align)
+                DrawnCell::new(text).set_alignment(align)
             };
-            drawn.add_row(Row::from(self.row(row).zip(&self.columns).map(cell).collect::<Vec<_>>()));
+            drawn.add_row(Row::from(row[..fitting].iter().zip(&self.columns).map(cell).collect::<Vec<_>>()));
         }
         let count = if self.rows == 1 { "1 row".to_owned() } else { format!("{} rows", self.rows) };
-        format!("{drawn}\n{count}\n")
+        let rest: Vec<&str> = self.columns[fitting..].iter().map(|column| column.name.as_str()).collect();
+        let cut = match rest[..] {
+            [] => String::new(),
+            [only] => format!("; the column {only} does not fit: `--columns {only}`, or `--format csv`"),
+            [first, ..] => format!(
+                "; {} more columns do not fit: {} (`--columns {first},…` chooses, `--format csv` has all)",
+                rest.len(),
+                rest.join(", ")
+            ),
+        };
+        format!("{drawn}\n{count}{cut}\n")
+    }
+
+    /// How many columns from the left fit a width, one at least.
+    fn fitting(&self, rows: &[Vec<String>], width: usize) -> usize {
+        let wide = |index: usize| {
+            let cells = rows.iter().map(|row| row[index].chars().count());
+            // A space to either side, and one between columns.
+            cells.chain([self.columns[index].shown.chars().count()]).max().unwrap_or(0) + 3
+        };
+        let mut left = width.saturating_sub(1);
+        let fits = |index: &usize| {
+            let room = left.checked_sub(wide(*index));
+            left = room.unwrap_or(0);
+            room.is_some()
+        };
+        (0..self.columns.len()).take_while(fits).count().max(1).min(self.columns.len())
     }
 
     fn csv(&self) -> Result<String, String> {
@@ -176,6 +218,19 @@ mod tests {
         let markdown =
             "| design | peak\\_to\\_peak \\[um\\] |\n| --- | ---: |\n| iso, long | 0.72812346 |\n| none | – |\n";
         assert_eq!(print(Format::Markdown), markdown);
+    }
+
+    #[test]
+    fn a_narrow_terminal_has_whole_columns_and_the_names_of_the_others() {
+        let table = sample();
+        let grid = grid(&table, &[0, 1], &[0, 1]);
+        let (wide, narrow) = (grid.pretty_in(Some(60)), grid.pretty_in(Some(20)));
+        assert!(wide.contains("peak_to_peak [um]") && wide.ends_with("2 rows\n"), "{wide}");
+        let note = "2 rows; the column peak_to_peak does not fit: `--columns peak_to_peak`, or `--format csv`\n";
+        assert!(narrow.contains("iso, long") && narrow.ends_with(note), "{narrow}");
+        assert!(narrow.lines().take(6).all(|line| line.chars().count() <= 20), "{narrow}");
+        // What is broken at all is one column.
+        assert!(grid.pretty_in(Some(3)).contains("does not fit"));
     }
 
     #[test]

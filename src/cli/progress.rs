@@ -9,6 +9,7 @@ use std::sync::mpsc::{self, RecvTimeoutError};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant};
 
+use console::Term;
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 
 use studygraph::runner::events::{Event, Observer};
@@ -70,9 +71,9 @@ impl Running {
     /// The time that is left to compute it, or that it is computed.
     fn still(&self, now: Instant) -> Option<String> {
         if self.share >= 1.0 {
-            return Some("its tables are stored".to_owned());
+            return Some("being stored".to_owned());
         }
-        left(self.share, self.done_after, self.elapsed(now)).map(|left| format!("about {} left", rough(left)))
+        left(self.share, self.done_after, self.elapsed(now)).map(|left| format!("{} left", rough(left)))
     }
 }
 
@@ -88,7 +89,9 @@ const MOST_WARNINGS: usize = 5;
 /// How often those are told how it stands who have no bars to look at.
 const EVERY: Duration = Duration::from_secs(10);
 /// How often bars are drawn where nothing happens.
-const REDRAWN: Duration = Duration::from_secs(1);
+const REDRAWN: Duration = Duration::from_millis(200);
+/// Columns of a terminal from which a bar has its full length.
+const WIDE: u16 = 100;
 
 impl Watcher {
     #[must_use]
@@ -173,19 +176,21 @@ impl Watcher {
     fn bar(&self, stage: &str) -> Option<ProgressBar> {
         let bars = self.bars.as_ref()?;
         let width = self.width;
-        let style = style("  {prefix}  {bar:30.cyan/blue}  {percent:>3} %  {elapsed}{msg}");
+        // Elsewhere it takes what the rest of the line leaves.
+        let bar = if Term::stderr().size().1 >= WIDE { "{bar:30.cyan/blue}" } else { "{wide_bar:.cyan/blue}" };
+        let style = style(&format!("  {{prefix}}  {bar}  {{percent:>3}} %  {{elapsed}}{{msg}}"));
         let bar = bars.add(ProgressBar::new(1000).with_style(style));
         bar.set_prefix(format!("{stage:width$}"));
         Some(bar)
     }
 
-    /// Why it ran, and how often it warned.
-    fn end(&self, stage: &str) -> (String, usize) {
-        let Running { bar, why, warned, .. } = self.running().remove(stage).unwrap_or_default();
-        if let Some(bar) = bar {
+    /// What was known of it while it ran; its bar is gone.
+    fn end(&self, stage: &str) -> Running {
+        let mut running = self.running().remove(stage).unwrap_or_default();
+        if let Some(bar) = running.bar.take() {
             bar.finish_and_clear();
         }
-        (why, warned)
+        running
     }
 }
 
@@ -220,12 +225,15 @@ impl Observer for Watcher {
                 }
             }
             Event::Finished { stage, seconds } => {
-                let (why, warned) = self.end(stage);
+                let running = self.end(stage);
+                let warned = running.warned;
                 if warned > MOST_WARNINGS {
                     let more = warned - MOST_WARNINGS;
                     self.stage(stage, "warning", &format!("and {more} more; the report and `manifest.json` have all"));
                 }
-                self.stage(stage, "ran", &format!("{:>9}  {why}", duration(*seconds)));
+                // As long as somebody waited, which parts side by side shorten.
+                let wall = running.since.map_or(*seconds, |_| running.elapsed(Instant::now()));
+                self.stage(stage, "ran", &format!("{:>9}  {}", duration(wall), running.why));
             }
             Event::Failed { stage, fault } => {
                 self.end(stage);
@@ -359,15 +367,15 @@ mod tests {
         watcher.running().insert("ste".to_owned(), running);
         assert_eq!(watcher.stand(after(10)), "  running: ste 0 % after 10 s");
         progressed(0.25, 20);
-        assert_eq!(watcher.stand(after(20)), "  running: ste 25 % after 20 s, about 60 s left");
+        assert_eq!(watcher.stand(after(20)), "  running: ste 25 % after 20 s, 60 s left");
         // Nobody has said anything since.
-        assert_eq!(watcher.stand(after(70)), "  running: ste 25 % after 70 s, about 10 s left");
+        assert_eq!(watcher.stand(after(70)), "  running: ste 25 % after 70 s, 10 s left");
         assert_eq!(watcher.stand(after(90)), "  running: ste 25 % after 90 s");
         progressed(1.0, 91);
-        assert_eq!(watcher.stand(after(95)), "  running: ste computed, its tables are stored, after 95 s");
+        assert_eq!(watcher.stand(after(95)), "  running: ste computed, being stored, after 95 s");
         watcher.event(&Event::Started { stage: "pair", why: "never ran", chunks: 1 });
         let both = watcher.stand(after(1000));
-        assert!(both.contains("pair 0 % after ") && both.contains("; ste computed, its tables are stored, "), "{both}");
+        assert!(both.contains("pair 0 % after ") && both.contains("; ste computed, being stored, "), "{both}");
         for stage in ["ste", "pair"] {
             watcher.event(&Event::Finished { stage, seconds: 1.0 });
         }

@@ -83,6 +83,10 @@ pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
         out(&describe::list(KINDS));
         return Ok(());
     };
+    if let Some((kind, path)) = name.split_once('.').and_then(|(kind, path)| Some((stage::kind(kind)?, path))) {
+        out(&describe::within(kind, path).map_err(Ending::Usage)?);
+        return Ok(());
+    }
     let Some(kind) = stage::kind(name) else {
         let known = KINDS.iter().map(|kind| kind.name);
         let within: Vec<_> = KINDS.iter().filter(|kind| describe::mentions(kind, name)).map(|kind| kind.name).collect();

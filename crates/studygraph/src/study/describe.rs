@@ -6,7 +6,8 @@ use std::fmt::Write as _;
 
 use super::words::{self, quote};
 use crate::stage::Kind;
-use declare::parameter::{Field, Presence, Shape, Span};
+use declare::error::suggest;
+use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::units::RATIO;
 
 /// One line for each kind.
@@ -29,6 +30,61 @@ pub fn kind(kind: &'static Kind) -> String {
         let _ = writeln!(text, "  {line}");
     }
     text
+}
+
+/// What a path of names leads to from the fields of a kind: `design.tip_relief.amount` of an optimiser.
+///
+/// # Errors
+/// The name that is not there, and what is.
+pub fn within(kind: &'static Kind, path: &str) -> Result<String, String> {
+    let mut here: Inside = Inside::Fields(kind.fields);
+    let mut place = kind.name.to_owned();
+    let mut found = String::new();
+    for name in path.split('.') {
+        let missing = |known: Vec<&'static str>| {
+            format!("{} has no {}; {}", quote(&place), quote(name), suggest(name, known.iter().copied()))
+        };
+        let mut text = format!("{place}.{name}\n");
+        let mut families = Vec::new();
+        here = match here {
+            Inside::Fields(all) => {
+                let named = |field: &&Field| field.name == name;
+                let at = all.iter().position(|field| named(&field));
+                let at = at.ok_or_else(|| missing(all.iter().map(|field| field.name).collect()))?;
+                fields(&mut text, &all[at..=at], 1, &mut families);
+                Inside::of(&all[at].shape)
+            }
+            Inside::Members(all) => {
+                let member = all.iter().find(|member| member.name == name);
+                let member = member.ok_or_else(|| missing(all.iter().map(|member| member.name).collect()))?;
+                let _ = writeln!(text, "  {}: {}", member.name, member.summary);
+                fields(&mut text, member.fields, 2, &mut families);
+                Inside::Fields(member.fields)
+            }
+            Inside::Nothing => return Err(missing(Vec::new())),
+        };
+        found = text;
+        place = format!("{place}.{name}");
+    }
+    Ok(found)
+}
+
+/// What has names below a field.
+enum Inside {
+    Fields(&'static [Field]),
+    Members(&'static [Member]),
+    Nothing,
+}
+
+impl Inside {
+    fn of(shape: &'static Shape) -> Self {
+        match shape {
+            Shape::List(item) | Shape::Map(item) => Self::of(item),
+            Shape::Group(fields) => Self::Fields(fields),
+            Shape::Member(members) => Self::Members(members()),
+            _ => Self::Nothing,
+        }
+    }
 }
 
 /// Whether a field, a word or a member of a family of a kind is called so.
