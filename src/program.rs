@@ -9,7 +9,7 @@ use crate::stage::kinds::KINDS;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
 use studygraph::program::Program;
-use studygraph::study::{self, LoadError, Study};
+use studygraph::study::{self, LoadError, Settings, Study};
 
 /// What studies are run with.
 pub static PROGRAM: Program = Program {
@@ -42,6 +42,14 @@ const fn commit() -> Option<(&'static str, bool)> {
 /// As [`study::load`].
 pub fn load(path: &Path) -> Result<Study, LoadError> {
     study::load(path, &PROGRAM)
+}
+
+/// The same with something set from outside.
+///
+/// # Errors
+/// As [`study::load_changed`].
+pub fn load_changed(path: &Path, settings: &Settings) -> Result<Study, LoadError> {
+    study::load_changed(path, &PROGRAM, settings)
 }
 
 /// Checks a study of this program, whose text was read from `path`.

@@ -95,11 +95,15 @@ pub enum Command {
     Check {
         #[arg(required = true)]
         studies: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: Changes,
     },
     /// Say what a run would do, and why, what it would leave out, and what it would take.
     Plan {
         #[arg(required = true)]
         studies: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: Changes,
         #[command(flatten)]
         selection: Selection,
         #[command(flatten)]
@@ -113,6 +117,8 @@ pub enum Command {
         /// Files, or names of studies in the folder `studies`; so with every command.
         #[arg(required = true)]
         studies: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: Changes,
         #[command(flatten)]
         selection: Selection,
         #[command(flatten)]
@@ -134,6 +140,8 @@ pub enum Command {
     Status {
         /// Without any, those in the folder `studies`.
         studies: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: Changes,
         /// Read every byte of results and cache; what is damaged ends with code 4.
         #[arg(long)]
         check: bool,
@@ -145,12 +153,16 @@ pub enum Command {
     Report {
         #[arg(required = true)]
         studies: Vec<PathBuf>,
+        #[command(flatten)]
+        changes: Changes,
     },
     /// Print a table of a study that was run.
     Table {
         study: PathBuf,
         /// `stage.table`; without it, the tables there are.
         table: Option<String>,
+        #[command(flatten)]
+        changes: Changes,
         /// Only rows where a column has this value; may be given several times.
         #[arg(long = "where", value_name = "COLUMN=VALUE")]
         conditions: Vec<String>,
@@ -167,6 +179,8 @@ pub enum Command {
     /// Put a study and all its results into one file that describes itself: a Workflow Run RO-Crate.
     Archive {
         study: PathBuf,
+        #[command(flatten)]
+        changes: Changes,
         /// The file to write.
         #[arg(long, short, value_name = "FILE.zip")]
         output: PathBuf,
@@ -212,6 +226,18 @@ pub enum Command {
     },
     /// Print the JSON schema of a study, for editors.
     Schema,
+}
+
+/// What of a study is other than its file says.
+#[derive(Args, Debug, Clone, Default)]
+pub struct Changes {
+    /// Another value for a field, as `pair.pinion.face_width=22 mm`; may be given several times. The study is then called
+    /// by its name and a digest of what is set, so that its results overwrite no others.
+    #[arg(long = "set", value_name = "PATH=VALUE")]
+    pub set: Vec<String>,
+    /// Another name for the study, and so for the folder of its results.
+    #[arg(long, value_name = "NAME")]
+    pub name: Option<String>,
 }
 
 /// Which stages, and whether to trust the cache.

@@ -119,34 +119,36 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     let quiet = arguments.quiet;
     match &arguments.command {
         Command::New { file } => show::new_study(file),
-        Command::Check { studies: words } => show::check(&studies::named_or_all(words)?, quiet),
-        Command::Plan { studies, selection, limits, json } => run::plan(
-            &load_all(studies)?,
+        Command::Check { studies: words, changes } => show::check(&studies::named_or_all(words)?, changes, quiet),
+        Command::Plan { studies, changes, selection, limits, json } => run::plan(
+            &load_all(studies, changes)?,
             places,
             selection,
             &run::How { limits: *limits, ..run::How::default() },
             *json,
         ),
-        Command::Run { studies, selection, limits, jobs, dry_run: true, .. } => {
+        Command::Run { studies, changes, selection, limits, jobs, dry_run: true, .. } => {
             let how = run::How { limits: *limits, jobs: jobs.map(usize::from), ..run::How::default() };
-            run::plan(&load_all(studies)?, places, selection, &how, false)
+            run::plan(&load_all(studies, changes)?, places, selection, &how, false)
         }
-        Command::Run { studies, selection, limits, explain, keep_going, jobs, .. } => {
+        Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, .. } => {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
-            run::run(&load_all(studies)?, places, selection, &how)
+            run::run(&load_all(studies, changes)?, places, selection, &how)
         }
-        Command::Status { studies: words, json, check } => status::status(words, places, *json, *check),
-        Command::Archive { study, output, license, authors } => {
+        Command::Status { studies: words, changes, json, check } => {
+            status::status(words, changes, places, *json, *check)
+        }
+        Command::Archive { study, changes, output, license, authors } => {
             let about = archive::About { license: license.as_deref(), authors };
-            archive::archive(&load_all(std::slice::from_ref(study))?[0], places, output, &about, quiet)
+            archive::archive(&load_all(std::slice::from_ref(study), changes)?[0], places, output, &about, quiet)
         }
         Command::Verify { file, limits, jobs, json } => {
             verify::verify(file, jobs.map(usize::from), limits, *json, quiet)
         }
-        Command::Report { studies } => run::report(&load_all(studies)?, places, quiet),
-        Command::Table { study, table, conditions, columns, format } => show::table(
-            &load_all(std::slice::from_ref(study))?[0],
+        Command::Report { studies, changes } => run::report(&load_all(studies, changes)?, places, quiet),
+        Command::Table { study, changes, table, conditions, columns, format } => show::table(
+            &load_all(std::slice::from_ref(study), changes)?[0],
             places,
             table.as_deref(),
             conditions,

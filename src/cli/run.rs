@@ -28,7 +28,7 @@ use studygraph::store::cache::{Cache, Remove};
 use studygraph::store::error::StoreError;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, Published, Tables};
-use studygraph::study::{LoadError, Study};
+use studygraph::study::Study;
 
 /// How to run.
 #[derive(Default)]
@@ -120,7 +120,7 @@ fn run_one(
     let run = || execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw));
     let (outcome, published) = watcher.telling(run).map_err(|error| match error {
         RunError::Study(diagnostic) => unknown(&diagnostic),
-        RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(error_in(study, &diagnostic))),
+        RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(study.refused(*diagnostic))),
         RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
     })?;
@@ -131,16 +131,6 @@ fn run_one(
         return Err(Ending::Usage(problem));
     }
     ended(study, &outcome, &folder, verdicts.take().as_deref(), how.quiet)
-}
-
-/// What is wrong with a study that was read, to show the line.
-fn error_in(study: &Study, wrong: &Diagnostic) -> LoadError {
-    LoadError {
-        path: study.path.clone(),
-        text: study.text.clone(),
-        diagnostic: Box::new(wrong.clone()),
-        others: Vec::new(),
-    }
 }
 
 /// What somebody else had changed.
@@ -156,7 +146,7 @@ fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&st
     }
     for (_, fault) in outcome.faults() {
         if let Fault::Study(wrong) = fault {
-            draw::invalid_study(&error_in(study, wrong));
+            draw::invalid_study(&study.refused((**wrong).clone()));
         }
     }
     let failed: Vec<&str> = outcome.faults().map(|(stage, _)| stage).collect();

@@ -7,16 +7,16 @@ use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
 use super::Ending;
-use super::arguments::{Format, Places};
+use super::arguments::{Changes, Format, Places};
 use super::progress::out;
-use super::{draw, print};
-use crate::program::{load, load_text};
+use super::{draw, print, studies};
+use crate::program::{load_changed, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::suggest;
 use studygraph::store::manifest::TableRecord;
 use studygraph::store::results::Folder;
-use studygraph::study::{Study, describe, schema as studies};
+use studygraph::study::{Study, describe, schema as schemas};
 use studygraph::table::data::Table;
 
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
@@ -60,10 +60,11 @@ pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
 }
 
 /// Says of every file whether it is a valid study.
-pub(super) fn check(files: &[PathBuf], quiet: bool) -> Result<(), Ending> {
+pub(super) fn check(files: &[PathBuf], changes: &Changes, quiet: bool) -> Result<(), Ending> {
+    let settings = studies::settings(changes);
     let mut last = None;
     for file in files {
-        match load(file) {
+        match load_changed(file, &settings) {
             Ok(study) if !quiet => {
                 out(&format!("{}: `{}` is valid, {} stages\n", file.display(), study.name, study.nodes.len()));
             }
@@ -101,7 +102,7 @@ pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
 }
 
 pub(super) fn schema() {
-    out(&studies::schema_text(KINDS));
+    out(&schemas::schema_text(KINDS));
 }
 
 /// Prints a table of the last run, or which tables there are.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value, json};
 
-use super::arguments::Places;
+use super::arguments::{Changes, Places};
 use super::progress::out;
 use super::{Ending, studies};
 use crate::program;
@@ -14,7 +14,7 @@ use declare::error::Diagnostic;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
 use studygraph::store::cache::{Cache, Lookup};
 use studygraph::store::results::{FileState, Folder, Known};
-use studygraph::study::{self, Study};
+use studygraph::study::{self, Settings, Study};
 
 /// A study and where it stands.
 struct Told {
@@ -43,7 +43,14 @@ enum Fault {
 }
 
 /// Says it of every study; one that cannot be read silences no other. `check`: every byte is read, of the cache too.
-pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: bool) -> Result<(), Ending> {
+pub(super) fn status(
+    words: &[PathBuf],
+    changes: &Changes,
+    places: &Places,
+    as_json: bool,
+    check: bool,
+) -> Result<(), Ending> {
+    let settings = studies::settings(changes);
     let files = studies::named_or_all(words)?;
     // Only looked into: a missing one is not made.
     let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
@@ -51,7 +58,7 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: b
     let (mut all, mut values) = (Vec::new(), Vec::new());
     let mut damaged = Vec::new();
     for file in &files {
-        match told(file, places, cache.as_ref(), check) {
+        match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
                 studies::distinct(&all, &told.study)?;
                 if as_json {
@@ -104,8 +111,8 @@ pub(super) fn status(words: &[PathBuf], places: &Places, as_json: bool, check: b
     }
 }
 
-fn told(file: &Path, places: &Places, cache: Option<&Cache>, check: bool) -> Result<Told, Fault> {
-    let study = program::load(file).map_err(Fault::Study)?;
+fn told(file: &Path, settings: &Settings, places: &Places, cache: Option<&Cache>, check: bool) -> Result<Told, Fault> {
+    let study = program::load_changed(file, settings).map_err(Fault::Study)?;
     let folder = Folder::new(&places.results, &study.name);
     // What is odd while a run publishes need not be so.
     let look = || match standing_now(&study, &folder, check) {

@@ -5,9 +5,10 @@
 use std::path::{Path, PathBuf};
 
 use super::Ending;
+use super::arguments::Changes;
 use crate::program;
 use declare::error::nearest;
-use studygraph::study::Study;
+use studygraph::study::{Settings, Study};
 
 /// Where studies are looked for by name.
 const FOLDER: &str = "studies";
@@ -57,14 +58,19 @@ pub(super) fn named_or_all(named: &[PathBuf]) -> Result<Vec<PathBuf>, Ending> {
 ///
 /// # Errors
 /// The first that is none; two of one name.
-pub(super) fn load_all(words: &[PathBuf]) -> Result<Vec<Study>, Ending> {
+pub(super) fn load_all(words: &[PathBuf], changes: &Changes) -> Result<Vec<Study>, Ending> {
+    let settings = settings(changes);
     let mut studies: Vec<Study> = Vec::new();
     for word in words {
-        let study = program::load(&file(word)?).map_err(|error| Ending::Invalid(Box::new(error)))?;
+        let study = program::load_changed(&file(word)?, &settings).map_err(|error| Ending::Invalid(Box::new(error)))?;
         distinct(&studies, &study)?;
         studies.push(study);
     }
     Ok(studies)
+}
+
+pub(super) fn settings(changes: &Changes) -> Settings {
+    Settings { set: changes.set.clone(), name: changes.name.clone() }
 }
 
 /// # Errors

@@ -8,6 +8,7 @@ mod limits;
 mod places;
 mod python;
 mod readme;
+mod set;
 mod status;
 mod stubborn;
 mod texts;

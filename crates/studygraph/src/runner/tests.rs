@@ -283,6 +283,7 @@ impl Bench {
             Node { name: spec.name.to_owned(), place: Place::default(), kind: spec.kind, record, stage }
         };
         Study {
+            changes: crate::study::Changes::default(),
             tolerances: Vec::new(),
             name: "study".to_owned(),
             title: String::new(),

@@ -8,8 +8,9 @@ use super::decode::Decoder;
 use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
+use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Faults, Node, Source, Study, links, settings};
+use super::{Changes, Faults, Node, Source, Study, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -45,6 +46,9 @@ pub static KEYS: &[Field] = &[
     .optional(),
 ];
 
+/// The key of a study under which paths are given other values.
+pub const SET: &str = "set";
+
 /// Makes a study of a text.
 ///
 /// # Errors
@@ -54,13 +58,14 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
+    let root = with_what_is_set(root, program.kinds)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
         return Err(Diagnostic::new(message).at(root.place).into());
     };
     let start = pairs.first().map_or(root.place, |pair| pair.place);
     let belong = ranges_belong(program.kinds);
-    let keys = Decoder::new(&belong, Stages::default()).record(&root, KEYS, &["stages"], "the study", start)?;
+    let keys = Decoder::new(&belong, Stages::default()).record(&root, KEYS, &["stages", SET], "the study", start)?;
     let name = keys.text("study").to_owned();
     check_name("study", &name, keys.place_of("study"))?;
 
@@ -87,10 +92,36 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
         seed: keys.integer("seed").unsigned_abs(),
         path: path.to_owned(),
         text: text.to_owned(),
+        changes: Changes::default(),
         name,
         nodes,
         program,
     })
+}
+
+/// The tree with the values that the key `set` gives in the places of those that stand there.
+fn with_what_is_set(mut root: Tree, kinds: &[&'static Kind]) -> Result<Tree, Diagnostic> {
+    let Content::Mapping(pairs) = &mut root.content else { return Ok(root) };
+    let Some(position) = pairs.iter().position(|pair| pair.key == SET) else { return Ok(root) };
+    let set = pairs[position].node.clone();
+    let Content::Mapping(set) = set.content else {
+        let message = format!("`{SET}` is {}; a mapping from paths to values is expected", set.describe());
+        return Err(Diagnostic::new(message).at(set.place).help("a path is written `stage.field`"));
+    };
+    for KeyValue { key, place, node } in set {
+        let path = FieldPath::parse(&key, place)?;
+        if let Some(own) = path.only().filter(|name| KEYS.iter().any(|key| key.name == *name)) {
+            match pairs.iter_mut().find(|pair| pair.key == own) {
+                Some(pair) => pair.node = node,
+                None => pairs.push(KeyValue { key: own.to_owned(), place, node }),
+            }
+        } else if let Some(pair) = pairs.iter_mut().find(|pair| pair.key == "stages")
+            && let Content::Mapping(stages) = &mut pair.node.content
+        {
+            path.set(stages, kinds, node)?;
+        }
+    }
+    Ok(root)
 }
 
 fn source(record: &Record) -> Source {

@@ -4,6 +4,7 @@
 //! `links` checks what they say of each other. Must not know: execution, the store.
 
 mod assemble;
+mod changes;
 mod characters;
 pub mod declared;
 mod decode;
@@ -12,6 +13,7 @@ mod document;
 mod links;
 mod notation;
 mod overrides;
+pub mod path;
 mod place;
 mod quantity;
 mod read;
@@ -25,6 +27,8 @@ mod words;
 
 use std::fmt;
 use std::path::{Path, PathBuf};
+
+pub use changes::{Changes, Settings};
 
 use crate::program::Program;
 use crate::stage::{Kind, Stage};
@@ -49,8 +53,11 @@ pub struct Study {
     pub seed: u64,
     /// Where it was read from.
     pub path: PathBuf,
-    /// The file's text, for messages that show a line of it.
+    /// The file's text, for messages that show a line of it, and behind it what was set from outside: with it, it is the
+    /// text of the same study.
     pub text: String,
+    /// What was set from outside.
+    pub changes: Changes,
     /// By how much columns may differ between two runs and still count as the same; no part of any result.
     pub tolerances: Vec<Allowance>,
     /// In the order of the file.
@@ -82,6 +89,14 @@ pub struct LoadError {
     pub diagnostic: Box<Diagnostic>,
     /// What else is wrong, as far as that can be told, in the order of the text.
     pub others: Vec<Diagnostic>,
+}
+
+impl Study {
+    /// What is wrong with it, found after it was read.
+    #[must_use]
+    pub fn refused(&self, wrong: Diagnostic) -> LoadError {
+        self.changes.placed(LoadError::new(&self.path, self.text.clone(), wrong))
+    }
 }
 
 impl LoadError {
@@ -155,10 +170,18 @@ pub fn load(path: &Path, program: &'static Program) -> Result<Study, LoadError> 
     load_text(&read::read(path)?, path, program)
 }
 
+/// The same with something set from outside.
+///
+/// # Errors
+/// As [`load`]; what is wrong with what is set has that for its place.
+pub fn load_changed(path: &Path, program: &'static Program, set: &Settings) -> Result<Study, LoadError> {
+    changes::load(&read::read(path)?, path, program, set)
+}
+
 /// Checks a study whose text was read from `path`.
 ///
 /// # Errors
 /// As [`load`].
 pub fn load_text(text: &str, path: &Path, program: &'static Program) -> Result<Study, LoadError> {
-    assemble::study(text, path, program).map_err(|wrong| LoadError::new(path, text.to_owned(), wrong))
+    changes::load(text, path, program, &Settings::default())
 }

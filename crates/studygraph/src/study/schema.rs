@@ -5,7 +5,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::assemble::{KEYS, NAME_PATTERN};
+use super::assemble::{KEYS, NAME_PATTERN, SET};
 use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
@@ -28,6 +28,15 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
             "minProperties": 1,
             "propertyNames": { "pattern": NAME_PATTERN },
             "additionalProperties": { "$ref": "#/$defs/stage" },
+        }),
+    );
+    properties.insert(
+        SET.to_owned(),
+        json!({
+            "description": "Other values for fields, by their paths: `pair.pinion.face_width`.",
+            "type": "object",
+            "minProperties": 1,
+            "propertyNames": { "pattern": r"^[A-Za-z0-9_-]+([.][^.\[\] ]+|\[[0-9]+\])*$" },
         }),
     );
     if let Some(Value::Object(study)) = properties.get_mut("study") {

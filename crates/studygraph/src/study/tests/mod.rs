@@ -4,6 +4,7 @@ mod declared;
 mod files;
 mod messages;
 mod notation;
+mod paths;
 mod properties;
 mod structure;
 mod texts;

@@ -1,0 +1,206 @@
+//! A study with something set from outside: `--set PATH=VALUE`, `--name NAME`.
+//!
+//! What is set is written behind the text of the file, under the key `set`, so that the text that manifests and archives
+//! keep is the whole study: read by itself, it gives the same tables. A message about it has the option for its place.
+//! Must not know: the command line beyond the names of its two options.
+
+use std::path::{Path, PathBuf};
+
+use super::assemble::{self, LONGEST_NAME, SET};
+use super::document::{Content, Node, parse};
+use super::path::FieldPath;
+use super::words::quote;
+use super::{LoadError, Study};
+use crate::program::Program;
+use declare::digest::Writer;
+use declare::error::{Diagnostic, Place};
+
+/// What is to be set.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Settings {
+    /// Each as `PATH=VALUE`.
+    pub set: Vec<String>,
+    /// How the study is called then; without one its own name gets the start of a digest of what is set.
+    pub name: Option<String>,
+}
+
+impl Settings {
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.set.is_empty() && self.name.is_none()
+    }
+}
+
+/// What was set behind a text, and where it stands in it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Changes(Vec<Change>);
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Change {
+    /// As on the command line: the option, and its value.
+    option: &'static str,
+    value: String,
+    /// Where its line begins and ends in the text of the study, and where the option's value begins in it.
+    from: usize,
+    to: usize,
+    /// Characters by which the option's value is shorter before the path's value: `=` stands for `: `.
+    key: usize,
+}
+
+/// Digits of the digest in a name.
+const DIGITS: usize = 8;
+
+/// Makes a study of a text and what is set.
+///
+/// # Errors
+/// The first thing that is wrong.
+pub fn load(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, LoadError> {
+    let (text, changes) =
+        if settings.is_empty() { (text.to_owned(), Changes::default()) } else { changed(text, path, settings)? };
+    match assemble::study(&text, path, program) {
+        Ok(study) => Ok(Study { changes, ..study }),
+        Err(wrong) => Err(changes.placed(LoadError::new(path, text, wrong))),
+    }
+}
+
+impl Changes {
+    /// A message with the option for its place, where it is about what an option set.
+    pub(super) fn placed(&self, error: LoadError) -> LoadError {
+        let about = |wrong: &Diagnostic| {
+            let place = wrong.place?;
+            let change = self.0.iter().find(|change| (change.from..=change.to).contains(&place.offset))?;
+            Some((change, place, wrong.clone()))
+        };
+        // What was set last is the likeliest to be wrong.
+        let Some((change, place, wrong)) = error.each().find_map(about) else { return error };
+        let offset = place.offset - change.from;
+        // Before the value stands `PATH=` on the command line, `PATH: ` in the text, and nothing of a name.
+        let offset = if offset <= change.key { offset } else { offset - 1 };
+        let offset = if change.option == NAME { 0 } else { offset.min(change.value.len()) };
+        Change::refused(change.option, &change.value, offset, place.length, wrong)
+    }
+}
+
+const OPTION: &str = "--set";
+const NAME: &str = "--name";
+
+impl Change {
+    fn refused(option: &str, value: &str, offset: usize, length: usize, wrong: Diagnostic) -> LoadError {
+        let column = value.get(..offset).map_or(1, |before| before.chars().count() + 1);
+        let place = Place { line: 1, column, offset, length };
+        LoadError::new(&PathBuf::from(format!("{option} {value}")), value.to_owned(), wrong.at(place))
+    }
+}
+
+/// The text with what is set behind it.
+fn changed(text: &str, path: &Path, settings: &Settings) -> Result<(String, Changes), LoadError> {
+    let root = parse(text).map_err(|wrong| LoadError::new(path, text.to_owned(), wrong))?;
+    let Some(Node { content: Content::Mapping(pairs), place }) = root else {
+        // Refused with its own message.
+        return Ok((text.to_owned(), Changes::default()));
+    };
+    let refused = |message: &str, help: &str, place: Place| {
+        LoadError::new(path, text.to_owned(), Diagnostic::new(message).at(place).help(help))
+    };
+    if text[place.offset..].starts_with('{') {
+        let help = "write `study: NAME` and `stages:` on lines of their own";
+        return Err(refused("nothing can be set in a study between braces", help, place));
+    }
+    let indent = |column: usize| " ".repeat(column.saturating_sub(1));
+    let mut whole = text.trim_end_matches(['\n', '\r', ' ']).to_owned() + "\n";
+    let own = pairs.iter().position(|pair| pair.key == SET);
+    let inside = match own.map(|own| (own + 1 == pairs.len(), &pairs[own])) {
+        None => {
+            let outer = indent(place.column);
+            whole += &format!("{outer}{SET}:\n");
+            outer + "  "
+        }
+        Some((true, pair)) => match &pair.node.content {
+            Content::Mapping(pairs) if !pairs.is_empty() && !text[pair.node.place.offset..].starts_with('{') => {
+                indent(pairs[0].place.column)
+            }
+            _ => {
+                return Err(refused(
+                    "nothing can be added to this",
+                    "write a path and its value on each line",
+                    pair.place,
+                ));
+            }
+        },
+        Some((false, pair)) => {
+            let help = "put it behind `stages`";
+            return Err(refused("`set` must be the last key, so that more can be set", help, pair.place));
+        }
+    };
+    let mut entries = Vec::new();
+    for set in &settings.set {
+        entries.push((OPTION, set.clone(), entry(set)?));
+    }
+    let named = settings.name.clone().map(|name| (NAME, name.clone(), ("study".to_owned(), name)));
+    let own = pairs.iter().find(|pair| pair.key == "study").map(|pair| &pair.node.content);
+    let is_set = entries.iter().any(|(_, _, (path, _))| path == "study");
+    match (named, own) {
+        (Some(named), _) => entries.insert(0, named),
+        (None, Some(Content::Scalar { text, .. })) if !is_set => {
+            let name = name_of(text, &settings.set);
+            entries.insert(0, (NAME, name.clone(), ("study".to_owned(), name)));
+        }
+        _ => {}
+    }
+    let mut changes = Vec::new();
+    for (option, value, (key, written)) in entries {
+        whole += &inside;
+        let from = whole.len();
+        let key_length = key.len();
+        whole += &format!("{key}: {written}");
+        changes.push(Change { option, value, from, to: whole.len(), key: key_length });
+        whole.push('\n');
+    }
+    Ok((whole, Changes(changes)))
+}
+
+/// Path and value of one option, both sound by themselves.
+fn entry(set: &str) -> Result<(String, String), LoadError> {
+    let wrong = |offset: usize, length: usize, wrong: Diagnostic| Change::refused(OPTION, set, offset, length, wrong);
+    let Some((path, value)) = set.split_once('=') else {
+        let help = "for example `pair.pinion.face_width=20 mm`";
+        return Err(wrong(0, set.len(), Diagnostic::new("a path, `=` and a value are expected").help(help)));
+    };
+    let whole = Place { line: 1, column: 1, offset: 0, length: path.len() };
+    FieldPath::parse(path, whole).map_err(|found| {
+        let place = found.place.unwrap_or(whole);
+        wrong(place.offset, place.length, found)
+    })?;
+    let start = path.len() + 1;
+    if value.contains(['\n', '\r']) {
+        return Err(wrong(
+            start,
+            0,
+            Diagnostic::new("a value is on one line").help("lists are `[a, b]`, mappings `{ a: b }`"),
+        ));
+    }
+    let parsed = parse(value).map_err(|found| {
+        let place = found.place.unwrap_or_default();
+        wrong(start + place.offset, place.length, found)
+    })?;
+    match parsed {
+        None => Err(wrong(start, 0, Diagnostic::new(format!("{} has no value", quote(path))))),
+        // What a mapping without braces says would be read as more paths.
+        Some(Node { content: Content::Mapping(_) | Content::Sequence(_), place })
+            if !value.trim_start().starts_with(['{', '[']) =>
+        {
+            let help = "put lists between `[` and `]`, mappings between `{` and `}`";
+            Err(wrong(start + place.offset, place.length, Diagnostic::new("this cannot be on one line").help(help)))
+        }
+        Some(_) => Ok((path.to_owned(), value.to_owned())),
+    }
+}
+
+/// The study's own name with the start of a digest of what is set, whatever the order: other settings, other results.
+fn name_of(own: &str, set: &[String]) -> String {
+    let mut sorted: Vec<&String> = set.iter().collect();
+    sorted.sort();
+    let digest = sorted.into_iter().fold(&mut Writer::new("gearstudy 1 set"), |writer, one| writer.text(one)).finish();
+    let short: String = own.chars().take(LONGEST_NAME - DIGITS - 1).collect();
+    format!("{short}-{}", &digest.to_string()[..DIGITS])
+}
