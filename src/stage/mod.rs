@@ -14,7 +14,7 @@ pub mod pair;
 pub mod root_influences;
 
 pub use studygraph::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, Want, omission,
+    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Saved, Stage, Want, omission,
 };
 
 /// The kind called `name`.

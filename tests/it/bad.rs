@@ -16,7 +16,7 @@ fn message(path: &Path) -> String {
     let name = path.file_name().unwrap_or_default().to_string_lossy();
     match load(path) {
         Ok(_) => format!("{name}: this study was accepted\n"),
-        Err(error) => format!("{error}\n").replacen(&path.display().to_string(), &name, 1),
+        Err(error) => format!("{error}\n").replace(&path.display().to_string(), &name),
     }
 }
 

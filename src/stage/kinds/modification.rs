@@ -4,7 +4,7 @@
 //! on the pair. Must not know: any single family.
 
 use crate::stage::designs::{self, Elements, NamedDesign};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
@@ -12,7 +12,7 @@ use declare::record::Record;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::modification::Design;
 use studygraph::table::columns::Columns;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 const PARAMETERS: &str = "parameters";
@@ -146,6 +146,11 @@ impl Stage for Modification {
     fn outputs(&self) -> Vec<Schema> {
         let [designs, elements] = designs::schemas();
         vec![designs, elements, resolved().schema(), parameters().schema()]
+    }
+
+    fn keys(&self, _table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
+        let names = self.designs.iter().map(|design| Cell::Text(design.name.clone()));
+        (column == names::designs::DESIGN).then(|| names.collect())
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {

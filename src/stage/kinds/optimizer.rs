@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::doubts::{self, Doubted};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Stage, common};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names};
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::{Record, Value};
@@ -25,7 +25,7 @@ use gearmesh::optimize::bounds::Bounds;
 use gearmesh::optimize::search::{Candidate, Generation, Optimizer as Search, Reason};
 use gearmesh::optimize::{self, Method};
 use studygraph::table::columns::{Columns, finite};
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 const EVALUATIONS: &str = "evaluations";
@@ -388,6 +388,10 @@ impl Optimizer {
 impl Stage for Optimizer {
     fn inputs(&self) -> Vec<Port> {
         common::mesh_cycle_ports(&self.stated.stiffness)
+    }
+
+    fn keys(&self, _table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
+        (column == names::designs::DESIGN).then(|| vec![Cell::Text(self.stated.name.clone())])
     }
 
     fn outputs(&self) -> Vec<Schema> {

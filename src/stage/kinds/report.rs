@@ -27,6 +27,7 @@ use stated::Published;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
+use studygraph::table::select::CellName;
 use verdict::Verdict;
 
 pub const KIND: Kind = Kind {
@@ -106,6 +107,11 @@ impl Stage for Report {
             want(&mut ports, stage, table, columns);
         }
         ports
+    }
+
+    fn cells(&self) -> Vec<CellName> {
+        let operands = self.entries.iter().flat_map(ReportEntry::operands);
+        operands.filter_map(operand::Operand::cell).cloned().collect()
     }
 
     fn outputs(&self) -> Vec<Schema> {

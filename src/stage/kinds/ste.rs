@@ -18,9 +18,10 @@ use self::samples::{Sample, Samples};
 use self::tables::{Found, Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::doubts::{self, Doubted};
-use crate::stage::names::summary;
+use crate::stage::names::{self, summary};
 use crate::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, Saved, Stage, common, designs, root_influences,
+    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
+    root_influences,
 };
 use declare::Declared;
 use declare::declared::{Declared, Placed};
@@ -39,7 +40,7 @@ use gearmesh::gear::transmission_error::pressure::Cornered;
 use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
@@ -251,6 +252,17 @@ impl Stage for Ste {
             samples::summary().schema(),
             pressures::map().schema(),
         ]
+    }
+
+    fn keys(&self, _table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
+        match column {
+            "torque" => Some(self.torque.iter().map(|torque| in_unit(*torque, "N m").into()).collect()),
+            "design" => {
+                let names = |giver: &Placed<String>| of(&giver.value, names::designs::TABLE, names::designs::DESIGN);
+                Some(self.designs.iter().map(names).collect::<Option<Vec<_>>>()?.concat())
+            }
+            _ => None,
+        }
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {

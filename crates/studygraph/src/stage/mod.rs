@@ -11,8 +11,9 @@ pub mod steps;
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use crate::table::data::Table;
+use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
+use crate::table::select::CellName;
 use declare::error::{Diagnostic, Failure};
 use declare::parameter::Field;
 use declare::record::Record;
@@ -36,6 +37,9 @@ pub struct Kind {
     pub build: fn(&Record) -> Result<Box<dyn Stage>, Diagnostic>,
 }
 
+/// Gives the values of a key column of (stage, table, column), where they are known before anything runs.
+pub type KeysOf<'a> = &'a dyn Fn(&str, &str, &str) -> Option<Vec<Cell>>;
+
 /// A stage of a study, ready to run.
 pub trait Stage: Send + Sync {
     /// What it reads from other stages, in a fixed order.
@@ -58,6 +62,17 @@ pub trait Stage: Send + Sync {
     /// Whether nothing else may run beside it, because it measures time or memory.
     fn runs_alone(&self) -> bool {
         false
+    }
+
+    /// The cells of other stages' tables that it names.
+    fn cells(&self) -> Vec<CellName> {
+        Vec::new()
+    }
+
+    /// The values that a key column of a table is going to have, where they follow from what the study says; `of` asks a
+    /// stage that it reads.
+    fn keys(&self, _table: &str, _column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
+        None
     }
 
     /// What it will take, as far as that is known before it runs.

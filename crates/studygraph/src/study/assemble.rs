@@ -10,7 +10,7 @@ use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Faults, Node, Source, Study, links, settings};
+use super::{Changes, Faults, Node, Source, Study, cells, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -83,6 +83,7 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
     }
     Faults::all(wrong)?;
     links::check_ports(&nodes)?;
+    Faults::all(cells::check(&nodes))?;
     let tolerances = tolerances(&keys)?;
     links::check_tolerances(&tolerances, &nodes)?;
     Ok(Study {

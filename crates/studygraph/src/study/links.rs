@@ -211,7 +211,7 @@ fn in_name(character: char) -> bool {
     character.is_alphanumeric() || character == '_' || character == '-'
 }
 
-fn begins(text: &str, with: &str) -> bool {
+pub(super) fn begins(text: &str, with: &str) -> bool {
     text.strip_prefix(with).is_some_and(|rest| !rest.starts_with(in_name))
 }
 
@@ -220,7 +220,7 @@ fn has_word(text: &str, word: &str) -> bool {
 }
 
 /// The first value that passes the test, in the order of the record.
-fn find(record: &Record, test: &dyn Fn(&Value) -> bool) -> Option<Place> {
+pub(super) fn find(record: &Record, test: &dyn Fn(&Value) -> bool) -> Option<Place> {
     record.fields.iter().find_map(|(_, entry)| find_in(&entry.value, entry.place, test))
 }
 

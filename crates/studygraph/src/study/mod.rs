@@ -4,6 +4,7 @@
 //! `links` checks what they say of each other. Must not know: execution, the store.
 
 mod assemble;
+mod cells;
 mod changes;
 mod characters;
 pub mod declared;

@@ -92,18 +92,30 @@ impl Test {
         }
     }
 
+    fn is_met(&self, cell: &Cell) -> bool {
+        match (self, cell) {
+            (Self::Float(wanted), Cell::Float(value)) => is_same(*wanted, *value),
+            (Self::Integer(wanted), Cell::Integer(value)) => wanted == value,
+            (Self::Text(wanted), Cell::Text(value)) => wanted == value,
+            (Self::Flag(wanted), Cell::Flag(value)) => wanted == value,
+            _ => false,
+        }
+    }
+
+    /// The same without making a cell of every row.
     fn holds(&self, data: &Data, row: usize) -> bool {
         match (self, data) {
-            (Self::Float(wanted), Data::Float(values)) => {
-                let (a, b) = (*wanted, values[row]);
-                (a - b).abs() <= 1e-9 * a.abs().max(b.abs())
-            }
+            (Self::Float(wanted), Data::Float(values)) => is_same(*wanted, values[row]),
             (Self::Integer(wanted), Data::Integer(values)) => values[row] == *wanted,
             (Self::Text(wanted), Data::Text(values)) => values[row] == *wanted,
             (Self::Flag(wanted), Data::Flag(values)) => values[row] == *wanted,
             _ => false,
         }
     }
+}
+
+fn is_same(wanted: f64, value: f64) -> bool {
+    (wanted - value).abs() <= 1e-9 * wanted.abs().max(value.abs())
 }
 
 /// Checks that the conditions fit the columns, without any rows.
@@ -154,33 +166,38 @@ pub fn why_none(table: &Table, conditions: &[(String, String)]) -> Result<String
         let data = &table.columns()[column];
         let kept: Vec<usize> = rows.iter().copied().filter(|&row| test.holds(data, row)).collect();
         if kept.is_empty() {
-            let values = distinct(&table.schema().columns[column], data, &rows);
-            let names = values.iter().map(String::as_str);
-            let near = if let Test::Text(_) = test { nearest(value, names.clone()) } else { None };
-            let more = values.len().saturating_sub(MOST_VALUES);
-            let mut listed: Vec<String> = names.take(MOST_VALUES).map(|value| format!("`{value}`")).collect();
-            if more > 0 {
-                listed.push(format!("and {more} more"));
-            }
-            let near = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
-            return Ok(format!("no row has `{name}={value}`; {near}there: {}", listed.join(", ")));
+            let cells = rows.iter().map(|&row| data.cell(row));
+            let there = there(&table.schema().columns[column], value, cells);
+            return Ok(format!("no row has `{name}={value}`; {there}"));
         }
         rows = kept;
     }
     Ok("the table has no rows".to_owned())
 }
 
-/// The values of a column in some rows, as a condition has them, in the order in which they come.
-fn distinct(column: &Column, data: &Data, rows: &[usize]) -> Vec<String> {
+/// Which values there are instead, where a condition on a column holds for none of them.
+#[must_use]
+pub fn unmet(column: &Column, value: &str, values: &[Cell]) -> Option<String> {
+    let test = Test::new(column, value).ok()?;
+    (!values.iter().any(|cell| test.is_met(cell))).then(|| there(column, value, values.iter().cloned()))
+}
+
+/// The values of a column, as conditions have them, in the order in which they come; the nearest first.
+fn there(column: &Column, value: &str, cells: impl Iterator<Item = Cell>) -> String {
     let mut seen = BTreeSet::new();
     let unit = if column.unit.is_empty() { String::new() } else { format!(" {}", column.unit) };
-    let texts = rows.iter().map(|&row| match data.cell(row) {
-        Cell::Text(text) => text,
-        Cell::Float(value) => format!("{value}{unit}"),
-        Cell::Integer(value) => value.to_string(),
-        Cell::Flag(value) => value.to_string(),
-    });
-    texts.filter(|text| seen.insert(text.clone())).collect()
+    let texts =
+        cells.map(|cell| if let Cell::Float(value) = cell { format!("{value}{unit}") } else { cell.to_string() });
+    let values: Vec<String> = texts.filter(|text| seen.insert(text.clone())).collect();
+    let names = values.iter().map(String::as_str);
+    let near = nearest(value, names.clone()).filter(|_| column.kind == Type::Text);
+    let more = values.len().saturating_sub(MOST_VALUES);
+    let mut listed: Vec<String> = names.take(MOST_VALUES).map(|value| format!("`{value}`")).collect();
+    if more > 0 {
+        listed.push(format!("and {more} more"));
+    }
+    let near = near.map_or(String::new(), |near| format!("did you mean `{near}`? "));
+    format!("{near}there: {}", listed.join(", "))
 }
 
 #[cfg(test)]
