@@ -14,9 +14,10 @@ use crate::program::{load_changed, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::suggest;
+use studygraph::runner::rehearse::rehearse;
 use studygraph::store::manifest::TableRecord;
 use studygraph::store::results::Folder;
-use studygraph::study::{Study, describe, schema as schemas};
+use studygraph::study::{LoadError, Study, describe, schema as schemas};
 use studygraph::table::data::Table;
 
 const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
@@ -59,12 +60,18 @@ pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
     Ok(())
 }
 
+/// A study with which nothing is wrong that its quick stages can tell.
+fn rehearsed(study: Study) -> Result<Study, LoadError> {
+    study.accepted(rehearse(&study).unwrap_or_else(|wrong| vec![wrong]))?;
+    Ok(study)
+}
+
 /// Says of every file whether it is a valid study.
 pub(super) fn check(files: &[PathBuf], changes: &Changes, quiet: bool) -> Result<(), Ending> {
     let settings = studies::settings(changes);
     let mut last = None;
     for file in files {
-        match load_changed(file, &settings) {
+        match load_changed(file, &settings).and_then(rehearsed) {
             Ok(study) if !quiet => {
                 out(&format!("{}: `{}` is valid, {} stages\n", file.display(), study.name, study.nodes.len()));
             }

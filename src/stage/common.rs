@@ -137,6 +137,15 @@ pub fn mesh_cycle(inputs: &Inputs, settings: Settings) -> Result<(GearPair, Mesh
     Ok((pair, cycle))
 }
 
+/// That the pair cannot be loaded so, where its tables are there.
+///
+/// # Errors
+/// As [`mesh_cycle`].
+pub fn refused_cycle(inputs: &Inputs, stiffness: &str, settings: Settings) -> Result<(), Failure> {
+    let is_there = |port: &Port| inputs.ports.contains_key(&port.name);
+    if mesh_cycle_ports(stiffness).iter().all(is_there) { mesh_cycle(inputs, settings).map(drop) } else { Ok(()) }
+}
+
 /// About how many rows the curve of one design under one torque has.
 ///
 /// Spans hold as many positions as were asked for, or are as many as there are harmonics; those at zone ends, reliefs and

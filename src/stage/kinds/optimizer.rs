@@ -411,6 +411,10 @@ impl Stage for Optimizer {
         true
     }
 
+    fn refuses(&self, inputs: &Inputs) -> Result<(), Failure> {
+        common::refused_cycle(inputs, &self.stated.stiffness, self.settings)
+    }
+
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
         let mut settings = self.first_settings(&base, &pair);

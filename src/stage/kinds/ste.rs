@@ -312,6 +312,10 @@ impl Stage for Ste {
         }
     }
 
+    fn refuses(&self, inputs: &Inputs) -> Result<(), Failure> {
+        common::refused_cycle(inputs, &self.stiffness, self.settings())
+    }
+
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings())?;
         let mut designs: Vec<Named> = Vec::new();

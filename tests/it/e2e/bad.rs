@@ -63,6 +63,32 @@ fn every_bad_study_ends_with_code_2_and_its_message_alone() {
     assert!(count >= 28, "only {count} bad studies");
 }
 
+/// What only tables show: those of quick stages are there in a moment.
+#[test]
+fn a_check_computes_what_takes_no_time_and_says_what_does_not_fit() {
+    let desk = Desk::with("quick.yaml");
+    let quick = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let checked = |changes: &[(&str, &str)]| {
+        let text = changes.iter().fold(quick.clone(), |text, (old, new)| {
+            assert!(text.contains(old), "{old}");
+            text.replacen(old, new, 1)
+        });
+        fs::write(desk.path("changed.yaml"), text).unwrap();
+        desk.run(&["check", "changed.yaml"], 2).1
+    };
+    let long = checked(&[("amount: 12 um, fraction: 0.5", "amount: 12 um, length: 22 mm")]);
+    let starts =
+        "changed.yaml:24:60: design `short`, tip_relief: the relief starts 22.000000 mm from the end of the flank;";
+    assert!(long.starts_with(starts), "{long}");
+    let whole_pairs = [
+        ("method: energy, root: trochoid, contact: linear, coupling: body", "method: iso6336"),
+        ("designs: [designs, optimum]", "designs: [designs, optimum]\n    slice_coupling: plate"),
+    ];
+    let message = checked(&whole_pairs);
+    assert!(message.starts_with("changed.yaml:38:3: `ste`: `slice_coupling: plate` needs"), "{message}");
+    assert!(!desk.path("results").exists() && !desk.path(".gearstudy").exists(), "nothing is written");
+}
+
 #[test]
 fn what_is_no_file_of_text_has_no_line_but_a_reason() {
     let desk = Desk::with("quick.yaml");

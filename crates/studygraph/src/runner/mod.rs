@@ -15,6 +15,7 @@ pub mod options;
 pub mod outcome;
 pub mod plan;
 pub mod refuse;
+pub mod rehearse;
 pub mod standing;
 #[cfg(test)]
 mod tests;

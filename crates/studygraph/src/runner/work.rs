@@ -209,13 +209,13 @@ fn built(kind: &Kind, record: &Record) -> Result<Box<dyn Stage>, Failure> {
 }
 
 /// A table without the columns on demand that its reader did not ask for: its key says nothing of them.
-fn seen(table: Arc<Table>, wanted: &[String]) -> Result<Arc<Table>, StoreError> {
+pub(super) fn seen(table: Arc<Table>, wanted: &[String]) -> Result<Arc<Table>, StoreError> {
     let keep = |column: &Column| !column.on_demand || wanted.contains(&column.name);
     if table.schema().columns.iter().all(keep) { Ok(table) } else { Ok(Arc::new(part(&table, keep)?)) }
 }
 
 /// The demanded tables in the order of the stage, each with the demanded columns; more than that is dropped.
-fn demanded(outputs: &[Schema], demand: &Demand, mut tables: Vec<Table>) -> Result<Vec<Table>, Ended> {
+pub(super) fn demanded(outputs: &[Schema], demand: &Demand, mut tables: Vec<Table>) -> Result<Vec<Table>, Ended> {
     let bug = |message: String| Ended::Fault(Fault::Bug(message));
     let mut kept = Vec::new();
     for schema in outputs.iter().filter(|schema| demand.table(&schema.name)) {

@@ -88,6 +88,14 @@ pub trait Stage: Send + Sync {
         None
     }
 
+    /// What is wrong with the tables that come in, as far as a look at them tells; some of the ports may not be there yet.
+    ///
+    /// # Errors
+    /// As [`Stage::run`] with the same tables.
+    fn refuses(&self, _inputs: &Inputs) -> Result<(), Failure> {
+        Ok(())
+    }
+
     /// Computes the demanded tables.
     ///
     /// # Errors

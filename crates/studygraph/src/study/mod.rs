@@ -96,6 +96,18 @@ impl Study {
     /// What is wrong with it, found after it was read.
     #[must_use]
     pub fn refused(&self, wrong: Diagnostic) -> LoadError {
+        self.refused_for(wrong)
+    }
+
+    /// The same of several findings, if any.
+    ///
+    /// # Errors
+    /// All of them.
+    pub fn accepted(&self, findings: Vec<Diagnostic>) -> Result<(), LoadError> {
+        Faults::all(findings).map_err(|faults| self.refused_for(faults))
+    }
+
+    fn refused_for(&self, wrong: impl Into<Faults>) -> LoadError {
         self.changes.placed(LoadError::new(&self.path, self.text.clone(), wrong))
     }
 }
