@@ -136,6 +136,17 @@ pub enum Command {
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
     },
+    /// Run a study whenever its file is saved, and show its page in a browser on this computer, which follows.
+    Watch {
+        study: PathBuf,
+        #[command(flatten)]
+        changes: Changes,
+        #[command(flatten)]
+        selection: Selection,
+        /// Where the page is served, on this computer alone [default: a free port].
+        #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
+        port: u16,
+    },
     /// Say what is up to date, stale or missing, and why.
     Status {
         /// Without any, those in the folder `studies`.

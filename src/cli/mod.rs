@@ -13,11 +13,13 @@ pub mod progress;
 mod query;
 mod rights;
 pub mod run;
+mod serve;
 pub mod show;
 mod signals;
 mod status;
 mod studies;
 pub mod verify;
+mod watch;
 
 use std::ffi::OsString;
 use std::io::Write;
@@ -135,6 +137,9 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
             run::run(&load_all(studies, changes)?, places, selection, &how)
+        }
+        Command::Watch { study, changes, selection, port } => {
+            watch::watch(study, changes, places, selection, *port, quiet)
         }
         Command::Status { studies: words, changes, json, check } => {
             status::status(words, changes, places, *json, *check)

@@ -93,7 +93,7 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
     if failures.is_empty() { Ok(()) } else { Err(Ending::Failed(failures.join("; "))) }
 }
 
-fn run_one(
+pub(super) fn run_one(
     study: &Study,
     places: &Places,
     selection: &Selection,

@@ -61,7 +61,7 @@ pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
 }
 
 /// A study with which nothing is wrong that its quick stages can tell.
-fn rehearsed(study: Study) -> Result<Study, LoadError> {
+pub(super) fn rehearsed(study: Study) -> Result<Study, LoadError> {
     study.accepted(rehearse(&study).unwrap_or_else(|wrong| vec![wrong]))?;
     Ok(study)
 }

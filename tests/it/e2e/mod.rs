@@ -13,6 +13,7 @@ mod status;
 mod stubborn;
 mod texts;
 mod trust;
+mod watch;
 mod work;
 
 use std::fs;

@@ -1,0 +1,154 @@
+//! `gearstudy watch`: a study is run whenever its file is saved, and the page that is open follows.
+//!
+//! The system tells of saves; nothing looks at the disk in between. A study with a mistake shows its message over the last
+//! good page. Must not know: how a study is run, how pages are sent.
+
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
+use std::sync::{Arc, Condvar, Mutex, PoisonError};
+use std::time::Duration;
+
+use notify::{EventKind, RecursiveMode, Watcher};
+
+use super::arguments::{Changes, Places, Selection};
+use super::progress::{self, tell};
+use super::run::{self, How};
+use super::serve::Server;
+use super::signals::stop_flag;
+use super::{Ending, draw, pages, show, studies};
+use crate::program::load_changed;
+use studygraph::store::results::Folder;
+
+/// How often it is looked whether somebody asked to stop.
+const PAUSE: Duration = Duration::from_millis(100);
+/// An editor saves in several steps: those that follow each other within this are one.
+const SETTLED: Duration = Duration::from_millis(15);
+
+/// What the page is to show.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Shown {
+    /// Grows with whatever is to be seen.
+    pub version: u64,
+    /// What is wrong with the study as it was saved last; empty where nothing is.
+    pub message: String,
+    /// The folder of the last results; none before the first.
+    pub folder: Option<PathBuf>,
+}
+
+/// What is shown, and whoever waits for something else.
+#[derive(Default)]
+pub struct Board {
+    shown: Mutex<Shown>,
+    changed: Condvar,
+}
+
+impl Board {
+    #[must_use]
+    pub fn shown(&self) -> Shown {
+        self.shown.lock().unwrap_or_else(PoisonError::into_inner).clone()
+    }
+
+    /// What is shown as soon as it is not this version, or after a while.
+    #[must_use]
+    pub fn other_than(&self, version: u64, patience: Duration) -> Shown {
+        let shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let waited = self.changed.wait_timeout_while(shown, patience, |shown| shown.version == version);
+        waited.unwrap_or_else(PoisonError::into_inner).0.clone()
+    }
+
+    fn show(&self, message: String, folder: Option<PathBuf>) {
+        let mut shown = self.shown.lock().unwrap_or_else(PoisonError::into_inner);
+        let folder = folder.or_else(|| shown.folder.clone());
+        *shown = Shown { version: shown.version + 1, message, folder };
+        self.changed.notify_all();
+    }
+}
+
+pub(super) fn watch(
+    word: &Path,
+    changes: &Changes,
+    places: &Places,
+    selection: &Selection,
+    port: u16,
+    quiet: bool,
+) -> Result<(), Ending> {
+    let file = studies::file(word)?;
+    let cannot = |error: notify::Error| Ending::Usage(format!("cannot watch {}: {error}", file.display()));
+    let (saves, stop, board) = (saves_of(&file).map_err(cannot)?, stop_flag(None), Arc::new(Board::default()));
+    let server = Server::start(port, Arc::clone(&board)).map_err(Ending::Usage)?;
+    if !quiet {
+        tell(&format!("{} is watched; its page: {} (Ctrl-C ends)\n", file.display(), server.address()));
+    }
+    let mut last = String::new();
+    loop {
+        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        if last != text {
+            last = text;
+            renew(&file, changes, places, selection, quiet, &stop, &board)?;
+        }
+        loop {
+            if stop.load(Ordering::Relaxed) {
+                return Err(Ending::Stopped);
+            }
+            match saves.1.recv_timeout(PAUSE) {
+                Ok(()) => break,
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => {
+                    return Err(Ending::Usage("the system tells of no more saves".to_owned()));
+                }
+            }
+        }
+        while saves.1.recv_timeout(SETTLED).is_ok() {}
+    }
+}
+
+/// Tells of saves of a file while the first is kept. Its folder is watched: an editor may put another file in its place.
+fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<()>), notify::Error> {
+    let (saved, saves) = mpsc::channel();
+    let name = file.file_name().map(std::ffi::OsStr::to_owned);
+    let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
+        let Ok(event) = event else { return };
+        let is_ours = event.paths.iter().any(|path| path.file_name() == name.as_deref());
+        if is_ours && !matches!(event.kind, EventKind::Access(_)) {
+            // Nobody listens any more once the program ends.
+            let _ = saved.send(());
+        }
+    })?;
+    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    watcher.watch(folder, RecursiveMode::NonRecursive)?;
+    Ok((watcher, saves))
+}
+
+/// Runs the study as it is now, and shows its page or what is wrong.
+fn renew(
+    file: &Path,
+    changes: &Changes,
+    places: &Places,
+    selection: &Selection,
+    quiet: bool,
+    stop: &AtomicBool,
+    board: &Board,
+) -> Result<(), Ending> {
+    let study = match load_changed(file, &studies::settings(changes)).and_then(show::rehearsed) {
+        Ok(study) => study,
+        Err(error) => {
+            draw::invalid_study(&error);
+            board.show(error.to_string(), None);
+            return Ok(());
+        }
+    };
+    let folder = Folder::new(&places.results, &study.name);
+    let how = How { quiet, ..How::default() };
+    match run::run_one(&study, places, selection, &how, progress::bars(quiet).as_ref(), stop) {
+        Ok(()) => board.show(String::new(), Some(folder.path().to_owned())),
+        Err(Ending::Stopped) => return Err(Ending::Stopped),
+        Err(ending) => {
+            progress::told(&ending.to_string());
+            // What could be computed was published.
+            let folder = pages::path(&folder).is_file().then(|| folder.path().to_owned());
+            board.show(ending.to_string(), folder);
+        }
+    }
+    Ok(())
+}

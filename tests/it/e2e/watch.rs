@@ -1,0 +1,111 @@
+//! `gearstudy watch`: the page follows what is saved, and a mistake stands over the last good one.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::net::TcpStream;
+use std::process::{Child, Command, Stdio};
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::desk::Desk;
+
+/// A program that watches, ended with the test.
+struct Watching {
+    child: Child,
+    port: u16,
+}
+
+impl Watching {
+    fn start(desk: &Desk) -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
+        command.current_dir(desk.path(".")).env_remove("GEARSTUDY_CACHE").args(["watch", "quick.yaml"]);
+        let mut child = command.stdout(Stdio::piped()).stderr(Stdio::null()).spawn().unwrap();
+        let mut lines = BufReader::new(child.stdout.take().unwrap()).lines();
+        let first = lines.next().unwrap().unwrap();
+        let port = first.split("127.0.0.1:").nth(1).and_then(|rest| rest.split('/').next()).unwrap().parse().unwrap();
+        // What nobody reads would stop it.
+        std::thread::spawn(move || lines.for_each(drop));
+        Self { child, port }
+    }
+
+    /// Code and body of an answer.
+    fn get(&self, path: &str, host: &str) -> (u16, String) {
+        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
+        stream.set_read_timeout(Some(Duration::from_mins(1))).unwrap();
+        write!(stream, "GET {path} HTTP/1.0\r\nHost: {host}\r\n\r\n").unwrap();
+        let mut answer = String::new();
+        stream.read_to_string(&mut answer).unwrap();
+        let (head, body) = answer.split_once("\r\n\r\n").unwrap();
+        (head.split(' ').nth(1).unwrap().parse().unwrap(), body.to_owned())
+    }
+
+    fn ask(&self, path: &str) -> (u16, String) {
+        self.get(path, &format!("127.0.0.1:{}", self.port))
+    }
+
+    /// What is shown once it is not this version: version and message.
+    fn after(&self, version: u64) -> (u64, String) {
+        loop {
+            let shown: Value = serde_json::from_str(&self.ask(&format!("/changes?since={version}")).1).unwrap();
+            let (now, message) = (shown["version"].as_u64().unwrap(), shown["message"].as_str().unwrap().to_owned());
+            if now != version {
+                return (now, message);
+            }
+        }
+    }
+}
+
+impl Drop for Watching {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+#[test]
+fn the_page_follows_what_is_saved() {
+    let desk = Desk::with("quick.yaml");
+    let watching = Watching::start(&desk);
+    assert_eq!(watching.after(0), (1, String::new()));
+    let (code, page) = watching.ask("/");
+    assert_eq!(code, 200);
+    assert!(page.contains("Tip relief for a torque range") && page.contains("version: 1, message: \"\""), "{page}");
+    assert_eq!(watching.ask("/figures/torque.svg").0, 200);
+
+    let quick = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let relieved = quick.replace("title: Tip relief for a torque range", "title: Another <title>");
+    fs::write(desk.path("quick.yaml"), relieved).unwrap();
+    assert_eq!(watching.after(1), (2, String::new()));
+    assert!(watching.ask("/").1.contains("Another &lt;title&gt;"));
+
+    // A mistake stands over the last good page; put right, with a new file in the place of the old one, it goes.
+    fs::write(desk.path("quick.yaml"), quick.replace("fraction: 0.5", "fractoin</script>: 0.5")).unwrap();
+    let (version, message) = watching.after(2);
+    assert_eq!(version, 3);
+    assert!(message.contains("quick.yaml:24:52: unknown field `fractoin</script>`"), "{message}");
+    let page = watching.ask("/").1;
+    assert!(
+        page.contains("Another &lt;title&gt;") && page.contains("unknown field `fractoin\\u003c/script>`"),
+        "{page}"
+    );
+    fs::write(desk.path("other.yaml"), &quick).unwrap();
+    fs::rename(desk.path("other.yaml"), desk.path("quick.yaml")).unwrap();
+    assert_eq!(watching.after(3), (4, String::new()));
+}
+
+#[test]
+fn nobody_else_is_answered_and_nothing_else_is_sent() {
+    let desk = Desk::with("quick.yaml");
+    let watching = Watching::start(&desk);
+    watching.after(0);
+    // As a browser asks for a page from elsewhere that claims to be here.
+    assert_eq!(watching.get("/", "evil.example").0, 403);
+    for path in ["/../quick.yaml", "/..%2fquick.yaml", "//etc/passwd", "/figures/../../../quick.yaml", "/figures"] {
+        assert_eq!(watching.ask(path).0, 404, "{path}");
+    }
+    let address = format!("http://127.0.0.1:{}", watching.port);
+    let taken = desk.run(&["watch", "quick.yaml", "--port", &watching.port.to_string()], 1).1;
+    assert!(taken.contains(&format!("cannot listen on port {}", watching.port)), "{address}: {taken}");
+}
