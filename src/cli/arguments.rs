@@ -237,6 +237,8 @@ pub enum Command {
     },
     /// Print the JSON schema of a study, for editors.
     Schema,
+    /// Serve an editor: mistakes, meanings, completion, by the Language Server Protocol on standard input and output.
+    Lsp,
 }
 
 /// What of a study is other than its file says.

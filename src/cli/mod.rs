@@ -6,6 +6,7 @@ pub mod archive;
 pub mod arguments;
 mod diff;
 pub mod draw;
+mod lsp;
 pub mod pages;
 mod plan;
 pub mod print;
@@ -165,6 +166,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
         Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
+        Command::Lsp => lsp::lsp(),
         Command::Schema => {
             show::schema();
             Ok(())

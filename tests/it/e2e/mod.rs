@@ -3,6 +3,7 @@
 mod bad;
 mod diff;
 mod disk;
+mod editor;
 mod ended;
 mod limits;
 mod places;

@@ -98,20 +98,31 @@ pub fn mentions(described: &'static Kind, name: &str) -> bool {
 fn fields(text: &mut String, fields: &'static [Field], level: usize, families: &mut Vec<Vec<&'static str>>) {
     let indent = "  ".repeat(level);
     for field in fields {
-        let presence = match field.presence {
-            Presence::Required => "required".to_owned(),
-            Presence::Optional => "optional".to_owned(),
-            Presence::Default(default) => format!("default {}", quote(default)),
-        };
-        let span = match field.span {
-            Span::Single => "",
-            Span::Axis { .. } => "; one value, a list, or { from, to, count }",
-            Span::Range => "; [least, most] where an optimiser chooses",
-        };
-        let _ = writeln!(text, "{indent}{}: {}{span} ({presence})", field.name, holds(&field.shape));
+        let _ = writeln!(text, "{indent}{}", heading(field));
         let _ = writeln!(text, "{indent}    {}", field.summary);
         inside(text, &field.shape, level + 1, families);
     }
+}
+
+/// What a field holds, and whether it must be there, on one line.
+fn heading(field: &Field) -> String {
+    let presence = match field.presence {
+        Presence::Required => "required".to_owned(),
+        Presence::Optional => "optional".to_owned(),
+        Presence::Default(default) => format!("default {}", quote(default)),
+    };
+    let span = match field.span {
+        Span::Single => "",
+        Span::Axis { .. } => "; one value, a list, or { from, to, count }",
+        Span::Range => "; [least, most] where an optimiser chooses",
+    };
+    format!("{}: {}{span} ({presence})", field.name, holds(&field.shape))
+}
+
+/// A field by itself, without what is below it.
+#[must_use]
+pub fn field(field: &Field) -> String {
+    format!("{}\n{}", heading(field), field.summary)
 }
 
 /// What is named below a field: choices, fields, members.

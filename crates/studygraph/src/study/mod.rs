@@ -7,6 +7,7 @@ mod assemble;
 mod cells;
 mod changes;
 mod characters;
+pub mod cursor;
 pub mod declared;
 mod decode;
 pub mod describe;

@@ -1,0 +1,269 @@
+//! What stands at a place of a study that is being written: what it means, where it is declared, what else could stand there.
+//!
+//! For editors, which ask while a text is no study yet. So nothing is decoded: the tree is walked beside the declarations,
+//! and for what could stand at the cursor a word is put there and looked for. Must not know: how an editor asks.
+
+use super::assemble::KEYS;
+use super::describe;
+use super::document::{Content, KeyValue, Node, parse};
+use super::words;
+use crate::program::Program;
+use crate::stage::Kind;
+use declare::error::Place;
+use declare::parameter::{Field, Member, Presence, Shape};
+
+/// What is known of a place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Found {
+    /// What it is, in a few lines.
+    pub described: String,
+    /// Where what it names is declared.
+    pub declared: Option<Place>,
+}
+
+/// What could stand at a place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Offer {
+    pub label: String,
+    pub detail: String,
+    /// What is written where it is taken.
+    pub text: String,
+}
+
+/// What the cursor is at.
+enum Here<'a> {
+    /// A key of a mapping with these fields; others of its keys.
+    Key {
+        fields: &'static [Field],
+        key: &'a str,
+        pairs: &'a [KeyValue],
+        kind: bool,
+    },
+    /// A name of a stage.
+    Stage(&'a KeyValue),
+    /// The kind of a stage.
+    Kind(&'a str),
+    Member(&'static [Member], &'a str),
+    Value(&'static Field, &'static Shape, &'a Node),
+}
+
+/// What stands at a byte of the text; nothing where nothing is known of it.
+#[must_use]
+pub fn at(text: &str, offset: usize, program: &Program) -> Option<Found> {
+    let root = parse(text).ok()??;
+    let plain = |described: String| Some(Found { described, declared: None });
+    match locate(&root, offset, program)? {
+        Here::Key { key: "kind", kind: true, .. } => plain("kind: what the stage computes".to_owned()),
+        Here::Key { fields, key, .. } => plain(describe::field(fields.iter().find(|field| field.name == key)?)),
+        Here::Stage(stage) => plain(of_kind(kind_of(stage, program)?)),
+        Here::Kind(name) => plain(of_kind(program.kind(name)?)),
+        Here::Member(members, name) => plain(of_member(members.iter().find(|member| member.name == name)?)),
+        Here::Value(field, shape, node) => {
+            let Content::Scalar { text: word, .. } = &node.content else { return plain(describe::field(field)) };
+            match shape {
+                Shape::Reference(_) => {
+                    let stage = stages(&root).iter().find(|stage| stage.key == *word)?;
+                    let described = kind_of(stage, program).map_or_else(String::new, of_kind);
+                    Some(Found { described, declared: Some(stage.place) })
+                }
+                Shape::Choice(choices) => {
+                    let choice = choices.iter().find(|choice| choice.name == word)?;
+                    plain(format!("{}: {}", choice.name, choice.summary))
+                }
+                Shape::Member(members) => plain(of_member(members().iter().find(|member| member.name == word)?)),
+                _ => plain(describe::field(field)),
+            }
+        }
+    }
+}
+
+/// Stands for what is not written yet.
+const WORD: &str = "zzzz";
+
+/// What could stand at a byte of the text, in the place of the word that is there.
+#[must_use]
+pub fn offers(text: &str, offset: usize, program: &Program) -> Vec<Offer> {
+    let in_word = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
+    let before = text[..offset].trim_end_matches(in_word).len();
+    let after = text.len() - text[offset..].trim_start_matches(in_word).len();
+    // A dash by itself begins an item.
+    let before = before + usize::from(text[before..].starts_with("- ") || &text[before..offset] == "-");
+    // As a value or a key that has its colon, else as a key with a value.
+    for word in [WORD.to_owned(), format!("{WORD}: 0")] {
+        let changed = format!("{}{word}{}", &text[..before], &text[after..]);
+        let Ok(Some(root)) = parse(&changed) else { continue };
+        if let Some(here) = locate(&root, before, program) {
+            return of(&here, &root, program);
+        }
+    }
+    Vec::new()
+}
+
+fn of(here: &Here, root: &Node, program: &Program) -> Vec<Offer> {
+    match here {
+        Here::Key { fields, pairs, kind, .. } => {
+            let is_free = |name: &str| !pairs.iter().any(|pair| pair.key == name);
+            let first = if *kind && is_free("kind") {
+                vec![offer("kind", "what the stage computes", "kind: ")]
+            } else {
+                Vec::new()
+            };
+            let mut free: Vec<&Field> = fields.iter().filter(|field| is_free(field.name)).collect();
+            // What must be there comes first.
+            free.sort_by_key(|field| field.presence != Presence::Required);
+            let fields = free.into_iter().map(|field| offer(field.name, field.summary, &format!("{}: ", field.name)));
+            first.into_iter().chain(fields).collect()
+        }
+        Here::Stage(_) => Vec::new(),
+        Here::Kind(_) => program.kinds.iter().map(|kind| offer(kind.name, kind.summary, kind.name)).collect(),
+        Here::Member(members, _) => of_members(members),
+        Here::Value(_, shape, _) => of_shape(shape, root, program),
+    }
+}
+
+fn of_shape(shape: &'static Shape, root: &Node, program: &Program) -> Vec<Offer> {
+    match shape {
+        Shape::Reference(kinds) => {
+            let fits = |kind: &&'static Kind| kinds.is_empty() || kinds.contains(&kind.name);
+            let named = |stage: &KeyValue| {
+                let kind = kind_of(stage, program).filter(fits)?;
+                Some(offer(&stage.key, kind.name, &stage.key))
+            };
+            stages(root).iter().filter_map(named).collect()
+        }
+        Shape::Choice(choices) => choices.iter().map(|one| offer(one.name, one.summary, one.name)).collect(),
+        Shape::Flag => ["true", "false"].into_iter().map(|word| offer(word, "", word)).collect(),
+        Shape::Member(members) => of_members(members()),
+        Shape::List(item) => of_shape(item, root, program),
+        Shape::Quantity { dimension, minimum, maximum } => {
+            let example = words::example(*dimension, *minimum, *maximum);
+            example.into_iter().map(|text| offer(&text, "for example", &text)).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+fn of_members(members: &[Member]) -> Vec<Offer> {
+    let written = |member: &Member| {
+        let is_bare = !member.fields.iter().any(|field| field.presence == Presence::Required);
+        let text = if is_bare { member.name.to_owned() } else { format!("{}: {{ }}", member.name) };
+        offer(member.name, member.summary, &text)
+    };
+    members.iter().map(written).collect()
+}
+
+fn offer(label: &str, detail: &str, text: &str) -> Offer {
+    Offer { label: label.to_owned(), detail: detail.to_owned(), text: text.to_owned() }
+}
+
+fn of_kind(kind: &Kind) -> String {
+    format!("{}: {}", kind.name, kind.summary)
+}
+
+fn of_member(member: &Member) -> String {
+    let fields: String = member.fields.iter().map(|field| format!("\n- {}", describe::field(field))).collect();
+    format!("{}: {}{fields}", member.name, member.summary)
+}
+
+fn stages(root: &Node) -> &[KeyValue] {
+    let Content::Mapping(pairs) = &root.content else { return &[] };
+    match pairs.iter().find(|pair| pair.key == "stages").map(|pair| &pair.node.content) {
+        Some(Content::Mapping(stages)) => stages,
+        _ => &[],
+    }
+}
+
+fn kind_of(stage: &KeyValue, program: &Program) -> Option<&'static Kind> {
+    let Content::Mapping(pairs) = &stage.node.content else { return None };
+    let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == "kind")?.node.content else { return None };
+    program.kind(text)
+}
+
+/// The last of several that begins at the offset or before.
+fn last_before<T>(all: &[T], offset: usize, begins: impl Fn(&T) -> usize) -> Option<&T> {
+    all.iter().filter(|one| begins(one) <= offset).max_by_key(|one| begins(one))
+}
+
+fn is_on(place: Place, offset: usize) -> bool {
+    (place.offset..=place.offset + place.length).contains(&offset)
+}
+
+fn locate<'a>(root: &'a Node, offset: usize, program: &Program) -> Option<Here<'a>> {
+    let Content::Mapping(pairs) = &root.content else { return None };
+    let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
+    if is_on(pair.place, offset) {
+        return Some(Here::Key { fields: KEYS, key: &pair.key, pairs, kind: false });
+    }
+    if pair.key != "stages" {
+        let field = KEYS.iter().find(|field| field.name == pair.key)?;
+        return in_value(field, &field.shape, &pair.node, offset, root, program);
+    }
+    let stage = last_before(stages(root), offset, |stage| stage.place.offset)?;
+    if is_on(stage.place, offset) {
+        return Some(Here::Stage(stage));
+    }
+    let Content::Mapping(pairs) = &stage.node.content else { return None };
+    let fields = kind_of(stage, program).map_or(&[][..], |kind| kind.fields);
+    in_fields(fields, pairs, offset, root, program, true)
+}
+
+fn in_fields<'a>(
+    fields: &'static [Field],
+    pairs: &'a [KeyValue],
+    offset: usize,
+    root: &'a Node,
+    program: &Program,
+    kind: bool,
+) -> Option<Here<'a>> {
+    let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
+    if is_on(pair.place, offset) {
+        return Some(Here::Key { fields, key: &pair.key, pairs, kind });
+    }
+    if kind && pair.key == "kind" {
+        let Content::Scalar { text, .. } = &pair.node.content else { return None };
+        return Some(Here::Kind(text));
+    }
+    let field = fields.iter().find(|field| field.name == pair.key)?;
+    // The fields of another stage, which a field beside this one names.
+    if let Shape::Overrides(of) = field.shape {
+        let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == of)?.node.content else { return None };
+        let other = stages(root).iter().find(|stage| stage.key == *text)?;
+        let Content::Mapping(inside) = &pair.node.content else { return None };
+        return in_fields(kind_of(other, program)?.fields, inside, offset, root, program, false);
+    }
+    in_value(field, &field.shape, &pair.node, offset, root, program)
+}
+
+fn in_value<'a>(
+    field: &'static Field,
+    shape: &'static Shape,
+    node: &'a Node,
+    offset: usize,
+    root: &'a Node,
+    program: &Program,
+) -> Option<Here<'a>> {
+    match (shape, &node.content) {
+        (Shape::List(item), Content::Sequence(items)) => {
+            let inside = last_before(items, offset, |item| item.place.offset)?;
+            in_value(field, item, inside, offset, root, program)
+        }
+        (Shape::List(item), _) => in_value(field, item, node, offset, root, program),
+        (Shape::Map(item), Content::Mapping(pairs)) => {
+            let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
+            // A name of the user's own.
+            if is_on(pair.place, offset) { None } else { in_value(field, item, &pair.node, offset, root, program) }
+        }
+        (Shape::Group(fields), Content::Mapping(pairs)) => in_fields(fields, pairs, offset, root, program, false),
+        (Shape::Member(members), Content::Mapping(pairs)) => {
+            let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
+            if is_on(pair.place, offset) {
+                return Some(Here::Member(members(), &pair.key));
+            }
+            let member = members().iter().find(|member| member.name == pair.key)?;
+            let Content::Mapping(inside) = &pair.node.content else { return None };
+            in_fields(member.fields, inside, offset, root, program, false)
+        }
+        (_, Content::Scalar { .. }) => Some(Here::Value(field, shape, node)),
+        _ => None,
+    }
+}

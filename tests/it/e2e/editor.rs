@@ -1,0 +1,194 @@
+//! `gearstudy lsp` as an editor drives it: over the studies, and over broken ones.
+
+use std::fs;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::path::Path;
+use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+
+use serde_json::{Value, json};
+
+use crate::desk::Desk;
+
+/// A program that serves, and its two ends.
+struct Editor {
+    child: Child,
+    to: ChildStdin,
+    from: BufReader<ChildStdout>,
+    requests: u64,
+}
+
+const URI: &str = "file:///desk/study.yaml";
+
+impl Editor {
+    fn start() -> Self {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_gearstudy"));
+        let mut child = command.arg("lsp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
+        let (to, from) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
+        let mut editor = Self { child, to, from, requests: 0 };
+        let able = editor.ask("initialize", json!({ "capabilities": {} }));
+        assert_eq!(able["capabilities"]["hoverProvider"], true);
+        editor.tell("initialized", json!({}));
+        editor
+    }
+
+    fn send(&mut self, message: &Value) {
+        let text = message.to_string();
+        write!(self.to, "Content-Length: {}\r\n\r\n{text}", text.len()).unwrap();
+        self.to.flush().unwrap();
+    }
+
+    fn receive(&mut self) -> Value {
+        let mut length = 0;
+        loop {
+            let mut line = String::new();
+            assert!(self.from.read_line(&mut line).unwrap() > 0, "it has ended");
+            match line.trim_end().split_once(": ") {
+                Some(("Content-Length", value)) => length = value.parse().unwrap(),
+                Some(_) => {}
+                None => break,
+            }
+        }
+        let mut bytes = vec![0; length];
+        self.from.read_exact(&mut bytes).unwrap();
+        serde_json::from_slice(&bytes).unwrap()
+    }
+
+    fn tell(&mut self, method: &str, params: Value) {
+        self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
+    }
+
+    fn ask(&mut self, method: &str, params: Value) -> Value {
+        self.requests += 1;
+        self.send(&json!({ "jsonrpc": "2.0", "id": self.requests, "method": method, "params": params }));
+        let answer = self.receive();
+        assert_eq!(answer["id"], self.requests, "{answer}");
+        answer["result"].clone()
+    }
+
+    /// What is wrong with a text that is opened.
+    fn open(&mut self, text: &str) -> Vec<Value> {
+        let document = json!({ "uri": URI, "languageId": "yaml", "version": 1, "text": text });
+        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        let told = self.receive();
+        assert_eq!(told["method"], "textDocument/publishDiagnostics");
+        told["params"]["diagnostics"].as_array().unwrap().clone()
+    }
+
+    /// Asks about the place of `|` in a text, which is opened without it.
+    fn at(&mut self, method: &str, marked: &str) -> Value {
+        let (before, after) = marked.split_once('|').unwrap();
+        self.open(&format!("{before}{after}"));
+        let line = before.rfind('\n').map_or(0, |at| at + 1);
+        let position =
+            json!({ "line": before.matches('\n').count(), "character": before[line..].encode_utf16().count() });
+        self.ask(method, json!({ "textDocument": { "uri": URI }, "position": position }))
+    }
+
+    fn offered(&mut self, marked: &str) -> Vec<String> {
+        let all = self.at("textDocument/completion", marked);
+        all.as_array().unwrap().iter().map(|item| item["label"].as_str().unwrap().to_owned()).collect()
+    }
+}
+
+impl Drop for Editor {
+    fn drop(&mut self) {
+        // It may have ended already.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+fn quick() -> String {
+    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("studies/quick.yaml")).unwrap()
+}
+
+#[test]
+fn an_editor_is_told_what_check_says_where_it_is() {
+    let mut editor = Editor::start();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    for entry in fs::read_dir(folder.join("studies")).unwrap() {
+        let path = entry.unwrap().path();
+        assert_eq!(editor.open(&fs::read_to_string(&path).unwrap()), Vec::<Value>::new(), "{}", path.display());
+    }
+    let desk = Desk::with("quick.yaml");
+    for entry in fs::read_dir(folder.join("tests/bad")).unwrap() {
+        let path = entry.unwrap().path();
+        let Ok(text) = fs::read_to_string(&path) else { continue };
+        if path.extension().is_none_or(|ending| ending != "yaml") {
+            continue;
+        }
+        let found = editor.open(&text);
+        let said = desk.run(&["check", path.to_str().unwrap()], 2).1;
+        let heads: Vec<&str> = said.lines().filter(|line| !line.starts_with("  help: ")).collect();
+        assert_eq!(found.len(), heads.len(), "{said}");
+        for (one, head) in found.iter().zip(heads) {
+            let message = one["message"].as_str().unwrap().lines().next().unwrap();
+            assert!(head.ends_with(message), "{head:?} {message:?}");
+            let line = one["range"]["start"]["line"].as_u64().unwrap() + 1;
+            assert!(head.contains(&format!("yaml:{line}:")), "{head:?} {one}");
+        }
+    }
+    // Put right, it is told so.
+    assert_eq!(editor.open(&quick()), Vec::<Value>::new());
+    assert_eq!(editor.ask("shutdown", Value::Null), Value::Null);
+    editor.tell("exit", Value::Null);
+    assert!(editor.child.wait().unwrap().success());
+}
+
+#[test]
+fn an_editor_is_offered_what_can_stand_there() {
+    let mut editor = Editor::start();
+    let quick = quick();
+    let marked = |old: &str, new: &str| {
+        assert!(quick.contains(old), "{old}");
+        quick.replacen(old, new, 1)
+    };
+    // Stages that fit, the words of a choice, kinds.
+    assert_eq!(editor.offered(&marked("designs: [designs, optimum]", "designs: [designs, |]")), ["designs", "optimum"]);
+    assert_eq!(
+        editor.offered(&marked("    stiffness: stiffness\n    designs", "    stiffness: st|\n    designs")),
+        ["stiffness"]
+    );
+    let offered = editor.offered(&marked("contact: linear", "contact: |"));
+    assert!(offered.contains(&"resolved".to_owned()) && offered.contains(&"linear".to_owned()), "{offered:?}");
+    assert!(editor.offered(&marked("kind: modification", "kind: |")).contains(&"ste".to_owned()));
+    // Fields that are not there yet, what must be there first.
+    let offered = editor.offered(&marked("    minimize: peak_to_peak\n", "    |\n"));
+    assert!(!offered.contains(&"stiffness".to_owned()) && offered.contains(&"minimize".to_owned()), "{offered:?}");
+    let offered = editor.offered(&marked("bore_radius: 18 mm }", "|}"));
+    assert_eq!(offered[0], "bore_radius", "{offered:?}");
+    assert!(!offered.contains(&"teeth".to_owned()), "{offered:?}");
+    // Members of a family, and their fields.
+    let offered = editor.offered(&marked("        - lead_crowning: { gear: pinion, amount: 4 um }", "        - |"));
+    assert!(offered.contains(&"tip_relief".to_owned()), "{offered:?}");
+    let offered = editor.offered(&marked("amount: 12 um, fraction: 1.0, curve: linear", "amount: 12 um, |"));
+    assert!(offered.contains(&"length".to_owned()) && !offered.contains(&"gear".to_owned()), "{offered:?}");
+    // In a text that is no YAML there is nothing to offer, and nothing goes wrong.
+    assert!(editor.offered("study: a\nstages: [{\n  |").is_empty());
+}
+
+#[test]
+fn an_editor_is_told_what_stands_there_and_where_it_is_declared() {
+    let mut editor = Editor::start();
+    let quick = quick();
+    let mut hover = |old: &str, new: &str| {
+        let found = editor.at("textDocument/hover", &quick.replacen(old, new, 1));
+        found["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let torque = hover("    torque: { from", "    tor|que: { from");
+    assert!(
+        torque.starts_with("torque: ")
+            && torque.contains("one value, a list")
+            && torque.contains("Torque on the pinion"),
+        "{torque}"
+    );
+    assert!(hover("teeth: 24", "teeth: 2|4").contains("between 4 and 10000"));
+    assert!(hover("kind: ste", "kind: s|te").starts_with("ste: Static transmission error"));
+    assert!(hover("- tip_relief", "- tip_|relief").starts_with("tip_relief: "));
+    assert!(hover("method: energy", "method: en|ergy").starts_with("energy: "));
+    assert_eq!(hover("unmodified: []", "unmo|dified: []"), "", "a name of the user's own");
+    let declared =
+        editor.at("textDocument/definition", &quick.replacen("designs: [designs, opt", "designs: [designs, o|pt", 1));
+    let line = quick.lines().position(|line| line == "  optimum:").unwrap();
+    assert_eq!(declared["range"]["start"], json!({ "line": line, "character": 2 }));
+}
