@@ -203,15 +203,8 @@ pub enum Command {
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
     },
-    /// Delete from the cache what no run has used lately.
-    Gc {
-        /// Keep what was used in the last N days.
-        #[arg(long, value_name = "N", default_value_t = 30)]
-        days: u32,
-        /// Only say what would be deleted.
-        #[arg(long)]
-        dry_run: bool,
-    },
+    /// Delete from the cache what no results need and no run has used lately.
+    Gc(Cleaning),
     /// Print the gear pair of a REXS file as a study.
     Import {
         file: PathBuf,
@@ -235,6 +228,23 @@ pub struct Changes {
     /// Another name for the study, and so for the folder of its results.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
+}
+
+/// What of the cache stays, besides what the results in the results folder need.
+#[derive(Args, Debug, Clone)]
+pub struct Cleaning {
+    /// Keep what was used in the last N days.
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    pub days: u32,
+    /// Keep what the results of this commit need; may be given several times.
+    #[arg(long, value_name = "COMMIT")]
+    pub keep: Vec<String>,
+    /// Of what no results need, delete also what was used longest ago, until the cache is no larger, as 800MB or 4GB.
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub max_size: Option<u64>,
+    /// Only say what would be deleted.
+    #[arg(long)]
+    pub dry_run: bool,
 }
 
 /// Which stages, and whether to trust the cache.

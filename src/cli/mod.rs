@@ -6,6 +6,7 @@ pub mod archive;
 pub mod arguments;
 mod diff;
 pub mod draw;
+mod gc;
 pub mod pages;
 mod plan;
 pub mod print;
@@ -157,7 +158,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Query(asked) => query::query(asked, places, quiet),
-        Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
+        Command::Gc(asked) => gc::gc(places, asked),
         Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Schema => {

@@ -24,7 +24,7 @@ use studygraph::runner::limits::{Limits, MOST_ROWS};
 use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
 use studygraph::runner::plan::{self, Plan};
-use studygraph::store::cache::{Cache, Remove};
+use studygraph::store::cache::Cache;
 use studygraph::store::error::StoreError;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, Published, Tables};
@@ -232,30 +232,6 @@ pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<
         if !quiet {
             out(&told.take());
         }
-    }
-    Ok(())
-}
-
-pub(super) fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending> {
-    let age = std::time::Duration::from_secs(u64::from(days) * 86_400);
-    let removed = Cache::clean(&places.cache, Remove::OlderThan(age), dry_run).map_err(|error| stored(&error))?;
-    let word = if dry_run { "would delete" } else { "deleted" };
-    #[allow(clippy::cast_precision_loss)]
-    let megabytes = |bytes: u64| bytes as f64 / 1e6;
-    let leftovers = match removed.leftovers {
-        0 => String::new(),
-        1 => ", 1 leftover of a killed run".to_owned(),
-        many => format!(", {many} leftovers of killed runs"),
-    };
-    out(&format!(
-        "{word} {} entries ({:.1} MB){leftovers}, kept {} ({:.1} MB)\n",
-        removed.entries,
-        megabytes(removed.bytes),
-        removed.kept,
-        megabytes(removed.kept_bytes)
-    ));
-    for path in &removed.foreign {
-        progress::told(&format!("left alone, since it is not a file of the cache: {}", path.display()));
     }
     Ok(())
 }

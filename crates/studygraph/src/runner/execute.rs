@@ -141,7 +141,9 @@ pub fn execute(
     }
     board.close();
     let journal = board.next_journal();
-    if journal != board.journal {
+    if journal == board.journal {
+        cache.note_use(&study.name);
+    } else {
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);

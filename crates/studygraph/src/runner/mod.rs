@@ -14,6 +14,7 @@ pub mod limits;
 pub mod options;
 pub mod outcome;
 pub mod plan;
+pub mod reach;
 pub mod refuse;
 pub mod standing;
 #[cfg(test)]
