@@ -1,11 +1,15 @@
 //! The words of the command line. Must not know: what any command does.
 
+mod sharding;
+
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, Args, Parser, Subcommand, ValueEnum};
+
+pub use sharding::{Elsewhere, Engine, Sharding};
 
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
@@ -135,7 +139,12 @@ pub enum Command {
         /// How many threads to use [default: one per processor].
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
+        #[command(flatten)]
+        elsewhere: Elsewhere,
     },
+    /// Run a study in pieces on any number of machines: plan, run each piece, merge.
+    #[command(subcommand)]
+    Shard(Sharding),
     /// Say what is up to date, stale or missing, and why.
     Status {
         /// Without any, those in the folder `studies`.

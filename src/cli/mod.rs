@@ -6,6 +6,7 @@ pub mod archive;
 pub mod arguments;
 mod diff;
 pub mod draw;
+mod engine;
 mod gc;
 pub mod pages;
 mod plan;
@@ -14,6 +15,7 @@ pub mod progress;
 mod query;
 mod rights;
 pub mod run;
+mod shard;
 pub mod show;
 mod signals;
 mod status;
@@ -132,6 +134,18 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let how = run::How { limits: *limits, jobs: jobs.map(usize::from), ..run::How::default() };
             run::plan(&load_all(studies, changes)?, places, selection, &how, false)
         }
+        Command::Run { studies, changes, selection, limits, jobs, elsewhere, .. } if elsewhere.engine.is_some() => {
+            engine::run(
+                &load_all(studies, changes)?,
+                places,
+                selection,
+                limits,
+                jobs.map(usize::from),
+                elsewhere,
+                quiet,
+            )
+        }
+        Command::Shard(asked) => shard::shard(asked, places, quiet),
         Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, .. } => {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };

@@ -46,7 +46,7 @@ pub(super) fn limits(given: &arguments::Limits) -> Limits {
 
 /// # Errors
 /// A name that is neither `stage.table` nor `stage.table.column`.
-fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
+pub(super) fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     let force = match &selection.force {
         None => Force::Nothing,
         Some(names) if names.is_empty() => Force::All,
@@ -54,7 +54,7 @@ fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     };
     let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
     let (jobs, keep_going, limits) = (how.jobs.unwrap_or(0), how.keep_going, limits(&how.limits));
-    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits })
+    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits, ..Options::default() })
 }
 
 fn wanted(name: &str) -> Result<Wanted, Ending> {

@@ -235,6 +235,8 @@ impl Run<'_> {
                 board.halted = Some("stopped".to_owned());
             }
             Step::Skip(board.halted.clone().unwrap_or_else(|| "stopped".to_owned()))
+        } else if board.is_shared(node) {
+            Step::Skip("other parts are left to others".to_owned())
         } else {
             drop(board);
             let tables = catch_unwind(AssertUnwindSafe(|| self.put_together(node)));

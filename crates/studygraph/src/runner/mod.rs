@@ -16,6 +16,7 @@ pub mod outcome;
 pub mod plan;
 pub mod reach;
 pub mod refuse;
+pub mod shard;
 pub mod standing;
 #[cfg(test)]
 mod tests;

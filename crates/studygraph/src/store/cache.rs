@@ -13,6 +13,7 @@
 //! most the tables of one run, compressed. The run is none the worse, the next one computes it again, and is told so.
 //! Must not know: what a key is made of, what tables mean.
 
+mod carried;
 mod cleaning;
 #[cfg(test)]
 mod tests;
