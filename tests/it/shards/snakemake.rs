@@ -1,7 +1,7 @@
 //! The rules for Snakemake that `docs/cluster.md` shows.
 
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use super::{assert_as_local, installed, program, swept};
@@ -14,11 +14,21 @@ fn shown(page: &str, language: &str) -> String {
     rest.split_once("\n```").unwrap().0.to_owned() + "\n"
 }
 
+/// `$GEARSTUDY_SNAKEMAKE`, the one that `make setup` installs, or that on the path.
+fn snakemake() -> Option<PathBuf> {
+    if let Some(named) = std::env::var_os("GEARSTUDY_SNAKEMAKE").filter(|named| !named.is_empty()) {
+        return Some(named.into());
+    }
+    let own = Path::new(env!("CARGO_MANIFEST_DIR")).join(".venv/snakemake/bin/snakemake");
+    if own.is_file() {
+        return Some(own);
+    }
+    installed("shards by Snakemake", &["snakemake"], "snakemake").then(|| "snakemake".into())
+}
+
 #[test]
 fn snakemake_runs_the_pieces_by_the_rules_that_are_documented() {
-    if !installed("shards by Snakemake", &["snakemake"], "snakemake") {
-        return;
-    }
+    let Some(snakemake) = snakemake() else { return };
     let desk = swept();
     fs::write(
         desk.path("Snakefile"),
@@ -30,7 +40,7 @@ fn snakemake_runs_the_pieces_by_the_rules_that_are_documented() {
         std::env::join_paths(std::iter::once(folder).chain(std::env::split_paths(&std::env::var_os("PATH").unwrap())))
             .unwrap();
     let run = |words: &[&str]| {
-        let mut command = Command::new("snakemake");
+        let mut command = Command::new(&snakemake);
         let output = command
             .args(["--cores", "2", "--quiet"])
             .args(words)
