@@ -94,6 +94,9 @@ pub enum Command {
     New {
         /// The file to write; its name becomes the study's.
         file: PathBuf,
+        /// Which study to start from.
+        #[arg(long, value_name = "NAME", default_value = "quick")]
+        template: String,
     },
     /// Read studies and say what is wrong with them, without running anything.
     Check {

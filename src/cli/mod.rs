@@ -121,7 +121,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     places.check().map_err(Ending::Usage)?;
     let quiet = arguments.quiet;
     match &arguments.command {
-        Command::New { file } => show::new_study(file),
+        Command::New { file, template } => show::new_study(file, template),
         Command::Check { studies: words, changes } => show::check(&studies::named_or_all(words)?, changes, quiet),
         Command::Plan { studies, changes, selection, limits, json } => run::plan(
             &load_all(studies, changes)?,

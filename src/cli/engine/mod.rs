@@ -9,7 +9,7 @@ mod parallel;
 mod profile;
 mod slurm;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
@@ -24,6 +24,8 @@ use studygraph::study::Study;
 
 /// How often it is looked for new files.
 const LOOK: Duration = Duration::from_millis(300);
+/// And, for many missing ones, what looking for one may cost a file system that others use too.
+const LOOK_AT_ONE: Duration = Duration::from_millis(1);
 /// Pieces, where nobody says how many.
 const SHARDS: u32 = 64;
 
@@ -39,7 +41,7 @@ trait Starter {
     ///
     /// # Errors
     /// When it does not answer.
-    fn live(&mut self) -> Result<Vec<usize>, Ending>;
+    fn live(&mut self) -> Result<BTreeSet<usize>, Ending>;
 
     /// How long to wait before it is asked again.
     fn ask_every(&self) -> Duration;
@@ -112,10 +114,10 @@ impl Job<'_> {
         }
     }
 
-    /// Those of a level that are not there; a message where a stage failed, which no other attempt changes.
-    fn missing(&self, level: std::ops::Range<usize>) -> Result<Vec<usize>, Ending> {
+    /// Those that are not there; a message where a stage failed, which no other attempt changes.
+    fn missing(&self, among: impl IntoIterator<Item = usize>) -> Result<Vec<usize>, Ending> {
         let mut missing = Vec::new();
-        for index in level {
+        for index in among {
             match state(&self.folder, self.plan, index, false) {
                 State::Sound => {}
                 State::Missing | State::Damaged(_) => missing.push(index),
@@ -160,34 +162,37 @@ impl Job<'_> {
                     lost.iter().for_each(|index| *started.entry(*index).or_default() += 1);
                     starter.start(&lost)?;
                 }
-                self.wait(starter, level.first..level.end, stop)?;
+                self.wait(starter, level.end - level.first, missing, stop)?;
             }
         }
         Ok(())
     }
 
-    /// Until a level is complete, or some of it was lost.
-    fn wait(&self, starter: &mut dyn Starter, level: std::ops::Range<usize>, stop: &AtomicBool) -> Result<(), Ending> {
+    /// Until all that is missing of a level of `count` shards is there, or some of it was lost. What is there is not looked
+    /// at again.
+    fn wait(
+        &self,
+        starter: &mut dyn Starter,
+        count: usize,
+        mut missing: Vec<usize>,
+        stop: &AtomicBool,
+    ) -> Result<(), Ending> {
         let mut asked = Instant::now();
-        let mut left = usize::MAX;
         // A file may be seen on this machine a moment after its job has gone from the queue: lost is what is lost twice.
         let mut lost_before = false;
-        loop {
-            std::thread::sleep(LOOK);
+        while !missing.is_empty() {
+            std::thread::sleep(LOOK.max(LOOK_AT_ONE * u32::try_from(missing.len()).unwrap_or(u32::MAX)));
             if stop.load(Ordering::Relaxed) {
                 let left = starter.leave();
                 progress::aside(None, &format!("gearstudy: {left}the same command goes on from here"));
                 return Err(Ending::Stopped);
             }
-            let missing = self.missing(level.clone())?;
-            if missing.len() != left {
-                left = missing.len();
-                self.tell(&format!("{} of {} shards are there", level.len() - left, level.len()));
+            let before = missing.len();
+            missing = self.missing(missing)?;
+            if missing.len() < before {
+                self.tell(&format!("{} of {count} shards are there", count - missing.len()));
             }
-            if missing.is_empty() {
-                return Ok(());
-            }
-            if asked.elapsed() >= starter.ask_every() {
+            if !missing.is_empty() && asked.elapsed() >= starter.ask_every() {
                 asked = Instant::now();
                 let live = starter.live()?;
                 let lost = missing.iter().any(|index| !live.contains(index));
@@ -197,6 +202,7 @@ impl Job<'_> {
                 lost_before = lost;
             }
         }
+        Ok(())
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Must not know: what a shard computes.
 
+use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::Write;
 use std::process::{Child, Command, Stdio};
@@ -11,6 +12,9 @@ use super::super::Ending;
 use super::profile::{maybe_number, number, words};
 use super::{Job, Starter, made, program, quoted};
 use declare::record::Record;
+
+/// How often it is seen whether it has ended.
+const ENDING: usize = 100;
 
 pub(super) struct Parallel<'a> {
     job: &'a Job<'a>,
@@ -62,13 +66,13 @@ impl Starter for Parallel<'_> {
         Ok(())
     }
 
-    fn live(&mut self) -> Result<Vec<usize>, Ending> {
-        let Some((child, shards)) = &mut self.running else { return Ok(Vec::new()) };
+    fn live(&mut self) -> Result<BTreeSet<usize>, Ending> {
+        let Some((child, shards)) = &mut self.running else { return Ok(BTreeSet::new()) };
         match child.try_wait() {
-            Ok(None) => Ok(shards.clone()),
+            Ok(None) => Ok(shards.iter().copied().collect()),
             Ok(Some(_)) => {
                 self.running = None;
-                Ok(Vec::new())
+                Ok(BTreeSet::new())
             }
             Err(error) => Err(Ending::Usage(format!("`parallel`: {error}"))),
         }
@@ -80,11 +84,22 @@ impl Starter for Parallel<'_> {
     }
 
     fn leave(&mut self) -> String {
-        if let Some((mut child, _)) = self.running.take() {
-            // It stops its jobs; what they were at is computed again.
-            let _ = child.kill();
-            let _ = child.wait();
-        }
+        // It heard Ctrl-C too, and stops its jobs; what they were at is computed again.
         String::new()
+    }
+}
+
+impl Drop for Parallel<'_> {
+    /// When all packs are there it only has to end.
+    fn drop(&mut self) {
+        let Some((mut child, _)) = self.running.take() else { return };
+        for _ in 0..ENDING {
+            if !matches!(child.try_wait(), Ok(None)) {
+                return;
+            }
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        let _ = child.kill();
+        let _ = child.wait();
     }
 }

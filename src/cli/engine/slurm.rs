@@ -3,6 +3,7 @@
 //! An element is a shard: element t of an array that begins at f is shard f + t, and f is in the job's name, so the queue
 //! itself says who is at work, whoever submitted it. Must not know: what a shard computes.
 
+use std::collections::BTreeSet;
 use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
@@ -122,16 +123,15 @@ impl<'a> Slurm<'a> {
     }
 
     /// The shards that wait or run.
-    fn elements(&self) -> Result<Vec<usize>, Ending> {
+    fn elements(&self) -> Result<BTreeSet<usize>, Ending> {
         let words = ["--noheader", "--array", "--me", "--format=%j|%K"].map(str::to_owned);
         let said = ask("squeue", &words, None)?;
-        let mut shards: Vec<usize> = Vec::new();
+        let mut shards = BTreeSet::new();
         for line in said.lines() {
             let Some((name, element)) = line.trim().split_once('|') else { continue };
             let Some(Ok(first)) = name.strip_prefix(&self.prefix()).map(str::parse::<usize>) else { continue };
             shards.extend(element.parse::<usize>().map(|element| first + element));
         }
-        shards.sort_unstable();
         Ok(shards)
     }
 }
@@ -141,7 +141,7 @@ impl Starter for Slurm<'_> {
         self.arrays(shards, "").map(drop)
     }
 
-    fn live(&mut self) -> Result<Vec<usize>, Ending> {
+    fn live(&mut self) -> Result<BTreeSet<usize>, Ending> {
         self.elements()
     }
 

@@ -34,11 +34,11 @@ fn sound(desk: &Desk) -> Vec<usize> {
 fn killed_pieces_leave_nothing_that_is_taken_for_a_pack() {
     let desk = planned();
     let mut finished: Vec<usize> = Vec::new();
-    for round in 0..14_u64 {
+    for round in 0..5_u64 {
         for index in 0..SHARDS {
             let mut children = [start(&desk, index), start(&desk, index)];
             // From before anything happened to after the end, which takes some hundred milliseconds.
-            std::thread::sleep(Duration::from_millis((round * 37 + index as u64 * 11) % 500));
+            std::thread::sleep(Duration::from_millis((round * 70 + index as u64 * 11) % 500));
             for child in &mut children {
                 child.kill().unwrap();
                 child.wait().unwrap();
@@ -53,6 +53,15 @@ fn killed_pieces_leave_nothing_that_is_taken_for_a_pack() {
     }
     for index in 0..SHARDS {
         assert!(start(&desk, index).wait().unwrap().success());
+    }
+    // The merge as well.
+    for moment in [50, 200, 400] {
+        let mut child = Command::new(program());
+        let child = child.args(["--quiet", "shard", "merge", "plan"]).current_dir(desk.path(""));
+        let mut child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        std::thread::sleep(Duration::from_millis(moment));
+        child.kill().unwrap();
+        child.wait().unwrap();
     }
     desk.run(&["shard", "merge", "plan"], 0);
     assert_as_local(&desk);
