@@ -1,11 +1,15 @@
 //! The words of the command line. Must not know: what any command does.
 
+mod sharding;
+
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, Args, Parser, Subcommand, ValueEnum};
+
+pub use sharding::{Elsewhere, Engine, Sharding};
 
 /// Declarative, reproducible studies of spur-gear tooth modifications.
 #[derive(Parser, Debug)]
@@ -90,6 +94,9 @@ pub enum Command {
     New {
         /// The file to write; its name becomes the study's.
         file: PathBuf,
+        /// Which study to start from.
+        #[arg(long, value_name = "NAME", default_value = "quick")]
+        template: String,
     },
     /// Read studies and say what is wrong with them, without running anything.
     Check {
@@ -135,6 +142,8 @@ pub enum Command {
         /// How many threads to use [default: one per processor].
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
+        #[command(flatten)]
+        elsewhere: Elsewhere,
     },
     /// Run a study whenever its file is saved, and show its page in a browser on this computer, which follows.
     Watch {
@@ -147,6 +156,9 @@ pub enum Command {
         #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
         port: u16,
     },
+    /// Run a study in pieces on any number of machines: plan, run each piece, merge.
+    #[command(subcommand)]
+    Shard(Sharding),
     /// Say what is up to date, stale or missing, and why.
     Status {
         /// Without any, those in the folder `studies`.
@@ -214,15 +226,8 @@ pub enum Command {
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
     },
-    /// Delete from the cache what no run has used lately.
-    Gc {
-        /// Keep what was used in the last N days.
-        #[arg(long, value_name = "N", default_value_t = 30)]
-        days: u32,
-        /// Only say what would be deleted.
-        #[arg(long)]
-        dry_run: bool,
-    },
+    /// Delete from the cache what no results need and no run has used lately.
+    Gc(Cleaning),
     /// Print the gear pair of a REXS file as a study.
     Import {
         file: PathBuf,
@@ -251,6 +256,23 @@ pub struct Changes {
     /// Another name for the study, and so for the folder of its results.
     #[arg(long, value_name = "NAME")]
     pub name: Option<String>,
+}
+
+/// What of the cache stays, besides what the results in the results folder need.
+#[derive(Args, Debug, Clone)]
+pub struct Cleaning {
+    /// Keep what was used in the last N days.
+    #[arg(long, value_name = "N", default_value_t = 30)]
+    pub days: u32,
+    /// Keep what the results of this commit need; may be given several times.
+    #[arg(long, value_name = "COMMIT")]
+    pub keep: Vec<String>,
+    /// Of what no results need, delete also what was used longest ago, until the cache is no larger, as 800MB or 4GB.
+    #[arg(long, value_name = "SIZE", value_parser = bytes)]
+    pub max_size: Option<u64>,
+    /// Only say what would be deleted.
+    #[arg(long)]
+    pub dry_run: bool,
 }
 
 /// Which stages, and whether to trust the cache.

@@ -6,6 +6,8 @@ pub mod archive;
 pub mod arguments;
 mod diff;
 pub mod draw;
+mod engine;
+mod gc;
 mod lsp;
 pub mod pages;
 mod plan;
@@ -15,6 +17,7 @@ mod query;
 mod rights;
 pub mod run;
 mod serve;
+mod shard;
 pub mod show;
 mod signals;
 mod status;
@@ -121,7 +124,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     places.check().map_err(Ending::Usage)?;
     let quiet = arguments.quiet;
     match &arguments.command {
-        Command::New { file } => show::new_study(file),
+        Command::New { file, template } => show::new_study(file, template),
         Command::Check { studies: words, changes } => show::check(&studies::named_or_all(words)?, changes, quiet),
         Command::Plan { studies, changes, selection, limits, json } => run::plan(
             &load_all(studies, changes)?,
@@ -134,6 +137,18 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             let how = run::How { limits: *limits, jobs: jobs.map(usize::from), ..run::How::default() };
             run::plan(&load_all(studies, changes)?, places, selection, &how, false)
         }
+        Command::Run { studies, changes, selection, limits, jobs, elsewhere, .. } if elsewhere.engine.is_some() => {
+            engine::run(
+                &load_all(studies, changes)?,
+                places,
+                selection,
+                limits,
+                jobs.map(usize::from),
+                elsewhere,
+                quiet,
+            )
+        }
+        Command::Shard(asked) => shard::shard(asked, places, quiet),
         Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, .. } => {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
@@ -163,7 +178,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Query(asked) => query::query(asked, places, quiet),
-        Command::Gc { days, dry_run } => run::gc(places, *days, *dry_run),
+        Command::Gc(asked) => gc::gc(places, asked),
         Command::Import { file, stage } => show::import(file, stage.as_deref()),
         Command::Kinds { kind } => show::kinds(kind.as_deref()),
         Command::Lsp => lsp::lsp(),

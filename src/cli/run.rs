@@ -24,7 +24,7 @@ use studygraph::runner::limits::{Limits, MOST_ROWS};
 use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
 use studygraph::runner::plan::{self, Plan};
-use studygraph::store::cache::{Cache, Remove};
+use studygraph::store::cache::Cache;
 use studygraph::store::error::StoreError;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, Published, Tables};
@@ -46,7 +46,7 @@ pub(super) fn limits(given: &arguments::Limits) -> Limits {
 
 /// # Errors
 /// A name that is neither `stage.table` nor `stage.table.column`.
-fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
+pub(super) fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     let force = match &selection.force {
         None => Force::Nothing,
         Some(names) if names.is_empty() => Force::All,
@@ -54,7 +54,7 @@ fn options(selection: &Selection, how: &How) -> Result<Options, Ending> {
     };
     let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
     let (jobs, keep_going, limits) = (how.jobs.unwrap_or(0), how.keep_going, limits(&how.limits));
-    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits })
+    Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits, ..Options::default() })
 }
 
 fn wanted(name: &str) -> Result<Wanted, Ending> {
@@ -232,30 +232,6 @@ pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<
         if !quiet {
             out(&told.take());
         }
-    }
-    Ok(())
-}
-
-pub(super) fn gc(places: &Places, days: u32, dry_run: bool) -> Result<(), Ending> {
-    let age = std::time::Duration::from_secs(u64::from(days) * 86_400);
-    let removed = Cache::clean(&places.cache, Remove::OlderThan(age), dry_run).map_err(|error| stored(&error))?;
-    let word = if dry_run { "would delete" } else { "deleted" };
-    #[allow(clippy::cast_precision_loss)]
-    let megabytes = |bytes: u64| bytes as f64 / 1e6;
-    let leftovers = match removed.leftovers {
-        0 => String::new(),
-        1 => ", 1 leftover of a killed run".to_owned(),
-        many => format!(", {many} leftovers of killed runs"),
-    };
-    out(&format!(
-        "{word} {} entries ({:.1} MB){leftovers}, kept {} ({:.1} MB)\n",
-        removed.entries,
-        megabytes(removed.bytes),
-        removed.kept,
-        megabytes(removed.kept_bytes)
-    ));
-    for path in &removed.foreign {
-        progress::told(&format!("left alone, since it is not a file of the cache: {}", path.display()));
     }
     Ok(())
 }

@@ -20,17 +20,23 @@ use studygraph::store::results::Folder;
 use studygraph::study::{LoadError, Study, describe, schema as schemas};
 use studygraph::table::data::Table;
 
-const TEMPLATE: &str = include_str!("../../studies/quick.yaml");
+/// Studies to start from: each is called as its template.
+const TEMPLATES: &[(&str, &str)] = &[("quick", include_str!("../../studies/quick.yaml"))];
 
 /// Writes a small study; never over a file that is there.
-pub(super) fn new_study(file: &Path) -> Result<(), Ending> {
+pub(super) fn new_study(file: &Path, template: &str) -> Result<(), Ending> {
+    let found = TEMPLATES.iter().find(|(name, _)| *name == template);
+    let (called, template) = found.ok_or_else(|| {
+        let names = TEMPLATES.iter().map(|(name, _)| *name);
+        Ending::Usage(format!("there is no template `{template}`; {}", suggest(template, names)))
+    })?;
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();
     let allowed = |c: char| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' };
     let name: String = stem.chars().map(allowed).take(64).collect();
     let name = name.trim_matches(['-', '_']);
     // The first line points editors to this repository's schema, which a study elsewhere has not beside it.
-    let text: String = TEMPLATE.split_inclusive('\n').skip(1).collect();
-    let named = |name: &str| text.replacen("study: quick", &format!("study: {name}"), 1);
+    let text: String = template.split_inclusive('\n').skip(1).collect();
+    let named = |name: &str| text.replacen(&format!("study: {called}"), &format!("study: {name}"), 1);
     // Nothing is left of some names, and YAML reads `null` otherwise.
     let text = Some(named(name)).filter(|text| load_text(text, file).is_ok()).unwrap_or_else(|| named("study"));
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));

@@ -29,6 +29,7 @@ mod rexs;
 mod root_stress;
 mod schema;
 mod settings;
+mod shards;
 mod support;
 
 // What `estimates` shares with the kernels' own tests names it as they do.

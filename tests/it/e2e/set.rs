@@ -71,3 +71,12 @@ fn slips_are_told_at_the_option() {
     let (_, error) = desk.run(&["plan", "quick.yaml", "other.yaml", "--set", WIDER, "--name", "both"], 1);
     assert!(error.contains("are both called `both`"), "{error}");
 }
+
+#[test]
+fn templates_are_named() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["new", "mine.yaml", "--template", "quick"], 0);
+    desk.run(&["check", "mine.yaml"], 0);
+    let (_, error) = desk.run(&["new", "other.yaml", "--template", "quik"], 1);
+    assert!(error.contains("there is no template `quik`; did you mean `quick`?"), "{error}");
+}

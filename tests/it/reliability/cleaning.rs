@@ -21,6 +21,8 @@ fn what_is_foreign_is_left_alone_and_named() {
         fs::write(path, "mine").unwrap();
     }
     let kept = desk.contents("tiny");
+    // What results need is never removed.
+    fs::remove_dir_all(desk.path("results")).unwrap();
     let (out, error) = desk.run(&["gc", "--days", "0", "--dry-run"], 0);
     assert!(out.starts_with("would delete 3 entries"), "{out}");
     for name in ["notes.txt", "entries/zz", "Thumbs.db", "sub"] {
@@ -92,8 +94,52 @@ fn pipes_and_folders_in_the_place_of_files_stop_no_cleaning() {
         assert!(std::process::Command::new("mkfifo").arg(path).status().unwrap().success());
     }
     fs::create_dir(cache.join("entries/00")).unwrap_or_default();
+    fs::remove_dir_all(desk.path("results")).unwrap();
     let mut command = desk.command(&["gc", "--days", "0"]);
     let output = command.timeout(std::time::Duration::from_secs(20)).output().unwrap();
     assert_eq!(output.status.code(), Some(0), "{}", String::from_utf8_lossy(&output.stderr));
     assert!(String::from_utf8_lossy(&output.stdout).starts_with("deleted 2 entries"));
+}
+
+/// Two commits with results, other results in the folder: what each needs is computed by nobody again.
+#[test]
+fn what_results_and_named_commits_need_is_kept() {
+    let desk = tiny();
+    let git = |words: &[&str]| {
+        let identity = ["-c", "user.name=a", "-c", "user.email=a@b", "-c", "commit.gpgsign=false"];
+        let mut command = std::process::Command::new("git");
+        let output = command.arg("-C").arg(desk.path("")).args(identity).args(words).output().unwrap();
+        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    };
+    let run = |width: &str| {
+        let text = fs::read_to_string(desk.path("tiny.yaml")).unwrap();
+        let (before, rest) = text.split_once("face_width: ").unwrap();
+        let (_, after) = rest.split_once(" mm").unwrap();
+        fs::write(desk.path("tiny.yaml"), format!("{before}face_width: {width} mm{after}")).unwrap();
+        desk.run(&["run", "tiny.yaml"], 0);
+    };
+    git(&["init", "-q"]);
+    for (width, message) in [("20", "first"), ("21", "second")] {
+        run(width);
+        git(&["add", "-f", "results/tiny/manifest.json"]);
+        git(&["commit", "-qm", message]);
+        git(&["tag", message]);
+    }
+    run("22");
+    let (out, error) = desk.run(&["gc", "--max-size", "1kB", "--keep", "first"], 0);
+    assert!(!out.starts_with("deleted 0 entries") && out.contains("needed by results"), "{out}");
+    assert!(error.contains("what results need is more than 0.0 MB by itself, and stays"), "{error}");
+    let computed = |width: &str| {
+        run(width);
+        desk.ran("tiny").len()
+    };
+    assert_eq!(computed("20"), 0, "of the named commit");
+    assert_eq!(computed("22"), 0, "of the results in the folder");
+    assert!(computed("21") > 0, "of nobody");
+    let (_, error) = desk.run(&["gc", "--keep", "frist"], 1);
+    assert!(error.contains("did you mean `first`"), "{error}");
+    // Results that cannot be read need nobody knows what: nothing goes.
+    fs::write(desk.path("results/tiny/manifest.json"), "{").unwrap();
+    let (out, error) = desk.run(&["gc", "--days", "0"], 1);
+    assert!(out.is_empty() && error.contains("is damaged"), "{out}{error}");
 }

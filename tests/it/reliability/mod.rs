@@ -5,7 +5,7 @@
 mod cache;
 mod cleaning;
 #[cfg(target_os = "linux")]
-mod disk;
+pub mod disk;
 #[cfg(target_os = "linux")]
 mod faults;
 #[cfg(target_os = "linux")]
@@ -13,4 +13,4 @@ mod hosts;
 #[cfg(target_os = "linux")]
 mod power;
 #[cfg(target_os = "linux")]
-mod published;
+pub mod published;

@@ -251,7 +251,7 @@ impl<'a> Board<'a> {
         let parts = Arc::clone(&self.nodes[node].parts);
         let mut reasons: Vec<Why> = Vec::new();
         let progress = &mut self.nodes[node];
-        for (index, part) in parts.iter().enumerate() {
+        for (index, part) in parts.iter().enumerate().filter(|(index, _)| self.options.is_own(name, *index)) {
             let why = match self.cache.look_up(part.key) {
                 _ if forced => vec![Why::Forced],
                 Lookup::Found(entry) => {
@@ -304,6 +304,19 @@ impl<'a> Board<'a> {
             Lookup::Found(entry) => Some(entry.tables),
             Lookup::Missing | Lookup::Damaged(_) => None,
         }
+    }
+
+    /// Whether some parts of a stage are left to others.
+    #[must_use]
+    pub fn is_shared(&self, node: usize) -> bool {
+        let name = &self.study.nodes[node].name;
+        (0..self.nodes[node].parts.len()).any(|part| !self.options.is_own(name, part))
+    }
+
+    /// Whether a part of a stage is to be computed here.
+    #[must_use]
+    pub fn is_own(&self, node: usize, part: usize) -> bool {
+        self.options.is_own(&self.study.nodes[node].name, part)
     }
 
     /// Whether a stage that is not finished yet reads from this one.

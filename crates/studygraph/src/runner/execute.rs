@@ -141,7 +141,9 @@ pub fn execute(
     }
     board.close();
     let journal = board.next_journal();
-    if journal != board.journal {
+    if journal == board.journal {
+        cache.note_use(&study.name);
+    } else {
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
@@ -233,6 +235,8 @@ impl Run<'_> {
                 board.halted = Some("stopped".to_owned());
             }
             Step::Skip(board.halted.clone().unwrap_or_else(|| "stopped".to_owned()))
+        } else if board.is_shared(node) {
+            Step::Skip("other parts are left to others".to_owned())
         } else {
             drop(board);
             let tables = catch_unwind(AssertUnwindSafe(|| self.put_together(node)));

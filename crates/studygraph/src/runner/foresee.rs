@@ -30,6 +30,8 @@ pub struct Foresight {
     /// By node; nothing where nothing is to be computed.
     pub stages: Vec<Option<Expected>>,
     pub total: Expected,
+    /// By node, what is to be computed: the number of each part, and its seconds on one thread.
+    pub parts: Vec<Vec<(usize, f64)>>,
 }
 
 /// Bytes of the program itself.
@@ -47,9 +49,10 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
     let mut wholes: Vec<Estimate> = board.nodes.iter().map(|_| Estimate::default()).collect();
     let mut stages: Vec<Option<Expected>> = vec![None; board.nodes.len()];
     let mut processor = 0.0;
+    let mut seconds = vec![Vec::new(); board.nodes.len()];
     if board.nodes.iter().all(|progress| progress.state.is_final()) {
         let total = Expected { tables: Vec::new(), bytes: 0, memory: 0, seconds: 0.0, parallel: false };
-        return Foresight { stages, total };
+        return Foresight { stages, total, parts: vec![Vec::new(); board.nodes.len()] };
     }
     for &node in &board.graph.order {
         let (progress, of_study, demand) = (&board.nodes[node], &board.study.nodes[node], &board.graph.demands[node]);
@@ -73,26 +76,36 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
         let record = instead.filter(|(at, _)| *at == node).map_or(&of_study.record, |(_, record)| record);
         let estimate = |stage: &dyn Stage| stage.estimate(demand, &ahead);
         let built = |record: &Record| (of_study.kind.build)(record).ok().map(|stage| estimate(stage.as_ref()));
-        let whole = match instead {
+        let mut whole = match instead {
             Some((at, record)) if at == node => built(record).unwrap_or_default(),
             _ => estimate(of_study.stage.as_ref()),
         };
-        let parts: Vec<Estimate> = match chunks(of_study.kind, record) {
-            None => vec![whole.clone()],
+        let parts: Vec<(usize, Estimate)> = match chunks(of_study.kind, record) {
+            None => vec![(0, whole.clone())],
             Some(all) => {
                 let known = !progress.parts.is_empty() && instead.is_none();
-                let missing = |index: &usize| !known || progress.missing.contains(index);
-                let values = all.values.iter().enumerate().filter(|(index, _)| missing(index));
-                values.filter_map(|(_, values)| built(&record.with_axis(all.field, values))).collect()
+                let missing = |index: usize| board.is_own(node, index) && (!known || progress.missing.contains(&index));
+                let values = all.values.iter().enumerate().filter(|(index, _)| missing(*index));
+                let built = values.map(|(index, values)| Some((index, built(&record.with_axis(all.field, values))?)));
+                let built: Vec<_> = built.flatten().collect();
+                // What is only a part of its stage is read by nobody, nor put together.
+                if built.len() < all.values.len()
+                    && all.values.iter().enumerate().any(|(index, _)| !board.is_own(node, index))
+                {
+                    whole = Estimate::new(whole.parallel);
+                }
+                built
             }
         };
+        seconds[node] = parts.iter().map(|(index, part)| (*index, part.seconds)).collect();
+        let parts: Vec<Estimate> = parts.into_iter().map(|(_, part)| part).collect();
         let (expected, alone) = together(&whole, &parts, read, threads);
         processor += alone;
         stages[node] = Some(expected);
         wholes[node] = whole;
     }
     let total = total(board, &stages, &wholes, processor, threads);
-    Foresight { stages, total }
+    Foresight { stages, total, parts: seconds }
 }
 
 /// A stage from the parts that are to be computed, and its seconds on one thread.

@@ -14,8 +14,10 @@ pub mod limits;
 pub mod options;
 pub mod outcome;
 pub mod plan;
+pub mod reach;
 pub mod refuse;
 pub mod rehearse;
+pub mod shard;
 pub mod standing;
 #[cfg(test)]
 mod tests;

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how it was asked for.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::limits::Limits;
 use crate::stage::Want;
@@ -21,7 +21,12 @@ pub struct Options {
     pub wanted: Vec<Wanted>,
     /// What is beyond them is refused.
     pub limits: Limits,
+    /// Of these stages only these parts; of those that are not named all.
+    pub share: Share,
 }
+
+/// By stage the parts that are one's own.
+pub type Share = BTreeMap<String, BTreeSet<usize>>;
 
 /// What to compute although the cache has it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -51,6 +56,12 @@ pub struct Wanted {
 }
 
 impl Options {
+    /// Whether a part of a stage is to be computed here.
+    #[must_use]
+    pub fn is_own(&self, stage: &str, part: usize) -> bool {
+        self.share.get(stage).is_none_or(|own| own.contains(&part))
+    }
+
     /// The number of threads, resolved.
     #[must_use]
     pub fn threads(&self) -> usize {

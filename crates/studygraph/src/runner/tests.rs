@@ -4,6 +4,7 @@ mod failures;
 mod interrupted;
 mod keys;
 mod reruns;
+mod shards;
 
 use std::collections::BTreeMap;
 use std::path::PathBuf;
@@ -129,7 +130,13 @@ impl Stage for Probe {
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let rows = RowCount::exact(self.record.maybe_axis("torque").map_or(1, <[f64]>::len));
-        self.outputs().into_iter().fold(Estimate::new(false), |all, schema| all.rows(demand, schema, rows))
+        let mut all =
+            self.outputs().into_iter().fold(Estimate::new(false), |all, schema| all.rows(demand, schema, rows));
+        all.seconds += if self.mode() == "heavy" { 10.0 } else { 0.0 };
+        // Later values take longer.
+        all.seconds +=
+            if self.mode() == "uneven" { self.record.maybe_axis("torque").unwrap_or(&[]).iter().sum() } else { 0.0 };
+        all
     }
 
     fn uses_seed(&self) -> bool {
@@ -156,6 +163,7 @@ impl Stage for Probe {
             "panic" => panic!("index out of range"),
             "coarse" => value = value.floor(),
             "random" => value += if RANDOM.fetch_xor(true, Ordering::Relaxed) { 1.0 } else { 0.0 },
+            "counted" => value += f64::from(u32::try_from(count(self.record.text("counter"))).unwrap()),
             "seeded" => value += f64::from(context.seed.generator(0).next_u32()),
             "ignores_seed" => value += f64::from(context.seed.generator(1).next_u32()),
             "warn" => (context.warn)("outside its range".to_owned()),

@@ -13,6 +13,7 @@
 //! most the tables of one run, compressed. The run is none the worse, the next one computes it again, and is told so.
 //! Must not know: what a key is made of, what tables mean.
 
+mod carried;
 mod cleaning;
 #[cfg(test)]
 mod tests;
@@ -22,7 +23,7 @@ use std::fs::{self, File};
 use std::io::{Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
-use std::time::Duration;
+use std::time::{Duration, SystemTime};
 
 pub use cleaning::{Remove, Removed};
 
@@ -39,6 +40,9 @@ pub const DEFAULT: &str = ".gearstudy/cache";
 
 /// Cleaning up takes less.
 const WHILE_CLEANED: Duration = Duration::from_secs(10);
+
+/// A use is noted again after so long.
+const NOTED_EVERY: Duration = Duration::from_hours(1);
 
 /// An open cache; others may have it open too.
 pub struct Cache {
@@ -255,6 +259,21 @@ impl Cache {
             self.unkept().journal.get_or_insert_with(|| format!("cannot read `{}`: {problem}", path.display()));
             Journal::default()
         })
+    }
+
+    /// Notes that what a study's journal names was used now. All of it is noted by the time of one file, and that no more
+    /// often than cleaning up can tell apart.
+    pub fn note_use(&self, study: &str) {
+        if self.lock.is_none() {
+            return;
+        }
+        let path = self.journal_path(study);
+        let now = SystemTime::now();
+        let is_old = |noted: SystemTime| now.duration_since(noted).is_ok_and(|since| since >= NOTED_EVERY);
+        if fs::metadata(&path).is_ok_and(|found| found.is_file() && found.modified().is_ok_and(is_old)) {
+            // Where it cannot be noted, entries seem older than they are, and are computed again once.
+            let _ = File::options().append(true).open(&path).and_then(|journal| journal.set_modified(now));
+        }
     }
 
     /// Keeps the journal of a study. One that cannot be written costs explanations only; [`Cache::problems`] has it.

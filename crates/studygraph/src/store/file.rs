@@ -42,6 +42,25 @@ pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), St
     written.map_err(StoreError::io("write", path))
 }
 
+/// Writes a whole synced file piece by piece: `fill` writes, and what it gives is given back.
+///
+/// # Errors
+/// As [`write`]; what `fill` says.
+pub fn write_with<T>(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, StoreError> {
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let (mut file, partial) = begin(folder).map_err(StoreError::io("write into", folder))?;
+    let written = fill(&mut file).and_then(|given| {
+        file.sync_all()?;
+        fs::rename(&partial, path)?;
+        Ok(given)
+    });
+    if written.is_err() {
+        // A leftover that cannot be removed does no harm.
+        let _ = fs::remove_file(&partial);
+    }
+    written.map_err(StoreError::io("write", path))
+}
+
 /// A new file under a temporary name that anybody may read once it has its own.
 fn begin(folder: &Path) -> io::Result<(File, PathBuf)> {
     static NUMBER: AtomicU64 = AtomicU64::new(0);

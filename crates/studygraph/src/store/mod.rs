@@ -1,5 +1,5 @@
 //! What is kept on disk: the cache, Parquet, HDF5, CSV, the results folder with manifest and index, the facts of a run,
-//! archives.
+//! archives, the packs of shards.
 //!
 //! Must not know: stages, the graph.
 
@@ -18,3 +18,4 @@ pub mod lock;
 pub mod manifest;
 pub mod parquet;
 pub mod results;
+pub mod shards;

@@ -17,6 +17,7 @@ mod notation;
 mod overrides;
 pub mod path;
 mod place;
+pub mod profile;
 mod quantity;
 mod read;
 pub mod schema;

@@ -1,9 +1,9 @@
 //! Cleaning the cache up, and reading all of it.
 //!
 //! Only what is certainly of this program goes: files whose names are keys, and those under temporary names. Whatever
-//! else lies there is somebody's; it is named and left alone. Must not know: why an entry is old.
+//! else lies there is somebody's; it is named and left alone. Must not know: why an entry is to be kept.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
@@ -21,11 +21,12 @@ const ENDING: Duration = Duration::from_millis(200);
 
 /// What to remove.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Remove {
+pub enum Remove<'a> {
     /// What the last run of no study needs.
     Unreferenced,
-    /// What was written longer ago than this, needed or not.
-    OlderThan(Duration),
+    /// What is not to be kept, and was neither written nor used for so long; and, where all entries would have more than
+    /// `most` bytes, what of the rest is not to be kept and was used longest ago.
+    Unused { keep: &'a BTreeSet<Digest>, unused: Duration, most: Option<u64> },
     /// Everything.
     All,
 }
@@ -37,6 +38,9 @@ pub struct Removed {
     pub bytes: u64,
     pub kept: usize,
     pub kept_bytes: u64,
+    /// Those of the kept that are to be kept whatever their age.
+    pub needed: usize,
+    pub needed_bytes: u64,
     /// Files that killed runs were at.
     pub leftovers: usize,
     /// What is none of ours, and stayed.
@@ -49,6 +53,15 @@ struct Content {
     entries: Vec<(PathBuf, Digest)>,
     leftovers: Vec<PathBuf>,
     foreign: Vec<PathBuf>,
+}
+
+/// An entry that may go.
+struct Found {
+    path: PathBuf,
+    key: Digest,
+    bytes: u64,
+    /// Since it was written or last used.
+    age: Duration,
 }
 
 impl Cache {
@@ -84,7 +97,7 @@ impl Cache {
     ///
     /// # Errors
     /// [`StoreError::InUse`] while a run has the cache open; when a folder cannot be read or a file not be removed.
-    pub fn clean(root: &Path, remove: Remove, dry_run: bool) -> Result<Removed, StoreError> {
+    pub fn clean(root: &Path, remove: Remove<'_>, dry_run: bool) -> Result<Removed, StoreError> {
         let lock_path = root.join("lock");
         let lock = match fs::metadata(&lock_path) {
             Ok(metadata) if metadata.is_file() => File::open(&lock_path).map_err(StoreError::io("open", &lock_path))?,
@@ -94,26 +107,41 @@ impl Cache {
             Err(error) => return Err(StoreError::io("open", &lock_path)(error)),
         };
         lock::hold(&lock, &lock_path, false, ENDING)?;
-        let referenced = if remove == Remove::Unreferenced { referenced(root)? } else { BTreeSet::new() };
+        let journals = journals(root)?;
         let now = SystemTime::now();
         let content = content(root)?;
         let mut removed = Removed { foreign: content.foreign, ..Removed::default() };
+        let mut found = Vec::new();
         for (path, key) in content.entries {
             // Another computer may be cleaning up too.
             let Some(metadata) = there(fs::metadata(&path)).map_err(StoreError::io("read", &path))? else { continue };
-            let age = metadata.modified().ok().and_then(|time| now.duration_since(time).ok()).unwrap_or_default();
+            let written = metadata.modified().unwrap_or(now);
+            let used = journals.get(&key).map_or(written, |used| written.max(*used));
+            let age = now.duration_since(used).unwrap_or_default();
+            found.push(Found { path, key, bytes: metadata.len(), age });
+        }
+        // The longest unused first; of equals the order of their keys.
+        found.sort_by(|a, b| b.age.cmp(&a.age).then(a.key.0.cmp(&b.key.0)));
+        let mut left: u64 = found.iter().map(|entry| entry.bytes).sum();
+        for entry in found {
+            let is_kept = matches!(remove, Remove::Unused { keep, .. } if keep.contains(&entry.key));
             let doomed = match remove {
                 Remove::All => true,
-                Remove::OlderThan(limit) => age >= limit,
-                Remove::Unreferenced => !referenced.contains(&key),
+                Remove::Unused { unused, most, .. } => {
+                    !is_kept && (entry.age >= unused || most.is_some_and(|most| left > most))
+                }
+                Remove::Unreferenced => !journals.contains_key(&entry.key),
             };
             if doomed {
-                discard(&path, dry_run)?;
+                discard(&entry.path, dry_run)?;
+                left -= entry.bytes;
                 removed.entries += 1;
-                removed.bytes += metadata.len();
+                removed.bytes += entry.bytes;
             } else {
                 removed.kept += 1;
-                removed.kept_bytes += metadata.len();
+                removed.kept_bytes += entry.bytes;
+                removed.needed += usize::from(is_kept);
+                removed.needed_bytes += if is_kept { entry.bytes } else { 0 };
             }
         }
         for path in content.leftovers {
@@ -136,16 +164,20 @@ fn there<T>(result: io::Result<T>) -> io::Result<Option<T>> {
     }
 }
 
-/// The keys that the journals name.
-fn referenced(root: &Path) -> Result<BTreeSet<Digest>, StoreError> {
-    let mut keys = BTreeSet::new();
+/// The keys that the journals name, and when a run last used them.
+fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
+    let mut keys = BTreeMap::new();
     for (path, _) in list(&root.join("journals"))? {
         // What is not a journal names nothing.
         let bytes = file::read(&path, file::MOST_MANIFEST).unwrap_or_default();
         let journal: Journal = serde_json::from_slice(&bytes).unwrap_or_default();
+        let used = fs::metadata(&path).and_then(|found| found.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
         for stage in journal.stages {
             let texts = stage.keys.iter().map(|record| &record.key).chain(&stage.whole);
-            keys.extend(texts.filter_map(|text| Digest::from_hex(text)));
+            for key in texts.filter_map(|text| Digest::from_hex(text)) {
+                let known = keys.entry(key).or_insert(used);
+                *known = used.max(*known);
+            }
         }
     }
     Ok(keys)

@@ -97,10 +97,9 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     let counts = |removed: Removed| (removed.entries, removed.leftovers, removed.kept);
     assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, true).unwrap()), (1, 1, 1));
     assert_eq!(counts(Cache::clean(folder.path(), Remove::Unreferenced, false).unwrap()), (1, 1, 1));
-    assert_eq!(
-        counts(Cache::clean(folder.path(), Remove::OlderThan(Duration::from_hours(1)), false).unwrap()),
-        (0, 0, 1)
-    );
+    let keep = std::collections::BTreeSet::new();
+    let unused = Remove::Unused { keep: &keep, unused: Duration::from_hours(1), most: None };
+    assert_eq!(counts(Cache::clean(folder.path(), unused, false).unwrap()), (0, 0, 1));
     let cache = Cache::open(folder.path()).unwrap();
     assert!(matches!(cache.look_up(key("a")), Lookup::Found(_)));
     assert_eq!(cache.look_up(key("b")), Lookup::Missing);
@@ -163,4 +162,57 @@ fn what_the_disk_does_not_take_is_there_all_the_same() {
     put(&kept, 20).unwrap();
     assert!(kept.is_unkept(key("a")) && path.join("mine").is_dir());
     entry(&kept);
+}
+
+/// Ages are set by hand: what is kept stays whatever its age, of the rest the longest unused goes first, and what a run
+/// used counts from then on.
+#[test]
+fn the_longest_unused_goes_first_and_what_is_kept_never() {
+    let folder = tempfile::tempdir().unwrap();
+    let cache = Cache::open(folder.path()).unwrap();
+    let names = ["old", "kept", "used", "young"];
+    for (name, rows) in names.iter().zip(1..) {
+        cache.put(key(name), &[&everything(rows)], OfRun::default()).unwrap();
+    }
+    let days = |days: u64| SystemTime::now() - Duration::from_hours(24 * days);
+    let age =
+        |path: &Path, age: SystemTime| File::options().append(true).open(path).unwrap().set_modified(age).unwrap();
+    for (name, old) in names.iter().zip([50, 60, 70, 5]) {
+        age(&cache.path(key(name)), days(old));
+    }
+    let record = KeyRecord { key: key("used").to_string(), ..KeyRecord::default() };
+    let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
+    cache.put_journal("study", &Journal { stages: vec![stage] });
+    let journal = cache.journal_path("study");
+    let noted = || fs::metadata(&journal).unwrap().modified().unwrap();
+    let before = noted();
+    cache.note_use("study");
+    assert_eq!(noted(), before, "noted a moment ago");
+    age(&journal, days(40));
+    cache.note_use("study");
+    assert!(noted() >= before);
+    age(&journal, days(10));
+    cache.note_use("nobody");
+    let size = |name: &str| fs::metadata(cache.path(key(name))).unwrap().len();
+    let (kept, used, young) = (size("kept"), size("used"), size("young"));
+    drop(cache);
+    let keep = [key("kept")].into();
+    let there = || {
+        let cache = Cache::open(folder.path()).unwrap();
+        names.map(|name| matches!(cache.look_up(key(name)), Lookup::Found(_)))
+    };
+    let clean = |days: u64, most: Option<u64>| {
+        let unused = Duration::from_hours(24 * days);
+        Cache::clean(folder.path(), Remove::Unused { keep: &keep, unused, most }, false).unwrap()
+    };
+    let removed = clean(30, None);
+    assert_eq!(there(), [false, true, true, true]);
+    assert_eq!((removed.needed, removed.needed_bytes, removed.kept), (1, kept, 3));
+    clean(30, Some(kept + used + young));
+    assert_eq!(there(), [false, true, true, true]);
+    clean(30, Some(kept + used + young - 1));
+    assert_eq!(there(), [false, true, false, true], "used ten days ago, before what is five days old");
+    let removed = clean(30, Some(1));
+    assert_eq!(there(), [false, true, false, false]);
+    assert_eq!((removed.kept_bytes, removed.needed_bytes), (kept, kept), "more than it may, and said");
 }

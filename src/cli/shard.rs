@@ -1,0 +1,195 @@
+//! `shard`: a run in pieces, by whoever starts them.
+//!
+//! Must not know: how a study is divided up, what a pack holds.
+
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value as Json, json};
+
+use super::arguments::{Limits, Places, Selection, Sharding};
+use super::progress::{self, Watcher, duration, out, rough};
+use super::signals::stop_flag;
+use super::studies::load_all;
+use super::{Ending, engine, run};
+use crate::program::PROGRAM;
+use studygraph::runner::execute::RunError;
+use studygraph::runner::options::Options;
+use studygraph::runner::shard::{self, Ran, ShardError, ShardPlan, State, ranges};
+use studygraph::store::cache::Cache;
+use studygraph::study::Study;
+
+pub(super) fn shard(asked: &Sharding, places: &Places, quiet: bool) -> Result<(), Ending> {
+    match asked {
+        Sharding::Plan { study, changes, only, want, shards, into, manifest } => {
+            let study = &load_all(std::slice::from_ref(study), changes)?[0];
+            let selection = Selection { only: only.clone(), want: want.clone(), force: None };
+            let plan = planned(study, places, &selection, *shards as usize, into, quiet)?;
+            if let Some(image) = manifest {
+                engine::kubernetes::write(&plan, into, image, quiet)?;
+            }
+            Ok(())
+        }
+        Sharding::Run { folder, shard, limits, jobs } => one(folder, *shard, limits, jobs.map(usize::from), quiet),
+        Sharding::Status { folder, check, missing, json } => status(folder, *check, *missing, *json),
+        Sharding::Merge { folder, limits, jobs } => merge(folder, places, limits, jobs.map(usize::from), quiet),
+    }
+}
+
+/// What is wrong, and the exit code that belongs to it.
+pub(super) fn ending(error: ShardError) -> Ending {
+    match error {
+        ShardError::Study(error) => Ending::Invalid(error),
+        ShardError::Failed(message) => Ending::Failed(message),
+        ShardError::Stopped => Ending::Stopped,
+        ShardError::Run(RunError::Study(found)) => Ending::Usage(found.to_string()),
+        ShardError::Run(RunError::Beyond(found)) => Ending::Beyond(found.to_string()),
+        other => Ending::Usage(other.to_string()),
+    }
+}
+
+/// Divides a study up, or finds that it was.
+pub(super) fn planned(
+    study: &Study,
+    places: &Places,
+    selection: &Selection,
+    count: usize,
+    into: &Path,
+    quiet: bool,
+) -> Result<ShardPlan, Ending> {
+    let options = run::options(selection, &run::How::default())?;
+    // Only looked into: what is known already is not computed again.
+    let known = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
+    let elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+    let cache = known.unwrap_or_else(|| Cache::open_if_possible(elsewhere.path()));
+    let (plan, was_there) = shard::plan(study, &cache, &options, count, into).map_err(ending)?;
+    if !quiet {
+        let longest = plan.shards.iter().map(|shard| shard.seconds).fold(0.0, f64::max);
+        let all: f64 = plan.shards.iter().map(|shard| shard.seconds).sum();
+        let word = if was_there { "was planned already" } else { "planned" };
+        let text = match (plan.shards.len(), plan.levels.len()) {
+            (0, _) => format!("{}: {word}: nothing is left to compute but what `shard merge` does", plan.study),
+            (shards, levels) => {
+                let levels = if levels > 1 { format!(" on {levels} levels") } else { String::new() };
+                let (folder, last) = (into.display(), shards - 1);
+                format!(
+                    "{}: {word}: {shards} shards{levels}, ~ {} on one thread, the longest ~ {}; next: gearstudy shard run \
+                     {folder} I for I from 0 to {last}, then gearstudy shard merge {folder}",
+                    plan.study,
+                    rough(all),
+                    rough(longest)
+                )
+            }
+        };
+        out(&(text + "\n"));
+    }
+    Ok(plan)
+}
+
+fn one(folder: &Path, index: usize, limits: &Limits, jobs: Option<usize>, quiet: bool) -> Result<(), Ending> {
+    let scratch = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
+    let bars = progress::bars(quiet);
+    let stop = stop_flag(bars.clone());
+    let watcher = Watcher::new(quiet, 12, bars);
+    let how = Options { jobs: jobs.unwrap_or(0), limits: run::limits(limits), ..Options::default() };
+    let ran = watcher.telling(|| shard::compute(folder, index, scratch.path(), &PROGRAM, &how, &watcher, &stop));
+    let line = match ran.map_err(ending)? {
+        Ran::Already => format!("shard {index}: nothing to do, its pack is there\n"),
+        Ran::Packed { parts, bytes, seconds } => {
+            #[allow(clippy::cast_precision_loss)]
+            let megabytes = bytes as f64 / 1e6;
+            format!("shard {index}: {parts} parts in {}, {megabytes:.1} MB\n", duration(seconds))
+        }
+    };
+    if !quiet {
+        out(&line);
+    }
+    Ok(())
+}
+
+/// Where every shard stands; a damaged one ends with code 4.
+fn status(folder: &Path, check: bool, missing: bool, as_json: bool) -> Result<(), Ending> {
+    let plan = ShardPlan::read(folder).map_err(ending)?;
+    let states = shard::states(folder, &plan, check);
+    let of = |is: fn(&State) -> bool| -> Vec<usize> {
+        states.iter().enumerate().filter(|(_, state)| is(state)).map(|(index, _)| index).collect()
+    };
+    let sound = of(|state| *state == State::Sound);
+    let absent = of(|state| *state == State::Missing);
+    let damaged = of(|state| matches!(state, State::Damaged(_)));
+    let failed = of(|state| matches!(state, State::Failed(_)));
+    if missing {
+        let lines: String = of(|state| *state != State::Sound).iter().map(|index| format!("{index}\n")).collect();
+        out(&lines);
+        return Ok(());
+    }
+    let told = |index: &usize| match &states[*index] {
+        State::Damaged(problem) | State::Failed(problem) => problem.clone(),
+        State::Sound | State::Missing => String::new(),
+    };
+    if as_json {
+        let named = |numbers: &[usize]| -> Vec<Json> {
+            numbers.iter().map(|index| json!({ "shard": index, "problem": told(index) })).collect()
+        };
+        let levels: Vec<Json> = plan.levels.iter().map(|level| json!([level.first, level.end])).collect();
+        let value = json!({
+            "study": plan.study, "plan": plan.digest, "shards": states.len(), "levels": levels, "sound": sound,
+            "missing": absent, "damaged": named(&damaged), "failed": named(&failed),
+        });
+        out(&format!("{value:#}\n"));
+    } else {
+        let count = |word: &str, numbers: &[usize]| match numbers.len() {
+            0 => String::new(),
+            count => format!(", {count} {word} ({})", ranges(numbers.iter().copied())),
+        };
+        out(&format!(
+            "{}: {} of {} shards are there{}{}{}\n",
+            plan.study,
+            sound.len(),
+            states.len(),
+            count("missing", &absent),
+            count("damaged", &damaged),
+            count("failed", &failed)
+        ));
+        for index in damaged.iter().chain(&failed) {
+            out(&format!("  shard {index}: {}\n", told(index)));
+        }
+    }
+    if damaged.is_empty() { Ok(()) } else { Err(Ending::Differs(String::new())) }
+}
+
+/// Takes all shards into the cache and publishes as a run does.
+pub(super) fn merge(
+    folder: &Path,
+    places: &Places,
+    limits: &Limits,
+    jobs: Option<usize>,
+    quiet: bool,
+) -> Result<(), Ending> {
+    let (plan, merged) = {
+        let cache = Cache::open_if_possible(&places.cache);
+        let merged = shard::merge(folder, &PROGRAM, &cache).map_err(ending)?;
+        if let Some(problem) = cache.problems().0 {
+            return Err(Ending::Usage(format!(
+                "the cache `{}` does not take the shards: {problem}",
+                places.cache.display()
+            )));
+        }
+        merged
+    };
+    if !quiet {
+        #[allow(clippy::cast_precision_loss)]
+        let megabytes = merged.bytes as f64 / 1e6;
+        out(&format!("{}: {} parts of {} shards, {megabytes:.1} MB\n", plan.study, merged.parts, merged.shards));
+    }
+    let study = plan.load(&PROGRAM).map_err(ending)?;
+    let selection = Selection { only: plan.only.clone(), want: plan.want.clone(), force: None };
+    let how = run::How { limits: *limits, jobs, quiet, ..run::How::default() };
+    run::run(std::slice::from_ref(&study), places, &selection, &how)
+}
+
+/// Where a plan lies when nobody says: a folder of its own for each text of a study and each program.
+pub(super) fn default_folder(study: &Study) -> PathBuf {
+    let of = format!("{}{}{}", study.text, PROGRAM.about.code, PROGRAM.about.dependencies);
+    let digest = declare::digest::Writer::new("gearstudy 1 shards").text(&of).finish().to_string();
+    Path::new(".gearstudy/shards").join(format!("{}-{}", study.name, &digest[..8]))
+}
