@@ -9,6 +9,7 @@ use std::collections::BTreeSet;
 use super::digest::Writer;
 use super::error::{Diagnostic, Place};
 use super::units::Dimension;
+use super::varied::Varied;
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +38,8 @@ pub enum Value {
     Member(&'static str, Record),
     /// Another stage with some of its fields replaced.
     Variant(Variant),
+    /// Other stages of which some fields are given many values.
+    Varied(Varied),
 }
 
 /// A stage's fields, some of them replaced.
@@ -158,6 +161,7 @@ impl Record {
                 Value::List(entries) => entries.iter().for_each(|entry| gather(&entry.value, into)),
                 Value::Map(entries) => entries.iter().for_each(|(_, entry)| gather(&entry.value, into)),
                 Value::Variant(variant) => drop(into.insert(variant.kind)),
+                Value::Varied(varied) => into.extend(varied.stages.iter().map(|stage| stage.kind)),
                 other => other.record().into_iter().for_each(|record| into.extend(record.kinds())),
             }
         }
@@ -225,6 +229,10 @@ impl Value {
             Self::Variant(variant) => {
                 writer.text("variant").text(variant.kind).text(&variant.written);
                 variant.record.write(writer);
+                writer
+            }
+            Self::Varied(varied) => {
+                varied.write(writer);
                 writer
             }
         };

@@ -24,6 +24,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 mod unknown;
+mod varied;
 mod words;
 
 use std::fmt;
