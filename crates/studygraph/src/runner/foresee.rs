@@ -77,11 +77,18 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
             Some((at, record)) if at == node => built(record).unwrap_or_default(),
             _ => estimate(of_study.stage.as_ref()),
         };
-        let parts: Vec<Estimate> = match chunks(of_study.kind, record) {
-            None => vec![whole.clone()],
-            Some(all) => {
-                let known = !progress.parts.is_empty() && instead.is_none();
-                let missing = |index: &usize| !known || progress.missing.contains(index);
+        let known = !progress.parts.is_empty() && instead.is_none();
+        let missing = |index: &usize| !known || progress.missing.contains(index);
+        let instead_of =
+            instead.filter(|(at, _)| *at == node).and_then(|(_, record)| (of_study.kind.build)(record).ok());
+        let stage = instead_of.as_deref().unwrap_or(of_study.stage.as_ref());
+        let own = stage.parts().map(|own| own.each.len());
+        let parts: Vec<Estimate> = match (own, chunks(of_study.kind, record)) {
+            (Some(count), _) => {
+                (0..count).filter(missing).map(|part| stage.estimate_part(part, demand, &ahead)).collect()
+            }
+            (None, None) => vec![whole.clone()],
+            (None, Some(all)) => {
                 let values = all.values.iter().enumerate().filter(|(index, _)| missing(index));
                 values.filter_map(|(_, values)| built(&record.with_axis(all.field, values))).collect()
             }
