@@ -169,15 +169,15 @@ impl Slot {
 }
 
 fn in_record(record: &Record, place: Place, steps: &mut Vec<usize>) -> bool {
-    among(record.fields.iter().map(|(_, entry)| entry), place, steps)
+    among(&mut record.fields.iter().map(|(_, entry)| entry), place, steps)
 }
 
-fn among<'r>(entries: impl Iterator<Item = &'r PlacedValue>, place: Place, steps: &mut Vec<usize>) -> bool {
+fn among(entries: &mut dyn Iterator<Item = &PlacedValue>, place: Place, steps: &mut Vec<usize>) -> bool {
     for (index, entry) in entries.enumerate() {
         steps.push(index);
         let found = match &entry.value {
-            Value::List(items) => among(items.iter(), place, steps),
-            Value::Map(entries) => among(entries.iter().map(|(_, entry)| entry), place, steps),
+            Value::List(items) => among(&mut items.iter(), place, steps),
+            Value::Map(entries) => among(&mut entries.iter().map(|(_, entry)| entry), place, steps),
             Value::Group(record) | Value::Member(_, record) => in_record(record, place, steps),
             _ => entry.place == place,
         };

@@ -134,6 +134,7 @@ pub fn execute(
             loaded: Mutex::default(),
             shares: Mutex::default(),
             turns: Mutex::default(),
+            spans: Mutex::default(),
         };
         pool.in_place_scope_fifo(|scope| run.spawn(scope, 0, queued));
         debug_assert!(run.board().halted.is_some() || run.loaded().is_empty(), "nobody reads these tables any more");

@@ -15,7 +15,7 @@ use super::events::{Event, Observer};
 use super::fault::Fault;
 use super::key::{Cut, KeyedChunk, Why};
 use super::options::Options;
-use super::others::OfStage;
+use super::others::{OfStage, Span};
 use super::outcome::together;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
 use crate::store::cache::Cache;
@@ -43,6 +43,8 @@ pub(super) struct Run<'a> {
     /// By node and part, 0 to 1.
     pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
     pub(super) turns: Mutex<Turns>,
+    /// By node and table, what parts of the last success hold.
+    pub(super) spans: Mutex<BTreeMap<(usize, String), Arc<Vec<Span>>>>,
 }
 
 /// Who is at work, and who waits until nobody is.

@@ -7,7 +7,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use crate::table::data::Table;
+use crate::table::data::{Cell, Table};
 use declare::digest::Digest;
 use declare::error::Failure;
 
@@ -33,12 +33,10 @@ pub trait Others: Sync {
     /// When it cannot be read; the runner knows why.
     fn of_part(&self, part: usize, table: &str) -> Result<Arc<Table>, Failure>;
 
-    /// How many parts there are of the stage's last success whose rows are the same functions of their values: of the same
-    /// code, fields, inputs and seed.
-    fn earlier(&self) -> usize;
-
-    /// A table of one of them; none where it is not there any more.
-    fn of_earlier(&self, index: usize, table: &str) -> Option<Arc<Table>>;
+    /// A table of those parts of the stage's last success that have rows with keys from `first` to `last`, in the order of
+    /// their keys. They have the code, the fields, the inputs and the seed of this run, so a row in them is the same function
+    /// of its values. Those that are not there any more are left out.
+    fn earlier(&self, table: &str, first: &[Cell], last: &[Cell]) -> Vec<Arc<Table>>;
 }
 
 /// Nothing beside a part: for a stage that is run by itself.
@@ -49,12 +47,8 @@ impl Others for Alone {
         Err(Failure::new("there are no other parts"))
     }
 
-    fn earlier(&self) -> usize {
-        0
-    }
-
-    fn of_earlier(&self, _index: usize, _table: &str) -> Option<Arc<Table>> {
-        None
+    fn earlier(&self, _table: &str, _first: &[Cell], _last: &[Cell]) -> Vec<Arc<Table>> {
+        Vec::new()
     }
 }
 

@@ -1,0 +1,1 @@
+//! Rows, filters, invalid designs.
