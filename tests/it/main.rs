@@ -30,6 +30,7 @@ mod root_stress;
 mod schema;
 mod settings;
 mod support;
+mod sweep;
 
 // What `estimates` shares with the kernels' own tests names it as they do.
 use gearmesh::gear;

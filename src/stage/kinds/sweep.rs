@@ -5,6 +5,7 @@
 //! know: how a transmission error is found.
 
 mod chain;
+mod counting;
 mod effects;
 mod layout;
 mod method;
@@ -14,6 +15,7 @@ mod rows;
 mod tables;
 #[cfg(test)]
 mod tests;
+mod values;
 
 use std::sync::Arc;
 
@@ -226,6 +228,13 @@ fn the_design(stated: &Stated) -> Result<Option<String>, Diagnostic> {
         let meant = named.map_or(varied[0].0, |named| named.value.as_str());
         let message = format!("`{}` is of the design `{name}`, but `{meant}` is the one that is looked at", axis.path);
         return Err(Diagnostic::new(message).at(axis.place).help("a row has one design; vary fields of one only"));
+    }
+    if known.len() > 1 && named.is_none() && varied.is_empty() {
+        let names = known.iter().map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+        let place = stated.outputs.first().map_or_else(Default::default, |output| output.place);
+        return Err(Diagnostic::new("a row has one design, and there are several")
+            .at(place)
+            .help(format!("say with `design` which one is meant: {names}")));
     }
     let only = if let [only] = known[..] { Some(only) } else { None };
     Ok(named.map(|named| named.value.as_str()).or(varied.first().map(|(name, _)| *name)).or(only).map(str::to_owned))

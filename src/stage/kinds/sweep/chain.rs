@@ -135,6 +135,14 @@ impl Chain {
         inputs
     }
 
+    /// Whether all that a stage reads of the others is there.
+    pub fn can_run(&self, index: usize, tables: &Tables) -> bool {
+        self.links[index].ports.iter().all(|(_, source)| match source {
+            Source::Outer(_) => true,
+            Source::Link(read) => tables[*read].is_some(),
+        })
+    }
+
     /// The link that a port of a stage leads to, if it is one.
     pub fn read_by(&self, index: usize, port: &str) -> Option<usize> {
         let found = self.links[index].ports.iter().find(|(own, _)| own.name == port)?;

@@ -4,15 +4,15 @@
 //! in which they are drawn. No list of all rows is ever made. Must not know: what is computed of a row.
 
 use super::method::Method;
+use super::values::{Draw, Level, RowSet, Span, level};
 use crate::stage::formula::{Formula, Names, Outcome};
 use crate::stage::quantity::Number;
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::seed::Seed;
-use declare::units::{RATIO, parse_quantity, showing};
+use declare::units::RATIO;
 use declare::varied::{Axis, Values};
-use gearmesh::optimize::by_number::{LatinHypercube, Random};
-use gearmesh::optimize::sobol::{MOST_VARIABLES, Sequence};
+use gearmesh::optimize::sobol::MOST_VARIABLES;
 use std::ops::Range;
 use studygraph::stage::parts;
 
@@ -41,29 +41,6 @@ pub struct Column {
     pub class: Class,
 }
 
-/// A value of a field: as the field holds it, and as the column shows it. The first follows from the second.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Level {
-    pub si: f64,
-    pub shown: f64,
-}
-
-/// The level nearest to a value.
-fn level(si: f64, unit: &str) -> Level {
-    if unit.is_empty() {
-        return Level { si, shown: si };
-    }
-    let read = |shown: f64| parse_quantity(&format!("{shown:e} {unit}")).map_or(f64::NAN, |quantity| quantity.value);
-    let shown = showing(unit)(si);
-    // As somebody would have written it, where that is it.
-    let rounded = format!("{shown:.14e}").parse().unwrap_or(shown);
-    if read(rounded).to_bits() == si.to_bits() {
-        Level { si, shown: rounded }
-    } else {
-        Level { si: read(shown), shown }
-    }
-}
-
 /// All rows of a sweep.
 #[derive(Debug)]
 pub struct Layout {
@@ -83,53 +60,6 @@ enum Rows {
     Listed(Vec<Vec<Level>>),
     /// A unit each.
     Drawn { method: Method, spans: Vec<Span> },
-}
-
-/// Where values are drawn from.
-#[derive(Debug)]
-enum Span {
-    Between { low: f64, high: f64, whole: Option<f64>, unit: String },
-    Of(Vec<Level>),
-}
-
-/// Rows of a part, one behind the other.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct RowSet {
-    width: usize,
-    si: Vec<f64>,
-    shown: Vec<f64>,
-    /// The numbers of drawn rows, from 1; 0 for others.
-    pub numbers: Vec<usize>,
-}
-
-impl RowSet {
-    pub fn len(&self) -> usize {
-        self.numbers.len()
-    }
-
-    /// By column, in SI.
-    pub fn si(&self, row: usize) -> &[f64] {
-        &self.si[row * self.width..(row + 1) * self.width]
-    }
-
-    /// By column, as shown.
-    pub fn shown(&self, row: usize) -> &[f64] {
-        &self.shown[row * self.width..(row + 1) * self.width]
-    }
-
-    fn push(&mut self, number: usize, levels: impl Iterator<Item = Level>) {
-        self.numbers.push(number);
-        for level in levels {
-            self.si.push(level.si);
-            self.shown.push(level.shown);
-        }
-    }
-
-    fn pop(&mut self) {
-        self.numbers.pop();
-        self.si.truncate(self.numbers.len() * self.width);
-        self.shown.truncate(self.numbers.len() * self.width);
-    }
 }
 
 impl Layout {
@@ -284,7 +214,7 @@ impl Layout {
     /// A filter that cannot be evaluated in some row.
     pub fn rows(&self, part: usize, seed: &Seed) -> Result<RowSet, Failure> {
         let range = self.parts[part].clone();
-        let mut rows = RowSet { width: self.columns.len(), ..RowSet::default() };
+        let mut rows = RowSet::new(self.columns.len());
         let kept = |rows: &mut RowSet| -> Result<(), Failure> {
             let passes = self.passes(rows.si(rows.len() - 1)).map_err(Failure::new)?;
             if !passes {
@@ -445,55 +375,4 @@ fn drawn(columns: &[Column], method: Method) -> Result<Rows, Diagnostic> {
         Values::Each(values) => Span::Of(values.iter().map(|si| level(*si, &column.axis.unit)).collect()),
     };
     Ok(Rows::Drawn { method, spans: columns.iter().map(span).collect() })
-}
-
-impl Span {
-    /// The value at a share of the span, 0 to 1.
-    fn at(&self, share: f64) -> Level {
-        // Below the count, which is far below 2^53.
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let of = |count: f64| (share * count).floor().min(count - 1.0);
-        match self {
-            Self::Between { low, high, whole: Some(step), .. } => {
-                let si = low + step * of((high - low) / step + 1.0);
-                Level { si, shown: si }
-            }
-            Self::Between { low, high, whole: None, unit } => {
-                // The weighted mean, as `Bounds::point` has it: no rounding leaves the span.
-                level((low * (1.0 - share) + high * share).clamp(*low, *high), unit)
-            }
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            Self::Of(levels) => levels[of(levels.len() as f64) as usize],
-        }
-    }
-}
-
-/// Where the shares come from.
-enum Draw {
-    Strata(LatinHypercube),
-    Sobol(Sequence),
-    Random(Random),
-}
-
-impl Draw {
-    fn new(method: Method, dimension: usize, seed: &Seed) -> Self {
-        match method {
-            Method::LatinHypercube(one) => Self::Strata(LatinHypercube::new(one.samples, dimension, seed)),
-            Method::Sobol(_) => Self::Sobol(Sequence::new(dimension)),
-            _ => Self::Random(Random::new(*seed)),
-        }
-    }
-
-    fn point(&self, number: usize, point: &mut [f64]) {
-        match self {
-            Self::Strata(sample) => sample.point(number, point),
-            Self::Sobol(sequence) => {
-                point
-                    .iter_mut()
-                    .enumerate()
-                    .for_each(|(variable, share)| *share = sequence.coordinate(variable, number));
-            }
-            Self::Random(sample) => sample.point(number, point),
-        }
-    }
 }

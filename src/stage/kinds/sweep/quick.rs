@@ -13,7 +13,7 @@ use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::names::summary;
 use crate::stage::{Context, Inputs};
 use declare::declared::Declared;
-use declare::error::Failure;
+use declare::error::{Failure, suggest};
 use declare::record::{PlacedValue, Record, Value};
 use declare::units::{in_unit, showing};
 use gearmesh::gear::geometry::GearPair;
@@ -173,16 +173,19 @@ impl Quick {
         let design = match self.source {
             DesignSource::Record { .. } => None,
             DesignSource::Tables => {
-                let mut found: Vec<NamedDesign> = Vec::new();
+                let mut all: Vec<NamedDesign> = Vec::new();
                 for port in inputs.ports.keys().filter(|port| port.starts_with(DESIGNS)) {
-                    let all = designs::of(&inputs, port, modification::members()).map_err(Trouble::Failed)?;
-                    found.extend(all.into_iter().filter(|named| design.is_none_or(|design| named.name == design)));
+                    all.extend(designs::of(&inputs, port, modification::members()).map_err(Trouble::Failed)?);
                 }
-                let [only] = &found[..] else {
-                    let known = found.iter().map(|named| format!("`{}`", named.name)).collect::<Vec<_>>().join(", ");
+                let names: Vec<&str> = all.iter().map(|named| named.name.as_str()).collect();
+                let meant: Vec<_> =
+                    all.iter().filter(|named| design.is_none_or(|design| named.name == design)).collect();
+                let [only] = meant[..] else {
                     let message = match design {
-                        Some(design) => format!("there is no design `{design}`"),
-                        None => format!("there are several designs, {known}; say with `design` which one is meant"),
+                        Some(design) => format!("there is no design `{design}`; {}", suggest(design, names)),
+                        None => {
+                            format!("a row has one design; say with `design` which one is meant: {}", names.join(", "))
+                        }
                     };
                     return Err(Trouble::Failed(Failure::new(message)));
                 };
@@ -246,7 +249,8 @@ impl Quick {
             }
         };
         let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
-        self.of_curve(cycle, design, torque, (*settings, *harmonics), found)
+        let said = |message| format!("{}: {message}", chain.links[self.last].kind.name);
+        self.of_curve(cycle, design, torque, (*settings, *harmonics), found).map_err(said)
     }
 
     fn of_curve(

@@ -8,8 +8,9 @@ use rayon::prelude::*;
 
 use super::Sweep;
 use super::chain::{Tables, Trouble};
-use super::layout::{Class, RowSet};
-use super::quick::{self, Before, Upstream};
+use super::layout::Class;
+use super::quick::{self, Before, Quick, Upstream};
+use super::values::RowSet;
 use crate::stage::{Context, Inputs, Others};
 use declare::error::Failure;
 use declare::work::{Counter, Work};
@@ -153,7 +154,8 @@ fn found_upstream(
     let mut tables: Tables = (0..chain.links.len()).map(|_| None).collect();
     for link in 0..chain.links.len() - 1 {
         let is_shared = columns.iter().all(|column| column.axis.stage != link || column.class == Class::Upstream);
-        if is_shared && sweep.quick.as_ref().and_then(super::quick::Quick::skips) != Some(link) {
+        let is_skipped = sweep.quick.as_ref().and_then(Quick::skips) == Some(link);
+        if is_shared && !is_skipped && chain.can_run(link, &tables) {
             tables[link] = Some(chain.run(link, (columns, row), &tables, (context, inputs))?);
         }
     }
@@ -173,9 +175,7 @@ fn one(
     let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
     let mut values = Vec::with_capacity(sweep.outputs.len());
     if let (Some(quick), Some(upstream)) = (&sweep.quick, upstream) {
-        let invalid =
-            |message| Trouble::Invalid(format!("{}: {message}", chain.links[chain.links.len() - 1].kind.name));
-        quick.row((chain, columns), upstream, before, row, &mut values).map_err(invalid)?;
+        quick.row((chain, columns), upstream, before, row, &mut values).map_err(Trouble::Invalid)?;
         return Ok(values);
     }
     let mut tables = tables.clone();
