@@ -233,6 +233,7 @@ impl<'s> Tally<'s> {
             let across = self.groups[*two].len();
             let filled = all.iter().enumerate().filter(|(_, moments)| moments.count > 0);
             cells.extend(filled.map(|(at, moments)| MapCell {
+                output: &sweep.outputs[sweep.objective].column.name,
                 fields: [one, two].map(|field| sweep.layout.columns[*field].axis.name.as_str()),
                 values: [self.groups[*one].value(at / across), self.groups[*two].value(at % across)],
                 count: moments.count,

@@ -100,6 +100,7 @@ pub fn shares<'a>() -> Columns<Share<'a>> {
 
 /// The objective where two fields have their values.
 pub struct MapCell<'a> {
+    pub output: &'a str,
     pub fields: [&'a str; 2],
     pub values: [f64; 2],
     pub count: u64,
@@ -110,7 +111,9 @@ pub struct MapCell<'a> {
 pub fn maps<'a>() -> Columns<MapCell<'a>> {
     let description = "The output that is to be small over each two fields that have up to 40 values or strata.";
     Columns::new("map", description)
-        .text("first", "Column of the first field.", |row: &MapCell<'a>| row.fields[0])
+        .text("output", "Column of the output.", |row: &MapCell<'a>| row.output)
+        .key()
+        .text("first", "Column of the first field.", |row| row.fields[0])
         .key()
         .text("second", "Column of the second field.", |row| row.fields[1])
         .key()
