@@ -5,9 +5,9 @@
 
 use crate::error::{Diagnostic, Place};
 use crate::parameter::{Choice, Field, Member, Presence, Shape};
+use crate::record::varied::Varied;
 use crate::record::{PlacedValue, Record, Value, Variant};
 use crate::units::parse_quantity;
-use crate::varied::Varied;
 
 /// A struct whose fields are parameters.
 pub trait Declared: Sized {

@@ -13,7 +13,6 @@ pub mod registry;
 pub mod seed;
 pub mod text;
 pub mod units;
-pub mod varied;
 pub mod work;
 
 pub use declare_derive::{Alternatives, Declared, Tagged, Words};

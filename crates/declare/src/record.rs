@@ -4,12 +4,14 @@
 //! the spelling in the YAML. The typed getters panic on a name or type that was not declared, which is a mistake of
 //! this program; structs that declare themselves need none of them. Must not know: YAML.
 
+pub mod varied;
+
 use std::collections::BTreeSet;
 
 use super::digest::Writer;
 use super::error::{Diagnostic, Place};
 use super::units::Dimension;
-use super::varied::Varied;
+use varied::Varied;
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]

@@ -13,8 +13,6 @@ mod output;
 mod quick;
 mod rows;
 mod tables;
-#[cfg(test)]
-mod tests;
 mod values;
 
 use std::sync::Arc;
@@ -33,8 +31,8 @@ use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, suggest};
+use declare::record::varied::{Slot, Varied};
 use declare::record::{Record, Value};
-use declare::varied::{Slot, Varied};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::cycle::Settings;
 use gearmesh::gear::work::CONTACT_SOLVES;
@@ -209,7 +207,7 @@ fn filter(stated: &Stated) -> Result<Option<(Formula, declare::error::Place)>, D
 
 /// The design that is meant: the named one, the one that is varied, or the only one.
 fn the_design(stated: &Stated) -> Result<Option<String>, Diagnostic> {
-    let mut varied: Vec<(&str, &declare::varied::Axis)> = Vec::new();
+    let mut varied: Vec<(&str, &declare::record::varied::Axis)> = Vec::new();
     let mut known: Vec<&str> = Vec::new();
     for (index, stage) in stated.vary.stages.iter().enumerate() {
         known.extend(quick::names(&stage.filled));

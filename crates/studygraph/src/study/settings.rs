@@ -6,9 +6,9 @@ use serde_json::{Map, Value as Json, json};
 
 use super::words;
 use declare::parameter::{Field, Shape};
+use declare::record::varied::{Axis, Values};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
-use declare::varied::{Axis, Values};
 
 /// The fields of `record`, which were declared by `fields`.
 #[must_use]

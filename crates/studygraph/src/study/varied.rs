@@ -13,8 +13,8 @@ use super::words::{alternatives, expected, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::Shape;
 use declare::record::Record;
+use declare::record::varied::{Axis, Slot, Stage, Values, Varied};
 use declare::units::{RATIO, split_quantity};
-use declare::varied::{Axis, Slot, Stage, Values, Varied};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
 pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";

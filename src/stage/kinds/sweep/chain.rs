@@ -6,7 +6,7 @@
 use crate::stage::{self, Context, Demand, Inputs, Kind, Port, Stage, Want};
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
-use declare::varied::{self, Varied};
+use declare::record::varied::{self, Varied};
 use studygraph::table::data::Table;
 
 use super::layout::Column;

@@ -3,10 +3,10 @@
 //! A field is found in the record of its stage by a [`Slot`], so that a value can be put there without a look at names. Must
 //! not know: YAML, and what any field means.
 
-use super::digest::Writer;
-use super::error::Place;
-use super::record::{PlacedValue, Record, Value};
-use super::units::Dimension;
+use super::{PlacedValue, Record, Value};
+use crate::digest::Writer;
+use crate::error::Place;
+use crate::units::Dimension;
 
 /// What is varied, and the stages that this concerns.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -1,1 +1,0 @@
-//! Rows, filters, invalid designs.
