@@ -15,6 +15,7 @@ mod optimize;
 mod program;
 mod storage;
 mod summary;
+mod sweep;
 
 use std::time::Duration;
 
@@ -36,6 +37,7 @@ fn main() {
         finite_elements::print();
         designs::print();
         designs::print_optimizer();
+        sweep::print();
         summary::print(&processes);
     }
 }

@@ -6,6 +6,8 @@ use std::path::Path;
 
 use crate::stage::foreign::FOREIGN;
 use crate::stage::kinds::KINDS;
+use crate::stage::kinds::sweep::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
+use declare::work::Counter;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
 use studygraph::program::Program;
@@ -16,7 +18,7 @@ pub static PROGRAM: Program = Program {
     kinds: KINDS,
     foreign: FOREIGN,
     code_of: code_digest,
-    counters: &COUNTERS,
+    counters: &COUNTED,
     about: About {
         version: env!("CARGO_PKG_VERSION"),
         summary: env!("CARGO_PKG_DESCRIPTION"),
@@ -28,6 +30,18 @@ pub static PROGRAM: Program = Program {
         profile: env!("GEARSTUDY_PROFILE"),
         dependencies: env!("GEARSTUDY_DEPENDENCIES"),
     },
+};
+
+/// What the kernels count, and what stages count themselves.
+static COUNTED: [&Counter; COUNTERS.len() + 2] = {
+    let mut all = [&ROWS_COMPUTED; COUNTERS.len() + 2];
+    let mut index = 0;
+    while index < COUNTERS.len() {
+        all[index] = COUNTERS[index];
+        index += 1;
+    }
+    all[index] = &ROWS_TAKEN_OVER;
+    all
 };
 
 const fn commit() -> Option<(&'static str, bool)> {

@@ -12,6 +12,7 @@ mod page;
 mod plot;
 mod scale;
 mod svg;
+mod sweep;
 pub mod text;
 mod thin;
 mod verdict;

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::choice::{self, Choice};
 use super::figure::Figure;
+use super::sweep::{self, Sweep};
 use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
 use declare::number::{significant, unit_symbol};
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
@@ -36,6 +37,7 @@ struct View<'a> {
     /// Whether a figure shows what differs from run to run.
     varies: bool,
     choices: Vec<Choice>,
+    sweeps: Vec<Sweep>,
     left_out: Vec<Remark>,
     warnings: Vec<Remark>,
     failures: Vec<&'a StageRecord>,
@@ -151,6 +153,7 @@ pub fn html(
         varies: parts.iter().flat_map(|part| &part.figures).any(|figure| figure.varies),
         parts,
         choices: choice::choices(manifest, tables)?,
+        sweeps: sweep::sweeps(manifest, tables)?,
         left_out,
         warnings,
         failures,

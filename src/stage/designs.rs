@@ -193,7 +193,8 @@ fn flatten_value(name: String, value: &Value, flat: &mut Vec<Flat>) -> Result<()
         | Value::Reference(_)
         | Value::Map(_)
         | Value::Member(..)
-        | Value::Variant(_) => return Err(format!("no row of a table holds the value of `{name}`: {value:?}")),
+        | Value::Variant(_)
+        | Value::Varied(_) => return Err(format!("no row of a table holds the value of `{name}`: {value:?}")),
     }
     Ok(())
 }

@@ -8,13 +8,16 @@ pub mod compliance;
 pub mod designs;
 pub mod doubts;
 pub mod foreign;
+pub mod formula;
 pub mod kinds;
 pub mod names;
 pub mod pair;
+pub mod quantity;
 pub mod root_influences;
 
 pub use studygraph::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Saved, Stage, Want, omission,
+    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved, Stage,
+    Want, omission,
 };
 
 /// The kind called `name`.

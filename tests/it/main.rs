@@ -31,6 +31,7 @@ mod schema;
 mod settings;
 mod shards;
 mod support;
+mod sweep;
 
 // What `estimates` shares with the kernels' own tests names it as they do.
 use gearmesh::gear;

@@ -18,6 +18,8 @@ pub struct Marks {
     pub kinds: Option<Punctuated<LitStr, Token![,]>>,
     /// The field that names the stage whose fields are replaced.
     pub overrides: Option<Expr>,
+    /// The field that names the stage of which fields are varied.
+    pub varies: Option<Expr>,
     pub range: bool,
     pub chooses: bool,
     pub flatten: bool,
@@ -45,6 +47,7 @@ impl Marks {
                         marks.kinds = Some(Punctuated::parse_terminated(&words)?);
                     }
                     "overrides" => marks.overrides = Some(meta.value()?.parse()?),
+                    "varies" => marks.varies = Some(meta.value()?.parse()?),
                     "name" => marks.name = Some(meta.value()?.parse()?),
                     "range" => marks.range = true,
                     "chooses" => marks.chooses = true,
@@ -52,7 +55,7 @@ impl Marks {
                     _ => {
                         return Err(meta.error(
                             "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, \
-                             `chooses`, `kinds`, `overrides`, `name` or `flatten`",
+                             `chooses`, `kinds`, `overrides`, `varies`, `name` or `flatten`",
                         ));
                     }
                 }

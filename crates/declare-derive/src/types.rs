@@ -96,6 +96,13 @@ fn one(ty: &Type, marks: &Marks, owner: &Ident) -> Result<Kind, Error> {
             &quote!(::declare::record::Value::Variant(value.clone())),
         ));
     }
+    if let Some(of) = &marks.varies {
+        return Ok(Kind::new(
+            quote!(::declare::parameter::Shape::Varied(#of)),
+            &quote!(::declare::declared::varied),
+            &quote!(::declare::record::Value::Varied(value.clone())),
+        ));
+    }
     Ok(match word(ty).as_str() {
         "f64" => {
             let (minimum, maximum) = marks.bounds(owner)?;

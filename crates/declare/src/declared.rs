@@ -5,6 +5,7 @@
 
 use crate::error::{Diagnostic, Place};
 use crate::parameter::{Choice, Field, Member, Presence, Shape};
+use crate::record::varied::Varied;
 use crate::record::{PlacedValue, Record, Value, Variant};
 use crate::units::parse_quantity;
 
@@ -376,6 +377,11 @@ pub fn member(value: &Value) -> (&'static str, &Record) {
 #[must_use]
 pub fn variant(value: &Value) -> Variant {
     if let Value::Variant(variant) = value { variant.clone() } else { mistyped(value) }
+}
+
+#[must_use]
+pub fn varied(value: &Value) -> Varied {
+    if let Value::Varied(varied) = value { varied.clone() } else { mistyped(value) }
 }
 
 #[must_use]

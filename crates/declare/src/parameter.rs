@@ -45,6 +45,9 @@ pub enum Shape {
     /// Fields of the stage that the [`Shape::Reference`] field of this name names, declared before this one. They stand
     /// in the place of that stage's own, each as a whole; the value is the record of all of that stage's fields.
     Overrides(&'static str),
+    /// Names of columns, each with a field of the stage that the [`Shape::Reference`] field of this name names, or of any
+    /// that it reads, and the values of that field.
+    Varied(&'static str),
 }
 
 /// A word that a field may hold, and what it means.

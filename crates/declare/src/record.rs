@@ -4,11 +4,14 @@
 //! the spelling in the YAML. The typed getters panic on a name or type that was not declared, which is a mistake of
 //! this program; structs that declare themselves need none of them. Must not know: YAML.
 
+pub mod varied;
+
 use std::collections::BTreeSet;
 
 use super::digest::Writer;
 use super::error::{Diagnostic, Place};
 use super::units::Dimension;
+use varied::Varied;
 
 /// One value.
 #[derive(Clone, Debug, PartialEq)]
@@ -37,6 +40,8 @@ pub enum Value {
     Member(&'static str, Record),
     /// Another stage with some of its fields replaced.
     Variant(Variant),
+    /// Other stages of which some fields are given many values.
+    Varied(Varied),
 }
 
 /// A stage's fields, some of them replaced.
@@ -158,6 +163,7 @@ impl Record {
                 Value::List(entries) => entries.iter().for_each(|entry| gather(&entry.value, into)),
                 Value::Map(entries) => entries.iter().for_each(|(_, entry)| gather(&entry.value, into)),
                 Value::Variant(variant) => drop(into.insert(variant.kind)),
+                Value::Varied(varied) => into.extend(varied.stages.iter().map(|stage| stage.kind)),
                 other => other.record().into_iter().for_each(|record| into.extend(record.kinds())),
             }
         }
@@ -225,6 +231,10 @@ impl Value {
             Self::Variant(variant) => {
                 writer.text("variant").text(variant.kind).text(&variant.written);
                 variant.record.write(writer);
+                writer
+            }
+            Self::Varied(varied) => {
+                varied.write(writer);
                 writer
             }
         };

@@ -10,6 +10,7 @@ pub mod root_optimizer;
 pub mod stability;
 pub mod ste;
 pub mod stiffness;
+pub mod sweep;
 
 use super::Kind;
 
@@ -21,6 +22,7 @@ pub const KINDS: &[&Kind] = &[
     &optimizer::KIND,
     &root_optimizer::KIND,
     &ste::KIND,
+    &sweep::KIND,
     &accuracy::KIND,
     &stability::KIND,
     &export::KIND,

@@ -7,9 +7,7 @@
 
 mod entry;
 mod figure;
-mod formula;
 mod operand;
-mod quantity;
 mod rows;
 mod stated;
 mod verdict;

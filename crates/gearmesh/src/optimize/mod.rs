@@ -15,6 +15,7 @@
 //! Must not know: gears, units, files, clocks, threads.
 
 pub mod bounds;
+pub mod by_number;
 pub mod constraints;
 pub mod differential_evolution;
 pub mod genetic;

@@ -42,7 +42,7 @@ const DIRECTIONS: &[(u32, &[u32])] = &[
 
 impl Method for Sobol {
     fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic> {
-        let maximum = DIRECTIONS.len() + 1;
+        let maximum = MOST_VARIABLES;
         if dimension > maximum {
             return Err(Diagnostic::new(format!(
                 "Sobol points are tabulated for at most {maximum} variables, not {dimension}"
@@ -53,9 +53,32 @@ impl Method for Sobol {
     }
 
     fn strategy(&self, dimension: usize, _: Seed) -> Box<dyn Strategy> {
-        let columns: Vec<[u32; BITS as usize]> = (0..dimension).map(directions).collect();
-        let layout = Box::new(move |index| columns.iter().map(|column| coordinate(column, index)).collect());
+        let sequence = Sequence::new(dimension);
+        let layout =
+            Box::new(move |index| (0..dimension).map(|variable| sequence.coordinate(variable, index)).collect());
         Box::new(Sample::new(self.points, layout))
+    }
+}
+
+/// The most variables that there are direction numbers for.
+pub const MOST_VARIABLES: usize = DIRECTIONS.len() + 1;
+
+/// The points by their number, in any order.
+#[derive(Clone, Debug)]
+pub struct Sequence(Vec<[u32; BITS as usize]>);
+
+impl Sequence {
+    /// # Panics
+    /// With more variables than [`MOST_VARIABLES`].
+    #[must_use]
+    pub fn new(dimension: usize) -> Self {
+        Self((0..dimension).map(directions).collect())
+    }
+
+    /// One coordinate of point `index`, counted from 0 and below 2³²; in 0..1.
+    #[must_use]
+    pub fn coordinate(&self, variable: usize, index: usize) -> f64 {
+        coordinate(&self.0[variable], index)
     }
 }
 

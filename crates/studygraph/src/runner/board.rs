@@ -109,6 +109,8 @@ pub struct Progress {
     pub why: Vec<Why>,
     /// Parts that have not reported yet.
     pub open: usize,
+    /// The part that waits for all others, since it is made of them.
+    pub held: Option<usize>,
     /// Parts that were computed.
     pub ran: usize,
     /// Whether a part was not even begun, or given up, because the run stops.
@@ -156,6 +158,7 @@ impl<'a> Board<'a> {
             missing: Vec::new(),
             why: Vec::new(),
             open: 0,
+            held: None,
             ran: 0,
             given_up: false,
             fault: None,
@@ -194,6 +197,8 @@ impl<'a> Board<'a> {
             Step::Queue(why) => {
                 progress.why = why;
                 progress.open = progress.missing.len();
+                let is_of_all = |part: &&usize| progress.parts[**part].is_of_all();
+                progress.held = progress.missing.iter().find(is_of_all).copied().filter(|_| progress.open > 1);
                 return;
             }
             Step::Start => {
@@ -263,7 +268,7 @@ impl<'a> Board<'a> {
                     vec![Why::ObjectMissing]
                 }
                 Lookup::Missing if last.failed.contains(&part.record.key) => vec![Why::FailedBefore],
-                Lookup::Missing => explain(&last.keys, &part.record, part.axis.as_ref().map(|(field, _)| *field)),
+                Lookup::Missing => explain(&last.keys, &part.record, part.axis()),
             };
             progress.missing.push(index);
             reasons.extend(why);

@@ -5,7 +5,7 @@
 //! axis, where a file for each would cost more than what is in it, twice, four times … as many. Must not know: what the
 //! axis is.
 
-use crate::stage::Kind;
+use crate::stage::{Kind, parts};
 use declare::digest::Writer;
 use declare::parameter::Span;
 use declare::record::{Record, Value};
@@ -39,23 +39,8 @@ fn size(count: usize, minimum: usize) -> usize {
 }
 
 fn cut(values: &[f64], chunk: usize) -> Vec<Vec<f64>> {
-    let mut parts = vec![Vec::new()];
-    for (index, &value) in values.iter().enumerate() {
-        let part = parts.len() - 1;
-        parts[part].push(value);
-        let full = parts[part].len() >= chunk.saturating_mul(4);
-        if index + 1 < values.len() && (full || ends(value, chunk)) {
-            parts.push(Vec::new());
-        }
-    }
-    parts
-}
-
-/// One value in `chunk` ends a chunk.
-fn ends(value: f64, chunk: usize) -> bool {
-    let digest = Writer::new("gearstudy 1 chunk end").float(value).finish();
-    let number = digest.0[..8].iter().fold(0, |number, byte| number << 8 | u64::from(*byte));
-    number % chunk as u64 == 0
+    let digest = |index: usize| Writer::new("gearstudy 1 chunk end").float(values[index]).finish();
+    parts::cut(values.len(), chunk, digest).into_iter().map(|stretch| values[stretch].to_vec()).collect()
 }
 
 #[cfg(test)]

@@ -134,6 +134,7 @@ pub fn execute(
             loaded: Mutex::default(),
             shares: Mutex::default(),
             turns: Mutex::default(),
+            spans: Mutex::default(),
         };
         pool.in_place_scope_fifo(|scope| run.spawn(scope, 0, queued));
         debug_assert!(run.board().halted.is_some() || run.loaded().is_empty(), "nobody reads these tables any more");
@@ -170,14 +171,17 @@ impl Run<'_> {
             }
         }
         for node in ready {
-            let missing = self.board().nodes[node].missing.clone();
+            let (missing, held) = {
+                let board = self.board();
+                (board.nodes[node].missing.clone(), board.nodes[node].held)
+            };
             if missing.is_empty() {
                 scope.spawn_fifo(move |scope| {
                     self.board().step(node, Step::Start);
                     self.complete(scope, node);
                 });
             }
-            for index in missing {
+            for index in missing.into_iter().filter(|index| Some(*index) != held) {
                 scope.spawn_fifo(move |scope| self.run_part(scope, node, index));
             }
         }
@@ -203,8 +207,18 @@ impl Run<'_> {
                 }
             }
         }
-        board.nodes[node].open -= 1;
-        if board.nodes[node].open == 0 {
+        let progress = &mut board.nodes[node];
+        progress.open -= 1;
+        if progress.open == 1
+            && let Some(last) = progress.held.take()
+        {
+            if progress.fault.is_none() && !progress.given_up {
+                drop(board);
+                return scope.spawn_fifo(move |scope| self.run_part(scope, node, last));
+            }
+            progress.open = 0;
+        }
+        if progress.open == 0 {
             drop(board);
             self.complete(scope, node);
         }

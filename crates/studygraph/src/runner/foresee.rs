@@ -80,23 +80,29 @@ pub fn foresee(board: &Board, threads: usize, instead: Instead) -> Foresight {
             Some((at, record)) if at == node => built(record).unwrap_or_default(),
             _ => estimate(of_study.stage.as_ref()),
         };
-        let parts: Vec<(usize, Estimate)> = match chunks(of_study.kind, record) {
-            None => vec![(0, whole.clone())],
-            Some(all) => {
-                let known = !progress.parts.is_empty() && instead.is_none();
-                let missing = |index: usize| board.is_own(node, index) && (!known || progress.missing.contains(&index));
-                let values = all.values.iter().enumerate().filter(|(index, _)| missing(*index));
-                let built = values.map(|(index, values)| Some((index, built(&record.with_axis(all.field, values))?)));
-                let built: Vec<_> = built.flatten().collect();
-                // What is only a part of its stage is read by nobody, nor put together.
-                if built.len() < all.values.len()
-                    && all.values.iter().enumerate().any(|(index, _)| !board.is_own(node, index))
-                {
-                    whole = Estimate::new(whole.parallel);
-                }
-                built
+        let known = !progress.parts.is_empty() && instead.is_none();
+        let missing = |index: &usize| board.is_own(node, *index) && (!known || progress.missing.contains(index));
+        let instead_of =
+            instead.filter(|(at, _)| *at == node).and_then(|(_, record)| (of_study.kind.build)(record).ok());
+        let stage = instead_of.as_deref().unwrap_or(of_study.stage.as_ref());
+        let (count, parts): (usize, Vec<(usize, Estimate)>) = match (stage.parts(), chunks(of_study.kind, record)) {
+            (Some(own), _) => {
+                let count = own.each.len();
+                let each = (0..count).filter(missing);
+                (count, each.map(|part| (part, stage.estimate_part(part, demand, &ahead))).collect())
+            }
+            (None, None) => (1, vec![(0, whole.clone())]),
+            (None, Some(all)) => {
+                let values = all.values.iter().enumerate().filter(|(index, _)| missing(index));
+                let each =
+                    values.filter_map(|(index, values)| Some((index, built(&record.with_axis(all.field, values))?)));
+                (all.values.len(), each.collect())
             }
         };
+        // What is only a part of its stage is read by nobody, nor put together.
+        if !(0..count).all(|index| board.is_own(node, index)) {
+            whole = Estimate::new(whole.parallel);
+        }
         seconds[node] = parts.iter().map(|(index, part)| (*index, part.seconds)).collect();
         let parts: Vec<Estimate> = parts.into_iter().map(|(_, part)| part).collect();
         let (expected, alone) = together(&whole, &parts, read, threads);

@@ -6,7 +6,7 @@
 
 use std::fmt;
 
-use super::chunk::chunks;
+use super::chunk::{Chunks, chunks};
 use super::graph::{Graph, Input};
 use crate::stage::{Demand, Kind};
 use crate::store::entry::StoredTable;
@@ -20,8 +20,42 @@ use declare::seed::Seed;
 pub struct KeyedChunk {
     pub key: Digest,
     pub record: KeyRecord,
-    /// The axis that is cut and the values of this chunk.
-    pub axis: Option<(&'static str, Vec<f64>)>,
+    pub cut: Cut,
+}
+
+/// What of its stage a chunk is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Cut {
+    /// All of it.
+    Whole,
+    /// These values of this axis.
+    Axis(&'static str, Vec<f64>),
+    /// One of the parts into which the stage cuts itself.
+    Part {
+        /// Which one, from 0.
+        index: usize,
+        /// The field that says first which rows there are.
+        field: &'static str,
+        /// Whether it is made of the tables of all others.
+        is_of_all: bool,
+    },
+}
+
+impl KeyedChunk {
+    /// The field along which its stage is cut.
+    #[must_use]
+    pub fn axis(&self) -> Option<&'static str> {
+        match self.cut {
+            Cut::Whole => None,
+            Cut::Axis(field, _) | Cut::Part { field, .. } => Some(field),
+        }
+    }
+
+    /// Whether it is made of the tables of all others.
+    #[must_use]
+    pub fn is_of_all(&self) -> bool {
+        matches!(self.cut, Cut::Part { is_of_all: true, .. })
+    }
 }
 
 /// The keys of a stage whose inputs are known; `tables` gives what a node came out as.
@@ -33,7 +67,8 @@ pub fn parts<'t>(
     tables: impl Fn(usize) -> &'t [StoredTable],
 ) -> Vec<KeyedChunk> {
     let of_study = &study.nodes[node];
-    let chunks = chunks(of_study.kind, &of_study.record);
+    let own = of_study.stage.parts();
+    let chunks = if own.is_some() { None } else { chunks(of_study.kind, &of_study.record) };
     let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
     // A stage that runs variants of another depends on that one's code too.
     let program = study.program;
@@ -45,19 +80,43 @@ pub fn parts<'t>(
         kind: of_study.kind,
         code: &code,
         record: &of_study.record,
-        axis: chunks.as_ref().map(|chunks| chunks.field),
+        rows: match (&own, &chunks) {
+            (Some(own), _) => own.fields.to_vec(),
+            (None, chunks) => chunks.iter().map(|chunks| chunks.field).collect(),
+        },
+        shared: own.as_ref().map(|own| own.shared),
         inputs: inputs.collect(),
         seed: of_study.stage.uses_seed().then(|| Seed::of_stage(study.seed, &of_study.name)),
         demand: &graph.demands[node],
     };
-    let part = |axis: Option<(&'static str, Vec<f64>)>| {
-        let record = common.record(axis.as_ref().map_or(&[], |(_, values)| values));
-        KeyedChunk { key: key(&record), record, axis }
+    let whole = common.record(None);
+    let part = |axis: Option<Digest>, cut: Cut| {
+        let mut record = whole.clone();
+        record.axis = axis.map_or_else(String::new, |digest| digest.to_string());
+        let key = key(&record);
+        record.key = key.to_string();
+        KeyedChunk { key, record, cut }
     };
-    match chunks {
-        None => vec![part(None)],
-        Some(chunks) => chunks.values.into_iter().map(|values| part(Some((chunks.field, values)))).collect(),
+    if let Some(own) = own {
+        let field = own.fields.first().copied().unwrap_or_default();
+        let count = own.each.len();
+        let keyed = |(index, digest)| {
+            part(Some(digest), Cut::Part { index, field, is_of_all: own.last_is_of_all && index + 1 == count })
+        };
+        return own.each.into_iter().enumerate().map(keyed).collect();
     }
+    match chunks {
+        None => vec![part(None, Cut::Whole)],
+        Some(Chunks { field, values }) => {
+            let keyed = |values: Vec<f64>| part(Some(values_of(field, &values)), Cut::Axis(field, values));
+            values.into_iter().map(keyed).collect()
+        }
+    }
+}
+
+/// The digest of some values of an axis.
+fn values_of(field: &str, values: &[f64]) -> Digest {
+    Writer::new("gearstudy 1 axis").text(field).floats(values).finish()
 }
 
 /// What the chunks of one stage have in common.
@@ -65,8 +124,10 @@ pub struct Parts<'a> {
     pub kind: &'a Kind,
     pub code: &'a str,
     pub record: &'a Record,
-    /// The field along which the stage is cut.
-    pub axis: Option<&'static str>,
+    /// The fields that say which rows there are.
+    pub rows: Vec<&'static str>,
+    /// What of them every row depends on, where the stage cuts itself.
+    pub shared: Option<Digest>,
     /// Port, and the digest of what comes in.
     pub inputs: Vec<(String, Digest)>,
     pub seed: Option<Seed>,
@@ -74,20 +135,24 @@ pub struct Parts<'a> {
 }
 
 impl Parts<'_> {
-    /// The record of one chunk; `values` are empty for a stage that is not cut.
+    /// The record of one chunk, that has these `values` of the axis; none of a stage that is not cut.
     #[must_use]
-    pub fn record(&self, values: &[f64]) -> KeyRecord {
+    pub fn record(&self, values: Option<&[f64]>) -> KeyRecord {
         let mut config = Writer::new("gearstudy 1 config");
         let mut fields = Vec::new();
-        for field in self.record.fields.iter().filter(|(name, _)| Some(*name) != self.axis) {
+        for field in self.record.fields.iter().filter(|(name, _)| !self.rows.contains(name)) {
             let mut writer = Writer::new("gearstudy 1 field");
             Record { fields: vec![field.clone()], place: self.record.place }.write(&mut writer);
             let digest = writer.finish();
             config.text(field.0).digest(&digest);
             fields.push((field.0.to_owned(), digest.short()));
         }
+        if let (Some(shared), Some(field)) = (self.shared, self.rows.first()) {
+            config.text(field).digest(&shared);
+            fields.push(((*field).to_owned(), shared.short()));
+        }
         config.count(fields.len());
-        let axis = self.axis.map(|name| Writer::new("gearstudy 1 axis").text(name).floats(values).finish());
+        let axis = values.zip(self.rows.first()).map(|(values, field)| values_of(field, values));
         let version = self.kind.version.into();
         let code = Writer::new("gearstudy 1 kind").text(self.kind.name).integer(version).text(self.code).finish();
         let mut demand = Writer::new("gearstudy 1 demand");

@@ -12,6 +12,7 @@ pub mod graph;
 pub mod key;
 pub mod limits;
 pub mod options;
+mod others;
 pub mod outcome;
 pub mod plan;
 pub mod reach;

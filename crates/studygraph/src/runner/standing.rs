@@ -5,7 +5,7 @@
 //! Demand is what the manifest shows was asked for. Must not know: how it is shown.
 
 use super::graph::Graph;
-use super::key::{self, explain, phrase};
+use super::key::{self, KeyedChunk, explain, phrase};
 use super::options::Wanted;
 use crate::stage::Want;
 use crate::store::entry::StoredTable;
@@ -151,7 +151,7 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
             (Some(known), Some(record)) => {
                 let seen = |input: usize| tables[input].as_deref().unwrap_or_default();
                 let parts = key::parts(study, &graph, node, seen);
-                let axis = parts.first().and_then(|part| part.axis.as_ref()).map(|(field, _)| *field);
+                let axis = parts.first().and_then(KeyedChunk::axis);
                 let now: Vec<&KeyRecord> = parts.iter().map(|part| &part.record).collect();
                 match stale(record, study.nodes[node].kind.name, &now, axis) {
                     Some(why) => Condition::Stale(why),

@@ -13,8 +13,9 @@ use std::time::Instant;
 use super::board::{Board, Known};
 use super::events::{Event, Observer};
 use super::fault::Fault;
-use super::key::{KeyedChunk, Why};
+use super::key::{Cut, KeyedChunk, Why};
 use super::options::Options;
+use super::others::{OfStage, Span};
 use super::outcome::together;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
 use crate::store::cache::Cache;
@@ -22,6 +23,7 @@ use crate::store::entry::{OfRun, part};
 use crate::store::error::StoreError;
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
+use declare::digest::Digest;
 use declare::error::Failure;
 use declare::record::Record;
 use declare::seed::Seed;
@@ -41,6 +43,8 @@ pub(super) struct Run<'a> {
     /// By node and part, 0 to 1.
     pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
     pub(super) turns: Mutex<Turns>,
+    /// By node and table, what parts of the last success hold.
+    pub(super) spans: Mutex<BTreeMap<(usize, String), Arc<Vec<Span>>>>,
 }
 
 /// Who is at work, and who waits until nobody is.
@@ -79,18 +83,23 @@ impl Run<'_> {
         self.board().nodes[node].known[index].tables.iter().find(|table| table.name() == name).cloned()
     }
 
+    /// A table of a part, which is known.
+    pub(super) fn of_part(&self, node: usize, index: usize, key: Digest, name: &str) -> Result<Arc<Table>, Ended> {
+        if let Some(table) = self.fresh(node, index, name) {
+            return Ok(table);
+        }
+        match self.cache.table(key, name) {
+            Ok(table) => Ok(Arc::new(table)),
+            Err(StoreError::Damaged { problem, .. }) => self.repair(node, index, name, problem),
+            Err(other) => Err(other.into()),
+        }
+    }
+
     /// A table of a stage, all chunks together.
     pub(super) fn whole(&self, node: usize, parts: &[KeyedChunk], name: &str) -> Result<Arc<Table>, Ended> {
         let mut tables = Vec::new();
         for (index, part) in parts.iter().enumerate() {
-            tables.push(match self.fresh(node, index, name) {
-                Some(table) => table,
-                None => match self.cache.table(part.key, name) {
-                    Ok(table) => Arc::new(table),
-                    Err(StoreError::Damaged { problem, .. }) => self.repair(node, index, name, problem)?,
-                    Err(other) => return Err(other.into()),
-                },
-            });
+            tables.push(self.of_part(node, index, part.key, name)?);
         }
         if let [table] = &tables[..] {
             return Ok(Arc::clone(table));
@@ -103,6 +112,12 @@ impl Run<'_> {
     fn repair(&self, node: usize, index: usize, name: &str, problem: String) -> Result<Arc<Table>, Ended> {
         let known = self.compute(node, index)?;
         let table = known.tables.iter().find(|table| table.name() == name).cloned();
+        let key = self.board().nodes[node].parts[index].key;
+        let table = match table {
+            Some(table) => Some(table),
+            // It was not kept in memory.
+            None => self.cache.table(key, name).ok().map(Arc::new),
+        };
         let mut board = self.board();
         board.nodes[node].why.push(Why::ObjectDamaged(problem));
         board.nodes[node].ran += 1;
@@ -175,12 +190,17 @@ impl Run<'_> {
             work: &work,
         };
         let began = Instant::now();
-        let result = catch_unwind(AssertUnwindSafe(|| match &part.axis {
-            None => of_study.stage.run(&context, &inputs),
-            Some((field, values)) => {
+        let others = OfStage::new(self, node, &parts);
+        let result = catch_unwind(AssertUnwindSafe(|| match &part.cut {
+            Cut::Whole => of_study.stage.run(&context, &inputs),
+            Cut::Axis(field, values) => {
                 built(of_study.kind, &of_study.record.with_axis(field, values))?.run(&context, &inputs)
             }
+            Cut::Part { index, .. } => of_study.stage.run_part(*index, &context, &inputs, &others),
         }));
+        if let Some(ended) = others.ended() {
+            return Err(ended);
+        }
         let tables = match result {
             Ok(Ok(tables)) => tables,
             Ok(Err(Failure::Failed(message))) => return Err(Ended::Fault(Fault::Failed(message))),
@@ -197,7 +217,9 @@ impl Run<'_> {
         warnings.dedup();
         let of_run = OfRun { seconds, work: work.total().named(), warnings };
         let entry = self.cache.put(part.key, &tables.iter().collect::<Vec<_>>(), of_run)?;
-        Ok(Known { entry: Some(entry), tables: tables.into_iter().map(Arc::new).collect() })
+        // Of a stage that cuts itself there may be more rows than memory holds.
+        let kept = if matches!(part.cut, Cut::Part { .. }) { Vec::new() } else { tables };
+        Ok(Known { entry: Some(entry), tables: kept.into_iter().map(Arc::new).collect() })
     }
 }
 

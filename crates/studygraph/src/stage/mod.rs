@@ -6,6 +6,7 @@
 pub mod estimate;
 pub mod memory;
 pub mod omission;
+pub mod parts;
 pub mod steps;
 
 use std::collections::BTreeMap;
@@ -22,6 +23,7 @@ use declare::work::Tally;
 
 pub use self::estimate::{Ahead, Estimate, RowCount};
 pub use self::omission::{Omission, Saved};
+pub use self::parts::{Others, Parts};
 
 /// A kind of stage as registered.
 pub struct Kind {
@@ -101,6 +103,31 @@ pub trait Stage: Send + Sync {
     /// # Errors
     /// When the values make no sense together, or the user asked to stop.
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure>;
+
+    /// The parts into which it cuts itself; none where it is one, or is cut along an axis of its record. The tables of all
+    /// parts are the rows of each after those of the one before.
+    fn parts(&self) -> Option<Parts> {
+        None
+    }
+
+    /// Computes the demanded tables of one of its parts.
+    ///
+    /// # Errors
+    /// As [`Stage::run`].
+    fn run_part(
+        &self,
+        _part: usize,
+        context: &Context,
+        inputs: &Inputs,
+        _others: &dyn Others,
+    ) -> Result<Vec<Table>, Failure> {
+        self.run(context, inputs)
+    }
+
+    /// What one of its parts will take.
+    fn estimate_part(&self, _part: usize, demand: &Demand, ahead: &Ahead) -> Estimate {
+        self.estimate(demand, ahead)
+    }
 }
 
 /// One thing a stage reads: tables of another stage.

@@ -8,6 +8,7 @@ use super::notation;
 use super::overrides::{self, Stages};
 use super::quantity::Measure;
 use super::unknown;
+use super::varied;
 use super::words::{self, alternatives, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Member, Presence, Shape};
@@ -217,6 +218,10 @@ impl<'a> Decoder<'a> {
                 let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
                 Value::Variant(self.variant(of, node, pairs)?)
             }
+            Shape::Varied(of) => {
+                let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };
+                Value::Varied(varied::varied(self.stages, self.named(of, node)?, pairs)?)
+            }
         };
         Ok(PlacedValue { value, place: node.place })
     }
@@ -260,16 +265,20 @@ impl<'a> Decoder<'a> {
 
     /// The fields of the stage that the field `of` names, with those in `pairs` in the place of its own.
     fn variant(&mut self, of: &str, node: &Node, pairs: &[KeyValue]) -> Result<Variant, Diagnostic> {
-        let named = self.references.iter().find(|reference| reference.field == of).cloned();
-        let Some(Reference { stage, place, .. }) = named else {
-            let message = format!("{} is not known, so nothing of it can be replaced", quote(of));
-            return Err(Diagnostic::new(message).at(node.place));
-        };
+        let Reference { stage, place, .. } = self.named(of, node)?.clone();
         let (kind, merged) = self.stages.merged(&stage, place, pairs)?;
         let around = std::mem::replace(&mut self.chooses, false);
         let record = self.record(&merged, kind.fields, &["kind"], &quote(&stage), node.place);
         self.chooses = around;
         Ok(Variant { kind: kind.name, written: overrides::written(pairs), record: record? })
+    }
+
+    /// What the field `of` names, for a field that stands at `node`.
+    fn named(&self, of: &str, node: &Node) -> Result<&Reference, Diagnostic> {
+        self.references.iter().find(|reference| reference.field == of).ok_or_else(|| {
+            let message = format!("{} is not known, so nothing of it can be replaced", quote(of));
+            Diagnostic::new(message).at(node.place)
+        })
     }
 
     fn ranges(&self) -> Result<(), &'a str> {
@@ -320,7 +329,7 @@ fn not_a(name: &str, node: &Node, shape: &Shape) -> Diagnostic {
     Diagnostic::new(message).at(node.place)
 }
 
-fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'n str, Diagnostic> {
+pub(super) fn scalar<'n>(name: &str, node: &'n Node, shape: &Shape) -> Result<&'n str, Diagnostic> {
     match &node.content {
         Content::Scalar { text, .. } => Ok(text),
         _ => Err(not_a(name, node, shape)),
@@ -335,7 +344,7 @@ fn plain(node: &Node) -> Option<&str> {
     }
 }
 
-fn integer(
+pub(super) fn integer(
     name: &str,
     node: &Node,
     shape: &Shape,

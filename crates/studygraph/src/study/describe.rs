@@ -184,5 +184,9 @@ fn holds(shape: &Shape) -> String {
         Shape::Group(_) => "these fields".to_owned(),
         Shape::Member(_) => "one of these, `name` or `name: { fields }`".to_owned(),
         Shape::Overrides(of) => format!("fields of the stage in `{of}`, in the place of its own"),
+        Shape::Varied(of) => format!(
+            "names of columns, each with a `field` of the stage in `{of}` or of one that it reads, and its `values` or \
+             `from`, `to` and `count`"
+        ),
     }
 }

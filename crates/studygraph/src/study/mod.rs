@@ -26,6 +26,7 @@ mod structure;
 #[cfg(test)]
 mod tests;
 mod unknown;
+mod varied;
 mod words;
 
 use std::fmt;

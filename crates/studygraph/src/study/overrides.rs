@@ -18,12 +18,12 @@ pub struct Stages<'a> {
     pub foreign: &'a [Foreign],
 }
 
-impl Stages<'_> {
-    /// The tree of the stage `name`, which is named at `place`, with `replaced` in the place of its own fields.
+impl<'a> Stages<'a> {
+    /// The stage `name`, which is named at `place`, and its kind.
     ///
     /// # Errors
     /// When there is no such stage, it has no kind, or it replaces fields of another stage itself.
-    pub fn merged(&self, name: &str, place: Place, replaced: &[KeyValue]) -> Result<(&'static Kind, Node), Diagnostic> {
+    pub fn plain(&self, name: &str, place: Place) -> Result<(&'static Kind, &'a KeyValue), Diagnostic> {
         let stage = self.pairs.iter().find(|pair| pair.key == name).ok_or_else(|| {
             let names = self.pairs.iter().map(|pair| pair.key.as_str());
             Diagnostic::new(format!("there is no stage {}", quote(name))).at(place).help(suggest(name, names))
@@ -41,6 +41,16 @@ impl Stages<'_> {
             let message = format!("{} replaces fields of another stage itself, so none of its own can be", quote(name));
             return Err(Diagnostic::new(message).at(place));
         }
+        Ok((kind, stage))
+    }
+
+    /// The tree of the stage `name`, which is named at `place`, with `replaced` in the place of its own fields.
+    ///
+    /// # Errors
+    /// When there is no such stage, it has no kind, or it replaces fields of another stage itself.
+    pub fn merged(&self, name: &str, place: Place, replaced: &[KeyValue]) -> Result<(&'static Kind, Node), Diagnostic> {
+        let (kind, stage) = self.plain(name, place)?;
+        let own = if let Content::Mapping(pairs) = &stage.node.content { pairs.as_slice() } else { &[] };
         if let Some(pair) = replaced.iter().find(|pair| pair.key == "kind") {
             return Err(Diagnostic::new("the kind of a stage cannot be replaced").at(pair.place));
         }
@@ -50,10 +60,11 @@ impl Stages<'_> {
     }
 }
 
-fn replaces(field: &Field) -> bool {
+/// Whether a field holds those of other stages.
+pub fn replaces(field: &Field) -> bool {
     fn inside(shape: &Shape) -> bool {
         match shape {
-            Shape::Overrides(_) => true,
+            Shape::Overrides(_) | Shape::Varied(_) => true,
             Shape::List(item) | Shape::Map(item) => inside(item),
             Shape::Group(fields) => fields.iter().any(replaces),
             _ => false,

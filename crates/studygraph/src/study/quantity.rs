@@ -51,7 +51,10 @@ impl Measure<'_> {
     }
 
     /// One number, in SI and inside the range.
-    fn single(&self, node: &Node) -> Result<f64, Diagnostic> {
+    ///
+    /// # Errors
+    /// As [`Measure::value`].
+    pub fn single(&self, node: &Node) -> Result<f64, Diagnostic> {
         let Content::Scalar { text, quoted } = &node.content else {
             let message = format!("{} takes one value, not {}", quote(self.name), node.describe());
             return Err(Diagnostic::new(message).at(node.place).help(format!("{} is expected", self.expected())));
@@ -170,7 +173,10 @@ impl Measure<'_> {
     }
 
     /// `{ from, to, count }`, both ends included.
-    fn spaced(&self, node: &Node) -> Result<Value, Diagnostic> {
+    ///
+    /// # Errors
+    /// As [`Measure::value`]; when the ends are not in order, or so many points do not fit between them.
+    pub fn spaced(&self, node: &Node) -> Result<Value, Diagnostic> {
         let Content::Mapping(pairs) = &node.content else {
             return self.single(node).map(|value| Value::Axis(vec![value]));
         };

@@ -182,6 +182,7 @@ impl Families {
             Shape::Member(members) => json!({ "$ref": format!("#/$defs/{}", self.family(members(), field, chooses)) }),
             // Which fields there are depends on the kind of the other stage, which no schema can look up.
             Shape::Overrides(_) => json!({ "type": "object", "propertyNames": { "not": { "const": "kind" } } }),
+            Shape::Varied(_) => varied(),
         }
     }
 
@@ -221,6 +222,28 @@ impl Families {
         self.met[at].schema = json!({ "anyOf": alternatives });
         name
     }
+}
+
+/// Columns and what is varied; which units there are depends on the field.
+fn varied() -> Value {
+    let number = json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") });
+    json!({
+        "type": "object",
+        "minProperties": 1,
+        "propertyNames": { "pattern": super::varied::COLUMN_PATTERN },
+        "additionalProperties": {
+            "type": "object",
+            "required": ["field"],
+            "additionalProperties": false,
+            "properties": {
+                "field": { "type": "string", "description": "Path of the field: stage.field, such as `pair.pinion.face_width`." },
+                "values": { "anyOf": [number, { "type": "array", "minItems": 1, "items": number }] },
+                "from": number,
+                "to": number,
+                "count": { "type": "integer", "minimum": 2 },
+            },
+        },
+    })
 }
 
 /// The summary, and what the schema cannot say.

@@ -6,6 +6,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::words;
 use declare::parameter::{Field, Shape};
+use declare::record::varied::{Axis, Values};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
 
@@ -40,6 +41,9 @@ fn value(shape: &Shape, value: &Value) -> Json {
         },
         // The rest is that of the other stage, which the manifest shows as well.
         Value::Variant(variant) => json!(variant.written),
+        Value::Varied(varied) => {
+            Json::Object(varied.axes.iter().map(|axis| (axis.name.clone(), axis_shown(axis))).collect())
+        }
         Value::Member(name, record) => {
             let Shape::Member(family) = shape else { return Json::Null };
             match family().iter().find(|member| member.name == *name) {
@@ -50,6 +54,26 @@ fn value(shape: &Shape, value: &Value) -> Json {
             }
         }
     }
+}
+
+/// A field and its values as written; of many values the first and the last, and how many there are.
+fn axis_shown(axis: &Axis) -> Json {
+    const MOST: usize = 12;
+    let one = |si: f64| {
+        if axis.unit.is_empty() {
+            json!(si)
+        } else {
+            json!(format!("{} {}", words::number(in_unit(si, &axis.unit)), axis.unit))
+        }
+    };
+    let shown = match &axis.values {
+        Values::Between(from, to) => json!({ "from": one(*from), "to": one(*to) }),
+        Values::Each(values) if values.len() <= MOST => values.iter().map(|si| one(*si)).collect(),
+        Values::Each(values) => {
+            json!({ "first": one(values[0]), "last": one(values[values.len() - 1]), "count": values.len() })
+        }
+    };
+    json!({ "field": axis.path, "values": shown })
 }
 
 fn number(shape: &Shape, si: f64) -> Json {

@@ -176,6 +176,7 @@ pub fn expected(shape: &Shape) -> String {
         Shape::Group(fields) => format!("a mapping with the fields {}", names(fields)),
         Shape::Member(members) => alternatives(members().iter().map(|member| member.name)),
         Shape::Overrides(of) => format!("a mapping from fields of the stage in {} to other values", quote(of)),
+        Shape::Varied(_) => "a mapping from names of columns to fields and their values".to_owned(),
     }
 }
 

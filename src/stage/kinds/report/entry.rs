@@ -2,13 +2,13 @@
 //!
 //! Must not know: figures, other entries.
 
-use super::formula::{Formula, Outcome};
 use super::operand::{Operand, in_si};
-use super::quantity::Number;
 use super::rows::OperandRows;
 use super::stated::{Expected, Published, StatedProof, Target, convert, read_target};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
+use crate::stage::formula::{Formula, Outcome};
+use crate::stage::quantity::Number;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;

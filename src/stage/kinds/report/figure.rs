@@ -4,7 +4,7 @@
 //! not know: how anything is drawn.
 
 use super::operand::{in_si, no_rows, table};
-use super::quantity::{described, same_dimension};
+use crate::stage::quantity::{described, same_dimension};
 use crate::stage::{Ahead, Inputs};
 use declare::declared::{Placed, Words};
 use declare::error::Diagnostic;

@@ -2,8 +2,8 @@
 //!
 //! Must not know: verdicts. Everything is SI once it is resolved.
 
-use super::quantity::{Number, described};
 use crate::stage::Inputs;
+use crate::stage::quantity::{Number, described};
 use declare::number::{significant, with_unit};
 use declare::units::{UnitError, parse_quantity, split_quantity};
 use studygraph::table::data::{Cell, Data, Table};

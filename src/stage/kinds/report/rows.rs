@@ -2,10 +2,10 @@
 //!
 //! Must not know: published values, verdicts.
 
-use super::formula::{Formula, Names};
 use super::operand::{Operand, Values};
-use super::quantity::{Number, shown};
 use crate::stage::Inputs;
+use crate::stage::formula::{Formula, Names};
+use crate::stage::quantity::{Number, shown};
 
 /// The values of every name, in rows that line up.
 pub struct OperandRows<'a> {

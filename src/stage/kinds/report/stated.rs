@@ -3,7 +3,7 @@
 //! Must not know: what is compared with them.
 
 use super::operand::in_si;
-use super::quantity::{Number, described, same_dimension};
+use crate::stage::quantity::{Number, described, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;
 use declare::error::Diagnostic;

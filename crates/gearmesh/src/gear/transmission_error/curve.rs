@@ -173,13 +173,13 @@ impl LoadCase<'_> {
     }
 
     /// The largest and the smallest transmission error.
-    fn extremes(&self) -> [Extremum; 2] {
+    pub(super) fn extremes(&self) -> [Extremum; 2] {
         let (trace, rows) = (self.trace(), &self.cycle.rows);
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         [trace.largest(rows, value), trace.smallest(rows, value)]
     }
 
-    fn between(&self, [largest, smallest]: [Extremum; 2]) -> f64 {
+    pub(super) fn between(&self, [largest, smallest]: [Extremum; 2]) -> f64 {
         if self.holds(largest.value) { largest.value - smallest.value } else { f64::INFINITY }
     }
 

@@ -2,6 +2,7 @@
 
 #![allow(clippy::float_cmp)] // where a result must be exact, that is what is asked
 
+mod asked;
 mod broken_tips;
 mod corner;
 mod doubt;

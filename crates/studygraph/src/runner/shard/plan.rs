@@ -209,7 +209,13 @@ fn divided(
 ) -> Result<(ShardPlan, Vec<Part>), ShardError> {
     let mut board = Board::new(study, cache, options, &Silent).map_err(RunError::Study)?;
     board.settle();
-    let foresight = foresee(&board, 1, None);
+    let mut foresight = foresee(&board, 1, None);
+    // What is made of all other parts is left to whoever has them: a later level, or the merge.
+    for (own, of_study) in foresight.parts.iter_mut().zip(&study.nodes) {
+        if let Some(parts) = of_study.stage.parts().filter(|parts| parts.last_is_of_all) {
+            own.retain(|(part, _)| part + 1 < parts.each.len());
+        }
+    }
     let nodes = study.nodes.len();
     let (mut levels, mut divides, mut reads) = (vec![0; nodes], vec![false; nodes], vec![false; nodes]);
     for &node in &board.graph.order {

@@ -11,7 +11,8 @@ fn parts<'a>(record: &'a Record, demand: &'a Demand) -> Parts<'a> {
         kind: &CUT,
         code: "code",
         record,
-        axis: Some("torque"),
+        rows: vec!["torque"],
+        shared: None,
         inputs: vec![("pair".to_owned(), Digest([7; 32]))],
         seed: Some(Seed::of_stage(1, "ste")),
         demand,
@@ -39,10 +40,10 @@ fn demand() -> Demand {
 fn golden_keys() {
     let (record, demand) = (record(), demand());
     let parts = parts(&record, &demand);
-    let digests = [&[][..], &[25.0], &[25.0, 50.0]].map(|values| key(&parts.record(values)).short());
+    let digests = [&[][..], &[25.0], &[25.0, 50.0]].map(|values| key(&parts.record(Some(values))).short());
     assert_eq!(digests, ["383d39fe2cd4", "aa4c0e25e7d2", "19a87f545dd4"]);
-    let whole = Parts { axis: None, seed: None, inputs: Vec::new(), ..parts };
-    assert_eq!(key(&whole.record(&[])).short(), "c84a8d1a4ec7");
+    let whole = Parts { rows: Vec::new(), seed: None, inputs: Vec::new(), ..parts };
+    assert_eq!(key(&whole.record(None)).short(), "c84a8d1a4ec7");
 }
 
 #[test]
@@ -50,9 +51,9 @@ fn every_part_is_in_the_key_and_has_a_name() {
     use crate::runner::key::{Why, explain};
     let (record, demand) = (record(), demand());
     let base = || parts(&record, &demand);
-    let last = [base().record(&[25.0])];
+    let last = [base().record(Some(&[25.0]))];
     let why = |parts: Parts, values: &[f64]| {
-        let now = parts.record(values);
+        let now = parts.record(Some(values));
         assert_ne!(key(&now), key(&last[0]));
         explain(&last, &now, Some("torque"))
     };
@@ -75,5 +76,5 @@ fn every_part_is_in_the_key_and_has_a_name() {
     // Where something stands in the file is in no key.
     let mut moved = record.clone();
     moved.fields[0].1.place = Place { line: 9, column: 9, offset: 99, length: 9 };
-    assert_eq!(parts(&moved, &demand).record(&[25.0]), last[0]);
+    assert_eq!(parts(&moved, &demand).record(Some(&[25.0])), last[0]);
 }

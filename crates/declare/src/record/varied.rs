@@ -1,0 +1,268 @@
+//! Stages of a study of which some fields are given many values, as a sweep has them.
+//!
+//! A field is found in the record of its stage by a [`Slot`], so that a value can be put there without a look at names. Must
+//! not know: YAML, and what any field means.
+
+use super::{PlacedValue, Record, Value};
+use crate::digest::Writer;
+use crate::error::Place;
+use crate::units::Dimension;
+
+/// What is varied, and the stages that this concerns.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Varied {
+    /// Those that have a varied field, those that read them, and the asked one, each after all it reads.
+    pub stages: Vec<Stage>,
+    /// In the order of the study; no two have one name.
+    pub axes: Vec<Axis>,
+}
+
+/// A stage that comes out otherwise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stage {
+    /// As the study calls it.
+    pub name: String,
+    /// The stage's kind.
+    pub kind: &'static str,
+    /// All fields as the study has them.
+    pub record: Record,
+    /// The same with one value of each varied field in its place, where the slots lead.
+    pub filled: Record,
+    /// For each reference in it, in the order of its fields: which of these stages it means; none for one that comes out as
+    /// in the study.
+    pub reads: Vec<Option<usize>>,
+}
+
+/// A field and its values.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// The column.
+    pub name: String,
+    /// As written.
+    pub path: String,
+    /// Where the path stands.
+    pub place: Place,
+    /// Index of the stage that has the field.
+    pub stage: usize,
+    /// Where it is in that stage's record.
+    pub slot: Slot,
+    /// None of a plain or a whole number.
+    pub dimension: Option<Dimension>,
+    /// In which unit the first value is written; empty where there is none.
+    pub unit: String,
+    /// Of a whole number: what it must be a multiple of.
+    pub multiple: Option<i64>,
+    pub values: Values,
+    /// Where the values stand.
+    pub values_place: Place,
+}
+
+/// The values of a field, in SI.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Values {
+    /// These, in their order; not empty.
+    Each(Vec<f64>),
+    /// Any from the first to the second, which is larger.
+    Between(f64, f64),
+}
+
+impl Axis {
+    /// The value as the field holds it.
+    #[must_use]
+    pub fn value(&self, si: f64) -> Value {
+        match (self.multiple, self.dimension) {
+            // Whole and within the bounds of the field, where it was read.
+            #[allow(clippy::cast_possible_truncation)]
+            (Some(_), _) => Value::Integer(si as i64),
+            (None, Some(_)) => Value::Quantity(si),
+            (None, None) => Value::Number(si),
+        }
+    }
+
+    /// Puts a value into the record of the axis' stage.
+    pub fn put(&self, record: &mut Record, si: f64) {
+        if let Some(entry) = self.slot.entry_mut(record) {
+            entry.value = if matches!(entry.value, Value::Axis(_)) { Value::Axis(vec![si]) } else { self.value(si) };
+        }
+    }
+}
+
+impl Varied {
+    /// What all values have in common: the stages without what is varied in them, and which fields are.
+    pub fn write_shared(&self, writer: &mut Writer) {
+        writer.text("varied").count(self.stages.len());
+        for (index, stage) in self.stages.iter().enumerate() {
+            let mut record = stage.filled.clone();
+            for axis in self.axes.iter().filter(|axis| axis.stage == index) {
+                if let Some(entry) = axis.slot.entry_mut(&mut record) {
+                    entry.value = Value::Flag(true);
+                }
+            }
+            writer.text(stage.kind).count(stage.reads.len());
+            for read in &stage.reads {
+                writer.count(read.map_or(0, |index| index + 1));
+            }
+            record.write(writer);
+        }
+        writer.count(self.axes.len());
+        for axis in &self.axes {
+            writer.text(&axis.name).text(&axis.unit).count(axis.stage).count(axis.slot.0.len());
+            for &step in &axis.slot.0 {
+                writer.count(step);
+            }
+        }
+    }
+
+    /// All of it.
+    pub fn write(&self, writer: &mut Writer) {
+        self.write_shared(writer);
+        for axis in &self.axes {
+            match &axis.values {
+                Values::Each(values) => writer.text("each").floats(values),
+                Values::Between(from, to) => writer.text("between").float(*from).float(*to),
+            };
+        }
+    }
+}
+
+/// The way to a value in a record: positions of fields, items and labels.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Slot(pub Vec<usize>);
+
+impl Slot {
+    /// The way to the entry that stands at `place`; none where there is none.
+    #[must_use]
+    pub fn of_place(record: &Record, place: Place) -> Option<Self> {
+        let mut steps = Vec::new();
+        in_record(record, place, &mut steps).then_some(Self(steps))
+    }
+
+    /// What is there.
+    #[must_use]
+    pub fn entry<'r>(&self, record: &'r Record) -> Option<&'r PlacedValue> {
+        let (first, rest) = self.0.split_first()?;
+        let mut entry = record.fields.get(*first).map(|(_, entry)| entry)?;
+        for step in rest {
+            entry = match &entry.value {
+                Value::List(items) => items.get(*step)?,
+                Value::Map(entries) => &entries.get(*step)?.1,
+                other => &other.record()?.fields.get(*step)?.1,
+            };
+        }
+        Some(entry)
+    }
+
+    /// The same to be changed.
+    pub fn entry_mut<'r>(&self, record: &'r mut Record) -> Option<&'r mut PlacedValue> {
+        let (first, rest) = self.0.split_first()?;
+        let mut entry = record.fields.get_mut(*first).map(|(_, entry)| entry)?;
+        for step in rest {
+            entry = match &mut entry.value {
+                Value::List(items) => items.get_mut(*step)?,
+                Value::Map(entries) => &mut entries.get_mut(*step)?.1,
+                Value::Group(record) | Value::Member(_, record) => &mut record.fields.get_mut(*step)?.1,
+                _ => return None,
+            };
+        }
+        Some(entry)
+    }
+}
+
+fn in_record(record: &Record, place: Place, steps: &mut Vec<usize>) -> bool {
+    among(&mut record.fields.iter().map(|(_, entry)| entry), place, steps)
+}
+
+fn among(entries: &mut dyn Iterator<Item = &PlacedValue>, place: Place, steps: &mut Vec<usize>) -> bool {
+    for (index, entry) in entries.enumerate() {
+        steps.push(index);
+        let found = match &entry.value {
+            Value::List(items) => among(&mut items.iter(), place, steps),
+            Value::Map(entries) => among(&mut entries.iter().map(|(_, entry)| entry), place, steps),
+            Value::Group(record) | Value::Member(_, record) => in_record(record, place, steps),
+            _ => entry.place == place,
+        };
+        if found {
+            return true;
+        }
+        steps.pop();
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::LENGTH;
+
+    fn at(line: usize) -> Place {
+        Place { line, ..Place::default() }
+    }
+
+    fn entry(value: Value, line: usize) -> PlacedValue {
+        PlacedValue { value, place: at(line) }
+    }
+
+    fn record() -> Record {
+        let relief = Record { fields: vec![("amount", entry(Value::Quantity(1e-6), 7))], place: at(6) };
+        let design = Value::List(vec![entry(Value::Flag(true), 5), entry(Value::Member("relief", relief), 6)]);
+        let designs = Value::Map(vec![("a".into(), entry(Value::List(vec![]), 3)), ("b".into(), entry(design, 4))]);
+        Record {
+            fields: vec![("pair", entry(Value::Reference("p".into()), 1)), ("designs", entry(designs, 2))],
+            place: at(0),
+        }
+    }
+
+    fn axis() -> Axis {
+        Axis {
+            name: "amount".into(),
+            path: "s.designs.b[1].relief.amount".into(),
+            place: at(9),
+            stage: 0,
+            slot: Slot(vec![1, 1, 1, 0]),
+            dimension: Some(LENGTH),
+            unit: "um".into(),
+            multiple: None,
+            values: Values::Each(vec![1e-6, 2e-6]),
+            values_place: at(9),
+        }
+    }
+
+    #[test]
+    fn a_slot_leads_to_the_value_at_a_place_and_nowhere_else() {
+        let mut record = record();
+        let slot = Slot::of_place(&record, at(7)).unwrap();
+        assert_eq!(slot, axis().slot);
+        assert_eq!(slot.entry(&record).map(|entry| &entry.value), Some(&Value::Quantity(1e-6)));
+        axis().put(&mut record, 5e-6);
+        assert_eq!(slot.entry(&record).map(|entry| &entry.value), Some(&Value::Quantity(5e-6)));
+        assert_eq!(Slot::of_place(&record, at(8)), None);
+        assert_eq!(Slot::of_place(&record, at(6)), None, "a member is no value");
+        assert_eq!(Slot(vec![1, 2, 0]).entry(&record), None);
+        assert!(Slot(vec![0, 1]).entry_mut(&mut record).is_none() && Slot::default().entry(&record).is_none());
+    }
+
+    #[test]
+    fn values_are_in_the_digest_of_all_and_not_in_that_of_what_is_shared() {
+        let varied = |first: f64, values: Vec<f64>| {
+            let mut filled = record();
+            axis().put(&mut filled, first);
+            let stage = Stage { name: "s".into(), kind: "k", record: record(), filled, reads: vec![None] };
+            Varied { stages: vec![stage], axes: vec![Axis { values: Values::Each(values), ..axis() }] }
+        };
+        let digests = |varied: &Varied| {
+            let (mut shared, mut all) = (Writer::new("test"), Writer::new("test"));
+            varied.write_shared(&mut shared);
+            varied.write(&mut all);
+            (shared.finish(), all.finish())
+        };
+        let (one, two) = (varied(1e-6, vec![1e-6, 2e-6]), varied(3e-6, vec![3e-6]));
+        assert_eq!(digests(&one).0, digests(&two).0);
+        assert_ne!(digests(&one).1, digests(&two).1);
+        let mut other = one.clone();
+        other.stages[0].filled.fields.pop();
+        assert_ne!(digests(&one).0, digests(&other).0);
+        let mut renamed = one.clone();
+        renamed.stages[0].name = "t".into();
+        assert_eq!(digests(&one), digests(&renamed), "what a stage is called is no part of a result");
+    }
+}

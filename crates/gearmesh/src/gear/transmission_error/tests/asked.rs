@@ -1,0 +1,60 @@
+//! What is asked of a curve is what its summary has.
+
+use super::super::asked::{Asked, Found};
+use super::*;
+use crate::gear::transmission_error::curve::Summary;
+
+const ALL: Asked = Asked { integrals: true, harmonics: 3, spans_for: 8, pressure: true, unloaded: true };
+
+fn bits(found: &Found) -> [u64; 7] {
+    let pressure = found.pressure.map_or(0.0, |pressure| pressure.extremum.value);
+    let values = [
+        found.largest.value,
+        found.smallest.value,
+        found.mean,
+        found.variance,
+        found.harmonics.iter().sum(),
+        pressure,
+        found.unloaded_peak_to_peak,
+    ];
+    values.map(f64::to_bits)
+}
+
+fn of_summary(summary: &Summary) -> Found {
+    Found {
+        largest: summary.largest,
+        smallest: summary.smallest,
+        mean: summary.mean,
+        variance: summary.variance,
+        harmonics: summary.harmonics[..3].to_vec(),
+        pressure: summary.largest_pressure,
+        unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
+    }
+}
+
+/// Tier: second method, to the last bit.
+#[test]
+fn what_is_asked_is_what_the_summary_has() {
+    let pair = pair();
+    for compliance in [constant(&pair, STIFFNESS), varying(), coupled()] {
+        for positions in [8, 64] {
+            let settings = Settings { positions, ..Settings::default() };
+            let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+            for design in [Design::default(), ga_design(&pair, 8e-6, 4e-3, 5e-6)] {
+                for force in [0.0, 300.0, 1867.0] {
+                    let loading = LoadCase::new(&cycle, &design, torque(force));
+                    let wanted = Wanted { harmonics: 8, pressure: true, ..Wanted::default() };
+                    let summary = of_summary(&loading.summary(wanted));
+                    assert_eq!(bits(&loading.asked(ALL)), bits(&summary), "{positions}, {force}");
+                    // What is left out changes nothing of the rest.
+                    let fewer = loading.asked(Asked { harmonics: 0, pressure: false, unloaded: false, ..ALL });
+                    let less = Found { harmonics: Vec::new(), pressure: None, unloaded_peak_to_peak: 0.0, ..summary };
+                    assert_eq!(bits(&fewer), bits(&less));
+                    let extremes = loading.asked(Asked::default());
+                    let apart = extremes.largest.value - extremes.smallest.value;
+                    assert_eq!(apart.to_bits(), loading.peak_to_peak().to_bits());
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,259 @@
+//! Fields of other stages with many values: what fields of the shape `Varied` are read as.
+//!
+//! A value is put where its path leads in the tree of the study, and read with the stage it belongs to; where it comes out
+//! in the record is its slot. So whatever a stage can be told can be varied, with the unit and the range that its own
+//! declaration has. Must not know: what any field means, which combinations of values are taken.
+
+use super::decode::{Decoder, Reference, integer, scalar};
+use super::document::{Content, KeyValue, Node};
+use super::overrides::Stages;
+use super::path::FieldPath;
+use super::quantity::Measure;
+use super::words::{alternatives, expected, quote};
+use declare::error::{Diagnostic, Place, suggest};
+use declare::parameter::Shape;
+use declare::record::Record;
+use declare::record::varied::{Axis, Slot, Stage, Values, Varied};
+use declare::units::{RATIO, split_quantity};
+
+/// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
+pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";
+const FIELDS: [&str; 5] = ["field", "values", "from", "to", "count"];
+
+/// A stage that the asked one reads, near or far.
+struct Link {
+    name: String,
+    kind: &'static crate::stage::Kind,
+    record: Record,
+    /// The stages that it refers to.
+    reads: Vec<String>,
+}
+
+/// Reads the mapping `pairs` of columns to fields of the stage that `of` names and of those it reads.
+///
+/// # Errors
+/// A path that leads nowhere or to no number; values that the field does not take; a stage that has nothing to do with it.
+pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Varied, Diagnostic> {
+    let mut links = Vec::new();
+    link(stages, &of.stage, of.place, &mut Vec::new(), &mut links)?;
+    let mut tree = stages.pairs.to_vec();
+    let mut axes = Vec::new();
+    for (index, pair) in pairs.iter().enumerate() {
+        let (axis, stage, value) = axis(stages, &links, pair, &of.stage)?;
+        let path = FieldPath::parse(&axis.path, axis.place)?;
+        path.set(&mut tree, stages.kinds, Node { place: mark(index), ..value })?;
+        axes.push((axis, stage));
+    }
+    // Those that have a varied field, those that read one of them, and the asked one, which comes last.
+    let mut kept: Vec<&Link> = Vec::new();
+    for link in &links {
+        let has = axes.iter().any(|(_, stage)| *stage == link.name);
+        if has || link.reads.iter().any(|read| kept.iter().any(|link| link.name == *read)) || link.name == of.stage {
+            kept.push(link);
+        }
+    }
+    let index = |name: &str| kept.iter().position(|link| link.name == name);
+    let filled = Stages { pairs: &tree, ..stages };
+    let mut found = Varied::default();
+    for link in &kept {
+        // What is wrong with the values together is no mistake of the text in any one place.
+        let (record, _) = read(filled, &link.name, of.place).map_err(|wrong| wrong.at(of.place))?;
+        let reads = link.reads.iter().map(|name| index(name)).collect();
+        found.stages.push(Stage {
+            name: link.name.clone(),
+            kind: link.kind.name,
+            record: link.record.clone(),
+            filled: record,
+            reads,
+        });
+    }
+    for (number, (mut axis, stage)) in axes.into_iter().enumerate() {
+        axis.stage = index(&stage).unwrap_or_default();
+        let slot = Slot::of_place(&found.stages[axis.stage].filled, mark(number));
+        axis.slot = slot.ok_or_else(|| {
+            let message = format!(
+                "{} cannot be varied by itself: another column varies it, or all of it is one axis",
+                quote(&axis.path)
+            );
+            Diagnostic::new(message).at(axis.place)
+        })?;
+        found.axes.push(axis);
+    }
+    Ok(found)
+}
+
+/// A place that no text has.
+fn mark(index: usize) -> Place {
+    Place { line: usize::MAX, column: index, offset: usize::MAX, length: 0 }
+}
+
+/// Gathers a stage after all that it reads; `open` are those that are being gathered.
+fn link(
+    stages: Stages,
+    name: &str,
+    place: Place,
+    open: &mut Vec<String>,
+    links: &mut Vec<Link>,
+) -> Result<(), Diagnostic> {
+    // Stages that read each other in a circle are told of when all are known.
+    if open.iter().any(|other| other == name) || links.iter().any(|link| link.name == name) {
+        return Ok(());
+    }
+    open.push(name.to_owned());
+    let (kind, _) = stages.plain(name, place)?;
+    let (record, references) = read(stages, name, place)?;
+    for reference in &references {
+        link(stages, &reference.stage, reference.place, open, links)?;
+    }
+    open.pop();
+    let reads = references.into_iter().map(|reference| reference.stage).collect();
+    links.push(Link { name: name.to_owned(), kind, record, reads });
+    Ok(())
+}
+
+fn read(stages: Stages, name: &str, place: Place) -> Result<(Record, Vec<Reference>), Diagnostic> {
+    let (kind, stage) = stages.plain(name, place)?;
+    let mut decoder = Decoder::new("where an optimiser chooses", Stages::default());
+    let record = decoder.record(&stage.node, kind.fields, &["kind"], &quote(name), stage.place)?;
+    Ok((record, decoder.references))
+}
+
+/// A column: its axis, the stage that has the field, and the first value as written.
+fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Axis, String, Node), Diagnostic> {
+    let name = &pair.key;
+    let mut characters = name.chars();
+    let fits = characters.next().is_some_and(|first| first.is_ascii_lowercase())
+        && characters.all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_')
+        && name.len() <= 64;
+    if !fits {
+        return Err(Diagnostic::new(format!("{} cannot be the name of a column", quote(name)))
+            .at(pair.place)
+            .help("lower-case letters, digits and `_` make a name, at most 64 of them, a letter first"));
+    }
+    let Content::Mapping(fields) = &pair.node.content else {
+        let message = format!("{} is {}; `{{ field: …, values: […] }}` is expected", quote(name), pair.node.describe());
+        return Err(Diagnostic::new(message).at(pair.node.place));
+    };
+    if let Some(unknown) = fields.iter().find(|field| !FIELDS.contains(&field.key.as_str())) {
+        let message = format!("unknown field {} of {}", quote(&unknown.key), quote(name));
+        return Err(Diagnostic::new(message).at(unknown.place).help(suggest(&unknown.key, FIELDS)));
+    }
+    let given = |field: &str| fields.iter().find(|given| given.key == field && !given.node.is_null());
+    let Some(written) = given("field") else {
+        return Err(Diagnostic::new(format!("{} does not say which `field` it varies", quote(name)))
+            .at(pair.place)
+            .help("for example `field: pair.pinion.face_width`"));
+    };
+    let text = scalar("field", &written.node, &Shape::Text)?;
+    let path = FieldPath::parse(text, written.node.place)?;
+    let target = path.find(stages.pairs, stages.kinds)?;
+    let stage = text.split(['.', '[']).next().unwrap_or_default();
+    if !links.iter().any(|link| link.name == stage) {
+        let names = alternatives(links.iter().map(|link| link.name.as_str()));
+        return Err(Diagnostic::new(format!(
+            "{} does not read {}, so nothing of it changes there",
+            quote(of),
+            quote(stage)
+        ))
+        .at(written.node.place)
+        .help(format!("fields of {names} can be varied")));
+    }
+    let (dimension, multiple) = match target.shape {
+        Shape::Quantity { dimension, .. } => (Some(*dimension), None),
+        Shape::Number { .. } => (None, None),
+        Shape::Integer { multiple, .. } => (None, Some(*multiple)),
+        other => {
+            let message = format!("only numbers are varied, and {} takes {}", quote(text), expected(other));
+            return Err(Diagnostic::new(message).at(written.node.place));
+        }
+    };
+    let one = |node: &Node| number(name, target.shape, node);
+    let (values, first, values_place) = match (given("values"), given("from"), given("to"), given("count")) {
+        (Some(values), None, None, None) => {
+            let items = if let Content::Sequence(items) = &values.node.content {
+                items.as_slice()
+            } else {
+                std::slice::from_ref(&values.node)
+            };
+            let Some(first) = items.first() else {
+                return Err(Diagnostic::new(format!("{} has no values", quote(name))).at(values.node.place));
+            };
+            (Values::Each(items.iter().map(one).collect::<Result<_, _>>()?), first.clone(), values.node.place)
+        }
+        (None, Some(from), Some(to), None) => {
+            let (low, high) = (one(&from.node)?, one(&to.node)?);
+            if low >= high {
+                let message = format!("`to` ({}) must be above `from` ({})", to.node.describe(), from.node.describe());
+                return Err(Diagnostic::new(message).at(to.node.place));
+            }
+            (Values::Between(low, high), from.node.clone(), from.node.place)
+        }
+        (None, Some(from), Some(_), Some(_)) => {
+            let ends = fields.iter().filter(|field| field.key != "field").cloned().collect();
+            let node = Node { content: Content::Mapping(ends), place: pair.node.place };
+            (Values::Each(spaced(name, target.shape, &node)?), from.node.clone(), from.node.place)
+        }
+        _ => {
+            let message = format!("{} needs its `values`, or `from` and `to`", quote(name));
+            return Err(Diagnostic::new(message)
+                .at(pair.place)
+                .help("write `values: […]`, `from: …, to: …, count: …`, or for random designs `from: …, to: …`"));
+        }
+    };
+    let unit = match (&first.content, dimension) {
+        (Content::Scalar { text, .. }, Some(dimension)) if dimension != RATIO => split_quantity(text).1.to_owned(),
+        _ => String::new(),
+    };
+    let (name, place) = (name.clone(), written.node.place);
+    let axis = Axis {
+        name,
+        path: text.to_owned(),
+        place,
+        stage: 0,
+        slot: Slot::default(),
+        dimension,
+        unit,
+        multiple,
+        values,
+        values_place,
+    };
+    Ok((axis, stage.to_owned(), first))
+}
+
+/// What the shape says of a number.
+fn measure<'a>(name: &'a str, shape: &Shape) -> Measure<'a> {
+    match *shape {
+        Shape::Quantity { dimension, minimum, maximum } => {
+            Measure { name, dimension: Some(dimension), minimum, maximum }
+        }
+        Shape::Number { minimum, maximum } => Measure { name, dimension: None, minimum, maximum },
+        Shape::Integer { minimum, maximum, .. } => {
+            Measure { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64 }
+        }
+        _ => Measure { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY },
+    }
+}
+
+fn number(name: &str, shape: &Shape, node: &Node) -> Result<f64, Diagnostic> {
+    match shape {
+        Shape::Integer { minimum, maximum, multiple } => {
+            Ok(integer(name, node, shape, (*minimum, *maximum), *multiple)? as f64)
+        }
+        _ => measure(name, shape).single(node),
+    }
+}
+
+/// The points of `{ from, to, count }`, which must be whole where the field is.
+fn spaced(name: &str, shape: &Shape, node: &Node) -> Result<Vec<f64>, Diagnostic> {
+    let values = match measure(name, shape).spaced(node)? {
+        declare::record::Value::Axis(values) => values,
+        _ => Vec::new(),
+    };
+    if let Shape::Integer { multiple, .. } = shape
+        && let Some(value) = values.iter().find(|value| *value % *multiple as f64 != 0.0)
+    {
+        let message = format!("{} takes whole numbers, multiples of {multiple}; {value} is none", quote(name));
+        return Err(Diagnostic::new(message).at(node.place).help("take another `count`, or write the `values`"));
+    }
+    Ok(values)
+}

@@ -1,0 +1,350 @@
+//! What all rows come to: main effects, maps of two fields, distributions, the best rows, the invalid ones.
+//!
+//! Rows pass by twice, part by part: first for their extremes, then for the counts between them, so that memory does not
+//! grow with their number. Quantiles are read off 1024 equal steps between the extremes and are right to one of them.
+//! Sums run in the order of the rows. Must not know: what a column means.
+
+use std::collections::BTreeMap;
+
+use super::Sweep;
+use super::counting::{BINS, Group, Moments, bin, quantile, without_numbers};
+use super::rows::REASON;
+use super::tables::{self, BestRow, Bin, EffectRow, InvalidRow, MapCell, Quantile, Share};
+use crate::stage::RowCount;
+use studygraph::table::data::{Data, Table, TableError};
+use studygraph::table::schema::Schema;
+
+/// How often all rows are read.
+pub const PASSES: usize = 2;
+/// Steps of the table `distribution`.
+const SHOWN_BINS: usize = 32;
+/// The most values or strata that a map has of a field.
+const MOST_OF_MAP: usize = 40;
+pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
+/// Reasons that are told apart.
+const MOST_REASONS: usize = 1000;
+/// Seconds that a row takes, twice read.
+pub const SECONDS_OF_ROW: f64 = 1e-6;
+
+/// What of the rows is kept.
+pub struct Tally<'s> {
+    sweep: &'s Sweep,
+    groups: Vec<Group>,
+    /// By output.
+    all: Vec<Moments>,
+    /// By field, group and output.
+    effects: Vec<Vec<Vec<Moments>>>,
+    /// Counts in steps, by field, group and output; and by output alone.
+    steps: Vec<Vec<Vec<Vec<u32>>>>,
+    whole: Vec<Vec<u64>>,
+    /// Of the objective, by pair of fields.
+    maps: Vec<([usize; 2], Vec<Moments>)>,
+    best: Vec<(f64, Vec<f64>)>,
+    invalid: BTreeMap<String, (u64, String, String)>,
+    rows: u64,
+    others: u64,
+}
+
+impl<'s> Tally<'s> {
+    pub fn new(sweep: &'s Sweep) -> Self {
+        let (groups, outputs) = (groups(sweep), sweep.outputs.len());
+        let effects = groups.iter().map(|group| vec![vec![Moments::default(); outputs]; group.len()]).collect();
+        let steps = groups.iter().map(|group| vec![vec![vec![0; BINS]; outputs]; group.len()]).collect();
+        let maps = pairs(&groups).into_iter().map(|pair| {
+            let cells = pair.map(|field| groups[field].len()).iter().product();
+            (pair, vec![Moments::default(); cells])
+        });
+        Self {
+            sweep,
+            all: vec![Moments::default(); outputs],
+            effects,
+            steps,
+            whole: vec![vec![0; BINS]; outputs],
+            maps: maps.collect(),
+            best: Vec::new(),
+            invalid: BTreeMap::new(),
+            rows: 0,
+            others: 0,
+            groups,
+        }
+    }
+
+    /// Takes the rows of a part; parts come in their order, all of them once in every pass.
+    pub fn add(&mut self, pass: usize, table: &Table) {
+        let sweep = self.sweep;
+        let fields: Vec<&Data> =
+            sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
+        let outputs: Vec<&[f64]> = sweep.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
+        let reasons = table.texts(REASON);
+        let mut at = vec![0; fields.len()];
+        for row in 0..table.rows() {
+            if !reasons[row].is_empty() {
+                if pass == 0 {
+                    self.rows += 1;
+                    self.add_invalid(&reasons[row], || described(sweep, &fields, row));
+                }
+                continue;
+            }
+            for (slot, (group, data)) in at.iter_mut().zip(self.groups.iter().zip(&fields)) {
+                *slot = group.at(number(data, row));
+            }
+            if pass == 0 {
+                self.rows += 1;
+                self.add_row(&at, &fields, &outputs, row);
+            } else {
+                self.count_row(&at, &outputs, row);
+            }
+        }
+    }
+
+    fn add_row(&mut self, at: &[usize], fields: &[&Data], outputs: &[&[f64]], row: usize) {
+        for (index, values) in outputs.iter().enumerate() {
+            let value = values[row];
+            if value.is_nan() {
+                continue;
+            }
+            self.all[index].add(value);
+            for (effects, group) in self.effects.iter_mut().zip(at) {
+                effects[*group][index].add(value);
+            }
+        }
+        let objective = outputs[self.sweep.objective][row];
+        if objective.is_nan() {
+            return;
+        }
+        for ([one, two], cells) in &mut self.maps {
+            cells[at[*one] * self.groups[*two].len() + at[*two]].add(objective);
+        }
+        let full = self.best.len() >= self.sweep.best;
+        if full && self.best.last().is_some_and(|(last, _)| objective.total_cmp(last).is_ge()) {
+            return;
+        }
+        // Of rows alike the first one stays ahead.
+        let place = self.best.partition_point(|(other, _)| other.total_cmp(&objective).is_le());
+        let values = fields.iter().map(|data| number(data, row)).chain(outputs.iter().map(|values| values[row]));
+        self.best.insert(place, (objective, values.collect()));
+        self.best.truncate(self.sweep.best);
+    }
+
+    fn count_row(&mut self, at: &[usize], outputs: &[&[f64]], row: usize) {
+        for (index, values) in outputs.iter().enumerate() {
+            let value = values[row];
+            if value.is_nan() {
+                continue;
+            }
+            let Moments { low, high, .. } = self.all[index];
+            self.whole[index][bin(value, low, high, BINS)] += 1;
+            for ((field, group), effects) in at.iter().enumerate().zip(&self.effects) {
+                let Moments { low, high, .. } = effects[*group][index];
+                self.steps[field][*group][index][bin(value, low, high, BINS)] += 1;
+            }
+        }
+    }
+
+    fn add_invalid(&mut self, reason: &str, row: impl Fn() -> String) {
+        let kind = without_numbers(reason);
+        if let Some((count, ..)) = self.invalid.get_mut(&kind) {
+            *count += 1;
+        } else if self.invalid.len() < MOST_REASONS {
+            self.invalid.insert(kind, (1, reason.to_owned(), row()));
+        } else {
+            self.others += 1;
+        }
+    }
+
+    /// What is told where nothing, or nothing valid, came of it.
+    pub fn warning(&self) -> Option<String> {
+        let invalid = self.invalid.values().map(|(count, ..)| count).sum::<u64>() + self.others;
+        let first = self.invalid.values().max_by_key(|(count, ..)| *count);
+        match (self.rows, first) {
+            (0, _) => Some("no row passes `where`".to_owned()),
+            (rows, Some((_, reason, row))) if invalid == rows => {
+                Some(format!("none of the {rows} rows is valid; {row}: {reason}"))
+            }
+            _ => None,
+        }
+    }
+
+    /// Variance of the means of a field's groups over the variance of all, of one output.
+    fn share(&self, field: usize, output: usize) -> f64 {
+        let all = &self.all[output];
+        if all.squares <= 0.0 || all.count < 2 {
+            return f64::NAN;
+        }
+        let between = |moments: &Moments| moments.count as f64 * (moments.mean - all.mean) * (moments.mean - all.mean);
+        let groups = self.effects[field].iter().map(|outputs| &outputs[output]).filter(|moments| moments.count > 0);
+        let (sum, count) = groups.fold((0.0, 0.0), |(sum, count), moments| (sum + between(moments), count + 1.0));
+        let share = sum / all.squares;
+        if !self.sweep.layout.is_drawn() || all.count as f64 <= count {
+            return share;
+        }
+        // A few rows in every stratum differ by chance: Kelley's correction (PNAS 21 (1935) 554).
+        1.0 - (1.0 - share) * (all.count as f64 - 1.0) / (all.count as f64 - count)
+    }
+
+    /// The tables, without that of the rows.
+    ///
+    /// # Errors
+    /// As [`Table::from_columns`].
+    pub fn tables(self) -> Result<Vec<Table>, TableError> {
+        let sweep = self.sweep;
+        let (mut effects, mut shares, mut quantiles, mut bins) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+        for (output, asked) in sweep.outputs.iter().enumerate() {
+            let name = asked.column.name.as_str();
+            for (field, column) in sweep.layout.columns.iter().enumerate() {
+                shares.push(Share { field: &column.axis.name, output: name, share: self.share(field, output) });
+                for group in 0..self.groups[field].len() {
+                    let moments = &self.effects[field][group][output];
+                    if moments.count == 0 {
+                        continue;
+                    }
+                    let steps: Vec<u64> =
+                        self.steps[field][group][output].iter().map(|count| u64::from(*count)).collect();
+                    effects.push(EffectRow {
+                        field: &column.axis.name,
+                        value: self.groups[field].value(group),
+                        output: name,
+                        count: moments.count,
+                        mean: moments.mean,
+                        deviation: (moments.squares / moments.count as f64).sqrt(),
+                        quantiles: QUANTILES.map(|share| quantile(&steps, moments, share)),
+                    });
+                }
+            }
+            let moments = &self.all[output];
+            if moments.count == 0 {
+                continue;
+            }
+            quantiles.extend(QUANTILES.map(|share| {
+                let value = quantile(&self.whole[output], moments, share);
+                Quantile { output: name, share, value }
+            }));
+            let width = (moments.high - moments.low) / SHOWN_BINS as f64;
+            bins.extend(self.whole[output].chunks(BINS / SHOWN_BINS).enumerate().map(|(at, counts)| Bin {
+                output: name,
+                bin: at + 1,
+                from: moments.low + width * at as f64,
+                to: moments.low + width * (at + 1) as f64,
+                count: counts.iter().sum(),
+            }));
+        }
+        let mut cells = Vec::new();
+        for ([one, two], all) in &self.maps {
+            let across = self.groups[*two].len();
+            let filled = all.iter().enumerate().filter(|(_, moments)| moments.count > 0);
+            cells.extend(filled.map(|(at, moments)| MapCell {
+                output: &sweep.outputs[sweep.objective].column.name,
+                fields: [one, two].map(|field| sweep.layout.columns[*field].axis.name.as_str()),
+                values: [self.groups[*one].value(at / across), self.groups[*two].value(at % across)],
+                count: moments.count,
+                mean: moments.mean,
+                low: moments.low,
+            }));
+        }
+        let best: Vec<BestRow> = (1..).zip(self.best).map(|(rank, (_, values))| BestRow { rank, values }).collect();
+        let mut invalid: Vec<InvalidRow> = self
+            .invalid
+            .into_iter()
+            .map(|(reason, (count, example, row))| InvalidRow { reason, count, example, row })
+            .collect();
+        if self.others > 0 {
+            let (reason, text) = ("others".to_owned(), String::new());
+            invalid.push(InvalidRow { reason, count: self.others, example: text.clone(), row: text });
+        }
+        Ok(vec![
+            tables::best(sweep).table(&best)?,
+            tables::effects().table(&effects)?,
+            tables::shares().table(&shares)?,
+            tables::maps().table(&cells)?,
+            tables::distribution().table(&bins)?,
+            tables::quantiles().table(&quantiles)?,
+            tables::invalid().table(&invalid)?,
+        ])
+    }
+}
+
+/// The schemas of these tables, in their order.
+pub fn schemas(sweep: &Sweep) -> Vec<Schema> {
+    vec![
+        tables::best(sweep).schema(),
+        tables::effects().schema(),
+        tables::shares().schema(),
+        tables::maps().schema(),
+        tables::distribution().schema(),
+        tables::quantiles().schema(),
+        tables::invalid().schema(),
+    ]
+}
+
+/// Their tables without rows.
+///
+/// # Errors
+/// As [`Table::from_rows`].
+pub fn empty(sweep: &Sweep) -> Result<Vec<Table>, TableError> {
+    schemas(sweep).into_iter().map(|schema| Table::from_rows(schema, Vec::new())).collect()
+}
+
+/// How many rows they have, in the order of [`schemas`].
+pub fn foreseen(sweep: &Sweep) -> Vec<RowCount> {
+    let (groups, outputs) = (groups(sweep), sweep.outputs.len());
+    let values: usize = groups.iter().map(Group::len).sum();
+    let cells =
+        pairs(&groups).into_iter().map(|pair| pair.map(|field| groups[field].len()).iter().product::<usize>()).sum();
+    vec![
+        RowCount::at_most(sweep.best.min(sweep.layout.count())),
+        RowCount::at_most(values * outputs),
+        RowCount::exact(groups.len() * outputs),
+        RowCount::at_most(cells),
+        RowCount::at_most(SHOWN_BINS * outputs),
+        RowCount::at_most(QUANTILES.len() * outputs),
+        RowCount::at_most(MOST_REASONS.min(sweep.layout.count())),
+    ]
+}
+
+/// Bytes that counting takes.
+pub fn held(sweep: &Sweep) -> u64 {
+    let values: usize = groups(sweep).iter().map(Group::len).sum();
+    (values * sweep.outputs.len() * (4 * BINS + size_of::<Moments>())) as u64
+}
+
+fn groups(sweep: &Sweep) -> Vec<Group> {
+    let of = |column: usize| match (sweep.layout.levels(column), sweep.layout.drawn_between(column)) {
+        (Some(levels), _) => {
+            let mut values: Vec<f64> = levels.iter().map(|level| level.shown).collect();
+            values.sort_by(f64::total_cmp);
+            values.dedup();
+            if values.len() <= MOST_VALUES {
+                return Group::Each(values);
+            }
+            Group::Strata { low: values[0], high: values[values.len() - 1] }
+        }
+        (None, Some([low, high])) => Group::Strata { low, high },
+        (None, None) => Group::Strata { low: 0.0, high: 1.0 },
+    };
+    (0..sweep.layout.columns.len()).map(of).collect()
+}
+
+/// Values of a field that are looked at one by one.
+const MOST_VALUES: usize = 200;
+
+/// Pairs of fields of which a map is made: those that have few enough values.
+fn pairs(groups: &[Group]) -> Vec<[usize; 2]> {
+    let few = |field: &usize| groups[*field].len() <= MOST_OF_MAP;
+    let fields: Vec<usize> = (0..groups.len()).filter(few).collect();
+    fields.iter().enumerate().flat_map(|(at, one)| fields[at + 1..].iter().map(move |two| [*one, *two])).collect()
+}
+
+fn number(data: &Data, row: usize) -> f64 {
+    match data {
+        Data::Float(values) => values[row],
+        Data::Integer(values) => values[row] as f64,
+        _ => f64::NAN,
+    }
+}
+
+fn described(sweep: &Sweep, fields: &[&Data], row: usize) -> String {
+    let one = |(column, data): (&super::layout::Column, &&Data)| {
+        format!("{} = {} {}", column.axis.name, data.cell(row), column.axis.unit).trim().to_owned()
+    };
+    sweep.layout.columns.iter().zip(fields).map(one).collect::<Vec<_>>().join(", ")
+}

@@ -1,0 +1,436 @@
+//! The short way to what a curve of the transmission error amounts to: designs and load cases by themselves, no tables
+//! between them, and nothing that is not asked.
+//!
+//! It is taken where the asked stage is one that loads a pair under a torque, as its fields say, and every asked column is
+//! one of those below. The numbers are those of the stage, to the last bit but for what `asked.rs` of the kernels says of
+//! extremes. Must not know: where rows come from.
+
+use super::chain::{Chain, Tables, Trouble};
+use super::layout::{Class, Column};
+use super::output::Output;
+use crate::stage::common::{self, Contact, Slices};
+use crate::stage::designs::{self, Element, NamedDesign};
+use crate::stage::names::summary;
+use crate::stage::{Context, Inputs};
+use declare::declared::Declared;
+use declare::error::{Failure, suggest};
+use declare::record::{PlacedValue, Record, Value};
+use declare::units::{in_unit, showing};
+use gearmesh::gear::geometry::GearPair;
+use gearmesh::gear::modification::template::Template;
+use gearmesh::gear::modification::{self, Design};
+use gearmesh::gear::transmission_error::asked::{Asked, Found};
+use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
+use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
+
+/// Names of fields and tables of the stage that loads a pair, and of the one that has the designs.
+const TORQUE: &str = "torque";
+const POSITIONS: &str = "positions";
+const HARMONICS: &str = "harmonics";
+const ACCURACY: &str = "accuracy";
+const DESIGNS: &str = "designs";
+const ORDER: &str = "order";
+const AMPLITUDE: &str = "amplitude";
+
+/// A number of a curve, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Get {
+    Mean,
+    PeakToPeak,
+    Maximum,
+    Minimum,
+    Variance,
+    ReciprocalVariance,
+    Unloaded,
+    ContactRatio,
+    LoadShare,
+    Pressure,
+    PressurePosition,
+    PressureRoll,
+    PressureZ,
+    PressureHalfWidth,
+    Positions,
+    Slices,
+    ErrorEstimate,
+    Harmonic(usize),
+}
+
+fn getter(output: &Output) -> Option<Get> {
+    let of_summary = output.cell.table == summary::TABLE && output.cell.conditions.is_empty();
+    match output.cell.column.as_str() {
+        AMPLITUDE if output.cell.table == HARMONICS => match &output.cell.conditions[..] {
+            [(key, order)] if key == ORDER => order.parse().ok().filter(|order| *order > 0).map(Get::Harmonic),
+            _ => None,
+        },
+        _ if !of_summary => None,
+        "mean" => Some(Get::Mean),
+        "peak_to_peak" => Some(Get::PeakToPeak),
+        "maximum" => Some(Get::Maximum),
+        "minimum" => Some(Get::Minimum),
+        "variance" => Some(Get::Variance),
+        "reciprocal_variance" => Some(Get::ReciprocalVariance),
+        "unloaded_peak_to_peak" => Some(Get::Unloaded),
+        "loaded_contact_ratio" => Some(Get::ContactRatio),
+        "largest_load_share" => Some(Get::LoadShare),
+        summary::LARGEST_PRESSURE => Some(Get::Pressure),
+        "pressure_position" => Some(Get::PressurePosition),
+        "pressure_roll_angle" => Some(Get::PressureRoll),
+        "pressure_z" => Some(Get::PressureZ),
+        "pressure_half_width" => Some(Get::PressureHalfWidth),
+        "positions" => Some(Get::Positions),
+        "slices" => Some(Get::Slices),
+        "error_estimate" => Some(Get::ErrorEstimate),
+        _ => None,
+    }
+}
+
+type Shown = Box<dyn Fn(f64) -> f64 + Send + Sync>;
+
+/// The short way of a sweep.
+pub struct Quick {
+    gets: Vec<(Get, Shown)>,
+    /// The columns of the torque and of the design.
+    torque: Option<usize>,
+    fixed_torque: f64,
+    source: DesignSource,
+    /// Of the asked stage.
+    last: usize,
+}
+
+/// Where the designs of rows come from.
+enum DesignSource {
+    /// The tables behind a port of the asked stage, which are those of a run.
+    Tables,
+    /// The record of a stage that has them: the link, and for each of its values that is varied its column, and the template's
+    /// variable or none.
+    Record { link: usize, template: Option<(Template, Vec<usize>)> },
+}
+
+/// What rows with the same pair and compliances share.
+pub struct Upstream {
+    pair: GearPair,
+    base: MeshCycle,
+    design: Option<Design>,
+}
+
+/// What the rows before left behind.
+#[derive(Default)]
+pub struct Before {
+    settings: Option<(Vec<u64>, Settings, usize, MeshCycle)>,
+    design: Option<(Vec<u64>, Result<Design, String>)>,
+}
+
+impl Quick {
+    /// None where the long way must be gone.
+    pub fn new(chain: &Chain, columns: &[Column], outputs: &[Output], design: Option<&str>) -> Option<Self> {
+        let last = chain.links.len() - 1;
+        let record = &chain.links[last].record;
+        let Value::Axis(torques) = &record.entry(TORQUE)?.value else { return None };
+        if record.entry(ACCURACY).is_some() || record.entry(DESIGNS).is_none() {
+            return None;
+        }
+        let Value::Integer(harmonics) = record.entry(HARMONICS)?.value else { return None };
+        let get = |output: &Output| Some((getter(output)?, Box::new(showing(&output.column.unit)) as Shown));
+        let gets = outputs.iter().map(get).collect::<Option<Vec<_>>>()?;
+        let varies_harmonics = columns.iter().any(|column| is_at(column, last, record, HARMONICS));
+        let beyond = |get: &Get| matches!(get, Get::Harmonic(order) if i64::try_from(*order).map_or(true, |order| order > harmonics));
+        if varies_harmonics || gets.iter().any(|(get, _)| beyond(get)) {
+            return None;
+        }
+        let torque = columns.iter().position(|column| column.class == Class::Torque);
+        let has = |link: &usize| design.is_some_and(|design| names(&chain.links[*link].record).contains(&design));
+        let source = match chain.ports(last).filter_map(|port| chain.read_by(last, port)).find(has).zip(design) {
+            Some((link, design)) => {
+                DesignSource::Record { link, template: template(&chain.links[link].record, columns, link, design) }
+            }
+            None => DesignSource::Tables,
+        };
+        Some(Self { gets, torque, fixed_torque: torques[0], source, last })
+    }
+
+    /// The link whose record has the designs: it need not be run.
+    pub fn skips(&self) -> Option<usize> {
+        if let DesignSource::Record { link, .. } = self.source { Some(link) } else { None }
+    }
+
+    /// What a row's pair and compliances come to.
+    ///
+    /// # Errors
+    /// When the pair cannot be loaded, or the designs cannot be read.
+    pub fn upstream(
+        &self,
+        chain: &Chain,
+        tables: &Tables,
+        outer: &Inputs,
+        design: Option<&str>,
+    ) -> Result<Upstream, Trouble> {
+        let link = &chain.links[self.last];
+        let of = |failure| Trouble::of(link.kind.name, failure);
+        let inputs = chain.inputs(self.last, tables, outer);
+        let (pair, base) = common::mesh_cycle(&inputs, sampling(&link.record)).map_err(of)?;
+        let design = match self.source {
+            DesignSource::Record { .. } => None,
+            DesignSource::Tables => {
+                let mut all: Vec<NamedDesign> = Vec::new();
+                for port in inputs.ports.keys().filter(|port| port.starts_with(DESIGNS)) {
+                    all.extend(designs::of(&inputs, port, modification::members()).map_err(Trouble::Failed)?);
+                }
+                let names: Vec<&str> = all.iter().map(|named| named.name.as_str()).collect();
+                let meant: Vec<_> =
+                    all.iter().filter(|named| design.is_none_or(|design| named.name == design)).collect();
+                let [only] = meant[..] else {
+                    let message = match design {
+                        Some(design) => format!("there is no design `{design}`; {}", suggest(design, names)),
+                        None => {
+                            format!("a row has one design; say with `design` which one is meant: {}", names.join(", "))
+                        }
+                    };
+                    return Err(Trouble::Failed(Failure::new(message)));
+                };
+                Some(only.built(&pair).map_err(of)?)
+            }
+        };
+        Ok(Upstream { pair, base, design })
+    }
+
+    /// The asked numbers of a row, as their columns show them.
+    ///
+    /// # Errors
+    /// Why there are none.
+    pub fn row(
+        &self,
+        (chain, columns): (&Chain, &[Column]),
+        upstream: &Upstream,
+        before: &mut Before,
+        row: &[f64],
+        found: &mut Vec<f64>,
+    ) -> Result<(), String> {
+        let bits = |class: Class| -> Vec<u64> {
+            let own = columns.iter().zip(row).filter(|(column, _)| column.class == class);
+            own.map(|(_, value)| value.to_bits()).collect()
+        };
+        let key = bits(Class::Sampling);
+        if before.settings.as_ref().is_none_or(|(old, ..)| *old != key) {
+            let record = chain.record(self.last, columns, row);
+            let settings = sampling(&record);
+            let Value::Integer(harmonics) =
+                record.entry(HARMONICS).map_or(Value::Integer(0), |entry| entry.value.clone())
+            else {
+                return Err("the number of harmonics is not known".to_owned());
+            };
+            common::check_slices(settings, &record).map_err(|wrong| wrong.message)?;
+            let cycle = upstream.base.sampled(settings);
+            before.settings = Some((key, settings, usize::try_from(harmonics).unwrap_or(0), cycle));
+        }
+        let Some((_, settings, harmonics, cycle)) = &before.settings else { return Err(String::new()) };
+        let design = match (&upstream.design, &self.source) {
+            (Some(design), _) => design,
+            (None, DesignSource::Tables) => return Err("there is no design".to_owned()),
+            (None, DesignSource::Record { link, template }) => {
+                let key = bits(Class::Design);
+                if before.design.as_ref().is_none_or(|(old, _)| *old != key) {
+                    let built = match template {
+                        Some((template, variables)) => {
+                            let values: Vec<f64> = variables.iter().map(|column| row[*column]).collect();
+                            template.design(&upstream.pair, &values).map_err(|wrong| wrong.message)
+                        }
+                        None => by_record(&chain.record(*link, columns, row), &upstream.pair),
+                    };
+                    before.design =
+                        Some((key, built.map_err(|message| format!("{}: {message}", chain.links[*link].kind.name))));
+                }
+                match &before.design {
+                    Some((_, Ok(design))) => design,
+                    Some((_, Err(message))) => return Err(message.clone()),
+                    None => return Err(String::new()),
+                }
+            }
+        };
+        let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
+        let said = |message| format!("{}: {message}", chain.links[self.last].kind.name);
+        self.of_curve(cycle, design, torque, (*settings, *harmonics), found).map_err(said)
+    }
+
+    fn of_curve(
+        &self,
+        cycle: &MeshCycle,
+        design: &Design,
+        torque: f64,
+        (settings, harmonics): (Settings, usize),
+        found: &mut Vec<f64>,
+    ) -> Result<(), String> {
+        let loading = LoadCase::new(cycle, design, torque);
+        let asks = |wanted: &[Get]| self.gets.iter().any(|(get, _)| wanted.contains(get));
+        let pressure =
+            [Get::Pressure, Get::PressurePosition, Get::PressureRoll, Get::PressureZ, Get::PressureHalfWidth];
+        let pressure = asks(&pressure);
+        let shares = asks(&[Get::ContactRatio, Get::LoadShare]);
+        let (curve, of_pairs) = if shares {
+            let wanted = Wanted { harmonics, pressure, root_stress: false };
+            let summary = loading.summary(wanted);
+            let of_pairs = [summary.loaded_contact_ratio, summary.largest_load_share];
+            (of_summary(summary), of_pairs)
+        } else {
+            let orders = self.gets.iter().map(|(get, _)| if let Get::Harmonic(order) = get { *order } else { 0 });
+            let asked = Asked {
+                integrals: asks(&[Get::Mean, Get::Variance, Get::ReciprocalVariance]),
+                harmonics: orders.max().unwrap_or(0),
+                spans_for: harmonics,
+                pressure,
+                unloaded: asks(&[Get::Unloaded]),
+            };
+            (loading.asked(asked), [f64::NAN; 2])
+        };
+        if !loading.holds(curve.largest.value) {
+            let (found, maximum) = (in_unit(curve.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
+            return Err(format!(
+                "the gears approach by {found:.6} mm, but `corner_contact: exact` holds up to {maximum:.6} mm only"
+            ));
+        }
+        let peak_to_peak = curve.largest.value - curve.smallest.value;
+        for (get, shown) in &self.gets {
+            let of_pressure = |get: fn(&gearmesh::gear::transmission_error::pressure::LargestPressure) -> f64| {
+                curve.pressure.as_ref().map_or(f64::NAN, get)
+            };
+            let value = match get {
+                Get::Mean => curve.mean,
+                Get::PeakToPeak => peak_to_peak,
+                Get::Maximum => curve.largest.value,
+                Get::Minimum => curve.smallest.value,
+                Get::Variance => curve.variance,
+                Get::ReciprocalVariance => {
+                    if curve.variance > 0.0 {
+                        1.0 / curve.variance
+                    } else {
+                        f64::NAN
+                    }
+                }
+                Get::Unloaded => curve.unloaded_peak_to_peak,
+                Get::ContactRatio => of_pairs[0],
+                Get::LoadShare => of_pairs[1],
+                Get::Pressure => of_pressure(|largest| largest.extremum.value),
+                Get::PressurePosition => of_pressure(|largest| largest.extremum.position),
+                Get::PressureRoll => of_pressure(|largest| largest.roll_angle),
+                Get::PressureZ => of_pressure(|largest| largest.across.unwrap_or(f64::NAN)),
+                Get::PressureHalfWidth => of_pressure(|largest| largest.contact.half_width),
+                Get::Positions => settings.positions as f64,
+                Get::Slices => settings.slices as f64,
+                Get::ErrorEstimate => {
+                    let sliced = loading.uses_slices();
+                    let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
+                        LoadCase::new(&cycle.sampled(settings), design, torque).peak_to_peak()
+                    });
+                    sampled.know(settings, peak_to_peak);
+                    sampled.error(settings)
+                }
+                Get::Harmonic(order) => curve.harmonics[order - 1],
+            };
+            if value.is_infinite() {
+                return Err("a number is beyond what the model holds".to_owned());
+            }
+            found.push(shown(value));
+        }
+        Ok(())
+    }
+}
+
+fn of_summary(summary: Summary) -> Found {
+    Found {
+        largest: summary.largest,
+        smallest: summary.smallest,
+        mean: summary.mean,
+        variance: summary.variance,
+        harmonics: summary.harmonics,
+        pressure: summary.largest_pressure,
+        unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
+    }
+}
+
+/// How the record of the asked stage has its curves sampled, where it has curves.
+pub fn sampling(record: &Record) -> Settings {
+    let positions = match record.entry(POSITIONS).map(|entry| &entry.value) {
+        Some(Value::Integer(positions)) => usize::try_from(*positions).unwrap_or(0),
+        _ => Settings::default().positions,
+    };
+    common::settings(positions, Slices::read(record), Contact::read(record))
+}
+
+/// Whether a record has designs by name.
+fn has_designs(record: &Record) -> bool {
+    record.entry(DESIGNS).is_some_and(|entry| matches!(entry.value, Value::Map(_)))
+}
+
+/// Whether a column varies a field of the stage `link` itself.
+pub fn is_at(column: &Column, link: usize, record: &Record, field: &str) -> bool {
+    let position = record.fields.iter().position(|(name, _)| *name == field);
+    column.axis.stage == link && column.axis.slot.0.first().copied() == position
+}
+
+/// How long it takes to go on to another value of a field of a stage; `is_last` of the asked one.
+pub fn class(record: &Record, is_last: bool, slot: &[usize]) -> Class {
+    let field = slot.first().and_then(|first| record.fields.get(*first)).map(|(name, _)| *name);
+    match field {
+        Some(DESIGNS) if !is_last && has_designs(record) => Class::Design,
+        Some(TORQUE) if is_last && record.entry(DESIGNS).is_some() => Class::Torque,
+        _ if is_last => Class::Sampling,
+        _ => Class::Upstream,
+    }
+}
+
+/// The names of the designs that a record has.
+pub fn names(record: &Record) -> Vec<&str> {
+    match record.entry(DESIGNS).map(|entry| &entry.value) {
+        Some(Value::Map(entries)) => entries.iter().map(|(name, _)| name.as_str()).collect(),
+        _ => Vec::new(),
+    }
+}
+
+/// The torques of the asked stage, where it has several and none is varied.
+pub fn several_torques(record: &Record) -> Option<&PlacedValue> {
+    let entry = record.entry(TORQUE).filter(|_| record.entry(DESIGNS).is_some())?;
+    matches!(&entry.value, Value::Axis(torques) if torques.len() > 1).then_some(entry)
+}
+
+fn elements<'r>(record: &'r Record, design: &str) -> Option<&'r [PlacedValue]> {
+    let Value::Map(entries) = &record.entry(DESIGNS)?.value else { return None };
+    let (_, entry) = entries.iter().find(|(name, _)| name == design)?;
+    if let Value::List(items) = &entry.value { Some(items) } else { None }
+}
+
+/// The design as a template, and the columns of its variables; none where something other than a number of a modification
+/// is varied, which no template has.
+fn template(record: &Record, columns: &[Column], link: usize, design: &str) -> Option<(Template, Vec<usize>)> {
+    let mut items = elements(record, design)?.to_vec();
+    let mut slots = Vec::new();
+    for (index, column) in columns.iter().enumerate().filter(|(_, column)| column.axis.stage == link) {
+        let [_, _, item, field] = column.axis.slot.0[..] else { return None };
+        let Value::Member(_, record) = &mut items.get_mut(item)?.value else { return None };
+        let entry = &mut record.fields.get_mut(field)?.1;
+        let (Value::Quantity(value) | Value::Number(value)) = entry.value else { return None };
+        // Which of the two does not matter: a value stands there before anybody looks.
+        entry.value = Value::Range(value, value);
+        slots.push(((item, field), index));
+    }
+    slots.sort_unstable();
+    let template = Template::new(&items).ok()?;
+    let fits = template.variables().len() == slots.len();
+    fits.then(|| (template, slots.into_iter().map(|(_, index)| index).collect()))
+}
+
+/// The only design of a record.
+fn by_record(record: &Record, pair: &GearPair) -> Result<Design, String> {
+    let name = names(record).first().map_or_else(String::new, |name| (*name).to_owned());
+    let of = |item: &PlacedValue| match &item.value {
+        Value::Member(family, record) => Some(Element { family, record: record.clone() }),
+        _ => None,
+    };
+    let elements = elements(record, &name).unwrap_or_default().iter().filter_map(of).collect();
+    NamedDesign { name, elements }.built(pair).map_err(|failure| failure.to_string())
+}
+
+/// Adds the work that the load cases of a pair did.
+pub fn count(context: &Context, upstream: &Upstream) {
+    context.work.add(&upstream.base.work());
+}

@@ -1,0 +1,323 @@
+//! The rows of a part: taken over where an earlier part had them, computed where none had.
+//!
+//! Rows with the same pair and compliances come behind each other, so those are found once and kept as long as they are
+//! needed. Every row is a function of its values alone, so neither threads nor parts enter it. Must not know: how a number is
+//! found.
+
+use rayon::prelude::*;
+
+use super::Sweep;
+use super::chain::{Tables, Trouble};
+use super::layout::Class;
+use super::quick::{self, Before, Quick, Upstream};
+use super::values::RowSet;
+use crate::stage::{Context, Inputs, Others};
+use declare::error::Failure;
+use declare::work::{Counter, Work};
+use studygraph::stage::steps::Steps;
+use studygraph::table::data::{Cell, Data, Table, TableError};
+use studygraph::table::schema::{Column, Schema};
+
+pub const TABLE: &str = "rows";
+pub const NUMBER: &str = "sample";
+pub const REASON: &str = "reason";
+
+/// Rows that were computed, and rows that an earlier part had.
+pub static ROWS_COMPUTED: Counter = Counter { name: "sweep_rows_computed", seconds: 0.0, adds: true };
+pub static ROWS_TAKEN_OVER: Counter = Counter { name: "sweep_rows_taken_over", seconds: 0.0, adds: true };
+
+/// Rows that a thread computes at a stretch.
+const AT_ONCE: usize = 32;
+/// Pairs with their compliances that are held at once, for each thread.
+const UPSTREAM_AT_ONCE: usize = 4;
+
+/// The number of a row or its values, its asked numbers, and why there are none.
+pub fn schema(sweep: &Sweep) -> Schema {
+    let drawn = sweep.layout.is_drawn();
+    let number = Column::integer(NUMBER, "Counts the designs in the order in which they are drawn, from 1.").key();
+    let mut columns = if drawn { vec![number] } else { Vec::new() };
+    for column in &sweep.layout.columns {
+        let (name, description) = (&column.axis.name, format!("Value of `{}`.", column.axis.path));
+        let column = if column.axis.multiple.is_some() {
+            Column::integer(name, &description)
+        } else {
+            Column::float(name, &column.axis.unit, &description)
+        };
+        columns.push(if drawn { column } else { column.key() });
+    }
+    columns.extend(sweep.outputs.iter().map(|output| output.column.clone()));
+    columns.push(Column::text(REASON, "Why there are no numbers; empty where there are."));
+    Schema::new(TABLE, "Every design with the numbers that are asked of it.", columns)
+}
+
+/// What was found of a row.
+type Answer = Result<Vec<f64>, String>;
+
+/// The table of a part.
+///
+/// # Errors
+/// When the user stopped, the filter cannot be evaluated, or the sweep cannot go on at all.
+pub fn table(
+    sweep: &Sweep,
+    part: usize,
+    (context, inputs): (&Context, &Inputs),
+    others: &dyn Others,
+) -> Result<Table, Failure> {
+    let rows = sweep.layout.rows(part, &context.seed)?;
+    let mut answers: Vec<Option<Answer>> = vec![None; rows.len()];
+    take_over(sweep, &rows, others, &mut answers);
+    let missing: Vec<usize> = (0..rows.len()).filter(|row| answers[*row].is_none()).collect();
+    let work = Work::of(&ROWS_COMPUTED, missing.len()).with(&ROWS_TAKEN_OVER, rows.len() - missing.len());
+    context.work.add(&work);
+    let steps = Steps::new(context, missing.len());
+    for groups in groups(sweep, &rows, &missing).chunks(UPSTREAM_AT_ONCE * rayon::current_num_threads()) {
+        compute(sweep, &rows, groups, (context, inputs), &steps, &mut answers)?;
+    }
+    made(sweep, &rows, answers).map_err(|error| Failure::new(error.to_string()))
+}
+
+/// Stretches of missing rows with the same pair and compliances.
+fn groups<'m>(sweep: &Sweep, rows: &RowSet, missing: &'m [usize]) -> Vec<&'m [usize]> {
+    let is_upstream: Vec<bool> = sweep.layout.columns.iter().map(|column| column.class == Class::Upstream).collect();
+    let same = |one: &usize, two: &usize| {
+        let pairs = rows.shown(*one).iter().zip(rows.shown(*two)).zip(&is_upstream);
+        pairs.filter(|(_, is)| **is).all(|((one, two), _)| one.to_bits() == two.to_bits())
+    };
+    missing.chunk_by(same).collect()
+}
+
+fn compute(
+    sweep: &Sweep,
+    rows: &RowSet,
+    groups: &[&[usize]],
+    (context, inputs): (&Context, &Inputs),
+    steps: &Steps,
+    answers: &mut [Option<Answer>],
+) -> Result<(), Failure> {
+    type Found = (Tables, Option<Upstream>);
+    let upstream = |group: &&[usize]| -> Result<Result<Found, String>, Failure> {
+        context.check_stop()?;
+        match found_upstream(sweep, rows.si(group[0]), context, inputs) {
+            Ok(found) => Ok(Ok(found)),
+            Err(Trouble::Invalid(reason)) => Ok(Err(reason)),
+            Err(Trouble::Failed(failure)) => Err(failure),
+        }
+    };
+    let found: Vec<Result<Found, String>> = groups.par_iter().map(upstream).collect::<Result<_, _>>()?;
+    let blocks: Vec<(usize, &[usize])> = groups
+        .iter()
+        .enumerate()
+        .flat_map(|(group, rows)| rows.chunks(AT_ONCE).map(move |block| (group, block)))
+        .collect();
+    let of_block = |(group, block): &(usize, &[usize])| -> Result<Vec<Answer>, Failure> {
+        context.check_stop()?;
+        let mut before = Before::default();
+        let mut all = Vec::with_capacity(block.len());
+        for row in *block {
+            all.push(match &found[*group] {
+                Err(reason) => Err(reason.clone()),
+                Ok((tables, upstream)) => {
+                    let row = rows.si(*row);
+                    match one(sweep, row, (tables, upstream.as_ref()), &mut before, (context, inputs)) {
+                        Ok(values) => Ok(values),
+                        Err(Trouble::Invalid(reason)) => Err(reason),
+                        Err(Trouble::Failed(failure)) => return Err(failure),
+                    }
+                }
+            });
+            steps.done();
+        }
+        Ok(all)
+    };
+    let computed: Vec<Vec<Answer>> = blocks.par_iter().map(of_block).collect::<Result<_, _>>()?;
+    for ((_, block), all) in blocks.iter().zip(computed) {
+        for (row, answer) in block.iter().zip(all) {
+            answers[*row] = Some(answer);
+        }
+    }
+    found
+        .iter()
+        .flatten()
+        .filter_map(|(_, upstream)| upstream.as_ref())
+        .for_each(|upstream| quick::count(context, upstream));
+    Ok(())
+}
+
+/// What rows with these values share: the tables of the stages that no other value changes.
+fn found_upstream(
+    sweep: &Sweep,
+    row: &[f64],
+    context: &Context,
+    inputs: &Inputs,
+) -> Result<(Tables, Option<Upstream>), Trouble> {
+    let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
+    let mut tables: Tables = (0..chain.links.len()).map(|_| None).collect();
+    for link in 0..chain.links.len() - 1 {
+        let is_shared = columns.iter().all(|column| column.axis.stage != link || column.class == Class::Upstream);
+        let is_skipped = sweep.quick.as_ref().and_then(Quick::skips) == Some(link);
+        if is_shared && !is_skipped && chain.can_run(link, &tables) {
+            tables[link] = Some(chain.run(link, (columns, row), &tables, (context, inputs))?);
+        }
+    }
+    let quick = sweep.quick.as_ref();
+    let upstream = quick.map(|quick| quick.upstream(chain, &tables, inputs, sweep.design.as_deref())).transpose()?;
+    Ok((tables, upstream))
+}
+
+/// The numbers of a row.
+fn one(
+    sweep: &Sweep,
+    row: &[f64],
+    (tables, upstream): (&Tables, Option<&Upstream>),
+    before: &mut Before,
+    (context, inputs): (&Context, &Inputs),
+) -> Result<Vec<f64>, Trouble> {
+    let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
+    let mut values = Vec::with_capacity(sweep.outputs.len());
+    if let (Some(quick), Some(upstream)) = (&sweep.quick, upstream) {
+        quick.row((chain, columns), upstream, before, row, &mut values).map_err(Trouble::Invalid)?;
+        return Ok(values);
+    }
+    let mut tables = tables.clone();
+    for link in 0..chain.links.len() {
+        if tables[link].is_none() {
+            tables[link] = Some(chain.run(link, (columns, row), &tables, (context, inputs))?);
+        }
+    }
+    let last = tables.pop().flatten().unwrap_or_default();
+    for output in &sweep.outputs {
+        let value =
+            output.take(&last, sweep.design.as_deref()).map_err(|problem| Trouble::Failed(Failure::new(problem)))?;
+        values.push(value);
+    }
+    Ok(values)
+}
+
+/// Fills in what tables of earlier parts know; both are in the order of their keys.
+fn take_over(sweep: &Sweep, rows: &RowSet, others: &dyn Others, answers: &mut [Option<Answer>]) {
+    let (Some(first), Some(last)) = ((rows.len() > 0).then_some(0), rows.len().checked_sub(1)) else { return };
+    let schema = &sweep.schema;
+    let keys: Vec<usize> = schema.key_columns().collect();
+    for table in others.earlier(TABLE, &key(sweep, rows, first), &key(sweep, rows, last)) {
+        if table.schema() != schema {
+            continue;
+        }
+        let known = Known::of(sweep, &table);
+        let mut at = 0;
+        for (row, answer) in answers.iter_mut().enumerate().filter(|(_, answer)| answer.is_none()) {
+            let wanted = key(sweep, rows, row);
+            let order = |at: usize| {
+                let cells = keys.iter().map(|key| table.columns()[*key].cell(at));
+                let pairs = cells.zip(&wanted).map(|(cell, wanted)| ordered(&cell, wanted));
+                pairs.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
+            };
+            // Rows come in their order, so what is behind stays behind.
+            let mut step = 1;
+            while at + step < table.rows() && order(at + step).is_lt() {
+                step *= 2;
+            }
+            let (mut low, mut high) = (at, (at + step).min(table.rows()));
+            while low < high {
+                let middle = usize::midpoint(low, high);
+                if order(middle).is_lt() { low = middle + 1 } else { high = middle }
+            }
+            at = low;
+            if at < table.rows() && order(at).is_eq() && known.has(at, rows.shown(row)) {
+                *answer = Some(known.answer(at));
+            }
+        }
+    }
+}
+
+fn ordered(one: &Cell, two: &Cell) -> std::cmp::Ordering {
+    match (one, two) {
+        (Cell::Float(one), Cell::Float(two)) => one.total_cmp(two),
+        (Cell::Integer(one), Cell::Integer(two)) => one.cmp(two),
+        _ => std::cmp::Ordering::Equal,
+    }
+}
+
+/// The key of a row.
+fn key(sweep: &Sweep, rows: &RowSet, row: usize) -> Vec<Cell> {
+    if sweep.layout.is_drawn() {
+        return vec![Cell::from(rows.numbers[row])];
+    }
+    let cells = sweep.layout.columns.iter().zip(rows.shown(row));
+    cells
+        .map(
+            |(column, value)| {
+                if column.axis.multiple.is_some() { Cell::Integer(whole(*value)) } else { Cell::Float(*value) }
+            },
+        )
+        .collect()
+}
+
+fn whole(value: f64) -> i64 {
+    // Whole and within the bounds of its field.
+    #[allow(clippy::cast_possible_truncation)]
+    let whole = value as i64;
+    whole
+}
+
+/// The columns of a table of rows.
+struct Known<'t> {
+    values: Vec<&'t Data>,
+    outputs: Vec<&'t [f64]>,
+    reasons: &'t [String],
+}
+
+impl<'t> Known<'t> {
+    fn of(sweep: &Sweep, table: &'t Table) -> Self {
+        let values = sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name));
+        let outputs = sweep.outputs.iter().map(|output| table.floats(&output.column.name));
+        Self { values: values.collect(), outputs: outputs.collect(), reasons: table.texts(REASON) }
+    }
+
+    /// Whether a row has these values: of drawn rows the number alone does not say.
+    fn has(&self, at: usize, shown: &[f64]) -> bool {
+        self.values.iter().zip(shown).all(|(data, shown)| match data {
+            Data::Float(values) => values[at].to_bits() == shown.to_bits(),
+            Data::Integer(values) => values[at] == whole(*shown),
+            _ => false,
+        })
+    }
+
+    fn answer(&self, at: usize) -> Answer {
+        let reason = &self.reasons[at];
+        if reason.is_empty() { Ok(self.outputs.iter().map(|values| values[at]).collect()) } else { Err(reason.clone()) }
+    }
+}
+
+fn made(sweep: &Sweep, rows: &RowSet, answers: Vec<Option<Answer>>) -> Result<Table, TableError> {
+    let count = rows.len();
+    let mut columns = Vec::new();
+    if sweep.layout.is_drawn() {
+        columns.push(Data::Integer(
+            rows.numbers.iter().map(|number| i64::try_from(*number).unwrap_or(i64::MAX)).collect(),
+        ));
+    }
+    for (index, column) in sweep.layout.columns.iter().enumerate() {
+        let values = (0..count).map(|row| rows.shown(row)[index]);
+        columns.push(if column.axis.multiple.is_some() {
+            Data::Integer(values.map(whole).collect())
+        } else {
+            Data::Float(values.collect())
+        });
+    }
+    let mut outputs: Vec<Vec<f64>> = sweep.outputs.iter().map(|_| Vec::with_capacity(count)).collect();
+    let mut reasons = Vec::with_capacity(count);
+    for answer in answers {
+        let (values, reason) = match answer {
+            Some(Ok(values)) => (values, String::new()),
+            Some(Err(reason)) => (Vec::new(), reason),
+            None => (Vec::new(), "it was not computed".to_owned()),
+        };
+        for (index, output) in outputs.iter_mut().enumerate() {
+            output.push(values.get(index).copied().unwrap_or(f64::NAN));
+        }
+        reasons.push(reason);
+    }
+    columns.extend(outputs.into_iter().map(Data::Float));
+    columns.push(Data::Text(reasons));
+    Table::from_columns(sweep.schema.clone(), columns)
+}
