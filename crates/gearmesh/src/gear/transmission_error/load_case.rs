@@ -40,6 +40,8 @@ pub struct LoadCase<'a> {
     /// Penetrations at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
     pub(super) count: Count<'a>,
+    /// Positions per base pitch.
+    pub(super) positions: usize,
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
 }
@@ -146,6 +148,7 @@ impl<'a> LoadCase<'a> {
             flanks,
             touching: Touching::LineOfAction,
             breaks: Arc::default(),
+            positions: cycle.settings.positions,
             refines,
         };
         let mut window = (cycle.pair.start_of_contact, cycle.pair.end_of_contact);
@@ -218,6 +221,12 @@ impl<'a> LoadCase<'a> {
     #[must_use]
     pub fn for_values(&self) -> Self {
         Self { levels: Vec::new(), refines: false, ..self.clone() }
+    }
+
+    /// The same with as many positions per base pitch: gaps need not be found again.
+    #[must_use]
+    pub fn with_positions(&self, positions: usize) -> Self {
+        Self { positions, ..self.clone() }
     }
 
     /// The same design when nothing is transmitted.

@@ -114,7 +114,7 @@ impl LoadCase<'_> {
 
     /// The longest span for the wanted number of positions, short enough for `harmonics`.
     pub(super) fn span_length(&self, harmonics: usize) -> f64 {
-        let spans = (self.cycle.settings.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
+        let spans = (self.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
         self.cycle.period() / spans.max(1.0)
     }
 }
