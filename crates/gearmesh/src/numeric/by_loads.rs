@@ -94,7 +94,9 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
     // What is known under equal parts makes the first step, if that leads to loads.
     let first = step(&each, gaps, coupling, total, loaded, &found)?;
     if loaded.iter().all(|&spring| found.loads[spring] + first.change[spring] >= BRINK * total) {
-        loaded.iter().for_each(|&spring| found.loads[spring] += first.change[spring]);
+        for &spring in loaded {
+            found.loads[spring] += first.change[spring];
+        }
         found.approach += first.shift;
     } else {
         found.loads = estimate;
@@ -174,15 +176,12 @@ impl Two {
                 if !(determinant > 0.0 && determinant.is_finite()) {
                     return None;
                 }
-                found.approach =
-                    one.penetration + near + c * loads[1] + step * (one.rate + 0.5 * one.bend * step);
+                found.approach = one.penetration + near + c * loads[1] + step * (one.rate + 0.5 * one.bend * step);
                 found.slope = (rates[0] + rates[1] - 2.0 * c) / determinant;
                 (found.loads[self.springs[0]], found.loads[self.springs[1]]) = (loads[0], loads[1]);
                 return Some(());
             }
-            for side in 0..2 {
-                self.each[side] = springs.penetration(self.springs[side], loads[side]);
-            }
+            self.each = [0, 1].map(|side| springs.penetration(self.springs[side], loads[side]));
             self.loads = loads;
         }
         None
@@ -249,13 +248,7 @@ fn step(
 }
 
 /// By how much the total changes with the approach, where the last step leads.
-fn slope(
-    each: &Each,
-    coupling: Option<&Coupling>,
-    loaded: &[usize],
-    change: &PerSpring,
-    count: usize,
-) -> Option<f64> {
+fn slope(each: &Each, coupling: Option<&Coupling>, loaded: &[usize], change: &PerSpring, count: usize) -> Option<f64> {
     let mut rises = [0.0; MOST_SPRINGS];
     for &spring in loaded {
         rises[spring] = 1.0 / each[spring].rate_after(change[spring]);
@@ -330,7 +323,14 @@ mod tests {
             for (row, column, value) in [(0, 1, 0.1), (1, 2, 0.1), (2, 3, 0.1), (0, 2, 0.05), (1, 3, 0.05)] {
                 (coupling[row][column], coupling[column][row]) = (value, value);
             }
-            for gaps in [vec![0.0], vec![0.0, 0.4], vec![0.3, 0.0, 0.1], vec![0.0, 0.7, 2.0, 0.2], vec![0.0, 9.0], vec![0.0, 9.0, 0.1]] {
+            for gaps in [
+                vec![0.0],
+                vec![0.0, 0.4],
+                vec![0.3, 0.0, 0.1],
+                vec![0.0, 0.7, 2.0, 0.2],
+                vec![0.0, 9.0],
+                vec![0.0, 9.0, 0.1],
+            ] {
                 for total in [0.3, 1.0, 3.0, 10.0] {
                     let chosen = coupled.then_some(&coupling);
                     let Some(found) = balance(&springs, &gaps, chosen, total) else { continue };

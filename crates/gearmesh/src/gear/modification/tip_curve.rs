@@ -261,11 +261,10 @@ impl TipCurve {
     /// point Q, the normal n and the tangent t, Q' = r_b u t, n' = t, t' = −n, and F(P) = 0 is derived twice.
     fn rates(&self, roll: f64) -> Option<[f64; 3]> {
         let flank = self.ends.flank(roll);
-        let depth = self.intersection_of(&flank)?;
+        let (depth, ([along, across], sine, cosine)) = (self.intersection_of(&flank)?, flank);
         let Conic { xx, xy, yy, x, y, .. } = self.conic;
-        let ([along, across], sine, cosine) = flank;
         let (px, py) = (along - depth * sine, across - depth * cosine);
-        // Half of F's derivatives, along the tangent and along the normal.
+        // Half of F's derivatives.
         let (fx, fy) = (xx * px + xy * py + x, xy * px + yy * py + y);
         let (along_tangent, along_normal) = (fx * cosine - fy * sine, fx * sine + fy * cosine);
         let radius = self.ends.base_radius * roll - depth;

@@ -88,7 +88,7 @@ pub struct Equilibrium {
     /// Loads of the pairs \[N\], and their approach beyond the smallest gap \[m\].
     pub balance: Balance,
     /// The largest load per width of each pair \[N/m\], where slices hold each other.
-    peaks: Option<PerSpring>,
+    pub(super) peaks: Option<PerSpring>,
 }
 
 impl Equilibrium {
@@ -172,7 +172,8 @@ impl<'a> LoadCase<'a> {
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.gap(s).unwrap_or(0.0)));
+        let maximum =
+            inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.gap(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..MOST_HALVINGS {
@@ -249,7 +250,7 @@ impl<'a> LoadCase<'a> {
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
         let mut nearest = None;
         let reach = self.within_reach(position, pairs, None, &mut nearest);
-        let (balance, peaks) = self.balance(&reach, &nearest);
+        let (balance, peaks) = self.balance(&reach, nearest.as_ref());
         let unloaded = reach.smallest + self.flanks.offset();
         if matches!(self.touching, Touching::LineOfAction) {
             return Equilibrium { unloaded, balance, peaks };
@@ -277,7 +278,7 @@ impl<'a> LoadCase<'a> {
         if reach.springs().is_empty() {
             return None;
         }
-        let balance = self.balance(&reach, &nearest).0;
+        let balance = self.balance(&reach, nearest.as_ref()).0;
         let by_others = if matches!(self.regime, Regime::Pairs) {
             0.0
         } else {
@@ -310,6 +311,7 @@ impl<'a> LoadCase<'a> {
     /// The pairs that can touch at all, but for one that may be left out; with corner contact, only those that come near
     /// enough. Finding those may take the law of the nearest pair, which is left for what follows.
     #[inline(always)]
+    #[allow(clippy::inline_always)] // returned, it would be copied for every equilibrium
     fn within_reach(
         &self,
         position: f64,
@@ -351,7 +353,7 @@ impl<'a> LoadCase<'a> {
     /// Equilibrium of the pairs within reach, of the nearest of which the law may be known, and, where slices hold each other,
     /// the largest load per width of each.
     #[inline]
-    fn balance(&self, reach: &WithinReach, nearest: &Option<InSeries<'a>>) -> (Balance, Option<PerSpring>) {
+    fn balance(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> (Balance, Option<PerSpring>) {
         let slices = match &self.regime {
             Regime::Unloaded => return (complementarity::unloaded(reach.gaps()), None),
             Regime::Pairs | Regime::CoupledPairs => None,
@@ -371,7 +373,7 @@ impl<'a> LoadCase<'a> {
     }
 
     /// Where slices do not hold each other.
-    fn balance_behind(&self, reach: &WithinReach, nearest: &Option<InSeries<'a>>, faces: Faces) -> Balance {
+    fn balance_behind(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>, faces: Faces) -> Balance {
         match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST_SPRINGS];
@@ -383,7 +385,7 @@ impl<'a> LoadCase<'a> {
             }
             Elasticity::Logarithmic { .. } => {
                 let mut slices = [const { None }; MOST_SPRINGS];
-                slices[reach.nearest()].clone_from(nearest);
+                slices[reach.nearest()] = nearest.cloned();
                 for (slot, s) in slices.iter_mut().zip(reach.positions()) {
                     slot.get_or_insert_with(|| self.cycle.elasticity.series(*s, None));
                 }
@@ -427,36 +429,5 @@ impl<'a> LoadCase<'a> {
             }
         }
         Some(coupling)
-    }
-
-    /// The mean load per width \[N/m\] of a part of the face of a pair, whose highest place is in by `penetration`.
-    pub(super) fn mean_load(&self, s: f64, face: &Face, penetration: f64) -> f64 {
-        if penetration <= 0.0 {
-            return 0.0;
-        }
-        match &self.cycle.elasticity {
-            Elasticity::Linear(stiffness) => stiffness.value(s) * face.passed(penetration).0 / self.cycle.face_width,
-            elasticity @ Elasticity::Logarithmic { .. } => {
-                let law = elasticity.series(s, None);
-                face.summed(penetration, |depth| law.load(depth)).0
-            }
-        }
-    }
-
-    /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
-    #[must_use]
-    pub fn line_load(&self, position: f64, state: &Equilibrium, spring: usize) -> f64 {
-        if let Some(peaks) = state.peaks {
-            return peaks[spring];
-        }
-        let penetration = state.balance.penetration[spring];
-        if self.flanks.is_flat() || penetration <= 0.0 {
-            return state.balance.loads[spring] / self.cycle.face_width;
-        }
-        let s = self.cycle.path_position(position, spring);
-        match &self.cycle.elasticity {
-            Elasticity::Linear(stiffness) => stiffness.value(s) * penetration / self.cycle.face_width,
-            elasticity @ Elasticity::Logarithmic { .. } => elasticity.series(s, None).load(penetration).0,
-        }
     }
 }

@@ -168,7 +168,10 @@ fn no_position_is_in_more_doubt_than_is_told() {
                 });
                 for (position, pairs) in places {
                     let here = loading.contact_doubt_at(position, pairs).unwrap();
-                    assert!(here.size <= found.size * (1.0 + 1e-12), "{amount} {torque} {position}: {here:?} {found:?}");
+                    assert!(
+                        here.size <= found.size * (1.0 + 1e-12),
+                        "{amount} {torque} {position}: {here:?} {found:?}"
+                    );
                     assert!(found.matters() || !here.matters(), "{amount} {torque} {position}: {here:?} {found:?}");
                 }
                 if found.matters() { told += 1 } else { quiet += 1 }
