@@ -151,13 +151,21 @@ impl Ste {
         iso6336: [f64; 2],
     ) -> Result<(Answer, Found), Failure> {
         let began = Instant::now();
-        let sliced = LoadCase::new(base, design, torque).uses_slices();
-        let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
-            LoadCase::new(&base.sampled(settings), design, torque).peak_to_peak()
+        let loading = LoadCase::new(base, design, torque);
+        // Most samplings differ in their positions alone, and a cycle with other slices is a copy of all its tables.
+        let differs = |settings: Settings| Settings { positions: base.settings.positions, ..settings } != base.settings;
+        let mut sampled = Sampled::new(loading.uses_slices(), Against::Coarser, |settings| {
+            if differs(settings) {
+                return LoadCase::new(&base.sampled(settings), design, torque).peak_to_peak();
+            }
+            loading.with_positions(settings.positions).peak_to_peak()
         });
         let settings = self.accuracy.map_or(self.settings(), |accuracy| sampled.coarsest(self.settings(), accuracy));
-        let cycle = base.sampled(settings);
-        let loading = LoadCase::new(&cycle, design, torque);
+        let resampled = differs(settings).then(|| base.sampled(settings));
+        let loading = match &resampled {
+            Some(cycle) => LoadCase::new(cycle, design, torque),
+            None => loading.with_positions(settings.positions),
+        };
         let (points, summary) = loading.curve_and_summary(wanted);
         if !loading.holds(summary.largest.value) {
             let (found, maximum) = (in_unit(summary.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));

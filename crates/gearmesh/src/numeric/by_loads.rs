@@ -9,67 +9,193 @@ use super::complementarity::{Balance, Coupling, MOST_SPRINGS, PerSpring, linear_
 
 /// Share of the total below which a spring is on the brink of losing its load.
 const BRINK: f64 = 0.02;
-/// Share of the total of a last step: what it leaves is of second order.
-const NEARLY: f64 = 3e-8;
-/// Share of the total of a step that is taken with what penetrations bend, so that it leaves what is of third order.
-const BENT: f64 = 1e-5;
+/// Share of the total that a last step may leave.
+const LEFT: f64 = 5e-16;
 /// The most steps; two or three are taken.
 const STEPS: usize = 12;
 
+/// What a spring does at a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Yielded {
+    /// By how much it yields; increases with the load.
+    pub penetration: f64,
+    /// d penetration/d load.
+    pub rate: f64,
+    /// d² penetration/d load², or about that.
+    pub bend: f64,
+    /// Whether it is about that: then it only shortens the way.
+    pub is_rough: bool,
+}
+
+impl Yielded {
+    const NONE: Self = Self { penetration: 0.0, rate: 1.0, bend: 0.0, is_rough: false };
+
+    /// About the same where the load has changed.
+    fn about(self, change: f64) -> Self {
+        let Self { penetration, rate, bend, .. } = self;
+        let penetration = penetration + change * (rate + 0.5 * bend * change);
+        Self { penetration, rate: rate + bend * change, ..self }
+    }
+
+    /// Where the load has changed a little.
+    fn rate_after(&self, change: f64) -> f64 {
+        if self.is_rough { self.rate } else { self.rate + self.bend * change }
+    }
+}
+
 /// Penetrations and their slopes as functions of the load.
 pub trait Yielding {
-    /// Penetration at a load > 0, d penetration/d load, and about d² penetration/d load², which only shortens the way: the
-    /// first increases with the load.
-    fn penetration(&self, spring: usize, load: f64) -> [f64; 3];
+    /// At a load > 0.
+    fn penetration(&self, spring: usize, load: f64) -> Yielded;
 }
+
+type Each = [Yielded; MOST_SPRINGS];
 
 /// Equilibrium of springs that are well loaded or well open; `total` > 0, the smallest gap is 0. None where one of them is
 /// neither, or Newton's method does not settle.
 pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling>, total: f64) -> Option<Balance> {
     let count = gaps.len();
-    let mut found = Balance { approach: 0.0, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope: 0.0 };
+    let mut found = Balance::EMPTY;
     if let [gap] = gaps {
-        let [penetration, rate, _] = springs.penetration(0, total);
+        let Yielded { penetration, rate, .. } = springs.penetration(0, total);
         (found.approach, found.loads[0], found.penetration[0]) = (penetration + gap, total, penetration);
         return Some(Balance { slope: 1.0 / rate, ..found });
     }
-    // As if each were linear, as stiff as under its part of the load.
+    // Which are loaded: as if each were linear, as stiff as under its part of the load.
     let even = total / count as f64;
-    let mut stiffness = [0.0; MOST_SPRINGS];
+    let (mut each, mut stiffness) = ([Yielded::NONE; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
     for (spring, stiffness) in stiffness[..count].iter_mut().enumerate() {
-        *stiffness = even / springs.penetration(spring, even)[0];
+        each[spring] = springs.penetration(spring, even);
+        *stiffness = even / each[spring].penetration;
     }
     found.approach = linear_approach(&stiffness, gaps, total);
-    let mut loaded = [false; MOST_SPRINGS];
+    let (mut loaded, mut size) = ([0; MOST_SPRINGS], 0);
+    let mut estimate = [0.0; MOST_SPRINGS];
     for (spring, gap) in gaps.iter().enumerate() {
         let load = stiffness[spring] * (found.approach - gap);
         if load.abs() < BRINK * total {
             return None;
         }
-        (found.loads[spring], loaded[spring]) = (load.max(0.0), load > 0.0);
+        if load > 0.0 {
+            (estimate[spring], found.loads[spring]) = (load, even);
+            (loaded[size], size) = (spring, size + 1);
+        }
+    }
+    let loaded = &loaded[..size];
+    if let [one, two] = *loaded {
+        // Loads that add up to the total, and about what is known there.
+        let half = 0.5 * total;
+        let each = [one, two].map(|spring| each[spring].about(half - even));
+        let start = Two { springs: [one, two], each, loads: [half; 2] };
+        let c = coupling.map_or(0.0, |coupling| coupling[one][two]);
+        start.balance(springs, [gaps[one], gaps[two], c], total, [estimate[one], estimate[two]], &mut found)?;
+        return opened(found, gaps, coupling);
+    }
+    // What is known under equal parts makes the first step, if that leads to loads.
+    let first = step(&each, gaps, coupling, total, loaded, &found)?;
+    if loaded.iter().all(|&spring| found.loads[spring] + first.change[spring] >= BRINK * total) {
+        for &spring in loaded {
+            found.loads[spring] += first.change[spring];
+        }
+        found.approach += first.shift;
+    } else {
+        found.loads = estimate;
     }
     for _ in 0..STEPS {
-        let change = step(springs, gaps, coupling, total, loaded, &mut found)?;
-        let mut largest = 0.0_f64;
-        for (spring, load) in found.loads[..count].iter_mut().enumerate().filter(|(spring, _)| loaded[*spring]) {
-            *load += change[spring];
-            largest = largest.max(change[spring].abs());
-            if *load < BRINK * total {
+        for &spring in loaded {
+            each[spring] = springs.penetration(spring, found.loads[spring]);
+        }
+        let Step { change, shift, left } = step(&each, gaps, coupling, total, loaded, &found)?;
+        found.approach += shift;
+        for &spring in loaded {
+            found.loads[spring] += change[spring];
+            if found.loads[spring] < BRINK * total {
                 return None;
             }
         }
-        if largest <= NEARLY * total {
-            for (spring, gap) in gaps.iter().enumerate() {
-                found.penetration[spring] = found.approach - gap - by_others(coupling, &found.loads[..count], spring);
-                let open = -found.penetration[spring];
-                if !loaded[spring] && open < BRINK * found.approach {
-                    return None;
-                }
-            }
-            return Some(found);
+        if left <= LEFT * total {
+            found.slope = slope(&each, coupling, loaded, &change, count)?;
+            return opened(found, gaps, coupling);
+        }
+        if !found.approach.is_finite() {
+            return None;
         }
     }
     None
+}
+
+/// With the penetrations that follow from loads and approach, if what carries nothing is well open.
+#[inline]
+fn opened(mut found: Balance, gaps: &[f64], coupling: Option<&Coupling>) -> Option<Balance> {
+    for (spring, gap) in gaps.iter().enumerate() {
+        found.penetration[spring] = found.approach - gap - by_others(coupling, &found.loads[..gaps.len()], spring);
+        if found.loads[spring] <= 0.0 && -found.penetration[spring] < BRINK * found.approach {
+            return None;
+        }
+    }
+    Some(found)
+}
+
+/// Two loaded springs: one unknown, the load of the first.
+struct Two {
+    springs: [usize; 2],
+    each: [Yielded; 2],
+    /// At which they yield so.
+    loads: [f64; 2],
+}
+
+impl Two {
+    /// Puts loads, approach and slope into what is found; from `estimate` on, if what is known leads nowhere. Gaps of both, and
+    /// what each does to the other.
+    #[inline]
+    fn balance(
+        mut self,
+        springs: &impl Yielding,
+        [near, far, c]: [f64; 3],
+        total: f64,
+        estimate: [f64; 2],
+        found: &mut Balance,
+    ) -> Option<()> {
+        for round in 0..=STEPS {
+            let [one, two] = self.each;
+            let rate = one.rate + two.rate - 2.0 * c;
+            let apart = (one.penetration - two.penetration) + (near - far) + c * (self.loads[1] - self.loads[0]);
+            let step = -apart / rate;
+            // Again with what both bend along the way.
+            let step = -(apart + 0.5 * (one.bend - two.bend) * step * step) / rate;
+            let mut loads = [self.loads[0] + step, self.loads[1] - step];
+            if loads[0].min(loads[1]) < BRINK * total {
+                if round > 0 {
+                    return None;
+                }
+                // Which add up to the total, as those that follow do.
+                loads = [estimate[0], total - estimate[0]];
+            } else if round > 0 && self.left(step) <= LEFT * total * rate {
+                let rates = [one.rate_after(step), two.rate_after(-step)];
+                let determinant = rates[0] * rates[1] - c * c;
+                if !(determinant > 0.0 && determinant.is_finite()) {
+                    return None;
+                }
+                found.approach = one.penetration + near + c * loads[1] + step * (one.rate + 0.5 * one.bend * step);
+                found.slope = (rates[0] + rates[1] - 2.0 * c) / determinant;
+                (found.loads[self.springs[0]], found.loads[self.springs[1]]) = (loads[0], loads[1]);
+                return Some(());
+            }
+            self.each = [0, 1].map(|side| springs.penetration(self.springs[side], loads[side]));
+            self.loads = loads;
+        }
+        None
+    }
+
+    /// How far both may be from touching alike after a step that was taken with what they bend.
+    fn left(&self, step: f64) -> f64 {
+        let of = |side: usize| {
+            // The third derivative of p ln p and of powers is about the second over the load.
+            let order = if self.each[side].is_rough { 1.0 } else { step.abs() / self.loads[side] };
+            self.each[side].bend.abs() * step * step * order
+        };
+        of(0) + of(1)
+    }
 }
 
 /// What the loads of the others do to a spring.
@@ -80,61 +206,88 @@ fn by_others(coupling: Option<&Coupling>, loads: &[f64], at: usize) -> f64 {
     })
 }
 
-/// A step of Newton's method: by how much loads change; the approach changes here.
+/// By how much loads and the approach change in a step, and how large what it leaves may be, as a load.
+struct Step {
+    change: PerSpring,
+    shift: f64,
+    left: f64,
+}
+
+/// A step of Newton's method, taken again with what penetrations bend along the way: what it leaves is of third order.
+#[inline]
 fn step(
-    springs: &impl Yielding,
+    each: &Each,
     gaps: &[f64],
     coupling: Option<&Coupling>,
     total: f64,
-    loaded: [bool; MOST_SPRINGS],
-    found: &mut Balance,
-) -> Option<PerSpring> {
+    loaded: &[usize],
+    found: &Balance,
+) -> Option<Step> {
     let count = gaps.len();
-    let (mut residual, mut rises, mut bends) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
-    for spring in (0..count).filter(|spring| loaded[*spring]) {
-        let [penetration, rate, bend] = springs.penetration(spring, found.loads[spring]);
-        residual[spring] =
-            penetration + by_others(coupling, &found.loads[..count], spring) + gaps[spring] - found.approach;
-        (rises[spring], bends[spring]) = (1.0 / rate, bend);
+    let (mut residual, mut rises) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
+    let mut excess = -total;
+    for &spring in loaded {
+        residual[spring] = each[spring].penetration + by_others(coupling, &found.loads[..count], spring) + gaps[spring]
+            - found.approach;
+        rises[spring] = 1.0 / each[spring].rate;
+        excess += found.loads[spring];
     }
-    let excess = found.loads[..count].iter().sum::<f64>() - total;
-    let (mut change, mut shift, slope) = linear_step(&residual, &rises, coupling, excess, count)?;
-    if change.iter().any(|change| change.abs() > BENT * total) {
-        for spring in 0..count {
-            residual[spring] += 0.5 * bends[spring] * change[spring] * change[spring];
-        }
-        (change, shift, _) = linear_step(&residual, &rises, coupling, excess, count)?;
+    let (change, _) = linear_step(&residual, &rises, coupling, excess, loaded, count)?;
+    for &spring in loaded {
+        residual[spring] += 0.5 * each[spring].bend * change[spring] * change[spring];
     }
-    found.slope = slope;
-    found.approach += shift;
-    found.approach.is_finite().then_some(change)
+    let (change, shift) = linear_step(&residual, &rises, coupling, excess, loaded, count)?;
+    let mut left = 0.0;
+    for &spring in loaded {
+        let (bend, change) = (each[spring].bend.abs(), change[spring].abs());
+        // The third derivative of p ln p and of powers is about the second over the load.
+        let order = if each[spring].is_rough { 1.0 } else { change / found.loads[spring] };
+        left += rises[spring] * bend * change * change * order;
+    }
+    Some(Step { change, shift, left })
 }
 
-/// By how much loads and approach change as if penetrations were linear; and the slope of the total.
+/// By how much the total changes with the approach, where the last step leads.
+fn slope(each: &Each, coupling: Option<&Coupling>, loaded: &[usize], change: &PerSpring, count: usize) -> Option<f64> {
+    let mut rises = [0.0; MOST_SPRINGS];
+    for &spring in loaded {
+        rises[spring] = 1.0 / each[spring].rate_after(change[spring]);
+    }
+    match coupling {
+        None => Some(loaded.iter().map(|spring| rises[*spring]).sum()),
+        Some(coupling) => Some(Bordered::solve(coupling, &rises, &[0.0; MOST_SPRINGS], count)?.slope),
+    }
+}
+
+/// By how much loads and the approach change as if penetrations were linear.
 #[inline]
 fn linear_step(
     residual: &PerSpring,
     rises: &PerSpring,
     coupling: Option<&Coupling>,
     excess: f64,
+    loaded: &[usize],
     count: usize,
-) -> Option<(PerSpring, f64, f64)> {
+) -> Option<(PerSpring, f64)> {
     let mut change = [0.0; MOST_SPRINGS];
     if let Some(coupling) = coupling {
         let solved = Bordered::solve(coupling, rises, residual, count)?;
         let shift = (-excess - solved.offset) / solved.slope;
-        for (spring, change) in change[..count].iter_mut().enumerate() {
-            *change = solved.particular[spring] + solved.unit[spring] * shift;
+        for &spring in loaded {
+            change[spring] = solved.particular[spring] + solved.unit[spring] * shift;
         }
-        return Some((change, shift, solved.slope));
+        return Some((change, shift));
     }
-    let slope = rises[..count].iter().sum();
-    let undone: f64 = residual[..count].iter().zip(rises).map(|(residual, rise)| residual * rise).sum();
+    let (mut slope, mut undone) = (0.0, 0.0);
+    for &spring in loaded {
+        slope += rises[spring];
+        undone += residual[spring] * rises[spring];
+    }
     let shift = (undone - excess) / slope;
-    for (spring, change) in change[..count].iter_mut().enumerate() {
-        *change = (shift - residual[spring]) * rises[spring];
+    for &spring in loaded {
+        change[spring] = (shift - residual[spring]) * rises[spring];
     }
-    Some((change, shift, slope))
+    Some((change, shift))
 }
 
 #[cfg(test)]
@@ -146,9 +299,10 @@ mod tests {
     struct Powers(PerSpring);
 
     impl Yielding for Powers {
-        fn penetration(&self, spring: usize, load: f64) -> [f64; 3] {
+        fn penetration(&self, spring: usize, load: f64) -> Yielded {
             let penetration = self.0[spring] * load.powf(0.75);
-            [penetration, 0.75 * penetration / load, -0.1875 * penetration / (load * load)]
+            let bend = -0.1875 * penetration / (load * load);
+            Yielded { penetration, rate: 0.75 * penetration / load, bend, is_rough: false }
         }
     }
 
@@ -169,12 +323,19 @@ mod tests {
             for (row, column, value) in [(0, 1, 0.1), (1, 2, 0.1), (2, 3, 0.1), (0, 2, 0.05), (1, 3, 0.05)] {
                 (coupling[row][column], coupling[column][row]) = (value, value);
             }
-            for gaps in [vec![0.0], vec![0.0, 0.4], vec![0.3, 0.0, 0.1], vec![0.0, 0.7, 2.0, 0.2], vec![0.0, 9.0]] {
+            for gaps in [
+                vec![0.0],
+                vec![0.0, 0.4],
+                vec![0.3, 0.0, 0.1],
+                vec![0.0, 0.7, 2.0, 0.2],
+                vec![0.0, 9.0],
+                vec![0.0, 9.0, 0.1],
+            ] {
                 for total in [0.3, 1.0, 3.0, 10.0] {
                     let chosen = coupled.then_some(&coupling);
                     let Some(found) = balance(&springs, &gaps, chosen, total) else { continue };
                     answers += 1;
-                    let above = 2.0 * springs.penetration(3, total)[0] + 10.0;
+                    let above = 2.0 * springs.penetration(3, total).penetration + 10.0;
                     let exact = if coupled {
                         complementarity::balance_coupled(&springs, &gaps, &coupling, total, above)
                     } else {

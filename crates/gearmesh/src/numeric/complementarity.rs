@@ -46,13 +46,27 @@ pub struct Balance {
 }
 
 impl Balance {
-    const EMPTY: Self =
+    /// Of nothing.
+    pub const EMPTY: Self =
         Self { approach: 0.0, loads: [0.0; MOST_SPRINGS], penetration: [0.0; MOST_SPRINGS], slope: 0.0 };
 }
 
 /// The approach of linear springs without coupling: sort by gap and take prefix sums. Exact.
 #[must_use]
 pub fn linear_approach(stiffness: &PerSpring, gaps: &[f64], total: f64) -> f64 {
+    match gaps {
+        [gap] => return (total + stiffness[0] * gap) / stiffness[0],
+        [one, two] => {
+            let ([first, second], [near, far]) = if two < one { ([1, 0], [two, one]) } else { ([0, 1], [one, two]) };
+            let moment = stiffness[first] * near;
+            let approach = (total + moment) / stiffness[first];
+            if approach <= *far {
+                return approach;
+            }
+            return (total + (moment + stiffness[second] * far)) / (stiffness[first] + stiffness[second]);
+        }
+        _ => (),
+    }
     let mut order = [0, 1, 2, 3, 4, 5];
     let order = &mut order[..gaps.len()];
     for i in 1..order.len() {

@@ -135,6 +135,12 @@ impl Piecewise {
         }
     }
 
+    /// How many polynomials there are, stretches without a copy among them.
+    #[cfg(test)]
+    pub(crate) fn pieces(&self) -> usize {
+        self.pieces.len()
+    }
+
     fn upper(&self) -> f64 {
         self.pieces.last().map_or(self.lower, |piece| piece.upper)
     }

@@ -6,7 +6,7 @@
 
 use std::f64::consts::PI;
 
-use super::tip::{NearTips, Tips};
+use super::tip::{Ended, NearTips, Tips};
 use crate::gear::geometry::GearPair;
 use crate::gear::material::{Material, Plane};
 use crate::numeric::lambert::larger_root;
@@ -125,7 +125,7 @@ impl Logarithmic {
 }
 
 /// Flanks and teeth in series, prepared for many inversions.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub struct InSeries<'a> {
     /// The flanks.
     pub law: Logarithmic,
@@ -146,7 +146,22 @@ impl<'a> InSeries<'a> {
     #[must_use]
     pub fn at_tips(self, tips: Tips<'a>) -> Self {
         let near = NearTips::new(tips, self.law.rate, self.compliance);
-        Self { tips: Some(near), ..self.law.in_series(self.compliance + near.far) }
+        self.with(near)
+    }
+
+    /// The same of the tips at a place, which are asked for where one is near.
+    #[must_use]
+    #[inline]
+    pub fn at_ends<E: Ended>(self, ends: &'a E, s: f64) -> Self {
+        let near = NearTips::at(ends, ends.far(s, self.law.rate), s, self.compliance);
+        self.with(near)
+    }
+
+    #[inline]
+    fn with(self, near: NearTips<'a>) -> Self {
+        let mut series = self.law.in_series(self.compliance + near.far());
+        series.tips = Some(near);
+        series
     }
 
     /// The penetration at a load per width.
@@ -165,15 +180,24 @@ impl<'a> InSeries<'a> {
     #[must_use]
     #[inline]
     pub fn at_known_load(&self, load: f64, log: f64) -> (f64, f64) {
+        let ([penetration, slope, _], _) = self.rates_at(load, log);
+        (penetration, slope)
+    }
+
+    /// The penetration at a load per width p > 0 with the logarithm `log`, dw/dp and d²w/dp²; and whether the last is that of
+    /// flanks alone, next to a tip.
+    #[must_use]
+    #[inline]
+    pub fn rates_at(&self, load: f64, log: f64) -> ([f64; 3], bool) {
         if let Some(tips) = &self.tips {
             return tips.at_load(self, load, log);
         }
         let Self { law: Logarithmic { constant, rate, .. }, compliance, .. } = *self;
         if rate * (log + 1.0) > constant {
-            return (compliance * load + rate * self.law.last(), compliance);
+            return ([compliance * load + rate * self.law.last(), compliance, 0.0], false);
         }
         let total = compliance + constant - rate * log;
-        (load * total, total - rate)
+        ([load * total, total - rate, -rate / load], false)
     }
 
     /// Load per width p and dp/dw at the penetration w > 0.

@@ -9,7 +9,7 @@ use crate::numeric::complementarity::Springs;
 
 /// A slice under the penetration of its highest place.
 #[allow(clippy::large_enum_variant)] // all slices of a face are of one variant, and the linear law has one
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Slice<'a> {
     /// Stiffness \[N/m\].
     Linear(f64),

@@ -6,7 +6,7 @@ use std::cell::Cell;
 
 use super::face::Face;
 use super::flattening::InSeries;
-use crate::numeric::by_loads::Yielding;
+use crate::numeric::by_loads::{Yielded, Yielding};
 use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 use crate::numeric::logarithm::Known;
 
@@ -61,18 +61,18 @@ impl Springs for LinearPairs<'_> {
 
 /// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
-pub struct LogarithmicPairs<'a> {
+pub struct LogarithmicPairs<'p, 'a> {
     /// Contact and teeth of each pair, per width.
-    pub slices: &'a [Option<InSeries<'a>>; MOST_SPRINGS],
+    pub slices: &'p [Option<InSeries<'a>>; MOST_SPRINGS],
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.
-    pub faces: Faces<'a>,
+    pub faces: Faces<'p>,
     /// Loads per width that each pair had last, or may have, and their logarithms.
     pub logs: [Cell<Known>; MOST_SPRINGS],
 }
 
-impl<'a> LogarithmicPairs<'a> {
+impl<'a> LogarithmicPairs<'_, 'a> {
     #[inline]
     fn slice(&self, pair: usize) -> &InSeries<'a> {
         self.slices[pair].as_ref().expect("every pair within reach has a slice")
@@ -86,20 +86,18 @@ impl<'a> LogarithmicPairs<'a> {
     }
 }
 
-impl Yielding for LogarithmicPairs<'_> {
+impl Yielding for LogarithmicPairs<'_, '_> {
     /// On a flat face.
     #[inline]
-    fn penetration(&self, pair: usize, load: f64) -> [f64; 3] {
+    fn penetration(&self, pair: usize, load: f64) -> Yielded {
         let known = self.logs[pair].get().next(load / self.width);
         self.logs[pair].set(known);
-        let slice = self.slice(pair);
-        let (penetration, slope) = slice.at_known_load(known.number, known.log);
-        // That of the law alone.
-        [penetration, slope / self.width, -slice.law.rate / (load * self.width)]
+        let ([penetration, slope, bend], is_rough) = self.slice(pair).rates_at(known.number, known.log);
+        Yielded { penetration, rate: slope / self.width, bend: bend / (self.width * self.width), is_rough }
     }
 }
 
-impl Springs for LogarithmicPairs<'_> {
+impl Springs for LogarithmicPairs<'_, '_> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
         let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slice(pair).load(depth));
         (self.width * load, self.width * slope)
@@ -123,8 +121,8 @@ mod tests {
             let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
             let face = Face::new(&crowned, 18e-3, &rule);
             let logs = std::array::from_fn(|_| Cell::new(Known::new(1.0)));
-            let pairs =
-                LogarithmicPairs { slices: &[Some(law); MOST_SPRINGS], width: 18e-3, faces: Faces::Same(&face), logs };
+            let slices = std::array::from_fn(|_| Some(law.clone()));
+            let pairs = LogarithmicPairs { slices: &slices, width: 18e-3, faces: Faces::Same(&face), logs };
             for load in [1.0, 300.0, 2e3, 1e5] {
                 let carried = pairs.response(0, pairs.above(0, load)).0;
                 assert!(carried >= load * (1.0 - 1e-12), "{carried} N of {load} N with a crown of {crown} m");

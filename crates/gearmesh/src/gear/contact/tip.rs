@@ -4,6 +4,9 @@
 //! p (α − β ln p), and for the tip of each tooth T, which is −B ln(c/m) far from its corner, at the distance c along the
 //! flank, and what [`Wedge`] has near it and beyond. Must not know: how teeth bend, where on the path this is.
 
+use std::cell::OnceCell;
+use std::fmt::Debug;
+
 use super::flattening::InSeries;
 use super::rounding::Rounding;
 use super::wedge::Spread;
@@ -155,78 +158,128 @@ fn held([value, slope]: [f64; 2], size: f64) -> [f64; 2] {
     [value.signum() * size * (1.0 + over / share), slope / (share * share)]
 }
 
-/// The same, prepared for many loads.
+/// Who knows the tips of both teeth wherever a pair may touch.
+pub trait Ended: Debug + Sync {
+    /// The tips of a pair at a place \[m\].
+    fn tips(&self, s: f64) -> Tips<'_>;
+
+    /// What they add where they are far, to a law with the rate β: [`Far::of`] its tips.
+    fn far(&self, s: f64, rate: f64) -> Far {
+        Far::of(&self.tips(s), rate)
+    }
+}
+
+/// What tips add to a law as long as they are far.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NearTips<'a> {
-    tips: Tips<'a>,
-    /// C, with what roundings add.
+pub struct Far {
+    /// What roundings add to the compliance of both teeth \[1/Pa\].
+    softened: f64,
+    /// The same, with Σ −B ln(c/m) of those that are not beyond.
     compliance: f64,
-    /// What tips add to the compliance of both teeth where they are far: Σ −B ln(c/m), of those that are not beyond.
-    pub(super) far: f64,
     /// What the rest of Ψ, which falls as 1/λ², adds to the compliance per load where both corners are far.
     rest: f64,
     /// The load per width up to which they are.
-    last_far: f64,
+    last: f64,
     /// The load per width from which on the law is continued by its tangent.
     largest: f64,
+}
+
+impl Far {
+    /// At the rate β.
+    #[must_use]
+    #[inline]
+    pub fn of(tips: &Tips, rate: f64) -> Self {
+        let Tips { corners, half_width, unit, widest } = tips;
+        let per_half_width = 1.0 / half_width;
+        let root = widest * per_half_width;
+        let largest = root * root;
+        let softened = corners[0].softened + corners[1].softened;
+        let mut far = Self { softened, compliance: softened, rest: 0.0, last: largest, largest };
+        for corner in corners {
+            // A contact as wide as a tenth of it.
+            let reach = corner.distance.max(0.0) * per_half_width / corner.shape.far();
+            far.last = far.last.min(reach * reach);
+            if corner.distance > 0.0 {
+                let share = half_width / corner.distance;
+                let log = libm::log(corner.distance / unit);
+                far.compliance -= corner.rate * log;
+                far.rest += 2.0 * rate * corner.shape.rest() * share * share;
+                far.rest += half_width * half_width * corner.turned_far(log);
+            }
+        }
+        far
+    }
+}
+
+/// The tips of a law, prepared for many loads.
+#[derive(Clone, Debug)]
+pub(super) struct NearTips<'a> {
+    /// Who knows them, and where; they are needed only where one is near.
+    at: Option<(&'a dyn Ended, f64)>,
+    tips: OnceCell<Box<Tips<'a>>>,
+    /// C, with what roundings add.
+    compliance: f64,
+    far: Far,
 }
 
 impl<'a> NearTips<'a> {
     /// At the rate β, with the compliance C of both teeth.
     pub(super) fn new(tips: Tips<'a>, rate: f64, compliance: f64) -> Self {
-        let Tips { corners, half_width, unit, widest } = tips;
-        let root = widest / half_width;
-        let largest = root * root;
-        let softened: f64 = corners.iter().map(|corner| corner.softened).sum();
-        let compliance = compliance + softened;
-        let mut near = Self { tips, compliance, far: softened, rest: 0.0, last_far: largest, largest };
-        for corner in &corners {
-            // A contact as wide as a tenth of it.
-            let reach = corner.distance.max(0.0) / (corner.shape.far() * half_width);
-            near.last_far = near.last_far.min(reach * reach);
-            if corner.distance > 0.0 {
-                let share = half_width / corner.distance;
-                let log = libm::log(corner.distance / unit);
-                near.far -= corner.rate * log;
-                near.rest += 2.0 * rate * corner.shape.rest() * share * share;
-                near.rest += half_width * half_width * corner.turned_far(log);
-            }
-        }
-        near
+        let far = Far::of(&tips, rate);
+        Self { at: None, tips: OnceCell::from(Box::new(tips)), compliance: compliance + far.softened, far }
+    }
+
+    /// The same of the tips at a place.
+    #[inline]
+    pub(super) fn at(ends: &'a dyn Ended, far: Far, s: f64, compliance: f64) -> Self {
+        Self { at: Some((ends, s)), tips: OnceCell::new(), compliance: compliance + far.softened, far }
+    }
+
+    /// What they add to the compliance of both teeth where they are far.
+    pub(super) fn far(&self) -> f64 {
+        self.far.compliance
+    }
+
+    fn tips(&self) -> &Tips<'a> {
+        self.tips.get_or_init(|| {
+            let (ends, s) = self.at.expect("tips are given, or where they are");
+            Box::new(ends.tips(s))
+        })
     }
 
     /// w/p at a load per width, and its slope over ln p.
     fn whole(&self, series: &InSeries, load: f64) -> [f64; 2] {
-        let (rate, log) = (series.law.rate, libm::log(load));
-        let width = self.tips.half_width * load.sqrt();
-        let log_width = libm::log(width / self.tips.unit);
+        let (rate, log, tips) = (series.law.rate, libm::log(load), self.tips());
+        let width = tips.half_width * load.sqrt();
+        let log_width = libm::log(width / tips.unit);
         let start = [self.compliance + series.law.constant - rate * log, -rate];
-        self.tips.corners.iter().fold(start, |[sum, slope], corner| {
+        tips.corners.iter().fold(start, |[sum, slope], corner| {
             let place = corner.distance / width;
             let [more, by_place] = corner.shape.more_of(place, 0.5 * corner.rate / rate);
-            let [turned, by_log] = held(corner.turned(width, self.tips.unit), 0.5 * rate);
+            let [turned, by_log] = held(corner.turned(width, tips.unit), 0.5 * rate);
             let added = 2.0 * rate * more - corner.rate * log_width + turned;
             [sum + added, slope - rate * by_place * place - 0.5 * corner.rate + by_log]
         })
     }
 
-    /// The penetration at a load per width > 0 whose logarithm is `log`, and its slope.
+    /// The penetration at a load per width > 0 whose logarithm is `log`, its slope, the slope of that without what is known of
+    /// tips that are near, and whether one is.
     #[inline]
-    pub(super) fn at_load(&self, series: &InSeries, load: f64, log: f64) -> (f64, f64) {
+    pub(super) fn at_load(&self, series: &InSeries, load: f64, log: f64) -> ([f64; 3], bool) {
         let rate = series.law.rate;
-        if load < self.last_far {
-            let rest = self.rest * load;
+        if load < self.far.last {
+            let rest = self.far.rest * load;
             let total = series.compliance + series.law.constant - rate * log + rest;
-            return (load * total, total - rate + rest);
+            return ([load * total, total - rate + rest, (2.0 * rest - rate) / load], false);
         }
-        let held = load.min(self.largest);
+        let held = load.min(self.far.largest);
         let [total, slope] = self.whole(series, held);
-        (held * total + (load - held) * (total + slope), total + slope)
+        ([held * total + (load - held) * (total + slope), total + slope, -rate / load], true)
     }
 
     /// Load per width and its slope at the penetration w > 0, where without the tips they would be `load` and its own.
     pub(super) fn load(&self, series: &InSeries, penetration: f64, load: f64) -> (f64, f64) {
-        let Self { rest, last_far, largest, .. } = *self;
+        let Far { rest, last: last_far, largest, .. } = self.far;
         let rate = series.law.rate;
         if load < last_far {
             // What grows with the load is small: two steps of Newton's method.

@@ -40,6 +40,17 @@ impl Uneven {
     /// without bound beyond a base circle, of which they know nothing.
     #[must_use]
     pub fn of(gap: impl Fn(f64) -> Option<f64>, reach: f64) -> Self {
+        Self::below(gap, reach, SMALL)
+    }
+
+    /// The same to first order, which may be more, and is hardly less.
+    #[must_use]
+    pub fn quick(gap: impl Fn(f64) -> Option<f64>, reach: f64) -> Self {
+        Self::below(gap, reach, f64::INFINITY)
+    }
+
+    /// To first order where that is below `small`.
+    fn below(gap: impl Fn(f64) -> Option<f64>, reach: f64, small: f64) -> Self {
         let height = |place: f64| gap(place).unwrap_or(f64::INFINITY);
         let step = reach / f64::from(PLACES);
         let scanned: Vec<(f64, f64)> =
@@ -69,7 +80,7 @@ impl Uneven {
                 apart = (place.abs(), nearer);
             }
         }
-        if first + most < SMALL {
+        if first + most < small {
             return Self { change: first + most, apart: 0.0 };
         }
         let spacing = SPACING.max((ends[1] - ends[0]) / STRIPS);

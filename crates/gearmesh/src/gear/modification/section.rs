@@ -37,6 +37,17 @@ impl<'a> Section<'a> {
         if self.z.is_some() { None } else { self.modification.profile_quadratic(roll) }
     }
 
+    /// The depth at a roll angle and its first and second derivative, on the smooth stretch that `inside` lies on, if they are
+    /// known.
+    #[must_use]
+    pub fn rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
+        if self.z.is_some() {
+            return None;
+        }
+        let quadratic = self.modification.profile_quadratic(inside).map(|quadratic| quadratic.rates(roll));
+        quadratic.or_else(|| self.modification.profile_rates(roll, inside))
+    }
+
     /// Roll angles at which that is not smooth.
     #[must_use]
     pub fn breaks(&self) -> &'a [f64] {

@@ -254,8 +254,29 @@ impl TipCurve {
 
     /// The smaller root of the quadratic at a roll angle; none where the normal misses the curve or is its tangent.
     fn intersection(&self, roll: f64) -> Option<f64> {
+        self.intersection_of(&self.ends.flank(roll))
+    }
+
+    /// The same with its first and second derivative over the roll angle. The point on the curve is P = Q − d n, with the flank
+    /// point Q, the normal n and the tangent t, Q' = r_b u t, n' = t, t' = −n, and F(P) = 0 is derived twice.
+    fn rates(&self, roll: f64) -> Option<[f64; 3]> {
+        let flank = self.ends.flank(roll);
+        let (depth, ([along, across], sine, cosine)) = (self.intersection_of(&flank)?, flank);
+        let Conic { xx, xy, yy, x, y, .. } = self.conic;
+        let (px, py) = (along - depth * sine, across - depth * cosine);
+        // Half of F's derivatives.
+        let (fx, fy) = (xx * px + xy * py + x, xy * px + yy * py + y);
+        let (along_tangent, along_normal) = (fx * cosine - fy * sine, fx * sine + fy * cosine);
+        let radius = self.ends.base_radius * roll - depth;
+        let slope = radius * along_tangent / along_normal;
+        let (vx, vy) = (radius * cosine - slope * sine, -radius * sine - slope * cosine);
+        let curved = vx * (xx * vx + 2.0 * xy * vy) + yy * vy * vy;
+        let bend = ((self.ends.base_radius - 2.0 * slope) * along_tangent + curved) / along_normal - radius;
+        Some([depth, slope, bend])
+    }
+
+    fn intersection_of(&self, ([along, across], sine, cosine): &([f64; 2], f64, f64)) -> Option<f64> {
         let Conic { xx, xy, yy, x, y, constant } = self.conic;
-        let ([along, across], sine, cosine) = self.ends.flank(roll);
         let (slope_x, slope_y) = (xx * along + xy * across, xy * along + yy * across);
         let bend = xx * sine * sine + 2.0 * xy * sine * cosine + yy * cosine * cosine;
         let slope = (slope_x + x) * sine + (slope_y + y) * cosine;
@@ -368,6 +389,17 @@ impl Modification for TipCurve {
         }
         // The curve was looked at all over: a normal that misses it would be one of a curve of no length.
         self.intersection(roll.min(self.ends.corner())).unwrap_or(0.0)
+    }
+
+    fn profile_rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
+        let [start, corner] = self.breaks;
+        if inside <= start {
+            return Some([0.0; 3]);
+        }
+        if inside >= corner {
+            return Some([self.depth(corner), 0.0, 0.0]);
+        }
+        self.rates(roll)
     }
 
     fn profile_breaks(&self) -> &[f64] {

@@ -50,7 +50,7 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
         gaps: [0.0; MOST_SPRINGS],
         largest_gap: 0.0,
         compliance: [[0.0; MOST_SPRINGS]; MOST_SPRINGS],
-        laws: [None; MOST_SPRINGS],
+        laws: [const { None }; MOST_SPRINGS],
     };
     for j in 0..count {
         let [pinion, gear] = rolls(j);
@@ -73,7 +73,10 @@ fn pairs(built: &Built, position: f64, count: usize) -> Pairs<'_> {
             let resolved = contact == ContactLaw::Resolved;
             let law = if resolved { Logarithmic::half_planes } else { Logarithmic::weber };
             let alone = law(&bodies, radius, depths).in_series(0.0);
-            found.laws[j] = Some(cycle.tips(s(j)).map_or(alone, |tips| alone.at_tips(tips)));
+            found.laws[j] = Some(match cycle.tips(s(j)) {
+                None => alone,
+                Some(tips) => alone.at_tips(tips),
+            });
         }
         for k in 0..j {
             let [behind, ahead] = [rolls(k), rolls(j)];

@@ -22,20 +22,26 @@ impl LoadCase<'_> {
         (CLOSEST * pair.base_pitch).max(ROUNDINGS * f64::EPSILON * pair.tangent_length)
     }
 
-    /// The first change of the set of loaded pairs between the nodes of a span, or the first level that a pair's
-    /// penetration passes.
-    pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES]) -> Option<Cut> {
+    /// The first change of the set of loaded pairs between one of these nodes of a span and the next of them, or the first
+    /// level that a pair's penetration passes.
+    pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES], nodes: &[usize]) -> Option<Cut> {
         let springs = self.cycle.springs(span.pairs);
-        for node in 0..NODES - 1 {
+        let loaded = |node: usize, pair: usize| states[node].balance.penetration[pair] > 0.0;
+        let changes = |pair: usize| nodes[1..].iter().any(|node| loaded(*node, pair) != loaded(nodes[0], pair));
+        if self.levels.is_empty() && !(0..springs).any(changes) {
+            return None;
+        }
+        for ends in nodes.windows(2) {
+            let ends = [ends[0], ends[1]];
             for pair in 0..springs {
-                let touch = if known(span, node, pair) { None } else { Some((0.0, Some(pair))) };
+                let touch = if known(span, ends, pair) { None } else { Some((0.0, Some(pair))) };
                 for (level, touch) in touch.into_iter().chain(self.levels.iter().map(|level| (*level, None))) {
-                    let [before, after] = [node, node + 1].map(|node| states[node].balance.penetration[pair] - level);
+                    let [before, after] = ends.map(|node| states[node].balance.penetration[pair] - level);
                     if (before > 0.0) == (after > 0.0) {
                         continue;
                     }
                     let closest = self.closest();
-                    let (from, to) = (span.position(&self.cycle.rows, node), span.position(&self.cycle.rows, node + 1));
+                    let [from, to] = ends.map(|node| span.position(&self.cycle.rows, node));
                     let above = |position: f64| self.state(position, span.pairs).balance.penetration[pair] - level;
                     let at = if touch.is_some() {
                         let pressed = |at: f64| self.pressed_by_others(at, span.pairs, pair);
@@ -70,7 +76,7 @@ impl LoadCase<'_> {
         {
             let differs = (0..self.cycle.springs(span.pairs)).any(|pair| {
                 let loaded = |at: usize| states[at].balance.penetration[pair] > 0.0;
-                loaded(end) != loaded(next) && !known(span, node, pair)
+                loaded(end) != loaded(next) && !known(span, [node, node + 1], pair)
             });
             if differs {
                 states[end] = self.state(inside, span.pairs);
@@ -79,8 +85,8 @@ impl LoadCase<'_> {
     }
 }
 
-/// Whether the change of a pair between a node and the next one is what the span's own end is.
-fn known(span: &Span, node: usize, pair: usize) -> bool {
-    let ends = [node == 0, node + 2 == NODES];
+/// Whether the change of a pair between two nodes is what the span's own end is.
+fn known(span: &Span, [from, to]: [usize; 2], pair: usize) -> bool {
+    let ends = [from == 0, to + 1 == NODES];
     (0..2).any(|end| ends[end] && span.touches[end] == Some(pair))
 }

@@ -10,44 +10,57 @@ use crate::numeric::graded::Graded;
 /// Against the path position.
 #[derive(Clone, Debug)]
 pub(super) struct Closed {
-    path: Path,
+    /// From A to E.
+    inside: [f64; 2],
+    tangent_length: f64,
     of: Of,
     beyond: Graded,
 }
 
 #[derive(Clone, Copy, Debug)]
 enum Of {
-    /// From the corner of this gear's tip along its flank \[m\].
-    Distance(Side),
+    /// From the corner of this gear's tip, where its radius of curvature is so much, along its flank \[m\], and 1/2 r_b.
+    Distance { side: Side, tip: f64, per_diameter: f64 },
     /// Times the root of the combined radius.
     Root(f64),
 }
 
 impl Closed {
     pub(super) fn distance(path: &Path, side: Side) -> Self {
-        Self::new(path, Of::Distance(side))
+        let (tip, base) = path.flank_end(side);
+        let of = Of::Distance { side, tip, per_diameter: 0.5 / base };
+        Self::new(path, of, &|s| path.corner_distance(side, s))
     }
 
     /// Half the width of the contact over the square root of the load per width; `unit` is that of a combined radius of 1 m.
     pub(super) fn half_width(path: &Path, unit: f64) -> Self {
-        Self::new(path, Of::Root(unit))
+        Self::new(path, Of::Root(unit), &|s| unit * combined_radius(path.radii(s)).sqrt())
     }
 
-    fn new(path: &Path, of: Of) -> Self {
-        Self { path: path.clone(), of, beyond: path.fit(0.0, &|s| of.on(path, s)).unwrap_or_default() }
+    fn new(path: &Path, of: Of, function: &dyn Fn(f64) -> f64) -> Self {
+        let beyond = path.fit(0.0, function).unwrap_or_default();
+        Self { inside: path.inside(), tangent_length: path.tangent_length(), of, beyond }
+    }
+
+    #[inline]
+    pub(super) fn is_inside(&self, s: f64) -> bool {
+        s >= self.inside[0] && s <= self.inside[1]
     }
 
     #[inline]
     pub(super) fn value(&self, s: f64) -> f64 {
-        if self.path.is_inside(s) { self.of.on(&self.path, s) } else { self.beyond.value(s) }
+        if self.is_inside(s) { self.inside(s) } else { self.beyond.value(s) }
     }
-}
 
-impl Of {
-    fn on(self, path: &Path, s: f64) -> f64 {
-        match self {
-            Self::Distance(side) => path.corner_distance(side, s),
-            Self::Root(unit) => unit * combined_radius(path.radii(s)).sqrt(),
+    /// From A to E.
+    #[inline]
+    pub(super) fn inside(&self, s: f64) -> f64 {
+        match self.of {
+            Of::Distance { side, tip, per_diameter } => {
+                let here = if side == Side::Pinion { s } else { self.tangent_length - s };
+                (tip - here) * (tip + here) * per_diameter
+            }
+            Of::Root(unit) => unit * combined_radius([s, self.tangent_length - s]).sqrt(),
         }
     }
 }

@@ -90,16 +90,16 @@ impl Point {
         self.loads.iter().sum()
     }
 
-    /// The largest share that one pair has of what all carry. A sum of terms that are not negative is rounded to no less than
-    /// any of them, so no share exceeds 1, and a single pair has all of it.
-    fn largest_share(&self) -> f64 {
-        let load = self.load();
-        if load > 0.0 { self.loads.iter().copied().fold(0.0, f64::max) / load } else { 0.0 }
-    }
-
     fn is_at(&self, extremum: &Extremum) -> bool {
         self.cycle_position.total_cmp(&extremum.position).is_eq() && self.pairs == extremum.pairs
     }
+}
+
+/// The largest share that one pair has of what all carry. A sum of terms that are not negative is rounded to no less than
+/// any of them, so no share exceeds 1, and a single pair has all of it.
+fn largest_share(loads: &PerSpring) -> f64 {
+    let load: f64 = loads.iter().sum();
+    if load > 0.0 { loads.iter().copied().fold(0.0, f64::max) / load } else { 0.0 }
 }
 
 impl LoadCase<'_> {
@@ -108,9 +108,17 @@ impl LoadCase<'_> {
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
         let mut points = self.no_points(wanted);
         self.for_values().walk(self.span_length(wanted.harmonics), |span, states| {
-            extend(&mut points, span, &self.points(span, states, wanted));
+            self.extend(&mut points, span, states, wanted);
         });
         points
+    }
+
+    /// Adds the points of a span; where it joins the one before smoothly their common point is taken once.
+    pub(super) fn extend(&self, points: &mut Vec<Point>, span: &Span, states: &[Equilibrium; NODES], wanted: Wanted) {
+        points.extend((joined(points, span)..NODES).map(|node| {
+            let position = span.position(&self.cycle.rows, node);
+            self.point(position, span.pairs, &states[node], wanted)
+        }));
     }
 
     /// What [`LoadCase::curve_and_summary`] gives, without the curve.
@@ -130,17 +138,20 @@ impl LoadCase<'_> {
         let (mut loaded, mut share) = (0.0, 0.0_f64);
         self.walk(self.span_length(wanted.harmonics), |span, states| {
             error.spans.push((*span, states.map(|state| state.transmission_error())));
+            // The loaded pairs are the same all over the span, up to its ends.
+            loaded += (span.end - span.start) * states[1].loaded_pairs() as f64;
+            share = states.iter().map(|state| largest_share(&state.balance.loads)).fold(share, f64::max);
+            if !wanted.pressure && !wanted.root_stress {
+                return self.extend(&mut points, span, states, wanted);
+            }
             let here = self.points(span, states, wanted);
-            extend(&mut points, span, &here);
+            points.extend_from_slice(&here[joined(&points, span)..]);
             if wanted.pressure {
                 pressure.spans.push((*span, here.map(|point| point.pressed.map_or(0.0, |pressed| pressed.largest))));
             }
             for (gear, root) in roots.iter_mut().enumerate().filter(|_| here[0].root_stress.is_some()) {
                 root.spans.push((*span, here.map(|point| point.root_stress.map_or(0.0, |of_gears| of_gears[gear]))));
             }
-            // The loaded pairs are the same all over the span, up to its ends.
-            loaded += (span.end - span.start) * here[1].loaded_pairs as f64;
-            share = here.iter().map(Point::largest_share).fold(share, f64::max);
         });
         let value = |position: f64, pairs: usize| self.state(position, pairs).transmission_error();
         let (largest, smallest) = (error.largest(rows, value), error.smallest(rows, value));
@@ -159,7 +170,7 @@ impl LoadCase<'_> {
             harmonics: harmonics::amplitudes(cycle.period(), &nodes, wanted.harmonics),
             unloaded_peak_to_peak: nominal.between(unloaded),
             loaded_contact_ratio: loaded / cycle.period(),
-            largest_load_share: points.iter().map(Point::largest_share).fold(share, f64::max),
+            largest_load_share: points.iter().map(|point| largest_share(&point.loads)).fold(share, f64::max),
             largest_pressure: wanted.pressure.then(|| self.largest_pressure(&pressure)),
             largest_root_stress: self.largest_root_stress(&roots),
         };
@@ -239,7 +250,7 @@ impl LoadCase<'_> {
             path_position,
             roll_angle: cycle.pair.roll(Side::Pinion, path_position),
             pairs,
-            loaded_pairs: loads.iter().filter(|load| **load > 0.0).count(),
+            loaded_pairs: state.loaded_pairs(),
             transmission_error: state.transmission_error(),
             unloaded_transmission_error: state.unloaded,
             loads,
@@ -261,10 +272,8 @@ fn insert(points: &mut Vec<Point>, new: Point) {
     points.insert(zone + behind, new);
 }
 
-/// Where two spans join smoothly their common point is taken once.
-#[allow(clippy::float_cmp)] // the end of one span is the very number that starts the next
-pub(super) fn extend(points: &mut Vec<Point>, span: &Span, here: &[Point; NODES]) {
-    #[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
-    let joined = points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs);
-    points.extend_from_slice(&here[usize::from(joined)..]);
+/// How many of a span's points are there already: where two spans join smoothly, their common one.
+#[allow(clippy::float_cmp)] // the start of a span is a copy of the end of the one before
+fn joined(points: &[Point], span: &Span) -> usize {
+    usize::from(points.last().is_some_and(|last| last.cycle_position == span.start && last.pairs == span.pairs))
 }

@@ -17,7 +17,7 @@ use super::root_stress::Roots;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
-use crate::gear::contact::tip::Tips;
+use crate::gear::contact::tip::{Ended, Tips};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::chebyshev::Series;
@@ -126,7 +126,7 @@ impl Elasticity {
         let series = law.in_series(own.unwrap_or_else(|| compliance.value(s)));
         match ends {
             None => series,
-            Some(ends) => series.at_tips(ends.tips(s)),
+            Some(ends) => series.at_ends(&**ends, s),
         }
     }
 }

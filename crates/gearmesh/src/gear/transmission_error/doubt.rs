@@ -32,6 +32,17 @@ const WEBER: f64 = 1e-2;
 /// What the shape of flanks may do before it is told: every relief bends them.
 const SHAPE: f64 = 1e-2;
 
+/// By how much a doubt may exceed what first order makes of flanks that are no parabolas.
+const BEYOND_FIRST_ORDER: f64 = 1.25;
+
+/// How closely it is looked at what flanks that are no parabolas do.
+#[derive(Clone, Copy, PartialEq)]
+enum Look {
+    /// To first order, without pressing them together.
+    Quick,
+    Close,
+}
+
 /// What most of a doubt comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Cause {
@@ -70,6 +81,12 @@ impl Doubt {
         Self { widest, ..if other.size > self.size { other } else { self } }
     }
 
+    /// If it is what first order makes of it: the most that it may be.
+    fn at_most(self) -> Self {
+        let more = (BEYOND_FIRST_ORDER - 1.0) * self.by_shape;
+        Self { size: self.size + more, by_shape: self.by_shape + more, ..self }
+    }
+
     /// Whether it exceeds what is promised.
     #[must_use]
     pub fn matters(&self) -> bool {
@@ -100,16 +117,33 @@ impl LoadCase<'_> {
             (0..POSITIONS).map(move |index| (place(index), zone.pairs))
         });
         let gaps = self.flanks.gaps();
-        places.filter_map(|(position, pairs)| self.doubt_at(position, pairs, &gaps)).reduce(Doubt::worse)
+        let quick = |place: (f64, usize)| self.doubt_at(place, &gaps, Look::Quick).map(|doubt| (place, doubt));
+        let mut found: Vec<((f64, usize), Doubt)> = places.filter_map(quick).collect();
+        let all = found.iter().map(|(_, doubt)| *doubt).reduce(Doubt::worse)?;
+        if !all.at_most().matters() {
+            return Some(all);
+        }
+        // To press flanks together takes some ten times as long as a curve: where most is expected first, and no longer than
+        // there may be more.
+        found.sort_by(|one, other| other.1.size.total_cmp(&one.1.size));
+        let mut worst: Option<Doubt> = None;
+        for (place, quick) in found {
+            if worst.is_some_and(|worst| worst.size >= quick.at_most().size) {
+                break;
+            }
+            let here = self.doubt_at(place, &gaps, Look::Close)?;
+            worst = Some(worst.map_or(here, |worst| worst.worse(here)));
+        }
+        worst.map(|worst| Doubt { widest: all.widest, ..worst })
     }
 
     /// The same at one position of the cycle with `pairs` inside the path of contact.
     #[must_use]
     pub fn contact_doubt_at(&self, position: f64, pairs: usize) -> Option<Doubt> {
-        self.doubt_at(position, pairs, &self.flanks.gaps())
+        self.doubt_at((position, pairs), &self.flanks.gaps(), Look::Close)
     }
 
-    fn doubt_at(&self, position: f64, pairs: usize, gaps: &Gaps) -> Option<Doubt> {
+    fn doubt_at(&self, (position, pairs): (f64, usize), gaps: &Gaps, look: Look) -> Option<Doubt> {
         if self.force <= 0.0 || !self.force.is_finite() {
             return None;
         }
@@ -120,7 +154,7 @@ impl LoadCase<'_> {
             .filter(|spring| loads[*spring] > 0.0)
             .map(|spring| {
                 let line_load = self.line_load(position, &state, spring);
-                (loads[spring] / load, self.missed(self.cycle.path_position(position, spring), line_load, gaps))
+                (loads[spring] / load, self.missed(self.cycle.path_position(position, spring), line_load, gaps, look))
             })
             .collect();
         let sum = |part: fn(&Missed) -> f64| missed.iter().map(|(share, missed)| share * part(missed)).sum::<f64>();
@@ -140,7 +174,7 @@ impl LoadCase<'_> {
     }
 
     /// Of the pair at a path position under a load per width.
-    fn missed(&self, s: f64, line_load: f64, gaps: &Gaps) -> Missed {
+    fn missed(&self, s: f64, line_load: f64, gaps: &Gaps, look: Look) -> Missed {
         let cycle = self.cycle;
         let (bodies, radii) = (&cycle.bodies, cycle.radii(s));
         let touching = self.cycle.reached(s, line_load);
@@ -176,7 +210,7 @@ impl LoadCase<'_> {
         let least = self.gap(s).unwrap_or(0.0);
         let reach = (FAR * FAR + least / closed).sqrt().min(FARTHEST);
         let gap = |place: f64| gaps.beside(s, place * half_width).map(|gap| (gap - least) / closed);
-        let uneven = Uneven::of(gap, reach);
+        let uneven = if look == Look::Quick { Uneven::quick(gap, reach) } else { Uneven::of(gap, reach) };
         let by_shape = uneven.change * closed;
         let ended = sides.into_iter().find(|side| half_width > lengths[*side as usize]);
         let cause = match ended {

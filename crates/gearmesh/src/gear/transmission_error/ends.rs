@@ -8,7 +8,7 @@ use crate::gear::compliance::inclined::Inclined;
 use crate::gear::compliance::{PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, combined_radius};
 use crate::gear::contact::rounding::Rounding;
-use crate::gear::contact::tip::{Corner, Shape, Tips, Turned};
+use crate::gear::contact::tip::{Corner, Ended, Far, Shape, Tips, Turned};
 use crate::gear::contact::wedge::Wedge;
 use crate::gear::geometry::{GearPair, Side};
 use crate::numeric::chebyshev::Series;
@@ -119,8 +119,43 @@ impl Ends {
         }
     }
 
-    /// The tips of a pair there.
-    pub(super) fn tips(&self, s: f64) -> Tips<'_> {
+    /// The tips of a pair where flanks touch on the line of action and none is rounded.
+    #[inline]
+    fn inside(&self, s: f64) -> Tips<'_> {
+        let half_width = self.half_width.inside(s);
+        let per_curvature = half_width * half_width * 0.5 / self.linear;
+        let curvature = 1.0 / per_curvature;
+        let slope = self.slope.value(s);
+        let corner = |side: usize| {
+            let [own, of_corner] = self.inclined[side];
+            let inwards = if side == 0 { -slope } else { slope };
+            Corner {
+                shape: &self.shapes[side],
+                rate: self.rates[side],
+                softened: 0.0,
+                turned: Turned { tooth: own[0] + 0.5 * inwards * per_curvature, rate: of_corner[0], curvature },
+                distance: self.distances[side].inside(s),
+            }
+        };
+        Tips { corners: [corner(0), corner(1)], half_width, unit: self.module, widest: self.widest }
+    }
+
+    #[inline]
+    fn is_inside(&self, s: f64) -> bool {
+        self.half_width.is_inside(s) && self.rounded[0].is_none() && self.rounded[1].is_none()
+    }
+}
+
+impl Ended for Ends {
+    #[inline]
+    fn far(&self, s: f64, rate: f64) -> Far {
+        if self.is_inside(s) { Far::of(&self.inside(s), rate) } else { Far::of(&self.tips(s), rate) }
+    }
+
+    fn tips(&self, s: f64) -> Tips<'_> {
+        if self.is_inside(s) {
+            return self.inside(s);
+        }
         let half_width = self.half_width.value(s);
         // b_H² = 2 k₀ p ρ.
         let curvature = 2.0 * self.linear / (half_width * half_width);

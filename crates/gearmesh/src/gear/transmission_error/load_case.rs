@@ -31,8 +31,6 @@ pub struct LoadCase<'a> {
     pub force: f64,
     /// F over the face width \[N/m\], and its logarithm.
     line_load: Known,
-    /// The slice that was asked for last, and where: of the nearest pair it is asked for twice.
-    last_slice: Cell<Option<(f64, InSeries<'a>)>>,
     pub(super) design: &'a Design,
     pub(super) flanks: Arc<Flanks<'a>>,
     regime: Regime<'a>,
@@ -42,6 +40,8 @@ pub struct LoadCase<'a> {
     /// Penetrations at which the load of a pair is not smooth, besides 0.
     pub(super) levels: Vec<f64>,
     pub(super) count: Count<'a>,
+    /// Positions per base pitch.
+    pub(super) positions: usize,
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
 }
@@ -88,10 +88,19 @@ pub struct Equilibrium {
     /// Loads of the pairs \[N\], and their approach beyond the smallest gap \[m\].
     pub balance: Balance,
     /// The largest load per width of each pair \[N/m\], where slices hold each other.
-    peaks: Option<PerSpring>,
+    pub(super) peaks: Option<PerSpring>,
 }
 
 impl Equilibrium {
+    /// Of nothing: fills what is computed later.
+    pub(super) const NONE: Self = Self { unloaded: 0.0, balance: Balance::EMPTY, peaks: None };
+
+    /// How many pairs carry load.
+    #[must_use]
+    pub fn loaded_pairs(&self) -> usize {
+        self.balance.loads.iter().filter(|load| **load > 0.0).count()
+    }
+
     /// δ \[m\].
     #[must_use]
     pub fn transmission_error(&self) -> f64 {
@@ -135,11 +144,11 @@ impl<'a> LoadCase<'a> {
             design,
             force,
             line_load: Known::new(force / cycle.face_width),
-            last_slice: Cell::new(None),
             regime,
             flanks,
             touching: Touching::LineOfAction,
             breaks: Arc::default(),
+            positions: cycle.settings.positions,
             refines,
         };
         let mut window = (cycle.pair.start_of_contact, cycle.pair.end_of_contact);
@@ -163,7 +172,8 @@ impl<'a> LoadCase<'a> {
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let maximum = inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s) + flanks.gap(s).unwrap_or(0.0)));
+        let maximum =
+            inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.gap(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..MOST_HALVINGS {
@@ -214,6 +224,12 @@ impl<'a> LoadCase<'a> {
         Self { levels: Vec::new(), refines: false, ..self.clone() }
     }
 
+    /// The same with as many positions per base pitch: gaps need not be found again.
+    #[must_use]
+    pub fn with_positions(&self, positions: usize) -> Self {
+        Self { positions, ..self.clone() }
+    }
+
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {
@@ -232,8 +248,9 @@ impl<'a> LoadCase<'a> {
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
-        let reach = self.within_reach(position, pairs);
-        let (balance, peaks) = self.balance(&reach);
+        let mut nearest = None;
+        let reach = self.within_reach(position, pairs, None, &mut nearest);
+        let (balance, peaks) = self.balance(&reach, nearest.as_ref());
         let unloaded = reach.smallest + self.flanks.offset();
         if matches!(self.touching, Touching::LineOfAction) {
             return Equilibrium { unloaded, balance, peaks };
@@ -256,11 +273,12 @@ impl<'a> LoadCase<'a> {
         }
         let s = self.cycle.path_position(position, spring);
         let gap = self.gap(s)?;
-        let reach = self.within_reach_but(position, pairs, Some(spring));
+        let mut nearest = None;
+        let reach = self.within_reach(position, pairs, Some(spring), &mut nearest);
         if reach.springs().is_empty() {
             return None;
         }
-        let balance = self.balance(&reach).0;
+        let balance = self.balance(&reach, nearest.as_ref()).0;
         let by_others = if matches!(self.regime, Regime::Pairs) {
             0.0
         } else {
@@ -275,8 +293,8 @@ impl<'a> LoadCase<'a> {
     #[must_use]
     pub fn unexplained_by_slices(&self, position: f64, pairs: usize) -> Option<[f64; 2]> {
         let slices = self.slices()?;
-        let reach = self.within_reach(position, pairs);
-        let above = self.alone(reach.nearest_position());
+        let reach = self.within_reach(position, pairs, None, &mut None);
+        let above = self.alone(reach.nearest_position(), &mut None);
         Some(slices.unexplained(self.cycle, &reach, [self.force, above]))
     }
 
@@ -284,18 +302,23 @@ impl<'a> LoadCase<'a> {
     /// its spring.
     pub(super) fn loads_of_slices(&self, position: f64, pairs: usize) -> Option<Vec<(usize, Vec<f64>)>> {
         let slices = self.slices()?;
-        let reach = self.within_reach(position, pairs);
-        let above = self.alone(reach.nearest_position());
+        let reach = self.within_reach(position, pairs, None, &mut None);
+        let above = self.alone(reach.nearest_position(), &mut None);
         let loads = slices.line_loads(self.cycle, &reach, [self.force, above]);
         Some(reach.springs().iter().copied().zip(loads).collect())
     }
 
-    /// The pairs that can touch at all; with corner contact, only those that come near enough.
-    fn within_reach(&self, position: f64, pairs: usize) -> WithinReach {
-        self.within_reach_but(position, pairs, None)
-    }
-
-    fn within_reach_but(&self, position: f64, pairs: usize, left_out: Option<usize>) -> WithinReach {
+    /// The pairs that can touch at all, but for one that may be left out; with corner contact, only those that come near
+    /// enough. Finding those may take the law of the nearest pair, which is left for what follows.
+    #[inline(always)]
+    #[allow(clippy::inline_always)] // returned, it would be copied for every equilibrium
+    fn within_reach(
+        &self,
+        position: f64,
+        pairs: usize,
+        left_out: Option<usize>,
+        nearest: &mut Option<InSeries<'a>>,
+    ) -> WithinReach {
         let mut reach = WithinReach::none();
         for spring in (0..self.cycle.springs(pairs)).filter(|spring| Some(*spring) != left_out) {
             let s = self.cycle.path_position(position, spring);
@@ -305,7 +328,7 @@ impl<'a> LoadCase<'a> {
         }
         reach.count_gaps_from_the_smallest();
         if matches!(self.touching, Touching::Anywhere { .. }) && self.force > 0.0 {
-            reach.keep_nearer_than(self.alone(reach.nearest_position()));
+            reach.keep_nearer_than(self.alone(reach.nearest_position(), nearest));
         }
         reach
     }
@@ -313,21 +336,24 @@ impl<'a> LoadCase<'a> {
     /// An approach that no equilibrium exceeds, from the smallest gap on, where the nearest pair is at `s`: twice that of
     /// this pair alone. For loads λ_j of least complementary energy U, x F = Σ w_j λ_j + Σ gap_j λ_j ≤ 2 U since
     /// approaches bend down with the load, and U ≤ F w(F) of any one pair alone.
-    fn alone(&self, s: f64) -> f64 {
+    ///
+    /// Leaves the law of that pair, if it took it.
+    fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
-            Elasticity::Logarithmic { .. } if self.force > 0.0 => {
-                let slice = self.slice(s);
-                self.last_slice.set(Some((s, slice)));
-                slice.at_known_load(self.line_load.number, self.line_load.log).0
+            elasticity @ Elasticity::Logarithmic { .. } if self.force > 0.0 => {
+                let law = law.insert(elasticity.series(s, None));
+                law.at_known_load(self.line_load.number, self.line_load.log).0
             }
             Elasticity::Logarithmic { .. } => 0.0,
         };
         2.0 * (alone + self.flanks.mean(s))
     }
 
-    /// Equilibrium of the pairs within reach and, where slices hold each other, the largest load per width of each.
-    fn balance(&self, reach: &WithinReach) -> (Balance, Option<PerSpring>) {
+    /// Equilibrium of the pairs within reach, of the nearest of which the law may be known, and, where slices hold each other,
+    /// the largest load per width of each.
+    #[inline]
+    fn balance(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> (Balance, Option<PerSpring>) {
         let slices = match &self.regime {
             Regime::Unloaded => return (complementarity::unloaded(reach.gaps()), None),
             Regime::Pairs | Regime::CoupledPairs => None,
@@ -335,19 +361,19 @@ impl<'a> LoadCase<'a> {
         };
         self.count.solve();
         if let Some(slices) = slices {
-            let above = self.alone(reach.nearest_position());
+            let above = self.alone(reach.nearest_position(), &mut None);
             let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
             return (balance, Some(peaks));
         }
         if self.flanks.is_surface {
             let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
-            return (self.balance_behind(reach, Faces::Each(&faces)), None);
+            return (self.balance_behind(reach, nearest, Faces::Each(&faces)), None);
         }
-        (self.balance_behind(reach, Faces::Same(&self.flanks.face)), None)
+        (self.balance_behind(reach, nearest, Faces::Same(&self.flanks.face)), None)
     }
 
     /// Where slices do not hold each other.
-    fn balance_behind(&self, reach: &WithinReach, faces: Faces) -> Balance {
+    fn balance_behind(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>, faces: Faces) -> Balance {
         match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
                 let mut stiffness = [0.0; MOST_SPRINGS];
@@ -358,9 +384,10 @@ impl<'a> LoadCase<'a> {
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } => {
-                let mut slices = [None; MOST_SPRINGS];
+                let mut slices = [const { None }; MOST_SPRINGS];
+                slices[reach.nearest()] = nearest.cloned();
                 for (slot, s) in slices.iter_mut().zip(reach.positions()) {
-                    *slot = Some(self.slice(*s));
+                    slot.get_or_insert_with(|| self.cycle.elasticity.series(*s, None));
                 }
                 // As if all carried alike.
                 let even = self.line_load.over(reach.springs().len());
@@ -388,6 +415,7 @@ impl<'a> LoadCase<'a> {
     }
 
     /// What the pairs' loads do to each other; none where nothing couples them.
+    #[inline]
     fn coupling_of(&self, reach: &WithinReach) -> Option<Coupling> {
         let (springs, positions) = (reach.springs(), reach.positions());
         if matches!(self.regime, Regime::Pairs) || springs.len() < 2 {
@@ -401,46 +429,5 @@ impl<'a> LoadCase<'a> {
             }
         }
         Some(coupling)
-    }
-
-    /// A slice of the pair at `s` under a law of the load's logarithm.
-    fn slice(&self, s: f64) -> InSeries<'a> {
-        if let Some((at, slice)) = self.last_slice.get()
-            && at.to_bits() == s.to_bits()
-        {
-            return slice;
-        }
-        self.cycle.elasticity.series(s, None)
-    }
-
-    /// The mean load per width \[N/m\] of a part of the face of a pair, whose highest place is in by `penetration`.
-    pub(super) fn mean_load(&self, s: f64, face: &Face, penetration: f64) -> f64 {
-        if penetration <= 0.0 {
-            return 0.0;
-        }
-        match &self.cycle.elasticity {
-            Elasticity::Linear(stiffness) => stiffness.value(s) * face.passed(penetration).0 / self.cycle.face_width,
-            Elasticity::Logarithmic { .. } => {
-                let law = self.slice(s);
-                face.summed(penetration, |depth| law.load(depth)).0
-            }
-        }
-    }
-
-    /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
-    #[must_use]
-    pub fn line_load(&self, position: f64, state: &Equilibrium, spring: usize) -> f64 {
-        if let Some(peaks) = state.peaks {
-            return peaks[spring];
-        }
-        let penetration = state.balance.penetration[spring];
-        if self.flanks.is_flat() || penetration <= 0.0 {
-            return state.balance.loads[spring] / self.cycle.face_width;
-        }
-        let s = self.cycle.path_position(position, spring);
-        match &self.cycle.elasticity {
-            Elasticity::Linear(stiffness) => stiffness.value(s) * penetration / self.cycle.face_width,
-            Elasticity::Logarithmic { .. } => self.slice(s).load(penetration).0,
-        }
     }
 }

@@ -49,9 +49,20 @@ impl Path {
         (self.start - before, self.end + after)
     }
 
-    /// Whether unmodified flanks touch on the line of action there.
-    pub(super) fn is_inside(&self, s: f64) -> bool {
-        s >= self.start && s <= self.end
+    /// Between these path positions unmodified flanks touch on the line of action: from A to E.
+    pub(super) fn inside(&self) -> [f64; 2] {
+        [self.start, self.end]
+    }
+
+    /// T1 T2 \[m\].
+    pub(super) fn tangent_length(&self) -> f64 {
+        self.tangent_length
+    }
+
+    /// The radius of curvature of this gear's flank where it ends, and its base radius \[m\].
+    pub(super) fn flank_end(&self, side: Side) -> (f64, f64) {
+        let end = if side == Side::Pinion { self.end } else { self.tangent_length - self.start };
+        (end, self.base_radii[side as usize])
     }
 
     /// The flanks' radii of curvature where they touch, pinion and gear.

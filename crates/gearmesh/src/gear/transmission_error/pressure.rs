@@ -8,9 +8,10 @@
 //! [`Shape::spread`]: crate::gear::contact::tip::Shape::spread
 
 use super::curve::Point;
-use super::cycle::MeshCycle;
+use super::cycle::{Elasticity, MeshCycle};
 use super::load_case::{Equilibrium, LoadCase};
 use super::trace::{Extremum, Trace};
+use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::combined_radius;
 use crate::gear::contact::tip::Tips;
 use crate::numeric::complementarity::MOST_SPRINGS;
@@ -104,6 +105,37 @@ impl MeshCycle {
 }
 
 impl LoadCase<'_> {
+    /// The mean load per width \[N/m\] of a part of the face of a pair, whose highest place is in by `penetration`.
+    pub(super) fn mean_load(&self, s: f64, face: &Face, penetration: f64) -> f64 {
+        if penetration <= 0.0 {
+            return 0.0;
+        }
+        match &self.cycle.elasticity {
+            Elasticity::Linear(stiffness) => stiffness.value(s) * face.passed(penetration).0 / self.cycle.face_width,
+            elasticity @ Elasticity::Logarithmic { .. } => {
+                let law = elasticity.series(s, None);
+                face.summed(penetration, |depth| law.load(depth)).0
+            }
+        }
+    }
+
+    /// The largest load per width of a pair \[N/m\], where the flanks stand highest across the face.
+    #[must_use]
+    pub fn line_load(&self, position: f64, state: &Equilibrium, spring: usize) -> f64 {
+        if let Some(peaks) = state.peaks {
+            return peaks[spring];
+        }
+        let penetration = state.balance.penetration[spring];
+        if self.flanks.is_flat() || penetration <= 0.0 {
+            return state.balance.loads[spring] / self.cycle.face_width;
+        }
+        let s = self.cycle.path_position(position, spring);
+        match &self.cycle.elasticity {
+            Elasticity::Linear(stiffness) => stiffness.value(s) * penetration / self.cycle.face_width,
+            elasticity @ Elasticity::Logarithmic { .. } => elasticity.series(s, None).load(penetration).0,
+        }
+    }
+
     /// The contact of each pair where its face is loaded most, by the springs of the position.
     #[must_use]
     pub fn contacts(&self, position: f64, pairs: usize, state: &Equilibrium) -> [LineContact; MOST_SPRINGS] {

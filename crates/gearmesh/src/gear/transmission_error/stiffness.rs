@@ -3,7 +3,7 @@
 //! Stiffness is F/δ \[N/m\]: with the linear contact law and no coupling the sum of the pairs' stiffnesses, whatever the
 //! load. Must not know: tables.
 
-use super::curve::{Point, Wanted, extend};
+use super::curve::{Point, Wanted};
 use super::cycle::MeshCycle;
 use super::load_case::LoadCase;
 use super::trace::{NODES, Trace};
@@ -40,7 +40,7 @@ pub fn stiffness(cycle: &MeshCycle, torque: f64) -> (Vec<Point>, StiffnessSummar
     let mut trace = Trace::default();
     let mut points = Vec::new();
     loading.walk(loading.span_length(0), |span, states| {
-        extend(&mut points, span, &loading.points(span, states, Wanted::default()));
+        loading.extend(&mut points, span, states, Wanted::default());
         let values: [f64; NODES] = states.map(|state| loading.force / state.balance.approach);
         trace.spans.push((*span, values));
     });

@@ -16,11 +16,17 @@ const ROUNDINGS: f64 = 4.0;
 /// of it, next to a change of a logarithmic law to 1e-12.
 const TAIL: f64 = 1e-8;
 
+/// The nodes between which changes are looked for.
+const ENDS: [usize; 2] = [0, NODES - 1];
+const EACH: [usize; NODES] = [0, 1, 2, 3, 4, 5, 6, 7];
+
 impl LoadCase<'_> {
     /// Visits the whole cycle in order, in smooth spans no longer than `longest` \[m\].
     pub fn walk(&self, longest: f64, mut visit: impl FnMut(&Span, &[Equilibrium; NODES])) {
         let closest = CLOSEST * self.cycle.period();
         let rounding = ROUNDINGS * f64::EPSILON * self.cycle.pair.tangent_length;
+        // Of one span after the other.
+        let mut states = [Equilibrium::NONE; NODES];
         for zone in &self.cycle.zones {
             let mut start = zone.start;
             // A steep relief makes much of a rounded position, so that where one starts the limit from inside is taken.
@@ -41,7 +47,7 @@ impl LoadCase<'_> {
                     let span = Span { start: from, end: to, pairs: zone.pairs, touches: [None; 2] };
                     let mut cuts = MOST_CUTS;
                     let last = self.state(if panel < panels { to } else { end - inwards[1] }, zone.pairs);
-                    self.smooth(&span, &[first, last], &mut cuts, &mut visit);
+                    self.smooth(&span, &[first, last], &mut states, &mut cuts, &mut visit);
                     first = last;
                     from = to;
                     panel += 1.0;
@@ -59,29 +65,33 @@ impl LoadCase<'_> {
         &self,
         span: &Span,
         ends: &[Equilibrium; 2],
+        states: &mut [Equilibrium; NODES],
         cuts: &mut usize,
         visit: &mut impl FnMut(&Span, &[Equilibrium; NODES]),
     ) {
-        let mut states = [ends[0]; NODES];
-        states[NODES - 1] = ends[1];
-        let Some((position, pair)) = self.fill(span, &mut states, *cuts > 0) else {
-            return visit(span, &states);
+        (states[0], states[NODES - 1]) = (ends[0], ends[1]);
+        let Some((position, pair)) = self.fill(span, states, *cuts > 0) else {
+            return visit(span, states);
         };
         *cuts -= 1;
         let before = Span { end: position, touches: [span.touches[0], pair], ..*span };
         let after = Span { start: position, touches: [pair, span.touches[1]], ..*span };
         let middle = self.state(position, span.pairs);
-        self.smooth(&before, &[ends[0], middle], cuts, visit);
-        self.smooth(&after, &[middle, ends[1]], cuts, visit);
+        self.smooth(&before, &[ends[0], middle], states, cuts, visit);
+        self.smooth(&after, &[middle, ends[1]], states, cuts, visit);
     }
 
     /// Fills in the states between both ends of a span; where it is to be cut, if that is still allowed.
     fn fill(&self, span: &Span, states: &mut [Equilibrium; NODES], may_cut: bool) -> Option<Cut> {
+        // Most changes show at the ends, before anything is computed between them.
+        if may_cut && let Some(cut) = self.change(span, states, &ENDS) {
+            return Some(cut);
+        }
         let rows = &self.cycle.rows;
         for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
             *state = self.state(span.position(rows, node), span.pairs);
         }
-        if may_cut && let Some(cut) = self.change(span, states) {
+        if may_cut && let Some(cut) = self.change(span, states, &EACH) {
             return Some(cut);
         }
         let bent = || rows.tail(&states.each_ref().map(Equilibrium::transmission_error)) > TAIL;
@@ -104,7 +114,7 @@ impl LoadCase<'_> {
 
     /// The longest span for the wanted number of positions, short enough for `harmonics`.
     pub(super) fn span_length(&self, harmonics: usize) -> f64 {
-        let spans = (self.cycle.settings.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
+        let spans = (self.positions as f64 / (NODES - 1) as f64).max(harmonics as f64);
         self.cycle.period() / spans.max(1.0)
     }
 }

@@ -268,8 +268,20 @@ impl<'a> Outline<'a> {
         match (shape, quadratic) {
             (Convexity::Zero, _) => [0.0; 3],
             (_, Some(quadratic)) => quadratic.rates(position),
-            (_, None) => self.sampled_rates(position, piece),
+            (_, None) => self.known_rates(position, piece).unwrap_or_else(|| self.sampled_rates(position, piece)),
         }
+    }
+
+    /// Of the parts, which all know theirs.
+    fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
+        let (roll, inside) = (self.roll(position), self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1])));
+        let [depth, slope, bend] = self.parts.iter().try_fold([0.0; 3], |sum, part| {
+            let rates = part.rates(roll, inside)?;
+            Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+        })?;
+        let [of_point, of_flank] = self.facing.roll_rates();
+        let rate = if self.is_point { of_point } else { of_flank };
+        Some([depth, slope * rate, bend * rate * rate])
     }
 
     fn sampled_rates(&self, position: f64, piece: usize) -> [f64; 3] {

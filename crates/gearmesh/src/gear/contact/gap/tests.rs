@@ -1,5 +1,6 @@
 //! The least gap against brute force, in the model's own terms and with true points, and its continuity.
 
+mod arcs;
 mod outlines;
 
 use std::f64::consts::TAU;

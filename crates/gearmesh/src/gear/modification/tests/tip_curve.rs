@@ -27,6 +27,9 @@ fn built(
         fn depth(&self, roll: f64) -> f64 {
             self.0.depth(roll)
         }
+        fn profile_rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
+            self.0.profile_rates(roll, inside)
+        }
         fn profile_breaks(&self) -> &[f64] {
             self.0.profile_breaks()
         }
@@ -119,6 +122,35 @@ fn every_design_of_the_article_is_its_curve() {
                 assert!((breaks[0] - t).abs() < 1e-15 && (breaks[1] - corner).abs() < 1e-15);
             }
         }
+    }
+}
+
+/// Tier: second method; differences of the depth to the fourth order, between B and A, and both limits at either.
+#[test]
+fn rates_are_those_of_the_depth() {
+    for (family, (tip, length)) in
+        FAMILIES.into_iter().flat_map(|family| TIP_SHARES.into_iter().zip(LENGTH_SHARES).map(move |of| (family, of)))
+    {
+        let part = built(family, "gear", &shares(tip, length)).unwrap();
+        let &[start, corner] = part.profile_breaks() else { panic!("it has two") };
+        for share in [0.1, 0.37, 0.5, 0.83] {
+            let (roll, step) = (start + share * (corner - start), 0.02 * (corner - start));
+            let [depth, slope, bend] = part.profile_rates(roll, roll).unwrap();
+            assert_eq!(depth.to_bits(), part.depth(roll).to_bits());
+            let [a, b, c, d] = [-2.0, -1.0, 1.0, 2.0].map(|steps| part.depth(roll + steps * step));
+            let by_differences = (a - d + 8.0 * (c - b)) / (12.0 * step);
+            assert!((by_differences / slope - 1.0).abs() < 2e-5, "{family} {share}: {slope} {by_differences}");
+            let by_differences = (16.0 * (b + c) - a - d - 30.0 * depth) / (12.0 * step * step);
+            assert!((by_differences / bend - 1.0).abs() < 2e-5, "{family} {share}: {bend} {by_differences}");
+        }
+        let middle = 0.5 * (start + corner);
+        assert_eq!(part.profile_rates(start, start - 0.1), Some([0.0; 3]));
+        assert_eq!(part.profile_rates(corner, corner + 0.1), Some([part.depth(corner), 0.0, 0.0]));
+        // It leaves the flank along its tangent, but curved.
+        let [depth, slope, bend] = part.profile_rates(start, middle).unwrap();
+        let square = part.depth(start + 1e-6) / 1e-12;
+        assert!(depth.abs() < 1e-30 && slope.abs() < 1e-18 && (0.5 * bend / square - 1.0).abs() < 1e-4);
+        assert!(part.profile_rates(corner, middle).unwrap()[1] > 0.0);
     }
 }
 

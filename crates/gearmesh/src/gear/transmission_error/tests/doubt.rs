@@ -146,3 +146,37 @@ fn contact_beside_the_base_circle_is_told() {
     );
     assert!(found[2].cause == Cause::Width && found[2].matters(), "{found:?}");
 }
+
+/// Tier: second method; flanks are pressed together only where most is expected, and the worst of all positions is found.
+#[test]
+fn no_position_is_in_more_doubt_than_is_told() {
+    let pair = pair();
+    let (mut told, mut quiet) = (0, 0);
+    for compliance in [resolved(), PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() }] {
+        let cycle = cycle(&pair, &compliance);
+        for (amount, length, curve) in
+            [(2e-6, 5e-3, "linear"), (10e-6, 4e-3, "parabolic"), (60e-6, 2e-3, "linear"), (90e-6, 4e-3, "parabolic")]
+        {
+            let values = [("amount", Quantity(amount)), ("length", Quantity(length)), ("curve", Choice(curve))];
+            let relieved = design(&pair, &[("tip_relief", "both", &values)]).unwrap();
+            for torque in [1.0, 30.0, 300.0] {
+                let loading = LoadCase::new(&cycle, &relieved, torque);
+                let found = loading.contact_doubt().unwrap();
+                let places = cycle.zones.iter().flat_map(|zone| {
+                    let place = |share: f64| (zone.start + (zone.end - zone.start) * share, zone.pairs);
+                    [0.0, 0.25, 0.5, 0.75, 1.0].map(place)
+                });
+                for (position, pairs) in places {
+                    let here = loading.contact_doubt_at(position, pairs).unwrap();
+                    assert!(
+                        here.size <= found.size * (1.0 + 1e-12),
+                        "{amount} {torque} {position}: {here:?} {found:?}"
+                    );
+                    assert!(found.matters() || !here.matters(), "{amount} {torque} {position}: {here:?} {found:?}");
+                }
+                if found.matters() { told += 1 } else { quiet += 1 }
+            }
+        }
+    }
+    assert!(told >= 4 && quiet >= 4, "{told} {quiet}");
+}
