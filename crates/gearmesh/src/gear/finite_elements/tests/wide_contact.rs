@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use super::super::gear_model::GearModel;
-use super::super::mesh::Sizing;
+use super::super::mesh::{Focus, Sizing};
 use super::{gear, shifted};
 use crate::gear::contact::patch::Surface;
 use crate::gear::geometry::root::RootShape;
@@ -28,7 +28,8 @@ fn beyond_law(teeth: u32, shift: f64, share: f64, half_width: f64) -> (f64, Surf
     let mirrored: Vec<f64> = corners.iter().rev().map(|at| 1.0 - at).collect();
     corners.extend([0.5].into_iter().chain(mirrored));
     let middles = corners.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
-    let sizing = Sizing { across: middles.chain([1.0]).collect(), level: 16.0, focus: Some([edge, centre.height]) };
+    let focus = Focus { height: centre.height, size: edge, growth: 0.3 };
+    let sizing = Sizing { across: middles.chain([1.0]).collect(), focus: Some(focus), ..Sizing::even(16) };
     let model = GearModel::new(&gear, &root, Plane::Strain, &sizing).unwrap();
     // Each part along the flank's own normal, at x = b sin φ; the flank's length is r_b u²/2.
     let points = 400;
