@@ -414,20 +414,35 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
+/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know, and of one along the
+/// flank at the last of them where contact is resolved; SI.
 fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
-    let found = model.stress_influences(&task.rolls, task.neighbours)?;
+    let mut loads: Vec<FlankLoad> = task.rolls.iter().map(|&roll| FlankLoad::normal(roll)).collect();
+    let normal = loads.len();
+    if task.resolved {
+        let [turned, _] = inclined::loads(task.rolls[normal - 1]);
+        loads.push(turned);
+    }
+    let found = model.stress_influences_of(&loads, task.neighbours)?;
     let module = task.gear.specification.module;
     let (lower, upper) = (task.root.form_roll, task.gear.flank_end.roll);
     let series = |loads: &Vec<Vec<f64>>, place: usize| {
-        let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
+        let values: Vec<f64> = loads[..normal].iter().map(|stresses| stresses[place] / module).collect();
         Series::from_values(lower, upper, &values)
+    };
+    let along = |loads: &Vec<Vec<f64>>| {
+        loads[normal..]
+            .iter()
+            .flat_map(|turned| inclined::along(turned, &loads[normal - 1]))
+            .map(|stress| stress / module)
+            .collect()
     };
     let count = found.gauges.len();
     Ok(RootInfluences {
         radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
         lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
         stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+        along: found.stresses.iter().map(along).collect(),
     })
 }
 
