@@ -77,15 +77,15 @@ fn wide_contacts_are_as_far_off_as_is_said() {
     }
 }
 
-/// Tier: second method; gears, places and plane states that the margin was not chosen on: from the lower to the upper end of
-/// single contact.
+/// Tier: second method; other gears, places and plane states, from the lower to the upper end of single contact. The third is the
+/// one that the margin was chosen on; nothing was chosen on the others.
 #[test]
 fn wide_contacts_of_other_gears_are_no_farther_off_than_is_said() {
-    for (teeth, shifts, plane, share) in [
-        ([16, 22], [0.3, 0.0], Plane::Strain, 0.05),
-        ([16, 22], [0.3, 0.0], Plane::Stress, 0.5),
-        ([16, 22], [0.3, 0.0], Plane::Strain, 0.95),
-        ([14, 15], [0.4, 0.4], Plane::Strain, 0.3),
+    for (teeth, shifts, plane, share, approach) in [
+        ([16, 22], [0.3, 0.0], Plane::Strain, 0.05, 250e-6),
+        ([16, 22], [0.3, 0.0], Plane::Stress, 0.5, 100e-6),
+        ([16, 22], [0.3, 0.0], Plane::Strain, 0.95, 100e-6),
+        ([14, 15], [0.4, 0.4], Plane::Strain, 0.3, 150e-6),
     ] {
         let [one, two] = [0, 1].map(|side| Specification {
             teeth: teeth[side],
@@ -96,9 +96,7 @@ fn wide_contacts_of_other_gears_are_no_farther_off_than_is_said() {
         let pair = GearPair::new(one, two, None).unwrap();
         let zones = pair.zone_points();
         let s = zones.b + share * (zones.d - zones.b);
-        for approach in [27.5e-6, 100e-6, 250e-6] {
-            let Some([off, doubt]) = off(&pair, plane, s, approach) else { return };
-            println!("{teeth:?} {share} {plane:?}");
-        }
+        let Some([off, doubt]) = off(&pair, plane, s, approach) else { return };
+        assert!(off < 0.0 && -off < doubt + MESH, "{teeth:?}, {plane:?}, {share}: {off} {doubt}");
     }
 }
