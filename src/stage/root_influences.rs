@@ -21,7 +21,7 @@ struct Row {
     side: Side,
     /// How many pitches further than the stressed tooth the loaded one is.
     tooth: isize,
-    /// From 1.
+    /// From 1; 0 for a load along the flank.
     node: usize,
     /// From 1.
     place: usize,
@@ -41,7 +41,7 @@ fn columns() -> Columns<Row> {
         .key()
         .integer(names::TOOTH, tooth, |row| row.tooth)
         .key()
-        .integer(names::NODE, "Chebyshev node of the load, from 1 at the root side.", |row| row.node)
+        .integer(names::NODE, "Chebyshev node of the load, from 1 at the root side; 0: along the flank at the last one, towards the root.", |row| row.node)
         .key()
         .integer(names::PLACE, "Place along the surface, from 1 at the root land.", |row| row.place)
         .key()
@@ -65,11 +65,26 @@ pub fn schema() -> Schema {
 /// When a stress is not finite.
 pub fn write(influences: &[RootInfluences; 2]) -> Result<Table, TableError> {
     let mut rows = Vec::new();
-    for (side, RootInfluences { radii, lengths, stresses }) in [Side::Pinion, Side::Gear].into_iter().zip(influences) {
+    for (side, RootInfluences { radii, lengths, stresses, along }) in
+        [Side::Pinion, Side::Gear].into_iter().zip(influences)
+    {
         let neighbours = (stresses.len() / 2).cast_signed();
         for (of_tooth, tooth) in stresses.iter().zip(-neighbours..) {
             for (place, (series, (&radius, &length))) in (1..).zip(of_tooth.iter().zip(radii.iter().zip(lengths))) {
                 let rolls = nodes(series.lower(), series.upper(), series.coefficients().len());
+                let of_tip =
+                    usize::try_from(tooth + neighbours).ok().and_then(|tooth| along.get(tooth)?.get(place - 1));
+                let last = rolls.last().copied().unwrap_or(series.upper());
+                rows.extend(of_tip.map(|&stress| Row {
+                    side,
+                    tooth,
+                    node: 0,
+                    place,
+                    roll: last,
+                    radius,
+                    length,
+                    stress,
+                }));
                 rows.extend((1..).zip(rolls).map(|(node, roll)| Row {
                     side,
                     tooth,
@@ -125,21 +140,25 @@ fn read(table: &Table, side: Side) -> Result<RootInfluences, Failure> {
     let count = |most: i64| usize::try_from(most).unwrap_or(0);
     let (places, loads) = (count(most(names::PLACE)), count(most(names::NODE)));
     let teeth = 2 * count(most(names::TOOTH)) + 1;
-    if rows.is_empty() || rows.len() != teeth * loads * places {
+    let turned = usize::from(rows.iter().any(|&row| table.integers(names::NODE)[row] == 0));
+    let all = turned + loads;
+    if rows.is_empty() || rows.len() != teeth * all * places {
         return Err(Failure::new(format!("table `{}` does not have what a {} needs", names::TABLE, side.name())));
     }
     let of_places = |column: &str| rows[..places].iter().map(|&row| si(table, column, row)).collect();
     let rolls: Vec<f64> =
-        rows.iter().step_by(places).take(loads).map(|&row| table.floats(names::ROLL_ANGLE)[row]).collect();
+        rows.iter().step_by(places).skip(turned).take(loads).map(|&row| table.floats(names::ROLL_ANGLE)[row]).collect();
     let (lower, upper) = interval(&rolls);
     let series = |tooth: usize, place: usize| {
-        let of_load = |load: usize| si(table, names::STRESS, rows[(tooth * loads + load) * places + place]);
+        let of_load = |load: usize| si(table, names::STRESS, rows[(tooth * all + turned + load) * places + place]);
         Series::from_values(lower, upper, &(0..loads).map(of_load).collect::<Vec<f64>>())
     };
+    let along = |tooth: usize, place: usize| si(table, names::STRESS, rows[tooth * all * places + place]);
     Ok(RootInfluences {
         radii: of_places(names::RADIUS),
         lengths: of_places(names::LENGTH),
         stresses: (0..teeth).map(|tooth| (0..places).map(|place| series(tooth, place)).collect()).collect(),
+        along: (0..teeth).map(|tooth| (0..turned * places).map(|place| along(tooth, place)).collect()).collect(),
     })
 }
 
@@ -149,7 +168,7 @@ mod tests {
 
     #[test]
     fn influences_come_back_to_the_last_bits() {
-        let of = |count: usize, scale: f64| RootInfluences {
+        let of = |count: usize, scale: f64, along: usize| RootInfluences {
             radii: (0..count).map(|place| 0.02 + 1e-4 * place as f64).collect(),
             lengths: (0..count).map(|place| 1e-4 * place as f64).collect(),
             stresses: (0..3)
@@ -158,8 +177,9 @@ mod tests {
                     (0..count).map(|place| Series::fit(0.07, 0.62, 12, |u| part(place) * libm::exp(u))).collect()
                 })
                 .collect(),
+            along: (0..3).map(|tooth| (0..along).map(|place| scale * (tooth * 10 + place) as f64).collect()).collect(),
         };
-        let both = [of(5, 700.0), of(7, 400.0)];
+        let both = [of(5, 700.0, 5), of(7, 400.0, 0)];
         let table = write(&both).unwrap();
         for (side, known) in [Side::Pinion, Side::Gear].into_iter().zip(&both) {
             let back = read(&table, side).unwrap();
@@ -169,6 +189,8 @@ mod tests {
             };
             near(&back.radii, &known.radii);
             near(&back.lengths, &known.lengths);
+            assert_eq!(back.along.len(), 3);
+            back.along.iter().zip(&known.along).for_each(|(back, known)| near(back, known));
             assert_eq!(back.stresses.len(), 3);
             for (one, other) in back.stresses.iter().flatten().zip(known.stresses.iter().flatten()) {
                 assert!((one.value(0.4) / other.value(0.4) - 1.0).abs() < 1e-13);

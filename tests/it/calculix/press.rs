@@ -13,7 +13,7 @@ use std::fmt::Write;
 use super::flanks::{Flanks, Nearest, take_off};
 use super::program;
 use super::wheel::Wheel;
-use gearmesh::gear::finite_elements::mesh::{Edge, Mesh, Sizing};
+use gearmesh::gear::finite_elements::mesh::{Edge, Focus, Mesh, Sizing};
 use gearmesh::gear::finite_elements::outline::Outline;
 use gearmesh::gear::finite_elements::root_stress::{along_surface, largest};
 use gearmesh::gear::geometry::root::RootShape;
@@ -125,7 +125,11 @@ pub fn sizing(gear: &Gear, roll: f64, fineness: Fineness) -> Sizing {
         [section.height, section.half_thickness].map(|length| length / gear.specification.module)
     };
     let Fineness { level, edge, .. } = fineness;
-    Sizing { across: across(0.5 * edge / half), level: level as f64, focus: Some([edge, height]) }
+    Sizing {
+        across: across(0.5 * edge / half),
+        focus: Some(Focus { height, size: edge, growth: 0.3 }),
+        ..Sizing::even(level)
+    }
 }
 
 /// Modulus and ratio with which plane strain is the plane state. CPS8 is a solid in CalculiX: its thickness changes as

@@ -7,12 +7,14 @@
 //! nothing is counted twice. Must not know: how it is solved.
 
 mod inclined;
+mod solution;
 #[cfg(test)]
 mod tests;
 
 use std::f64::consts::PI;
 
 use self::inclined::AtTip;
+use self::solution::{LEFT, Solution};
 use super::inclined::Inclined;
 use super::{
     Assumptions, ComplianceError, ContactLaw, Foreseen, MeshFacts, Method, PairCompliance, RootInfluences, RootStress,
@@ -47,8 +49,8 @@ const ORDER: f64 = 1.5;
 /// The distance from a resolved contact, in modules, at which the surface's displacement is the tooth's: far for any contact,
 /// and so near that what is left for the tooth is positive.
 const LENGTH: f64 = 0.25;
-/// Rows of elements are as thin at the tip, as a share of what they would be, where its corner matters.
-const TIP_ROWS: f64 = 1.0 / 16.0;
+/// Parts of an element of the mesh half as fine, in each direction.
+const HALVED: usize = 2;
 /// Rows of the body that make the block of a resolved load another one: what it gives must not depend on it.
 const OTHER_BLOCK: usize = 1;
 /// The least chamfer or rounding of a tip \[modules\]: it is smaller than the elements there, and than contacts are.
@@ -181,24 +183,6 @@ fn loads(contact: ContactLaw) -> usize {
     if contact == ContactLaw::Resolved { RESOLVED_ROLLS } else { ROLLS }
 }
 
-/// What loads on a gear do.
-#[derive(Clone, Debug, PartialEq)]
-struct Solution {
-    influences: Influences,
-    /// Those at the corner of the tip that are inclined, where contact is resolved.
-    tip: Option<AtTip>,
-}
-
-impl Solution {
-    /// The largest difference from that of another mesh, in units of the teeth's own.
-    fn difference(&self, coarse: &Self) -> f64 {
-        let normal = difference(&self.influences, &coarse.influences);
-        let own = &self.influences.own;
-        let inclined = self.tip.as_ref().zip(coarse.tip.as_ref()).map_or(0.0, |(fine, coarse)| fine.difference(coarse));
-        normal.max(inclined / own[own.len() - 1])
-    }
-}
-
 /// One gear, and how it is to be solved.
 struct Task<'a> {
     side: Side,
@@ -252,19 +236,30 @@ impl<'a> Task<'a> {
         ComplianceError::Mesh { side: self.side, across, error }
     }
 
-    fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
-        let mut sizing = Sizing::even(across);
-        if self.resolved {
+    /// The mesh with so many elements across; for point loads it is `parts` times as fine as the one that it is made of.
+    fn model_of(&self, across: usize, parts: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
+        let sizing = if self.resolved {
             let tip = self.gear.flank(self.gear.flank_end.roll);
-            let [height, half] = [tip.height, tip.half_thickness].map(|length| length / self.gear.specification.module);
-            sizing.focus = Some([TIP_ROWS * Sizing::along(half, across), height]);
-        }
+            let end = [tip.half_thickness, tip.height].map(|length| length / self.gear.specification.module);
+            Sizing::nested(across, parts, end)
+        } else {
+            Sizing::even(across)
+        };
         work.add(&Work::of(&MESH_FACTORISATIONS, 1));
         GearModel::new(self.gear, &self.root, self.plane, &sizing).map_err(|error| self.failed(across, error))
     }
 
-    fn at(&self, across: usize, work: &mut Work) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
-        let model = self.model(across, work)?;
+    fn model(&self, across: usize, work: &mut Work) -> Result<GearModel<'_>, ComplianceError> {
+        self.model_of(across, HALVED, work)
+    }
+
+    fn at(
+        &self,
+        across: usize,
+        parts: usize,
+        work: &mut Work,
+    ) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
+        let model = self.model_of(across, parts, work)?;
         work.add(&Work::of(&COMPLIANCE_EVALUATIONS, self.rolls.len()));
         let failed = |error| self.failed(across, error);
         let (found, other_block) = if self.resolved {
@@ -283,14 +278,22 @@ impl<'a> Task<'a> {
         Ok((found, facts, model))
     }
 
-    /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine.
+    /// The influences, refined if an accuracy is asked for. The error is estimated from a mesh half as fine; where contact
+    /// is resolved that is one of which each element is cut into four, and the influences are those that both tend to.
     fn solve(&self, work: &mut Work) -> Result<(Solution, MeshFacts, GearModel<'_>), ComplianceError> {
         let mut across = self.across;
         loop {
-            let coarse = even(across / 2).max(LEAST);
-            let (found, mut facts, model) = self.at(across, work)?;
-            let change = found.difference(&self.at(coarse, work)?.0);
-            facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
+            let nested = self.resolved && across >= HALVED * LEAST;
+            let coarse = if nested { across / HALVED } else { even(across / 2).max(LEAST) };
+            let (mut found, mut facts, model) = self.at(across, HALVED, work)?;
+            let (half, ..) = self.at(coarse, 1, work)?;
+            let change = found.difference(&half);
+            if nested {
+                facts.error_estimate += change * LEFT;
+                found = found.extrapolated(&half);
+            } else {
+                facts.error_estimate += change / (libm::pow(across as f64 / coarse as f64, ORDER) - 1.0);
+            }
             let Some(accuracy) = self.accuracy else { return Ok((found, facts, model)) };
             if facts.error_estimate <= accuracy || across >= MOST_ELEMENTS {
                 return Ok((found, facts, model));
@@ -411,38 +414,39 @@ impl<'a> Task<'a> {
     }
 }
 
-/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know; SI.
+/// Of loads at the nodes of the tables, on the tooth and on as many to either side as the tables know, and of one along the
+/// flank at the last of them where contact is resolved; SI.
 fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, MeshError> {
-    let found = model.stress_influences(&task.rolls, task.neighbours)?;
+    let mut loads: Vec<FlankLoad> = task.rolls.iter().map(|&roll| FlankLoad::normal(roll)).collect();
+    let normal = loads.len();
+    if task.resolved {
+        let [turned, _] = inclined::loads(task.rolls[normal - 1]);
+        loads.push(turned);
+    }
+    let found = model.stress_influences_of(&loads, task.neighbours)?;
     let module = task.gear.specification.module;
     let (lower, upper) = (task.root.form_roll, task.gear.flank_end.roll);
     let series = |loads: &Vec<Vec<f64>>, place: usize| {
-        let values: Vec<f64> = loads.iter().map(|stresses| stresses[place] / module).collect();
+        let values: Vec<f64> = loads[..normal].iter().map(|stresses| stresses[place] / module).collect();
         Series::from_values(lower, upper, &values)
+    };
+    let along = |loads: &Vec<Vec<f64>>| {
+        loads[normal..]
+            .iter()
+            .flat_map(|turned| inclined::along(turned, &loads[normal - 1]))
+            .map(|stress| stress / module)
+            .collect()
     };
     let count = found.gauges.len();
     Ok(RootInfluences {
         radii: found.gauges.iter().map(|gauge| module * libm::hypot(gauge.place[0], gauge.place[1])).collect(),
         lengths: found.gauges.iter().map(|gauge| module * gauge.length).collect(),
         stresses: found.stresses.iter().map(|loads| (0..count).map(|place| series(loads, place)).collect()).collect(),
+        along: found.stresses.iter().map(along).collect(),
     })
 }
 
 /// The next even number.
 fn even(count: usize) -> usize {
     count.next_multiple_of(2)
-}
-
-/// The largest difference of influences, in units of the teeth's own.
-fn difference(fine: &Influences, coarse: &Influences) -> f64 {
-    let own = fine.own.iter().zip(&coarse.own).map(|(a, b)| (b / a - 1.0).abs()).fold(0.0, f64::max);
-    let mut largest = own;
-    for (fine_rows, coarse_rows) in fine.further.iter().zip(&coarse.further) {
-        for (by, (a, b)) in fine_rows.iter().zip(coarse_rows).enumerate() {
-            for (on, (a, b)) in a.iter().zip(b).enumerate() {
-                largest = largest.max((a - b).abs() / (fine.own[by] * fine.own[on]).sqrt());
-            }
-        }
-    }
-    largest
 }

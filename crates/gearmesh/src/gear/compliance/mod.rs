@@ -119,6 +119,9 @@ pub struct RootInfluences {
     /// \[rad\]; by the loaded tooth, then by place. The loaded teeth are an odd number with the tooth itself in the middle,
     /// before it those behind, after it those further on, where roll angles are larger.
     pub stresses: Vec<Vec<Series>>,
+    /// The same under a load along the flank, towards the root, at the tip: what inclined loads at its corner have of it. By
+    /// the loaded tooth, then by place; no places where contact is not resolved.
+    pub along: Vec<Vec<f64>>,
 }
 
 /// What a method takes, before it runs.

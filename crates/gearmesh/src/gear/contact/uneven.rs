@@ -14,6 +14,8 @@ use super::patch::{closing, pressed};
 const PLACES: i32 = 12;
 /// Steps of a search for the least gap between two of them.
 const STEPS: usize = 8;
+/// Halvings of a strip towards where a flank ends.
+const HALVINGS: usize = 30;
 /// Places in the contact, by the weights of a flat punch.
 const POINTS: usize = 12;
 /// A change below this is what first order says it is: an approach is some ten times k₀ p.
@@ -87,13 +89,31 @@ impl Uneven {
         // A strip lies in the middle of the contact.
         #[allow(clippy::cast_possible_truncation)] // no more than STRIPS
         let [from, to] = ends.map(|end| libm::round(end / spacing) as i64);
-        let places: Vec<f64> = (from..=to).map(|place| place as f64 * spacing).collect();
+        let even: Vec<f64> = (from..=to).map(|place| place as f64 * spacing).collect();
+        // ... unless a flank ends, as it does at a base circle: then two of them meet there.
+        let shift = end(|place| gap(centre + place).is_none_or(f64::is_finite), &even).map_or(0.0, |[whole, end]| {
+            let beyond = if end < whole { -0.5 * spacing } else { 0.5 * spacing };
+            end - whole - beyond
+        });
+        let places: Vec<f64> = even.iter().map(|place| place + shift).collect();
         let real: Vec<f64> = places.iter().map(|place| height(centre + place) - floor).collect();
         let parabola = |place: &f64| gap(centre + place).map_or(f64::INFINITY, |_| place * place);
         let ideal: Vec<f64> = places.iter().map(parabola).collect();
         let change = pressed(&real, spacing).zip(pressed(&ideal, spacing)).map_or(0.0, |(real, ideal)| real - ideal);
         Self { change: change.abs(), apart: apart.0 }
     }
+}
+
+/// Where a surface ends, if it does: the last of `places` where it is, seen from the middle, and the end.
+fn end(is: impl Fn(f64) -> bool, places: &[f64]) -> Option<[f64; 2]> {
+    let two = places.windows(2).find(|two| is(two[0]) != is(two[1]))?;
+    let (whole, mut beyond) = if is(two[0]) { (two[0], two[1]) } else { (two[1], two[0]) };
+    let mut last = whole;
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (last + beyond);
+        *(if is(middle) { &mut last } else { &mut beyond }) = middle;
+    }
+    Some([whole, last])
 }
 
 /// The least height between two places, and where it is.
@@ -158,11 +178,13 @@ mod tests {
     /// ends but yields as if it did not.
     #[test]
     fn beyond_a_base_circle_there_is_no_flank() {
-        // Between two strips, which know no better where it ends.
-        for end in [0.05, 0.55] {
-            let found = Uneven::of(|x| Some(if x < -end { f64::INFINITY } else { x * x }), 3.0);
+        // On either side, in the middle of a strip, between two, and anywhere.
+        for end in [0.02, 0.05, 0.1, 0.13, 0.37, 0.5, 0.55] {
             let exact = Wedge::new(0.0).more(end)[0];
-            assert!((found.change - exact).abs() < 0.08 * exact, "{end}: {found:?} {exact}");
+            for side in [-1.0, 1.0] {
+                let found = Uneven::of(|x| Some(if side * x > end { f64::INFINITY } else { x * x }), 3.0);
+                assert!((found.change - exact).abs() < f64::min(0.02, 0.08 * exact), "{end}: {found:?} {exact}");
+            }
         }
     }
 

@@ -271,9 +271,19 @@ impl GearModel<'_> {
     /// # Errors
     /// When the gear is not held to rounding.
     pub fn stress_influences(&self, rolls: &[f64], neighbours: u32) -> Result<StressInfluences, MeshError> {
+        let loads: Vec<FlankLoad> = rolls.iter().map(|&roll| FlankLoad::normal(roll)).collect();
+        self.stress_influences_of(&loads, neighbours)
+    }
+
+    /// The same of loads that each have an inclination of their own, in the block of the tooth alone.
+    ///
+    /// # Errors
+    /// As [`Self::stress_influences`].
+    pub fn stress_influences_of(&self, places: &[FlankLoad], neighbours: u32) -> Result<StressInfluences, MeshError> {
         let Mesh { nodes, elements, root, flank, .. } = &self.mesh;
         let block = Block::new(nodes, elements, &self.mesh.tooth(0), &self.elasticity).ok_or(MeshError::Singular)?;
-        let loads: Vec<NodalForces> = rolls.iter().map(|&roll| self.taken(&block, roll, 0.0).forces).collect();
+        let loads: Vec<NodalForces> =
+            places.iter().map(|load| self.taken(&block, load.roll, load.inclination).forces).collect();
         let fillet = flank.iter().take_while(|edge| nodes[edge.nodes[2]][1] <= self.form);
         // The nodes of the first edge belong to two sectors.
         let edges: Vec<Edge> = root.iter().chain(fillet).skip(1).copied().collect();
@@ -298,14 +308,14 @@ impl GearModel<'_> {
                 return held;
             }
             // In the block the mesh has the rest alone.
-            let field = self.field(rolls[load], 0.0);
+            let field = self.field(places[load].roll, places[load].inclination);
             held + field.stretch(gauge.place, gauge.along) - gauge.stress(|node| block.at_shared(nodes, &field, node))
         };
         let stresses = (found.iter().zip(&steps))
             .map(|(matrix, &step)| {
                 let of =
                     |load: usize, place: usize| matrix[place][load] + if step == 0 { own(load, place) } else { 0.0 };
-                (0..rolls.len()).map(|load| (0..gauges.len()).map(|place| of(load, place)).collect()).collect()
+                (0..places.len()).map(|load| (0..gauges.len()).map(|place| of(load, place)).collect()).collect()
             })
             .collect();
         Ok(StressInfluences { gauges, stresses })

@@ -5,6 +5,8 @@
 //! root below the cut, to the bore. Everything is symmetric about the tooth's centreline, on which nodes lie.
 //! Must not know: elasticity, loads.
 
+use std::f64::consts::TAU;
+
 use super::MeshError;
 use super::element::{self, NODES, RULE};
 use super::outline::{Outline, divide};
@@ -15,22 +17,50 @@ use super::tooth_rows::{ToothRows, chain};
 const ALONG: f64 = 1.2;
 /// Turn of the outline along one element \[rad\].
 const TURN: f64 = 3.2;
-/// Depth of the body's outermost elements over the tooth's thickness at the cut.
-const RIM: f64 = 0.7;
-/// Growth of the body's elements with the depth.
-const GROWTH: f64 = 3.0;
+/// Depth of the body's outermost elements over the tooth's thickness at the cut, and its growth with the depth.
+const RIM: [f64; 2] = [0.7, 3.0];
+/// The same where loads are points: elements across are thinner there, and those below must not be what limits.
+const FINE_RIM: [f64; 2] = [0.45, 3.5];
 /// Depth of the body's elements over the radius, near a small bore.
 const PROPORTION: f64 = 3.2;
+
+/// Turn of the involute along one element where loads are points \[rad\]: next to the base circle its curvature has no bound.
+const INVOLUTE_TURN: f64 = 0.8;
+/// By which share elements at the flanks are thinner than if all across were alike, where loads are points: what such a load
+/// leaves varies most there. Those in the middle are thicker by as much.
+const CROWDED: f64 = 0.6;
+/// Length of an element along the flank at the tip over what it would be, where its corner matters.
+const AT_TIP: f64 = 1.0 / 16.0;
+/// By how much elements grow for each length of the way from there, for one element across.
+const FROM_TIP: f64 = 0.9;
 
 /// Sizes of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sizing {
-    /// From the right flank (0) to the left (1), corners and middles alternating; symmetric, with ½ at a corner.
+    /// From the right flank (0) to the left (1), corners and middles alternating; symmetric, with ½ at a corner if the
+    /// centreline is to be an edge of elements.
     pub across: Vec<f64>,
     /// Elements across if they were all alike; all other sizes follow from it.
     pub level: f64,
-    /// Element length along the flank near a height \[modules\], and the height, where the mesh must be finer.
-    pub focus: Option<[f64; 2]>,
+    /// Depth of the body's outermost elements and its growth, for one element across.
+    pub rim: [f64; 2],
+    /// Turn of the involute along one element, for one element across \[rad\].
+    pub involute_turn: f64,
+    /// Where on the flank the mesh must be finer.
+    pub focus: Option<Focus>,
+    /// Into how many parts each element along the outline, and down the body, is cut: so that meshes are nested.
+    pub parts: usize,
+}
+
+/// A place on the flank where elements are shorter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Focus {
+    /// Its height in the tooth's frame \[modules\].
+    pub height: f64,
+    /// Length of an element there \[modules\].
+    pub size: f64,
+    /// By how much it grows for each length of the way from there.
+    pub growth: f64,
 }
 
 impl Sizing {
@@ -38,7 +68,28 @@ impl Sizing {
     #[must_use]
     pub fn even(across: usize) -> Self {
         let half = (0..=2 * across).map(|k| k as f64 / (2 * across) as f64).collect();
-        Self { across: half, level: across as f64, focus: None }
+        Self { across: half, level: across as f64, rim: RIM, involute_turn: TURN, focus: None, parts: 1 }
+    }
+
+    /// For point loads less their own fields, up to the end of a flank where half the tooth is `half` thick, at a `height`
+    /// \[modules\]: `across` elements between the flanks, thinner there, and shorter towards the tip. With two `parts` it
+    /// is the mesh of half as many across and one part, of which each element is cut into four: their errors differ by the
+    /// power of their size alone.
+    #[must_use]
+    pub fn nested(across: usize, parts: usize, [half, height]: [f64; 2]) -> Self {
+        let place = |k: usize| {
+            let even = k as f64 / (2 * across) as f64;
+            even - CROWDED / TAU * libm::sin(TAU * even)
+        };
+        let size = AT_TIP * Self::along(half, across / parts);
+        Self {
+            across: (0..=2 * across).map(place).collect(),
+            level: across as f64 / parts as f64,
+            rim: FINE_RIM,
+            involute_turn: INVOLUTE_TURN,
+            focus: Some(Focus { height, size, growth: FROM_TIP }),
+            parts,
+        }
     }
 
     /// Length of an element along the flank with so many across, where half the tooth is `half` thick \[modules\].
@@ -118,15 +169,17 @@ impl Mesh {
         let cut_point = outline.tooth[0].point(outline.tooth[0].lower);
         let cut_thickness = 2.0 * cut_point[0];
         let body_size = ALONG * cut_thickness / level;
-        let mut root_points = chain(&outline.body, |stretch| divide(stretch, TURN / level, |_| body_size));
+        let mut root_points =
+            chain(&outline.body, |stretch| divide(stretch, TURN / level, sizing.parts, |_| body_size));
         // A root without land ends there but for rounding.
         let (sine, cosine) = libm::sincos(outline.half_pitch);
         let radius = libm::hypot(root_points[0][0], root_points[0][1]);
         root_points[0] = [radius * sine, radius * cosine];
         let flank_points = chain(&outline.tooth, |stretch| {
-            divide(stretch, TURN / level, |[x, y]| {
+            let turn = if stretch.is_flank() { sizing.involute_turn } else { TURN };
+            divide(stretch, turn / level, sizing.parts, |[x, y]| {
                 let size = ALONG * 2.0 * x / level;
-                sizing.focus.map_or(size, |[fine, height]| size.min(fine + 0.3 * (y - height).abs()))
+                sizing.focus.map_or(size, |focus| size.min(focus.size + focus.growth * (y - focus.height).abs()))
             })
         });
 
@@ -139,7 +192,8 @@ impl Mesh {
             .chain(root_points.iter().take(half).rev().copied())
             .collect();
         let outer = libm::hypot(cut_point[0], cut_point[1]);
-        let fractions = depths(outline.bore_radius, outer, RIM * cut_thickness / level, level);
+        let [rim_depth, growth] = sizing.rim.map(|size| size / level);
+        let fractions = depths(outline.bore_radius, outer, [rim_depth * cut_thickness, growth], level, sizing.parts);
 
         let mut nodes = Vec::new();
         let mut body = Grid { columns: rim.len(), numbers: Vec::new() };
@@ -262,9 +316,10 @@ impl Mesh {
 }
 
 /// Rows of the body as fractions of the way from the bore to the rim, corners and middles alternating: the depth of an
-/// element is `rim` at the rim, grows with the distance from it, and is at most in proportion to the radius.
-fn depths(bore: f64, outer: f64, rim: f64, level: f64) -> Vec<f64> {
-    let (growth, proportion) = (GROWTH / level, PROPORTION / level);
+/// element is `rim` at the rim, grows with the distance from it, and is at most in proportion to the radius; each is cut into
+/// `parts`.
+fn depths(bore: f64, outer: f64, [rim, growth]: [f64; 2], level: f64, parts: usize) -> Vec<f64> {
+    let proportion = PROPORTION / level;
     let depth = outer - bore;
     // Where the two sizes are equal.
     let turn = ((proportion * outer - rim) / (growth + proportion)).clamp(0.0, depth);
@@ -272,7 +327,7 @@ fn depths(bore: f64, outer: f64, rim: f64, level: f64) -> Vec<f64> {
     let far = libm::log((outer - turn) / bore) / proportion;
     let total = near + far;
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a few dozen
-    let count = libm::round(total).max(2.0) as usize;
+    let count = parts * libm::round(total).max(2.0) as usize;
     let place = |k: usize| {
         if k == 0 {
             return 0.0;

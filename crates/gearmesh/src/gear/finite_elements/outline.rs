@@ -38,6 +38,12 @@ impl Stretch {
         self.curve.point(parameter).map(|length| length / self.module)
     }
 
+    /// Whether it is the involute.
+    #[must_use]
+    pub fn is_flank(&self) -> bool {
+        matches!(self.part, OutlinePart::Flank)
+    }
+
     /// Its length \[modules\].
     #[must_use]
     pub fn length(&self) -> f64 {
@@ -154,9 +160,9 @@ fn cut(stretches: &[Stretch]) -> (usize, f64) {
 }
 
 /// Parameters of corner and middle nodes, alternating, on a stretch with elements of the length `size` at a point, and
-/// none that turns by more than `turn`.
+/// none that turns by more than `turn`; each of them then cut into `parts`.
 #[must_use]
-pub fn divide(stretch: &Stretch, turn: f64, size: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
+pub fn divide(stretch: &Stretch, turn: f64, parts: usize, size: impl Fn([f64; 2]) -> f64) -> Vec<f64> {
     let samples = Samples::new(stretch);
     let mut weights = vec![0.0];
     for k in 0..SAMPLES {
@@ -175,7 +181,7 @@ pub fn divide(stretch: &Stretch, turn: f64, size: impl Fn([f64; 2]) -> f64) -> V
     let total = weights[SAMPLES];
     // A few dozen elements at most.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-    let count = libm::round(total).max(1.0) as usize;
+    let count = parts * libm::round(total).max(1.0) as usize;
     let corners: Vec<f64> =
         (0..=count).map(|k| invert(&weights, &samples.lengths, total * (k as f64 / count as f64))).collect();
     let mut parameters = Vec::new();

@@ -42,6 +42,8 @@ struct Root {
     range: [f64; 2],
     /// By the loaded tooth: coefficients of all places, order by order.
     coefficients: Vec<Vec<f64>>,
+    /// By the loaded tooth: what a load along the flank at its tip does, place by place, if that is known.
+    along: Vec<Vec<f64>>,
 }
 
 impl Roots {
@@ -52,7 +54,7 @@ impl Roots {
 
 impl Root {
     fn new(influences: &RootInfluences) -> Self {
-        let RootInfluences { radii, lengths, stresses } = influences;
+        let RootInfluences { radii, lengths, stresses, along } = influences;
         let of_tooth = |places: &Vec<Series>| {
             let orders = places.iter().map(|series| series.coefficients().len()).max().unwrap_or(0);
             let of = |order: usize| places.iter().map(move |series| series.coefficients().get(order).copied());
@@ -60,13 +62,24 @@ impl Root {
         };
         let range = stresses.iter().flatten().next().map_or([-1.0, 1.0], |series| [series.lower(), series.upper()]);
         let coefficients = stresses.iter().map(of_tooth).collect();
-        Self { radii: radii.clone(), lengths: lengths.clone(), range, coefficients }
+        Self { radii: radii.clone(), lengths: lengths.clone(), range, coefficients, along: along.clone() }
     }
 
-    /// Adds to the stress at every place what a load per width at a roll angle does, on a tooth so many pitches further.
-    fn add(&self, stresses: &mut [f64], further: isize, roll: f64, load: f64) {
+    /// Adds to the stress at every place what a load per width at a roll angle does, on a tooth so many pitches further; at the
+    /// corner of a tip it is turned by an angle from the flank's normal.
+    fn add(&self, stresses: &mut [f64], further: isize, [roll, inclination]: [f64; 2], load: f64) {
         let tooth = (self.coefficients.len() / 2).checked_add_signed(further);
-        let Some(coefficients) = tooth.and_then(|tooth| self.coefficients.get(tooth)) else { return };
+        let Some((tooth, coefficients)) = tooth.and_then(|tooth| Some((tooth, self.coefficients.get(tooth)?))) else {
+            return;
+        };
+        let mut load = load;
+        if let Some(along) = self.along.get(tooth).filter(|along| inclination != 0.0 && !along.is_empty()) {
+            let (sine, cosine) = libm::sincos(inclination);
+            for (stress, along) in stresses.iter_mut().zip(along) {
+                *stress += load * sine * along;
+            }
+            load *= cosine;
+        }
         let [lower, upper] = self.range;
         let t = (2.0 * roll - lower - upper) / (upper - lower);
         // load T_n(t), and the one before it.
@@ -95,11 +108,13 @@ impl LoadCase<'_> {
     pub fn root_stress(&self, position: f64, pairs: usize, state: &Equilibrium) -> Option<[RootStress; 2]> {
         let Roots(roots) = self.cycle.roots.as_deref()?;
         self.count.root_stress();
-        let mut loaded = [(0, 0.0, [0.0; 2]); MOST_SPRINGS];
+        let mut loaded = [(0, 0.0, [[0.0; 2]; 2]); MOST_SPRINGS];
         let mut count = 0;
         for spring in (0..self.cycle.springs(pairs)).filter(|spring| state.balance.loads[*spring] > 0.0) {
-            let rolls = self.cycle.rolls(self.cycle.path_position(position, spring));
-            loaded[count] = (spring.cast_signed(), self.line_load(position, state, spring), rolls);
+            let s = self.cycle.path_position(position, spring);
+            let (rolls, turned) = (self.cycle.rolls(s), self.cycle.inclinations(s));
+            let at = [0, 1].map(|gear| [rolls[gear], turned[gear]]);
+            loaded[count] = (spring.cast_signed(), self.line_load(position, state, spring), at);
             count += 1;
         }
         let loaded = &loaded[..count];
@@ -110,10 +125,10 @@ impl LoadCase<'_> {
             let mut stresses = vec![0.0; root.radii.len()];
             for (stressed, ..) in loaded {
                 stresses.fill(0.0);
-                for (spring, load, rolls) in loaded {
+                for (spring, load, at) in loaded {
                     // The pair ahead has the larger roll angle on the pinion and the smaller one on the gear.
                     let further = if side == Side::Pinion { spring - stressed } else { stressed - spring };
-                    root.add(&mut stresses, further, rolls[gear], *load);
+                    root.add(&mut stresses, further, at[gear], *load);
                 }
                 if let Some((stress, radius)) = peak(&root.lengths, &root.radii, &stresses)
                     && stress > largest.stress

@@ -28,6 +28,13 @@ pub(super) fn loads(roll: f64) -> [FlankLoad; 2] {
     [TURN, -TURN].map(|inclination| FlankLoad { inclination, ..FlankLoad::normal(roll) })
 }
 
+/// What a load along the flank does that one normal to it and one of [`loads`], the first, do as a sum of both, value by
+/// value.
+pub(super) fn along<'a>(turned: &'a [f64], normal: &'a [f64]) -> impl Iterator<Item = f64> + 'a {
+    let (sine, cosine) = libm::sincos(TURN);
+    turned.iter().zip(normal).map(move |(turned, normal)| (turned - cosine * normal) / sine)
+}
+
 impl AtTip {
     /// From the influences of loads of which the first `count` are those of the tables, the one that is nearest to the tip
     /// the last of them, and those of [`loads`] are `at` and the next. `apart`: ln c there, and what B has.

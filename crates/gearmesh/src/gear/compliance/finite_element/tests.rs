@@ -2,10 +2,11 @@
 
 use super::super::energy::{Energy, GearBody};
 use super::super::{Assumptions, ComplianceError, ContactLaw, Method, RootStress, RootStresses, Tabulated};
-use super::{FiniteElement, difference};
+use super::FiniteElement;
+use super::solution::difference;
 use crate::gear::contact::flattening::{Logarithmic, combined_radius};
 use crate::gear::finite_elements::gear_model::{FlankLoad, GearModel, Influences};
-use crate::gear::finite_elements::mesh::Sizing;
+use crate::gear::finite_elements::mesh::{Focus, Sizing};
 use crate::gear::fixtures::{STEEL, STEELS, standard};
 use crate::gear::geometry::outline::tip::Tip;
 use crate::gear::geometry::root::RootShape;
@@ -333,7 +334,8 @@ fn inclined_loads_are_those_of_the_tables() {
         let gear = &pair.pinion;
         let root = gear.root(RootShape::Trochoid).unwrap();
         let tip = gear.flank(gear.tip_roll()).height / 3e-3;
-        let sizing = Sizing { focus: Some([5e-3, tip]), ..Sizing::even(24) };
+        let focus = Focus { height: tip, size: 5e-3, growth: 0.3 };
+        let sizing = Sizing { focus: Some(focus), ..Sizing::even(24) };
         let model = GearModel::new(gear, &root, plane, &sizing).unwrap();
         let (distance, turn, before) = (0.015, 0.15_f64, 0.6 * gear.tip_roll());
         let roll = (gear.tip_roll().powi(2) - 2.0 * distance * 3e-3 / gear.base_radius).sqrt();

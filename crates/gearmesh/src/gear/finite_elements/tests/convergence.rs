@@ -1,6 +1,6 @@
 //! Anchors, observed order, and the split into tooth and contact against a resolved Hertzian pressure.
 
-use super::super::mesh::Sizing;
+use super::super::mesh::{Focus, Sizing};
 use super::super::{gear_model::GearModel, root_stress};
 use super::{gear, model, shifted, standard};
 use crate::gear::geometry::root::RootShape;
@@ -80,7 +80,8 @@ fn remainder(radius: f64, half_width: f64) -> [f64; 3] {
     corners.extend(mirrored);
     let mut across: Vec<f64> = corners.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]).collect();
     across.push(1.0);
-    let sizing = Sizing { across, level: 16.0, focus: Some([0.25 * half_width, centre.height]) };
+    let focus = Focus { height: centre.height, size: 0.25 * half_width, growth: 0.3 };
+    let sizing = Sizing { across, focus: Some(focus), ..Sizing::even(16) };
     let model = GearModel::new(&gear, &root, Plane::Strain, &sizing).unwrap();
     // p = 2/(π b) √(1 − (x/b)²) as point loads at x = b sin φ; the flank's length is r_b u²/2.
     let points = 400;

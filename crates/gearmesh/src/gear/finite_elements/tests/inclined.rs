@@ -1,7 +1,7 @@
 //! Loads that are turned from the flank's normal: against loads at nodes, against the wedge, and by what they must hold.
 
 use super::super::gear_model::{FlankLoad, GearModel};
-use super::super::mesh::Sizing;
+use super::super::mesh::{Focus, Sizing};
 use super::super::sector::NodalForces;
 use super::{gear, shifted};
 use crate::gear::contact::wedge;
@@ -15,7 +15,8 @@ fn fine<'a>(gear: &'a Gear, root: &Root, across: u32, [edge, roll]: [f64; 2]) ->
     let corners: Vec<f64> = half.iter().copied().chain(half.iter().rev().skip(1).map(|part| 1.0 - part)).collect();
     let across: Vec<f64> =
         corners.windows(2).flat_map(|ends| [ends[0], 0.5 * (ends[0] + ends[1])]).chain([1.0]).collect();
-    let sizing = Sizing { across, level: 16.0, focus: Some([edge, gear.flank(roll).height]) };
+    let focus = Focus { height: gear.flank(roll).height, size: edge, growth: 0.3 };
+    let sizing = Sizing { across, focus: Some(focus), ..Sizing::even(16) };
     GearModel::new(gear, root, Plane::Strain, &sizing).unwrap()
 }
 

@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use super::super::gear_model::GearModel;
-use super::super::mesh::Sizing;
+use super::super::mesh::{Focus, Sizing};
+use super::super::point_load::HalfPlane;
 use super::{gear, shifted};
 use crate::gear::contact::patch::Surface;
 use crate::gear::geometry::root::RootShape;
-use crate::gear::material::Plane;
+use crate::gear::material::{Material, Plane};
 
 /// 1/E′ and ν′ of steel in plane strain, E = 1.
 const HALF_PLANE: [f64; 2] = [0.91, 3.0 / 7.0];
@@ -28,7 +29,8 @@ fn beyond_law(teeth: u32, shift: f64, share: f64, half_width: f64) -> (f64, Surf
     let mirrored: Vec<f64> = corners.iter().rev().map(|at| 1.0 - at).collect();
     corners.extend([0.5].into_iter().chain(mirrored));
     let middles = corners.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
-    let sizing = Sizing { across: middles.chain([1.0]).collect(), level: 16.0, focus: Some([edge, centre.height]) };
+    let focus = Focus { height: centre.height, size: edge, growth: 0.3 };
+    let sizing = Sizing { across: middles.chain([1.0]).collect(), focus: Some(focus), ..Sizing::even(16) };
     let model = GearModel::new(&gear, &root, Plane::Strain, &sizing).unwrap();
     // Each part along the flank's own normal, at x = b sin φ; the flank's length is r_b u²/2.
     let points = 400;
@@ -62,5 +64,31 @@ fn wide_contacts_find_a_tooth_softer_by_no_more_than_is_said() {
                 "z {teeth}, {share} of the flank, b {half_width}: {found} for {said}"
             );
         }
+    }
+}
+
+/// Tier: closed form; on a circle a point load leaves a traction that grows in proportion to the distance, which is smooth, so that
+/// the kink of what a disc yields beside a half plane is that of the load's own field along the normals of the circle.
+#[test]
+fn the_kink_of_a_curved_surface_is_that_of_a_point_load_on_a_circle() {
+    let [compliance, poisson_ratio] = HALF_PLANE;
+    let (radius, half_width) = (3.0, 1e-2);
+    let material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+    let field = HalfPlane::new([0.0; 2], [0.0, 1.0], &material, Plane::Strain);
+    // What it moves a place of the circle by along the normal there, less that of a half plane at the distance along the circle.
+    let beside = |angle: f64| {
+        let (sine, cosine) = angle.sin_cos();
+        let [x, y] = field.displacement([radius * sine, radius * (1.0 - cosine)]);
+        y * cosine - x * sine + 2.0 * compliance / PI * (radius * angle.abs()).ln()
+    };
+    // With two steps what grows with the square of the distance is taken off.
+    let slope = |angle: f64| (beside(angle) - beside(1e-9)) / (radius * angle.abs());
+    for side in [-1.0, 1.0] {
+        let kink = 2.0 * slope(0.5e-4 * side) - slope(1e-4 * side);
+        let surface = Surface { compliance, poisson_ratio, radius, depth: f64::INFINITY };
+        let [said, thickness] = surface.left_out(half_width);
+        // 256/(45 π²) is the mean distance of two places under the pressure.
+        let exact = kink * half_width * 256.0 / (45.0 * PI * PI);
+        assert!(thickness == 0.0 && (said / exact - 1.0).abs() < 1e-3, "{said} {exact}");
     }
 }

@@ -16,7 +16,9 @@ const ROOTS: Wanted = Wanted { harmonics: 0, pressure: false, root_stress: true 
 fn meshed(teeth: [u32; 2], contact: ContactLaw) -> (GearPair, PairCompliance, [RootInfluences; 2]) {
     let [pinion, gear] = teeth.map(|teeth| standard(teeth, 3e-3, 1.6));
     let pair = GearPair::new(pinion, gear, None).unwrap();
-    let method = FiniteElement { plane: Plane::Strain, elements_across: 8 };
+    // Meshes for point loads have their places at the root in pairs, and so farther apart where they are coarse.
+    let elements_across = if contact == ContactLaw::Resolved { 12 } else { 8 };
+    let method = FiniteElement { plane: Plane::Strain, elements_across };
     let assumptions = Assumptions { contact, ..Assumptions::default() };
     let (tabulated, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();
     (pair, tabulated.compliance, roots)
@@ -37,8 +39,12 @@ fn summed(cycle: &MeshCycle, loading: &LoadCase, roots: &RootInfluences, side: S
             let of = |&loaded: &usize| {
                 let s = cycle.path_position(point.cycle_position, loaded);
                 let further = if side == Pinion { loaded + middle - stressed } else { stressed + middle - loaded };
-                let roll = cycle.rolls(s)[usize::from(side == Gear)];
-                loading.line_load(point.cycle_position, &state, loaded) * roots.stresses[further][place].value(roll)
+                let gear = usize::from(side == Gear);
+                let (roll, (sine, cosine)) = (cycle.rolls(s)[gear], cycle.inclinations(s)[gear].sin_cos());
+                let normal = roots.stresses[further][place].value(roll);
+                // At the corner of a tip loads are along the normal of the other flank, if that is known of.
+                let turned = roots.along[further].get(place).map_or(normal, |along| cosine * normal + sine * along);
+                loading.line_load(point.cycle_position, &state, loaded) * turned
             };
             let stress: f64 = springs.iter().map(of).sum();
             if stress > largest {
