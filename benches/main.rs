@@ -13,6 +13,7 @@ mod geometry;
 mod kernels;
 mod optimize;
 mod program;
+mod shards;
 mod storage;
 mod summary;
 
@@ -36,6 +37,7 @@ fn main() {
         finite_elements::print();
         designs::print();
         designs::print_optimizer();
+        shards::print();
         summary::print(&processes);
     }
 }
