@@ -13,6 +13,7 @@ mod geometry;
 mod kernels;
 mod optimize;
 mod program;
+mod shards;
 mod storage;
 mod summary;
 mod sweep;
@@ -38,6 +39,7 @@ fn main() {
         designs::print();
         designs::print_optimizer();
         sweep::print();
+        shards::print();
         summary::print(&processes);
     }
 }

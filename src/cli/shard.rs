@@ -118,8 +118,9 @@ fn status(folder: &Path, check: bool, missing: bool, as_json: bool) -> Result<()
     let damaged = of(|state| matches!(state, State::Damaged(_)));
     let failed = of(|state| matches!(state, State::Failed(_)));
     if missing {
-        let lines: String = of(|state| *state != State::Sound).iter().map(|index| format!("{index}\n")).collect();
-        out(&lines);
+        for index in of(|state| *state != State::Sound) {
+            out(&format!("{index}\n"));
+        }
         return Ok(());
     }
     let told = |index: &usize| match &states[*index] {

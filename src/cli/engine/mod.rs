@@ -159,7 +159,9 @@ impl Job<'_> {
                         self.plan.shards.len(),
                         ranges(lost.iter().copied())
                     ));
-                    lost.iter().for_each(|index| *started.entry(*index).or_default() += 1);
+                    for index in &lost {
+                        *started.entry(*index).or_default() += 1;
+                    }
                     starter.start(&lost)?;
                 }
                 self.wait(starter, level.end - level.first, missing, stop)?;

@@ -59,8 +59,9 @@ impl Starter for Parallel<'_> {
         let also = said.try_clone().map_err(wrong)?;
         let mut child = command.stdin(Stdio::piped()).stdout(also).stderr(said).spawn().map_err(wrong)?;
         if let Some(mut stdin) = child.stdin.take() {
-            let lines: String = shards.iter().map(|shard| format!("{shard}\n")).collect();
-            stdin.write_all(lines.as_bytes()).map_err(wrong)?;
+            for shard in shards {
+                writeln!(stdin, "{shard}").map_err(wrong)?;
+            }
         }
         self.running = Some((child, shards.to_vec()));
         Ok(())

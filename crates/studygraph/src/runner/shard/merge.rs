@@ -76,7 +76,8 @@ pub(super) fn take(path: &Path, plan: &ShardPlan, shard: Option<usize>, cache: &
 /// Takes all shards of a plan into a cache; what is left to compute a run computes.
 ///
 /// # Errors
-/// When the plan is not for this program; when shards are missing, damaged or failed: then nothing is taken.
+/// When the plan is not for this program; when shards are missing, damaged or failed. What was taken before that was seen
+/// is found by the next merge.
 pub fn merge(folder: &Path, program: &'static Program, cache: &Cache) -> Result<(ShardPlan, Merged), ShardError> {
     let plan = ShardPlan::read(folder)?;
     plan.check(&program.about, folder)?;
@@ -110,7 +111,18 @@ pub fn merge(folder: &Path, program: &'static Program, cache: &Cache) -> Result<
         take(&known_file(folder), &plan, None, cache)?;
     }
     for index in 0..plan.shards.len() {
-        let one = take(&pack_file(folder, index), &plan, Some(index), cache)?;
+        let path = pack_file(folder, index);
+        let one = take(&path, &plan, Some(index), cache).map_err(|error| match error {
+            ShardError::Store(StoreError::Damaged { problem, .. }) => {
+                // Its header was sound, so whoever looks for missing shards would never see it; what cannot be removed is
+                // found damaged again.
+                let _ = std::fs::remove_file(&path);
+                let folder = folder.display();
+                let again = format!("it is removed, and `shard run {folder} {index}` computes it again");
+                ShardError::Plan(format!("shard {index} is damaged: {problem}; {again}"))
+            }
+            other => other,
+        })?;
         all = Merged { shards: all.shards + 1, parts: all.parts + one.parts, bytes: all.bytes + one.bytes };
     }
     Ok((plan, all))

@@ -124,7 +124,7 @@ fn a_label_may_have_dots_and_a_member_no_fields() {
     let study = with(&text, &["designs.designs.v1.5.b[0].tip_relief.length=2 mm"], None).unwrap();
     let Value::List(items) = &record(&study, "designs").map("designs")[2].1.value else { panic!() };
     let Value::Member("tip_relief", relief) = &items[0].value else { panic!() };
-    assert_eq!(relief.quantity("length"), 0.002);
+    assert_eq!(relief.quantity("length").to_bits(), 0.002_f64.to_bits());
     // A default that is a bare name gets fields of its own.
     let study = set("optimum.method={ tip_relief: { amount: 3 um } }");
     assert_eq!(record(&study, "optimum").member("method").0, "tip_relief");
@@ -229,7 +229,7 @@ fn a_message_about_what_is_set_has_the_option_for_its_place() {
 fn a_study_may_set_its_own_paths_and_more_can_be_set_behind_them() {
     let text = format!("{VALID}set:\n    pair.module: 4 mm\n");
     let own = load(&text).unwrap();
-    assert_eq!(record(&own, "pair").quantity("module"), 0.004);
+    assert_eq!(record(&own, "pair").quantity("module").to_bits(), 0.004_f64.to_bits());
     let more = with(&text, &["pair.pinion.teeth=23"], None).unwrap();
     assert_eq!(
         (record(&more, "pair").quantity("module"), record(&more, "pair").group("pinion").integer("teeth")),
@@ -253,8 +253,8 @@ fn a_study_may_set_its_own_paths_and_more_can_be_set_behind_them() {
     let message = load(&format!("{VALID}set:\n  pair.modul: 3 mm\n")).err().unwrap().to_string();
     assert!(message.starts_with("t.yaml:37:8: unknown field `modul` of `pair`"), "{message}");
     // All keys indented, no line break at the end, and the other line ends.
-    let indented: String = VALID.lines().map(|line| format!("  {line}\r\n")).collect();
+    let indented = format!("  {}\r\n", VALID.lines().collect::<Vec<_>>().join("\r\n  "));
     let study = with(indented.trim_end(), &["pair.module=4 mm"], None).unwrap();
-    assert_eq!(record(&study, "pair").quantity("module"), 0.004);
+    assert_eq!(record(&study, "pair").quantity("module").to_bits(), 0.004_f64.to_bits());
     load(&study.text).unwrap();
 }
