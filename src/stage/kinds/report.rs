@@ -12,6 +12,7 @@ mod operand;
 mod quantity;
 mod rows;
 mod stated;
+mod stated_figure;
 mod verdict;
 
 use std::collections::BTreeSet;
@@ -22,8 +23,9 @@ use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
-use figure::{Figure, StatedFigure, figures, marks};
+use figure::{Figure, figures, marks};
 use stated::Published;
+use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
