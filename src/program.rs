@@ -7,7 +7,7 @@ use std::path::Path;
 use crate::stage::kinds::KINDS;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
-use studygraph::program::Program;
+use studygraph::program::{Pictures, Program};
 use studygraph::study::{self, LoadError, Study};
 
 /// What studies are run with.
@@ -25,6 +25,10 @@ pub static PROGRAM: Program = Program {
         rustc: env!("GEARSTUDY_RUSTC"),
         profile: env!("GEARSTUDY_PROFILE"),
         dependencies: env!("GEARSTUDY_DEPENDENCIES"),
+    },
+    pictures: Pictures {
+        reader: "report",
+        tables: &[("geometry", "mesh_drawing"), ("modification", "profile"), ("modification", "lead")],
     },
 };
 

@@ -6,6 +6,7 @@
 mod axes;
 mod cells;
 mod choice;
+mod comparison;
 mod data;
 mod defaults;
 mod drawing;
@@ -125,7 +126,8 @@ fn part(stage: &str, order: &Order, tables: Tables<'_>) -> Result<page::ReportPa
     };
     let figures = figure::figures(&table("figures")?, &table("figure_published")?, order, tables)?;
     let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
-    Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, figures })
+    let comparisons = comparison::rows(&table("comparisons")?)?;
+    Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, comparisons, figures })
 }
 
 fn column<'a>(table: &'a Table, name: &str) -> Result<&'a Data, ReportError> {

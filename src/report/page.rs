@@ -8,6 +8,7 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use super::choice::{self, Choice};
+use super::comparison;
 use super::figure::{Figure, Tables};
 use super::inputs::Inputs;
 use super::records::{self, StageTables};
@@ -24,6 +25,7 @@ pub struct ReportPart {
     pub stage: String,
     pub verdicts: Table,
     pub counts: Table,
+    pub comparisons: Vec<comparison::Row>,
     pub figures: Vec<Figure>,
 }
 
@@ -35,6 +37,9 @@ struct View<'a> {
     total: i64,
     attention: i64,
     parts: Vec<PartView>,
+    comparisons: Vec<&'a comparison::Row>,
+    /// How many differ without a reason.
+    differing: usize,
     figures: Vec<FigureView>,
     /// Whether figures show what differs from run to run.
     varies: bool,
@@ -156,6 +161,8 @@ pub fn html(
         manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
     let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
     let inputs = Inputs::of(manifest);
+    let mut comparisons: Vec<&comparison::Row> = parts.iter().flat_map(|part| &part.comparisons).collect();
+    comparisons.sort_by_key(|row| row.rank());
     let parts = parts.iter().map(|part| part_view(part, &inputs)).collect::<Result<Vec<_>, _>>()?;
     let records = records::records(manifest, tables)?;
     let view = View {
@@ -164,6 +171,8 @@ pub fn html(
         total,
         attention,
         is_plain: total == 0,
+        differing: comparisons.iter().filter(|row| row.rank() == 0).count(),
+        comparisons,
         parts,
         varies: figures.iter().any(|figure| figure.varies),
         figures: figures.iter().map(figure_view).collect(),

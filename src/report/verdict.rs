@@ -141,7 +141,7 @@ fn signed(text: String) -> String {
     if text.starts_with('−') || is_zero { text } else { format!("+{text}") }
 }
 
-fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent.abs() < 0.005 {
         return "0.00\u{202f}%".to_owned();

@@ -13,7 +13,7 @@ use std::path::Path;
 
 use super::{LoadError, Study, load_text};
 use crate::about::ABOUT;
-use crate::program::Program;
+use crate::program::{Pictures, Program};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Stage, Want};
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
@@ -164,7 +164,7 @@ static KIND_OPTIMIZER: Kind = kind!("optimizer", OPTIMIZER);
 static KIND_STE: Kind = kind!("ste", STE);
 static KIND_REPORT: Kind = kind!("report", REPORT);
 
-static PROGRAM: Program = Program { kinds: KINDS, code_of: |_| String::new(), counters: &[], about: ABOUT };
+static PROGRAM: Program = Program { kinds: KINDS, code_of: |_| String::new(), counters: &[], about: ABOUT, pictures: Pictures::NONE };
 pub static KINDS: &[&Kind] = &[&KIND_GEOMETRY, &KIND_MODIFICATION, &KIND_OPTIMIZER, &KIND_STE, &KIND_REPORT];
 
 /// A valid study that uses every shape.
