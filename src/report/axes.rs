@@ -56,7 +56,7 @@ impl Plot {
         );
         let middle = at(frame.top + frame.height / 2.0);
         let label = match frame.exaggeration {
-            Some(factor) => format!("{}, {} : 1", axis_label(&self.y, y_power), significant(factor, 1)),
+            Some(factor) => format!("{}, {} : 1", axis_label(&self.y, y_power), significant(factor, 2)),
             None if is_flat => self.y.label.clone(),
             None => axis_label(&self.y, y_power),
         };

@@ -173,7 +173,8 @@ mod tests {
         assert_eq!(cells.scale().map(|scale| (scale.low, scale.high)), Some((0.0, 10.0)));
         assert_eq!(Cells::new(&[(f64::NAN, 0.0, 1.0)], String::new(), String::new()), None);
         // A place that was reached in two ways is one place.
-        let close = Cells::new(&[(0.1 + 0.2, 0.0, 1.0), (0.3, 1.0, 2.0), (1.0, 0.0, 3.0)], String::new(), String::new());
+        let close =
+            Cells::new(&[(0.1 + 0.2, 0.0, 1.0), (0.3, 1.0, 2.0), (1.0, 0.0, 3.0)], String::new(), String::new());
         assert_eq!(close.unwrap().xs.len(), 3);
     }
 

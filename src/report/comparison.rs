@@ -49,7 +49,8 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
     let number = |name: &str| floats(table, name);
     let (labels, cells, against, places) = (text("label")?, text("cell")?, text("against")?, text("row")?);
     let (values, references, differences) = (number("value")?, number("reference")?, number("difference")?);
-    let (relative, tolerances, counts) = (number("relative_difference")?, number("tolerance")?, integers(table, "rows")?);
+    let (relative, tolerances, counts) =
+        (number("relative_difference")?, number("tolerance")?, integers(table, "rows")?);
     let (units, verdicts, because, note) = (text("unit")?, text("verdict")?, text("because")?, text("note")?);
     let one = |row: usize| {
         let said = |value: f64| with_unit(&significant(value, 5), &units[row]);

@@ -18,7 +18,7 @@ impl Plot {
             .iter()
             .map(|series| {
                 let points = series.runs.iter().flatten().filter(|point| frame.place(**point).is_some());
-                let points: Vec<[f64; 2]> = points.map(|point| [rounded(point.0, 7), rounded(point.1, 7)]).collect();
+                let points: Vec<[f64; 2]> = points.map(|point| [rounded(point.0, 6), rounded(point.1, 6)]).collect();
                 json!({ "label": series.label, "colour": series.look.colour.value(), "points": points })
             })
             .collect();
@@ -52,9 +52,8 @@ impl Plot {
 }
 
 fn of_cells(cells: &Cells) -> Value {
-    let middles = |edges: &[f64]| -> Vec<f64> {
-        edges.windows(2).map(|pair| rounded(0.5 * (pair[0] + pair[1]), 7)).collect()
-    };
+    let middles =
+        |edges: &[f64]| -> Vec<f64> { edges.windows(2).map(|pair| rounded(0.5 * (pair[0] + pair[1]), 7)).collect() };
     let values: Vec<Option<f64>> =
         cells.values.iter().map(|value| value.is_finite().then(|| rounded(*value, 5))).collect();
     json!({

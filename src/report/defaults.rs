@@ -19,7 +19,15 @@ pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result
     for kind in ["ste", "stiffness", "optimizer", "modification", "geometry"] {
         for stage in manifest.stages.iter().filter(|stage| stage.kind == kind) {
             for spec in specs(stage, manifest, tables) {
-                drawn.push(figure(&spec, order, tables)?);
+                let mut figure = figure(&spec, order, tables)?;
+                // Two designs may differ in nothing that the name of a file can have.
+                let is_taken = |name: &str| drawn.iter().any(|other: &Figure| other.name.eq_ignore_ascii_case(name));
+                let mut number = 2;
+                while is_taken(&figure.name) {
+                    figure.name = format!("{}-{number}", spec.name);
+                    number += 1;
+                }
+                drawn.push(figure);
             }
         }
     }
@@ -40,7 +48,8 @@ fn specs(stage: &StageRecord, manifest: &Manifest, tables: Tables<'_>) -> Vec<Sp
     let mut found = match stage.kind.as_str() {
         "ste" => of_transmission_error(name, &draw, tables),
         "stiffness" => {
-            let curve = draw("mesh", "Mesh stiffness over the mesh cycle", Kind::Line, "curve", "cycle_position", "stiffness");
+            let curve =
+                draw("mesh", "Mesh stiffness over the mesh cycle", Kind::Line, "curve", "cycle_position", "stiffness");
             vec![Spec { segments: "pairs".to_owned(), ..labelled(curve, cycle, "Mesh stiffness") }]
         }
         "optimizer" => {
@@ -49,8 +58,12 @@ fn specs(stage: &StageRecord, manifest: &Manifest, tables: Tables<'_>) -> Vec<Sp
         }
         "modification" => of_modification(&draw, &by),
         "geometry" => {
-            let mesh = draw("teeth", "The pair in mesh, with its path of contact", Kind::Drawing, "mesh_drawing", "x", "y");
-            vec![Spec { segments: "run".to_owned(), ..by(labelled(mesh, "x", "y"), "curve") }]
+            let mesh =
+                draw("teeth", "The pair in mesh, with its path of contact", Kind::Drawing, "mesh_drawing", "x", "y");
+            let curves =
+                ["pinion", "gear", "path of contact", "line of action", "pitch circles", "base circles", "tip circles"];
+            let labels = curves.map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
+            vec![Spec { segments: "run".to_owned(), labels, ..by(labelled(mesh, "x", "y"), "curve") }]
         }
         _ => Vec::new(),
     };
@@ -79,7 +92,14 @@ fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Ve
     let title = format!("Share of the load on the pair that came last, at {at}");
     let share = draw("load_share", &title, Kind::Line, "curve", "cycle_position", "newest_load_share");
     let amplitude = if torques.len() > 1 {
-        let over = draw("torque", "Peak-to-peak transmission error over torque", Kind::Line, "summary", "torque", "peak_to_peak");
+        let over = draw(
+            "torque",
+            "Peak-to-peak transmission error over torque",
+            Kind::Line,
+            "summary",
+            "torque",
+            "peak_to_peak",
+        );
         by_design(over)
     } else {
         let title = format!("Peak-to-peak transmission error at {at}");
@@ -91,9 +111,12 @@ fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Ve
         cycle(share, "Load share"),
     ];
     for design in designs(&summary) {
-        for (what, column, label) in [("pressure", "pressure", "Pressure"), ("load", "load_per_width", "Load per width")] {
+        for (what, column, label) in
+            [("pressure", "pressure", "Pressure"), ("load", "load_per_width", "Load per width")]
+        {
             let title = format!("{label} over path of contact and face, {design} at {at}");
-            let map = draw(&format!("{what}_{}", file_name(&design)), &title, Kind::Map, "pressure", "path_position", "z");
+            let map =
+                draw(&format!("{what}_{}", file_name(&design)), &title, Kind::Map, "pressure", "path_position", "z");
             let mut map = at_torque(map);
             map.conditions.push(("design".to_owned(), design.clone()));
             found.push(Spec {

@@ -74,7 +74,8 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
         }
         for y in ys {
             let stage = name.split('.').next().unwrap_or(name);
-            let column = spec.labels.iter().find(|(known, _)| known == y).map_or_else(|| plain(y), |label| label.1.clone());
+            let column =
+                spec.labels.iter().find(|(known, _)| known == y).map_or_else(|| plain(y), |label| label.1.clone());
             let prefix = match (spec.tables.len() > 1, ys.len() > 1) {
                 (true, true) => format!("{}, {column}", spec.label(stage)),
                 (true, false) => spec.label(stage),
@@ -115,7 +116,8 @@ fn marks(published: &Table, number: i64) -> Result<Vec<Mark>, ReportError> {
     let (x, y) = (floats(published, "x")?, floats(published, "y")?);
     let some = |value: f64| value.is_finite().then_some(value);
     let own = (0..published.rows()).filter(|&mark| owners[mark] == number);
-    let mark = |mark: usize| Mark { label: labels[mark].clone(), x: some(x[mark]), y: some(y[mark]), look: Look::ink(0) };
+    let mark =
+        |mark: usize| Mark { label: labels[mark].clone(), x: some(x[mark]), y: some(y[mark]), look: Look::ink(0) };
     Ok(own.map(mark).collect())
 }
 
@@ -138,9 +140,7 @@ fn cells(spec: &Spec, table: &Table, rows: &[usize]) -> Result<Option<Cells>, Re
 fn length(spec: &Spec, table: &Table, rows: &[usize], y_unit: &str) -> Result<Option<f64>, ReportError> {
     let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
     let (x_data, lengths) = (column(&spec.x)?, column(&spec.length)?);
-    let place = |row: usize| {
-        Ok((number(table, &spec.x, x_data, row)?, number(table, &spec.length, lengths, row)?))
-    };
+    let place = |row: usize| Ok((number(table, &spec.x, x_data, row)?, number(table, &spec.length, lengths, row)?));
     let mut found: Option<f64> = None;
     for pair in rows.windows(2) {
         let (from, to) = (place(pair[0])?, place(pair[1])?);
@@ -191,14 +191,7 @@ struct Drawing {
 
 impl Drawing {
     /// Adds the points of some rows.
-    fn add(
-        &mut self,
-        spec: &Spec,
-        table: &Table,
-        rows: &[usize],
-        y: &str,
-        prefix: &str,
-    ) -> Result<(), ReportError> {
+    fn add(&mut self, spec: &Spec, table: &Table, rows: &[usize], y: &str, prefix: &str) -> Result<(), ReportError> {
         let Spec { x, series, segments, .. } = spec;
         let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
         let (x_data, y_data) = (column(x)?, column(y)?);
@@ -264,7 +257,9 @@ impl Drawing {
         places.sort_by_cached_key(|&place| order.rank_in(&spec.x, spec, &self.categories[place]));
         self.categories = places.iter().map(|&place| self.categories[place].clone()).collect();
         for point in self.series.iter_mut().flat_map(|series| &mut series.runs).flatten() {
-            if let Some(at) = places.iter().position(|&place| place as f64 == point.0).filter(|_| spec.kind == Kind::Bar) {
+            if let Some(at) =
+                places.iter().position(|&place| place as f64 == point.0).filter(|_| spec.kind == Kind::Bar)
+            {
                 point.0 = at as f64;
             }
         }
@@ -373,8 +368,10 @@ mod tests {
                 ("note", ""),
             ]
         };
-        let drawn =
-            |reference| figures(&declared(&words(reference)), &marks, &Order::default(), &table).map(|mut found| found.remove(0).plot);
+        let drawn = |reference| {
+            figures(&declared(&words(reference)), &marks, &Order::default(), &table)
+                .map(|mut found| found.remove(0).plot)
+        };
         let plot = drawn("best.summary").unwrap();
         let points: Vec<(f64, f64)> = plot.series.iter().flat_map(|series| series.runs.concat()).collect();
         assert_eq!(plot.y.unit, "");

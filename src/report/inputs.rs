@@ -60,10 +60,17 @@ mod tests {
         }))
         .unwrap();
         let inputs = Inputs::of(&Manifest { stages: vec![stage], ..Manifest::default() });
-        for cell in ["pair.gears[gear=pinion].teeth", "pair.gears[gear=gear].module", "pair.gears[gear=gear].rack_addendum"] {
+        for cell in
+            ["pair.gears[gear=pinion].teeth", "pair.gears[gear=gear].module", "pair.gears[gear=gear].rack_addendum"]
+        {
             assert!(inputs.has(cell), "{cell}");
         }
-        for cell in ["pair.gears[gear=pinion].tip_radius", "ste.gears[gear=pinion].teeth", "pair.pair.contact_ratio", "1 - teeth"] {
+        for cell in [
+            "pair.gears[gear=pinion].tip_radius",
+            "ste.gears[gear=pinion].teeth",
+            "pair.pair.contact_ratio",
+            "1 - teeth",
+        ] {
             assert!(!inputs.has(cell), "{cell}");
         }
     }

@@ -60,6 +60,11 @@ impl Look {
         Self { colour: Colour::ramp(index, count), kind: 0 }
     }
 
+    /// As in a drawing, where bodies are solid: the first two, which are told apart by where they are too.
+    pub fn in_drawing(self) -> Self {
+        if self.kind < 2 { Self { kind: 0, ..self } } else { self }
+    }
+
     pub const fn ink(kind: usize) -> Self {
         Self { colour: Colour::Ink, kind }
     }

@@ -25,7 +25,8 @@ impl Order {
                 continue;
             }
             let Some(table) = tables(&record.name) else { continue };
-            let (Some(Data::Text(words)), Some(Data::Integer(places))) = (table.column(&key.name), table.column("order"))
+            let (Some(Data::Text(words)), Some(Data::Integer(places))) =
+                (table.column(&key.name), table.column("order"))
             else {
                 continue;
             };

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::look::Look;
-use super::plot::{Of, Plot};
+use super::plot::{Kind, Of, Plot};
 
 /// The values of a column on the page, ascending, by the column's name.
 type Quantities = BTreeMap<String, Vec<f64>>;
@@ -27,6 +27,9 @@ pub fn assign<'a>(plots: impl Iterator<Item = &'a mut Plot>) {
                 }
                 Of::Word => Look::of(categories.get(&series.label).copied().unwrap_or(0)),
             };
+            if plot.kind == Kind::Drawing {
+                series.look = series.look.in_drawing();
+            }
         }
         // Of a series' name its colour; others are told apart by dashes and markers, in the order of the study.
         let mut others: Vec<String> = Vec::new();
@@ -83,10 +86,11 @@ fn categories(plots: &[&mut Plot]) -> BTreeMap<String, usize> {
 mod tests {
     use super::*;
     use crate::report::look::Colour;
-    use crate::report::plot::{Kind, Mark, Series};
+    use crate::report::plot::{Mark, Series};
 
     fn plot(series: &[(&str, Of)]) -> Plot {
-        let series = series.iter().map(|(label, of)| Series { of: of.clone(), ..Series::new(label, vec![vec![(0.0, 1.0)]]) });
+        let series =
+            series.iter().map(|(label, of)| Series { of: of.clone(), ..Series::new(label, vec![vec![(0.0, 1.0)]]) });
         Plot { series: series.collect(), ..Plot::new("t", Kind::Line) }
     }
 

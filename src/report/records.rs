@@ -18,7 +18,7 @@ use studygraph::store::manifest::{ColumnRecord, Manifest, TableRecord};
 use studygraph::table::data::{Cell, Data, Table};
 
 /// Bytes of unpacked values on a page. Small tables come first; of one that has no room the page has the first rows.
-const ROOM: usize = 320_000;
+const ROOM: usize = 200_000;
 const FIRST_ROWS: usize = 8;
 
 /// The tables of a stage.
@@ -34,7 +34,6 @@ pub struct StageTables<'a> {
 #[derive(Serialize)]
 struct TableView<'a> {
     record: &'a TableRecord,
-    content: String,
     is_stored: bool,
 }
 
@@ -55,13 +54,14 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
         let mut views = Vec::new();
         for record in &stage.tables {
             let table = tables(&record.name);
-            views.push(TableView { record, content: super::short(&record.content), is_stored: table.is_some() });
+            views.push(TableView { record, is_stored: table.is_some() });
             entries.push((described(record), table.map_or_else(Vec::new, |table| columns(record, &table))));
         }
         let files = stage.tables.iter().flat_map(|record| &record.files).map(String::as_str).collect();
         stages.push(StageTables { stage: &stage.name, kind: &stage.kind, tables: views, files });
     }
-    let sizes: Vec<usize> = entries.iter().map(|(_, columns)| columns.iter().map(|values| values.to_string().len()).sum()).collect();
+    let sizes: Vec<usize> =
+        entries.iter().map(|(_, columns)| columns.iter().map(|values| values.to_string().len()).sum()).collect();
     let mut by_size: Vec<usize> = (0..entries.len()).collect();
     by_size.sort_by_key(|&entry| sizes[entry]);
     let mut room = ROOM;

@@ -131,12 +131,12 @@ impl Scale {
     }
 }
 
-/// The largest of 1, 2, 5 times a power of ten that is not larger.
+/// The largest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not larger.
 #[must_use]
 pub fn rounded_down(value: f64) -> f64 {
-    let exponent = magnitude(value, 15);
-    let digits = [5, 2, 1].into_iter().map(|digit| decimal(digit, exponent));
-    digits.into_iter().find(|rounded| *rounded <= value).unwrap_or(value)
+    let exponent = magnitude(value, 15).saturating_sub(1);
+    let rounded = [80, 60, 50, 40, 30, 25, 20, 15, 10].map(|digits| decimal(digits, exponent));
+    rounded.into_iter().find(|rounded| *rounded <= value).unwrap_or(value)
 }
 
 fn log_label(digit: i64, exponent: i32) -> String {
@@ -197,7 +197,8 @@ mod tests {
 
     #[test]
     fn factors_are_round() {
-        for (value, rounded) in [(1999.0, 1000.0), (2000.0, 2000.0), (0.49, 0.2), (0.5, 0.5), (7.2e5, 5e5)] {
+        for (value, rounded) in [(1999.0, 1500.0), (2000.0, 2000.0), (0.49, 0.4), (0.5, 0.5), (7.2e5, 6e5), (9.99, 8.0)]
+        {
             assert_eq!(rounded_down(value).to_bits(), f64::to_bits(rounded), "{value}");
         }
     }

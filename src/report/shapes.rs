@@ -64,11 +64,8 @@ impl Plot {
                 let (left, right) = (at(x + offset + 0.5), at(x + offset + bar - 0.5));
                 let _ = write!(path, "M{left} {}H{right}V{}H{left}Z", at(base), at(y));
             }
-            let _ = write!(
-                svg,
-                r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#,
-                series.look.colour.fill()
-            );
+            let _ =
+                write!(svg, r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#, series.look.colour.fill());
         }
     }
 }

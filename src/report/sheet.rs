@@ -63,16 +63,21 @@ const PAIR: [(&str, &str, &str); 5] = [
 
 #[must_use]
 pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
-    let loads: Vec<Line> = manifest.stages.iter().filter(|stage| stage.kind == "ste").filter_map(|stage| {
-        let table = tables(&format!("{}.summary", stage.name))?;
-        let torques = distinct(&table, "torque");
-        let said = match torques.as_slice() {
-            [] => return None,
-            [first, .., last] if torques.len() > 4 => format!("{} from {first} to {last}", torques.len()),
-            few => few.join(", "),
-        };
-        Some(Line { what: "Torque on the pinion", symbol: "T", of: stage.name.clone(), values: vec![said] })
-    }).collect();
+    let loads: Vec<Line> = manifest
+        .stages
+        .iter()
+        .filter(|stage| stage.kind == "ste")
+        .filter_map(|stage| {
+            let table = tables(&format!("{}.summary", stage.name))?;
+            let torques = distinct(&table, "torque");
+            let said = match torques.as_slice() {
+                [] => return None,
+                [first, .., last] if torques.len() > 4 => format!("{} from {first} to {last}", torques.len()),
+                few => few.join(", "),
+            };
+            Some(Line { what: "Torque on the pinion", symbol: "T", of: stage.name.clone(), values: vec![said] })
+        })
+        .collect();
     let geometries = manifest.stages.iter().filter(|stage| stage.kind == "geometry");
     let mut loads = Some(loads);
     geometries

@@ -26,7 +26,9 @@ impl Plot {
         for series in self.series.iter_mut().filter(|series| is_long(series)) {
             match self.kind {
                 Kind::Points => spread(&mut series.runs, &frame),
-                Kind::Line | Kind::Drawing | Kind::Chart => series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame)),
+                Kind::Line | Kind::Drawing | Kind::Chart => {
+                    series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame))
+                }
                 Kind::Bar | Kind::Map => {}
             }
         }

@@ -1,5 +1,5 @@
 // Tables: packed into the page, unpacked when one is opened or something is looked for.
-const packed = one("#rows"), find = one("#find"), AT_ONCE = 50;
+const packed = one("#rows"), find = one("#find"), AT_ONCE = 20;
 let unpacking = null;
 const unpack = () => unpacking ||= (async () => {
   const bytes = Uint8Array.from(atob(packed.textContent), letter => letter.charCodeAt(0));
@@ -37,7 +37,7 @@ const fill = (details, entry, wanted) => {
   const head = columns.map((column, index) => heading("col", number(index), column.name, ...column.unit ? [make("div", { className: "place" }, column.unit)] : []));
   const csv = make("button", { type: "button" }, "CSV");
   csv.addEventListener("click", () => save(entry.name + ".csv", table([columns.map(column => column.unit ? `${column.name} [${column.unit}]` : column.name), ...Array.from({ length: count }, (_, index) => row(index))])));
-  const meanings = columns.map(column => make("tr", {}, heading("row", "", make("code", {}, column.name)), make("td", {}, column.unit), make("td", {}, column.meaning)));
+  const meanings = columns.map(column => make("tr", {}, heading("row", "", make("span", { className: "k" }, make("code", {}, column.name))), make("td", {}, column.unit), make("td", {}, column.meaning)));
   const part = count < entry.rows ? make("p", { className: "place" }, `the first ${count} of ${entry.rows} rows; all of them are in the file`) : "";
   const data = make("table", { className: "data" }, make("thead", {}, make("tr", {}, ...head)), tbody);
   body.replaceChildren(...count ? [region(`Rows of ${entry.name}`, data), part, make("p", { className: "tools" }, more, csv)] : [],

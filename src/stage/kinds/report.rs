@@ -19,11 +19,11 @@ mod verdict;
 use std::collections::BTreeSet;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
+use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
-use compare::{Compared, Comparison, comparisons};
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
 use stated::Published;
@@ -110,9 +110,9 @@ impl Stage for Report {
         let operands = self.entries.iter().flat_map(ReportEntry::operands);
         let operands = operands.chain(self.comparisons.iter().flat_map(Comparison::operands));
         let cells = operands.filter_map(operand::Operand::cell).map(|cell| {
-                let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
-                (cell.stage.as_str(), cell.table.as_str(), columns.collect())
-            });
+            let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
+            (cell.stage.as_str(), cell.table.as_str(), columns.collect())
+        });
         for (stage, table, columns) in cells.chain(self.figures.iter().flat_map(Figure::wants)) {
             want(&mut ports, stage, table, columns);
         }

@@ -239,8 +239,15 @@ impl Spec {
     }
 }
 
-static PROGRAM: Program = Program { kinds: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT, pictures: Pictures::NONE };
-static OTHER: Program = Program { kinds: &[], code_of: |_| String::from("other code"), counters: &[], about: ABOUT, pictures: Pictures::NONE };
+static PROGRAM: Program =
+    Program { kinds: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT, pictures: Pictures::NONE };
+static OTHER: Program = Program {
+    kinds: &[],
+    code_of: |_| String::from("other code"),
+    counters: &[],
+    about: ABOUT,
+    pictures: Pictures::NONE,
+};
 
 /// A folder with a cache, and the studies run on it.
 struct Bench {

@@ -78,7 +78,9 @@ pub fn rows<'a>(design: &'a str, built: &Design, pair: &GearPair) -> [Vec<ChartR
         let row = |point: usize, place: f64, depth: f64| ChartRow { design, side, point, place, base_radius, depth };
         let breaks = parts.iter().flat_map(|part| part.modification.profile_breaks().iter().copied());
         let rolls = places(root, tip, breaks);
-        found[0].extend((1..).zip(rolls).map(|(point, roll)| row(point, roll, built.depth(side, roll) + surface(roll, 0.0))));
+        found[0].extend(
+            (1..).zip(rolls).map(|(point, roll)| row(point, roll, built.depth(side, roll) + surface(roll, 0.0))),
+        );
         let breaks = parts.iter().flat_map(|part| part.modification.lead_breaks().iter().copied());
         let across = |z: f64| -> f64 { parts.iter().map(|part| part.modification.lead(z)).sum() };
         let half = 0.5 * gear.specification.face_width;
@@ -91,7 +93,8 @@ pub fn rows<'a>(design: &'a str, built: &Design, pair: &GearPair) -> [Vec<ChartR
 /// Regular places from `low` to `high`, and the breaks between.
 fn places(low: f64, high: f64, breaks: impl Iterator<Item = f64>) -> Vec<f64> {
     let last = (PLACES - 1) as f64;
-    let regular = (0..PLACES).map(|index| if index == PLACES - 1 { high } else { low + (high - low) * index as f64 / last });
+    let regular =
+        (0..PLACES).map(|index| if index == PLACES - 1 { high } else { low + (high - low) * index as f64 / last });
     let mut all: Vec<f64> = regular.chain(breaks.filter(|place| *place > low && *place < high)).collect();
     all.sort_by(f64::total_cmp);
     all.dedup();

@@ -5,9 +5,7 @@
 
 use super::operand::{in_si, no_rows, table};
 use super::quantity::{described, same_dimension};
-use super::stated_figure::{
-    How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map,
-};
+use super::stated_figure::{How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
 use crate::stage::{Ahead, Inputs};
 use declare::declared::{Placed, Words};
 use declare::error::Diagnostic;

@@ -164,7 +164,8 @@ static KIND_OPTIMIZER: Kind = kind!("optimizer", OPTIMIZER);
 static KIND_STE: Kind = kind!("ste", STE);
 static KIND_REPORT: Kind = kind!("report", REPORT);
 
-static PROGRAM: Program = Program { kinds: KINDS, code_of: |_| String::new(), counters: &[], about: ABOUT, pictures: Pictures::NONE };
+static PROGRAM: Program =
+    Program { kinds: KINDS, code_of: |_| String::new(), counters: &[], about: ABOUT, pictures: Pictures::NONE };
 pub static KINDS: &[&Kind] = &[&KIND_GEOMETRY, &KIND_MODIFICATION, &KIND_OPTIMIZER, &KIND_STE, &KIND_REPORT];
 
 /// A valid study that uses every shape.
