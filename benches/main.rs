@@ -12,6 +12,7 @@ mod finite_elements;
 mod geometry;
 mod kernels;
 mod optimize;
+mod pages;
 mod program;
 mod storage;
 mod summary;
@@ -36,6 +37,7 @@ fn main() {
         finite_elements::print();
         designs::print();
         designs::print_optimizer();
+        pages::print();
         summary::print(&processes);
     }
 }

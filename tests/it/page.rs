@@ -33,8 +33,7 @@ stages:
 ";
 
 /// Results beside others: one that agrees, one that differs with a reason and one without, one without a tolerance.
-const COMPARE: &str = "\
-  report:
+const COMPARE: &str = "  report:
     kind: report
     compare:
       - { label: Relief raises the mean, cell: 'ste.summary[design=relieved].mean', against: 'ste.summary[design=unmodified].mean' }
@@ -88,6 +87,9 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
     for cell in ["3\u{202f}mm", ">24<", ">36<", "ε_α", "206\u{202f}GPa", "5 from 50\u{202f}N·m to 250\u{202f}N·m"] {
         assert!(sheet.contains(cell), "{cell}: {sheet}");
     }
+    // Altair reads every figure, by the schema of Vega-Lite.
+    let said = python::run("vega.py", &[desk.path("results/plain/figures").as_os_str()]);
+    assert!(said.is_none_or(|said| said.starts_with("11 figures")), "eleven figures");
     // The contact ratio is that of the closed form, by radii alone.
     let (tip, base, pitch): (fn(f64) -> f64, f64, f64) =
         (|z| 3.0 * (z + 2.0) / 2.0, 20f64.to_radians().cos(), std::f64::consts::PI * 3.0 * 20f64.to_radians().cos());

@@ -100,3 +100,51 @@ fn places(low: f64, high: f64, breaks: impl Iterator<Item = f64>) -> Vec<f64> {
     all.dedup();
     all
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gearmesh::prelude::*;
+
+    /// Parabolic tip relief is C(0.44 t + 0.56 t²) over its length before the tip, crowning C(2z/b)²; one is in the profile, the
+    /// other in the lead, and neither in both.
+    #[test]
+    fn charts_are_the_closed_forms() {
+        let gear = |teeth: u32, bore_radius: f64| Specification {
+            teeth,
+            module: 3e-3,
+            pressure_angle: 20_f64.to_radians(),
+            profile_shift: 0.0,
+            rack: Rack::ISO_53_A,
+            tip_radius: None,
+            face_width: 20e-3,
+            bore_radius,
+            material: Material::STEEL,
+        };
+        let pair = GearPair::new(gear(24, 18e-3), gear(36, 28e-3), None).unwrap();
+        let (amount, start) = (Amount::Depth(12e-6), Start::Length(4e-3));
+        let relief = TipRelief { amount, start, counted_from: FromTip::Tip, curve: Curve::Parabolic };
+        let mut design = Design::default();
+        design.add(Gears::Pinion, &relief, &pair).unwrap();
+        design.add(Gears::Pinion, &LeadCrowning { amount: 4e-6 }, &pair).unwrap();
+        let [profile, lead] = rows("d", &design, &pair);
+        let pinion = |rows: &[ChartRow]| -> Vec<(f64, f64)> {
+            rows.iter().filter(|row| row.side == Side::Pinion).map(|row| (row.place, row.depth)).collect()
+        };
+        let (along, across) = (pinion(&profile), pinion(&lead));
+        let tip = along.last().unwrap().0;
+        let base_radius = pair.pinion.base_radius;
+        assert!(along.iter().any(|(_, depth)| *depth == 0.0) && along.iter().any(|(_, depth)| *depth > 0.0));
+        for (roll, depth) in &along {
+            let t = (1.0 - (tip - roll) * base_radius / 4e-3).max(0.0);
+            assert!((depth - 12e-6 * (0.44 * t + 0.56 * t * t)).abs() < 1e-18, "{roll}: {depth}");
+        }
+        for (z, depth) in &across {
+            assert!((depth - 4e-6 * (2.0 * z / 20e-3).powi(2)).abs() < 1e-18, "{z}: {depth}");
+        }
+        assert_eq!((across[0].0, across[across.len() - 1].0), (-10e-3, 10e-3));
+        // Where the relief starts is a place of its own, and the gear has nothing.
+        assert_eq!(along.len(), PLACES + 1);
+        assert!(profile.iter().chain(&lead).filter(|row| row.side == Side::Gear).all(|row| row.depth == 0.0));
+    }
+}
