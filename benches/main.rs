@@ -12,6 +12,7 @@ mod finite_elements;
 mod geometry;
 mod kernels;
 mod optimize;
+mod pages;
 mod program;
 mod shards;
 mod storage;
@@ -40,6 +41,7 @@ fn main() {
         designs::print_optimizer();
         sweep::print();
         shards::print();
+        pages::print();
         summary::print(&processes);
     }
 }

@@ -10,7 +10,7 @@ use crate::stage::kinds::sweep::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
 use declare::work::Counter;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
-use studygraph::program::Program;
+use studygraph::program::{Pictures, Program};
 use studygraph::study::{self, LoadError, Settings, Study};
 
 /// What studies are run with.
@@ -29,6 +29,10 @@ pub static PROGRAM: Program = Program {
         rustc: env!("GEARSTUDY_RUSTC"),
         profile: env!("GEARSTUDY_PROFILE"),
         dependencies: env!("GEARSTUDY_DEPENDENCIES"),
+    },
+    pictures: Pictures {
+        reader: "report",
+        tables: &[("geometry", "mesh_drawing"), ("modification", "profile"), ("modification", "lead")],
     },
 };
 

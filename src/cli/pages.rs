@@ -22,9 +22,14 @@ pub(super) fn path(folder: &Folder) -> PathBuf {
 /// When a table is missing or of another shape.
 pub(super) fn draw(manifest: &Manifest, tables: Tables<'_>) -> Result<Vec<Drawn>, String> {
     let rendered = report::render(manifest, tables).map_err(|error| error.to_string())?;
-    let figures = rendered.figures.into_iter().map(|figure| {
+    let figures = rendered.figures.into_iter().flat_map(|figure| {
         let folder = if figure.varies { MEASURED } else { FIGURES };
-        Drawn { file: format!("{folder}/{}.svg", figure.name), bytes: figure.svg.into_bytes(), varies: figure.varies }
+        let drawn = |ending: &str, text: String| Drawn {
+            file: format!("{folder}/{}.{ending}", figure.name),
+            bytes: text.into_bytes(),
+            varies: figure.varies,
+        };
+        [drawn("svg", figure.svg), drawn("vl.json", figure.vega_lite)]
     });
     let html = plain(&rendered.html).into_owned() + "\n";
     // It ends with the facts of the run.

@@ -3,11 +3,16 @@
 //! Must not know: SVG, HTML. A jump is kept a jump: a line is interrupted where the declared column changes, and where
 //! two points share an abscissa.
 
-use super::plot::{Axis, Kind, Mark, Plot, Series};
+use super::cells::Cells;
+use super::order::Order;
+use super::plot::{Axis, Kind, Mark, Of, Plot, Series};
+use super::spec::Spec;
 use super::{ReportError, floats, integers, texts};
+use crate::report::look::Look;
 use declare::number::{significant, with_unit};
+use declare::units::{in_unit, parse_quantity};
 use studygraph::table::data::{Data, Table};
-use studygraph::table::select::{parse_conditions, rows_where};
+use studygraph::table::select::rows_where;
 
 /// A plot with its name and remark.
 pub struct Figure {
@@ -20,6 +25,9 @@ pub struct Figure {
     pub varies: bool,
 }
 
+/// A table by its full name, `stage.table`.
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
+
 /// Reads the tables `figures` and `figure_published` of a report stage.
 ///
 /// # Errors
@@ -27,94 +35,128 @@ pub struct Figure {
 pub fn figures(
     declared: &Table,
     published: &Table,
-    tables: &dyn Fn(&str) -> Option<Table>,
+    order: &Order,
+    tables: Tables<'_>,
 ) -> Result<Vec<Figure>, ReportError> {
-    (0..declared.rows()).map(|row| figure(declared, row, published, tables)).collect()
+    let one = |row: usize| {
+        let spec = Spec::read(declared, row)?;
+        let mut figure = figure(&spec, order, tables)?;
+        figure.plot.marks = marks(published, spec.number)?;
+        Ok(figure)
+    };
+    (0..declared.rows()).map(one).collect()
 }
 
-fn figure(
-    declared: &Table,
-    row: usize,
-    published: &Table,
-    tables: &dyn Fn(&str) -> Option<Table>,
-) -> Result<Figure, ReportError> {
-    let text = |column: &str| texts(declared, column).map(|values| values[row].as_str());
-    let number = integers(declared, "figure")?[row];
-    let words =
-        |text: &str| -> Vec<String> { text.split(", ").filter(|word| !word.is_empty()).map(str::to_owned).collect() };
-    let kind = match text("kind")? {
-        "bar" => Kind::Bar,
-        "points" => Kind::Points,
-        "drawing" => Kind::Drawing,
-        _ => Kind::Line,
-    };
-    let log = text("log")?;
-    let (x, ys) = (text("x")?, words(text("y")?));
-    let names = words(text("tables")?);
-    let conditions = parse_conditions(text("conditions")?).map_err(ReportError::Unfit)?;
-    let reference = match text("reference")? {
+/// A figure without published values.
+///
+/// # Errors
+/// When a table or column is missing or unfit.
+pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, ReportError> {
+    let Spec { kind, x, y: ys, conditions, .. } = spec;
+    let reference = match spec.reference.as_str() {
         "" => None,
         name => Some(tables(name).ok_or_else(|| ReportError::Missing(name.to_owned()))?),
     };
     let mut drawing = Drawing::default();
     let mut varies = false;
-    let (mut x_unit, mut y_unit) = (String::new(), String::new());
-    for name in &names {
+    let mut plot = Plot::new(&spec.title, *kind);
+    for name in &spec.tables {
         let table = tables(name).ok_or_else(|| ReportError::Missing(name.clone()))?;
-        let rows = rows_where(&table, &conditions).map_err(ReportError::Unfit)?;
-        for y in &ys {
+        let rows = rows_where(&table, conditions).map_err(ReportError::Unfit)?;
+        let volatile = |name: &str| table.schema().column(name).is_some_and(|column| column.volatile);
+        let read = [x, &spec.series, &spec.segments, &spec.value, &spec.length].into_iter().chain(ys);
+        varies |= read.chain(conditions.iter().map(|(column, _)| column)).any(|column| volatile(column));
+        plot.x.unit = unit(&table, x);
+        plot.y.unit = ys.first().map_or_else(String::new, |y| unit(&table, y));
+        if *kind == Kind::Map {
+            plot.cells = cells(spec, &table, &rows)?;
+            continue;
+        }
+        for y in ys {
             let stage = name.split('.').next().unwrap_or(name);
-            let prefix = match (names.len() > 1, ys.len() > 1) {
-                (true, true) => format!("{stage}, {}", plain(y)),
-                (true, false) => stage.to_owned(),
-                (false, true) => plain(y),
+            let column =
+                spec.labels.iter().find(|(known, _)| known == y).map_or_else(|| plain(y), |label| label.1.clone());
+            let prefix = match (spec.tables.len() > 1, ys.len() > 1) {
+                (true, true) => format!("{}, {column}", spec.label(stage)),
+                (true, false) => spec.label(stage),
+                (false, true) => column,
                 (false, false) => String::new(),
             };
             let first = drawing.series.len();
-            let volatile = |name: &str| table.schema().column(name).is_some_and(|column| column.volatile);
-            let read = [x, y, text("series")?, text("segments")?];
-            varies |= read.into_iter().chain(conditions.iter().map(|(column, _)| column.as_str())).any(volatile);
-            drawing.add(&table, &rows, kind, read, &prefix)?;
-            x_unit.clone_from(&unit(&table, x));
-            y_unit.clone_from(&unit(&table, y));
+            drawing.add(spec, &table, &rows, y, &prefix)?;
+            drawing.series[first..].sort_by_cached_key(|series| order.rank(spec, &series.raw));
             if let Some(reference) = &reference {
-                drawing.relate(first, value_of(reference, &conditions, y)?);
-                y_unit.clear();
+                drawing.relate(first, value_of(reference, conditions, y)?);
+                plot.y.unit.clear();
             }
         }
+        if !spec.length.is_empty() {
+            plot.length = length(spec, &table, &rows, &plot.y.unit)?;
+        }
     }
-    let (owners, labels) = (integers(published, "figure")?, texts(published, "label")?);
-    let (mark_x, mark_y) = (floats(published, "x")?, floats(published, "y")?);
-    let some = |value: f64| value.is_finite().then_some(value);
-    let marks = (0..published.rows()).filter(|&mark| owners[mark] == number);
-    let marks =
-        marks.map(|mark| Mark { label: labels[mark].clone(), x: some(mark_x[mark]), y: some(mark_y[mark]) }).collect();
+    drawing.order_categories(spec, order);
     let label = |given: &str, column: &str| if given.is_empty() { sentence(column) } else { given.to_owned() };
     let y_column = ys.first().map_or("", String::as_str);
-    let plot = Plot {
-        title: text("title")?.to_owned(),
-        kind,
-        x: Axis {
-            label: label(text("x_label")?, x),
-            unit: x_unit,
-            is_log: matches!(log, "x" | "both") && kind != Kind::Bar,
-        },
-        y: Axis { label: label(text("y_label")?, y_column), unit: y_unit, is_log: matches!(log, "y" | "both") },
-        series: if kind == Kind::Drawing {
-            drawing.series
-        } else {
-            drawing.series.into_iter().map(interrupted).collect()
-        },
-        marks,
-        categories: drawing.categories,
+    let [x_log, y_log] = spec.is_log;
+    plot.x = Axis { label: label(&spec.x_label, x), is_log: x_log && *kind != Kind::Bar, ..plot.x };
+    plot.y = Axis { label: label(&spec.y_label, y_column), is_log: y_log, ..plot.y };
+    plot.size = spec.size;
+    plot.categories = drawing.categories.into_iter().map(|name| spec.label(&name)).collect();
+    plot.series = drawing.series;
+    if *kind != Kind::Drawing {
+        plot.series = plot.series.into_iter().map(interrupted).collect();
+    }
+    let tables = spec.tables.join(", ");
+    Ok(Figure { name: spec.name.clone(), note: spec.note.clone(), plot: plot.thinned(), tables, varies })
+}
+
+/// The published points and lines of a figure.
+fn marks(published: &Table, number: i64) -> Result<Vec<Mark>, ReportError> {
+    let (owners, labels) = (integers(published, "figure")?, texts(published, "label")?);
+    let (x, y) = (floats(published, "x")?, floats(published, "y")?);
+    let some = |value: f64| value.is_finite().then_some(value);
+    let own = (0..published.rows()).filter(|&mark| owners[mark] == number);
+    let mark =
+        |mark: usize| Mark { label: labels[mark].clone(), x: some(x[mark]), y: some(y[mark]), look: Look::ink(0) };
+    Ok(own.map(mark).collect())
+}
+
+/// The cells of a map.
+fn cells(spec: &Spec, table: &Table, rows: &[usize]) -> Result<Option<Cells>, ReportError> {
+    let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
+    let y = spec.y.first().map_or("", String::as_str);
+    let [x_data, y_data, values] = [column(&spec.x)?, column(y)?, column(&spec.value)?];
+    let point = |&row: &usize| {
+        let place = (number(table, &spec.x, x_data, row)?, number(table, y, y_data, row)?);
+        Ok((place.0, place.1, number(table, &spec.value, values, row)?))
     };
-    Ok(Figure {
-        name: text("name")?.to_owned(),
-        note: text("note")?.to_owned(),
-        plot: plot.thinned(),
-        tables: names.join(", "),
-        varies,
-    })
+    let points: Vec<(f64, f64, f64)> = rows.iter().map(point).collect::<Result<_, ReportError>>()?;
+    let label = spec.labels.iter().find(|(known, _)| *known == spec.value);
+    let label = label.map_or_else(|| sentence(&spec.value), |label| label.1.clone());
+    Ok(Cells::new(&points, label, unit(table, &spec.value)))
+}
+
+/// How long a unit of the x axis is, in the unit of the y axis; `None` where that is not one length everywhere.
+fn length(spec: &Spec, table: &Table, rows: &[usize], y_unit: &str) -> Result<Option<f64>, ReportError> {
+    let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
+    let (x_data, lengths) = (column(&spec.x)?, column(&spec.length)?);
+    let place = |row: usize| Ok((number(table, &spec.x, x_data, row)?, number(table, &spec.length, lengths, row)?));
+    let mut found: Option<f64> = None;
+    for pair in rows.windows(2) {
+        let (from, to) = (place(pair[0])?, place(pair[1])?);
+        let ratio = (to.1 - from.1) / (to.0 - from.0);
+        // Where another line begins, or two points share a place, nothing is to be learnt.
+        if !ratio.is_finite() || to.0 <= from.0 {
+            continue;
+        }
+        if found.is_some_and(|found| (ratio / found - 1.0).abs() > 1e-6) {
+            return Ok(None);
+        }
+        found = found.or(Some(ratio));
+    }
+    let unit = unit(table, &spec.length);
+    let in_y = |length: f64| parse_quantity(&format!("{length:e} {unit}")).ok().map(|long| in_unit(long.value, y_unit));
+    Ok(found.and_then(in_y).filter(|length| length.is_finite() && *length > 0.0))
 }
 
 /// The value of a column in the only row that meets the conditions.
@@ -148,16 +190,9 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// Adds the points of some rows; `columns` are x, y, series, segments, the last two empty when there are none.
-    fn add(
-        &mut self,
-        table: &Table,
-        rows: &[usize],
-        kind: Kind,
-        columns: [&str; 4],
-        prefix: &str,
-    ) -> Result<(), ReportError> {
-        let [x, y, series, segments] = columns;
+    /// Adds the points of some rows.
+    fn add(&mut self, spec: &Spec, table: &Table, rows: &[usize], y: &str, prefix: &str) -> Result<(), ReportError> {
+        let Spec { x, series, segments, .. } = spec;
         let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
         let (x_data, y_data) = (column(x)?, column(y)?);
         let series_data = if series.is_empty() { None } else { Some(column(series)?) };
@@ -165,18 +200,24 @@ impl Drawing {
         let own = self.series.len();
         let mut segment: Vec<Option<String>> = Vec::new();
         for &row in rows {
-            let value = series_data.map(|data| shown(data, row, &unit(table, series)));
-            let label = match (prefix.is_empty(), value) {
-                (true, value) => value.unwrap_or_default(),
-                (false, None) => prefix.to_owned(),
-                (false, Some(value)) => format!("{prefix}, {value}"),
-            };
-            let at = (own..self.series.len()).find(|&index| self.series[index].label == label).unwrap_or_else(|| {
-                self.series.push(Series { label, runs: Vec::new() });
+            let raw = series_data.map(|data| shown(data, row, &unit(table, series))).unwrap_or_default();
+            let known = (own..self.series.len()).find(|&index| self.series[index].raw == raw);
+            let at = known.unwrap_or_else(|| {
+                let label = match (prefix.is_empty(), raw.is_empty()) {
+                    (true, _) => spec.label(&raw),
+                    (false, true) => prefix.to_owned(),
+                    (false, false) => format!("{prefix}, {}", spec.label(&raw)),
+                };
+                let value = series_data.and_then(|data| number(table, series, data, row).ok());
+                let of = match value.filter(|_| prefix.is_empty()) {
+                    Some(value) => Of::Quantity { column: series.clone(), value },
+                    None => Of::Word,
+                };
+                self.series.push(Series { raw, of, ..Series::new(&label, Vec::new()) });
                 segment.push(None);
                 self.series.len() - 1
             });
-            let x = if kind == Kind::Bar {
+            let x = if spec.kind == Kind::Bar {
                 self.category(shown(x_data, row, &unit(table, x)))
             } else {
                 number(table, x, x_data, row)?
@@ -208,6 +249,20 @@ impl Drawing {
             self.categories.len() - 1
         });
         at as f64
+    }
+
+    /// Names under the bars in the order of the study.
+    fn order_categories(&mut self, spec: &Spec, order: &Order) {
+        let mut places: Vec<usize> = (0..self.categories.len()).collect();
+        places.sort_by_cached_key(|&place| order.rank_in(&spec.x, spec, &self.categories[place]));
+        self.categories = places.iter().map(|&place| self.categories[place].clone()).collect();
+        for point in self.series.iter_mut().flat_map(|series| &mut series.runs).flatten() {
+            if let Some(at) =
+                places.iter().position(|&place| place as f64 == point.0).filter(|_| spec.kind == Kind::Bar)
+            {
+                point.0 = at as f64;
+            }
+        }
     }
 }
 
@@ -296,6 +351,10 @@ mod tests {
                 ("name", "f"),
                 ("title", "t"),
                 ("kind", "points"),
+                ("value", ""),
+                ("length", ""),
+                ("labels", ""),
+                ("width", "page"),
                 ("tables", "one.summary, two.summary"),
                 ("x", "seconds"),
                 ("y", "k"),
@@ -309,8 +368,10 @@ mod tests {
                 ("note", ""),
             ]
         };
-        let drawn =
-            |reference| figures(&declared(&words(reference)), &marks, &table).map(|mut found| found.remove(0).plot);
+        let drawn = |reference| {
+            figures(&declared(&words(reference)), &marks, &Order::default(), &table)
+                .map(|mut found| found.remove(0).plot)
+        };
         let plot = drawn("best.summary").unwrap();
         let points: Vec<(f64, f64)> = plot.series.iter().flat_map(|series| series.runs.concat()).collect();
         assert_eq!(plot.y.unit, "");

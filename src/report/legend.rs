@@ -1,85 +1,70 @@
-//! Colours of series, and the legend that names them.
+//! The legend that names what a figure shows: in a file beside the figure, in a page as buttons.
 //!
 //! Must not know: axes, data.
 
 use std::fmt::Write;
 
-use super::svg::{CHARACTER, at, escape};
-
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Colour {
-    /// One of the style's colours, made to be told apart by colour-blind readers.
-    Of(usize),
-    /// Along a ramp, red, green, blue.
-    Ramp([u8; 3]),
-    /// That of the text.
-    Ink,
-}
-
-impl Colour {
-    pub fn ramp(index: usize, count: usize) -> Self {
-        // Blue over violet to orange: rising lightness, readable on white and on black.
-        const STOPS: [[f64; 3]; 4] =
-            [[49.0, 88.0, 196.0], [140.0, 80.0, 180.0], [208.0, 92.0, 120.0], [236.0, 158.0, 44.0]];
-        let along = 3.0 * index as f64 / (count - 1) as f64;
-        let from = if along >= 2.0 { 2 } else { usize::from(along >= 1.0) };
-        let share = along - from as f64;
-        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // between 0 and 255
-        let mix =
-            |channel: usize| (STOPS[from][channel] * (1.0 - share) + STOPS[from + 1][channel] * share).round() as u8;
-        Self::Ramp([mix(0), mix(1), mix(2)])
-    }
-
-    pub fn value(self) -> String {
-        match self {
-            Self::Of(index) => format!("var(--s{index})"),
-            Self::Ramp([red, green, blue]) => format!("#{red:02x}{green:02x}{blue:02x}"),
-            Self::Ink => "var(--ink)".to_owned(),
-        }
-    }
-
-    pub fn stroke(self) -> String {
-        format!(r#"style="stroke:{}""#, self.value())
-    }
-
-    pub fn fill(self) -> String {
-        format!(r#"style="fill:{}""#, self.value())
-    }
-}
+use super::look::Look;
+use super::svg::{at, escape};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sign {
     Line,
-    Dot,
+    LineAndMarker,
+    Marker,
     Square,
-    Diamond,
-    Dashes,
+    PublishedPoint,
+    PublishedLine,
 }
 
 /// One entry of the legend.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Item {
     pub label: String,
+    /// Of what it shows and hides.
+    pub key: String,
     pub sign: Sign,
-    pub colour: Colour,
+    pub look: Look,
 }
 
 impl Item {
-    fn width(&self) -> f64 {
-        52.0 + CHARACTER * self.label.chars().count() as f64
+    fn width(&self, character: f64) -> f64 {
+        45.0 + character * (1 + self.label.chars().count()) as f64
+    }
+
+    /// Its sign, 28 px wide, with its middle at a height of 7.
+    #[must_use]
+    pub fn swatch(&self) -> String {
+        let (look, stroke) = (self.look, self.look.stroke());
+        let line = || format!(r#"<path class="series" {stroke} d="M0 7h28"/>"#);
+        let marker = || {
+            let (class, shape) = look.marker();
+            let style = if class == "sign" { look.colour.fill() } else { look.colour.stroke() };
+            format!(r#"<path class="{class}" {style} d="M14 7{shape}"/>"#)
+        };
+        match self.sign {
+            Sign::Line => line(),
+            Sign::LineAndMarker => line() + &marker(),
+            Sign::Marker => marker(),
+            Sign::Square => format!(r#"<path class="bar" {} d="M8 1h12v12h-12z"/>"#, look.colour.fill()),
+            Sign::PublishedLine => format!(r#"<path class="dashes" {} d="M0 7h28"/>"#, look.published_stroke()),
+            Sign::PublishedPoint => {
+                format!(r#"<path class="mark" {} d="M14 7{}"/>"#, look.colour.stroke(), look.published_marker())
+            }
+        }
     }
 }
 
 /// Which entries stand in which row.
-pub fn rows(items: &[Item], width: f64) -> Vec<Vec<usize>> {
+pub fn rows(items: &[Item], width: f64, character: f64) -> Vec<Vec<usize>> {
     let mut rows: Vec<Vec<usize>> = Vec::new();
     let mut used = f64::INFINITY;
     for (index, item) in items.iter().enumerate() {
-        if used + item.width() > width - 70.0 {
+        if used + item.width(character) > width - 50.0 {
             rows.push(Vec::new());
             used = 0.0;
         }
-        used += item.width();
+        used += item.width(character);
         if let Some(row) = rows.last_mut() {
             row.push(index);
         }
@@ -87,36 +72,20 @@ pub fn rows(items: &[Item], width: f64) -> Vec<Vec<usize>> {
     rows
 }
 
-pub fn draw(svg: &mut String, items: &[Item], rows: &[Vec<usize>], left: f64, top: f64) {
+pub fn draw(svg: &mut String, items: &[Item], rows: &[Vec<usize>], (left, top): (f64, f64), character: f64) {
     for (nth, row) in rows.iter().enumerate() {
         let y = top + 14.0 + 22.0 * nth as f64;
         let mut x = left;
-        for &index in row {
-            let Item { label, sign, colour } = &items[index];
-            let (stroke, fill) = (colour.stroke(), colour.fill());
-            let (x0, y0) = (at(x), at(y));
-            let _ = match sign {
-                Sign::Line => write!(svg, r#"<path class="series" {stroke} d="M{x0} {y0}h24"/>"#),
-                Sign::Dashes => write!(svg, r#"<path class="dashes" {stroke} d="M{x0} {y0}h24"/>"#),
-                Sign::Dot => write!(svg, r#"<circle {fill} cx="{}" cy="{y0}" r="3.6"/>"#, at(x + 12.0)),
-                Sign::Square => {
-                    write!(svg, r#"<rect {fill} x="{}" y="{}" width="12" height="12"/>"#, at(x + 6.0), at(y - 6.0))
-                }
-                Sign::Diamond => write!(
-                    svg,
-                    r#"<path class="mark" {stroke} d="M{} {}l6 6l-6 6l-6 -6z"/>"#,
-                    at(x + 12.0),
-                    at(y - 6.0)
-                ),
-            };
+        for item in row.iter().map(|&index| &items[index]) {
             let _ = write!(
                 svg,
-                r#"<text class="legend" x="{}" y="{}">{}</text>"#,
-                at(x + 31.0),
-                at(y + 4.5),
-                escape(label)
+                r#"<g transform="translate({} {})">{}<text class="legend" x="34" y="11.5">{}</text></g>"#,
+                at(x),
+                at(y - 7.0),
+                item.swatch(),
+                escape(&item.label)
             );
-            x += items[index].width();
+            x += item.width(character);
         }
     }
 }

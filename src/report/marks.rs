@@ -4,7 +4,8 @@
 
 use std::fmt::Write;
 
-use super::plot::{Frame, Kind, Plot, Series};
+use super::frame::Frame;
+use super::plot::{Kind, Plot, Series};
 use super::svg::{at, escape};
 
 impl Plot {
@@ -14,51 +15,39 @@ impl Plot {
     }
 
     pub(super) fn draw_named_points(&self, svg: &mut String, frame: &Frame) {
-        for series in self.series.iter().filter(|series| self.is_named_point(series)) {
+        for (index, series) in self.series.iter().enumerate().filter(|(_, series)| self.is_named_point(series)) {
+            let _ = write!(svg, r#"<g data-s="s{index}">"#);
             for (x, y) in series.runs.iter().flatten().filter_map(|&point| frame.place(point)) {
+                let (x, y, label) = (at(x), at(y), escape(&series.label));
                 let _ = write!(
                     svg,
-                    r#"<circle class="point" cx="{}" cy="{}" r="4"/><text class="point" x="{}" y="{}">{}</text>"#,
-                    at(x),
-                    at(y),
-                    at(x + 9.0),
-                    at(y - 8.0),
-                    escape(&series.label)
+                    r#"<path class="dot" style="stroke:var(--ink)" d="M{x} {y}h0"/><text class="point" x="{x}" y="{y}" dx="9" dy="-8">{label}</text>"#
                 );
             }
+            svg.push_str("</g>");
         }
     }
 
     pub(super) fn draw_marks(&self, svg: &mut String, frame: &Frame) {
         for mark in &self.marks {
-            let colour = self.colour_of_mark(mark);
             let x = mark.x.map(|x| frame.x(x)).filter(|x| x.is_finite());
             let y = mark.y.map(|y| frame.y(y)).filter(|y| y.is_finite());
-            let style = colour.stroke();
-            let _ = match (x, y) {
+            let (class, style, path) = match (x, y) {
                 (Some(x), Some(y)) => {
-                    write!(svg, r#"<path class="mark" {style} d="M{} {}l6 6l-6 6l-6 -6z"/>"#, at(x), at(y - 6.0))
+                    let marker = mark.look.published_marker();
+                    ("mark", mark.look.colour.stroke(), format!("M{} {}{marker}", at(x), at(y)))
                 }
                 (Some(x), None) if mark.y.is_none() => {
-                    write!(
-                        svg,
-                        r#"<path class="dashes" {style} d="M{} {}V{}"/>"#,
-                        at(x),
-                        at(frame.top),
-                        at(frame.bottom())
-                    )
+                    let path = format!("M{} {}V{}", at(x), at(frame.top), at(frame.bottom()));
+                    ("dashes", mark.look.published_stroke(), path)
                 }
                 (None, Some(y)) if mark.x.is_none() => {
-                    write!(
-                        svg,
-                        r#"<path class="dashes" {style} d="M{} {}H{}"/>"#,
-                        at(frame.left),
-                        at(y),
-                        at(frame.right())
-                    )
+                    let path = format!("M{} {}H{}", at(frame.left), at(y), at(frame.right()));
+                    ("dashes", mark.look.published_stroke(), path)
                 }
-                _ => Ok(()),
+                _ => continue,
             };
+            let _ = write!(svg, r#"<g data-s="{}"><path class="{class}" {style} d="{path}"/></g>"#, self.key_of(mark));
         }
     }
 }

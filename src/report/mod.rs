@@ -3,21 +3,39 @@
 //! Must not know: how anything was computed, and where tables are kept. The same tables give the same bytes, apart from
 //! the section of the page about the run itself.
 
+mod axes;
+mod cells;
 mod choice;
+mod comparison;
+mod data;
+mod defaults;
 mod drawing;
 mod figure;
+mod frame;
+mod inputs;
 mod legend;
+mod look;
 mod marks;
+mod order;
 mod page;
+mod palette;
 mod plot;
+mod records;
 mod scale;
+mod shapes;
+mod sheet;
+mod spec;
 mod svg;
 mod sweep;
 pub mod text;
 mod thin;
+mod vega;
 mod verdict;
 
 use std::cell::RefCell;
+
+use figure::{Figure, Tables};
+use order::Order;
 
 use declare::number::{significant, with_unit};
 use studygraph::store::manifest::{Manifest, StageRecord};
@@ -33,9 +51,11 @@ pub struct Rendered {
 /// A figure as a file by itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct RenderedFigure {
-    /// Without `.svg`.
+    /// Without an ending.
     pub name: String,
     pub svg: String,
+    /// The same as Vega-Lite.
+    pub vega_lite: String,
     /// Whether it shows what differs from run to run.
     pub varies: bool,
 }
@@ -67,10 +87,11 @@ pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Re
         last.as_ref().map(|(_, table)| table.clone())
     };
     let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == "report").collect();
+    let order = Order::of(manifest, tables);
     let mut parts = Vec::new();
     for stage in &stages {
         let finished = matches!(stage.status.as_str(), "hit" | "ran");
-        match part(&stage.name, tables) {
+        match part(&stage.name, &order, tables) {
             Ok(mut part) => {
                 if stages.len() > 1 {
                     for figure in &mut part.figures {
@@ -84,23 +105,30 @@ pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Re
             Err(error) => return Err(error),
         }
     }
-    let html = page::html(manifest, &parts, tables)?;
-    let figures = parts.iter().flat_map(|part| &part.figures).map(|figure| RenderedFigure {
+    let mut figures: Vec<Figure> = parts.iter_mut().flat_map(|part| std::mem::take(&mut part.figures)).collect();
+    if figures.is_empty() {
+        figures = defaults::figures(manifest, &order, tables)?;
+    }
+    palette::assign(figures.iter_mut().map(|figure| &mut figure.plot));
+    let html = page::html(manifest, &parts, &figures, tables)?;
+    let figures = figures.iter().map(|figure| RenderedFigure {
         name: figure.name.clone(),
-        svg: figure.plot.svg(true),
+        svg: figure.plot.file(),
+        vega_lite: figure.plot.vega_lite(),
         varies: figure.varies,
     });
     Ok(Rendered { html, figures: figures.collect() })
 }
 
-fn part(stage: &str, tables: &dyn Fn(&str) -> Option<Table>) -> Result<page::ReportPart, ReportError> {
+fn part(stage: &str, order: &Order, tables: Tables<'_>) -> Result<page::ReportPart, ReportError> {
     let table = |name: &str| {
         let name = format!("{stage}.{name}");
         tables(&name).ok_or(ReportError::Missing(name))
     };
-    let figures = figure::figures(&table("figures")?, &table("figure_published")?, tables)?;
+    let figures = figure::figures(&table("figures")?, &table("figure_published")?, order, tables)?;
     let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
-    Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, figures })
+    let comparisons = comparison::rows(&table("comparisons")?)?;
+    Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, comparisons, figures })
 }
 
 fn column<'a>(table: &'a Table, name: &str) -> Result<&'a Data, ReportError> {
@@ -137,6 +165,11 @@ fn flags<'a>(table: &'a Table, name: &str) -> Result<&'a [bool], ReportError> {
         Data::Flag(values) => Ok(values),
         _ => Err(wrong_type(table, name)),
     }
+}
+
+/// The start of a digest.
+fn short(digest: &str) -> String {
+    digest.chars().take(12).collect()
 }
 
 /// A time as pages write it.

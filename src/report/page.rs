@@ -8,21 +8,25 @@ use minijinja::value::Serde;
 use serde::Serialize;
 
 use super::choice::{self, Choice};
-use super::figure::Figure;
+use super::comparison;
+use super::figure::{Figure, Tables};
+use super::inputs::Inputs;
+use super::records::{self, StageTables};
+use super::sheet::{self, Sheet};
 use super::sweep::{self, Sweep};
-use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
-use declare::number::{significant, unit_symbol};
-use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
-use studygraph::table::data::{Data, Table};
+use super::{ReportError, flags, integers, plot, seconds, short, texts, verdict};
+use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
+use studygraph::table::data::Table;
 
-/// Rows of a table shown on the page.
-const SHOWN_ROWS: usize = 8;
+/// What is not computed is named where it would have taken this share of the run.
+const WORTH_NAMING: f64 = 0.01;
 
-/// What one report stage contributes.
+/// What one report stage contributes, beside its figures.
 pub struct ReportPart {
     pub stage: String,
     pub verdicts: Table,
     pub counts: Table,
+    pub comparisons: Vec<comparison::Row>,
     pub figures: Vec<Figure>,
 }
 
@@ -34,19 +38,29 @@ struct View<'a> {
     total: i64,
     attention: i64,
     parts: Vec<PartView>,
-    /// Whether a figure shows what differs from run to run.
+    comparisons: Vec<&'a comparison::Row>,
+    /// How many differ without a reason.
+    differing: usize,
+    figures: Vec<FigureView>,
+    /// Whether figures show what differs from run to run.
     varies: bool,
     choices: Vec<Choice>,
     sweeps: Vec<Sweep>,
+    sheets: Vec<Sheet>,
+    /// Whether nothing stands before the data sheet.
+    is_plain: bool,
+    /// How much was left out, what of it is worth naming.
+    omissions: usize,
     left_out: Vec<Remark>,
     warnings: Vec<Remark>,
     failures: Vec<&'a StageRecord>,
     stages: Vec<StageView<'a>>,
-    tables: Vec<TableView<'a>>,
+    tables: Vec<StageTables<'a>>,
+    packed: String,
     seconds: String,
-    style: &'static str,
+    styles: [&'static str; 2],
     plot_style: &'static str,
-    script: &'static str,
+    script: String,
 }
 
 #[derive(Serialize)]
@@ -62,7 +76,8 @@ struct Count {
 struct PartView {
     stage: String,
     rows: Vec<verdict::Row>,
-    figures: Vec<FigureView>,
+    /// Those that only read back what the study states.
+    inputs: Vec<verdict::Row>,
 }
 
 #[derive(Serialize)]
@@ -73,7 +88,19 @@ struct FigureView {
     tables: String,
     /// Made by `plot`, which escapes what it is given.
     svg: String,
+    legend: Vec<LegendView>,
+    /// Width in px, where it is narrower than the page.
+    narrow: Option<f64>,
+    /// Folder and name of its files, without an ending.
+    file: String,
     varies: bool,
+}
+
+#[derive(Serialize)]
+struct LegendView {
+    label: String,
+    key: String,
+    swatch: String,
 }
 
 #[derive(Serialize)]
@@ -93,78 +120,87 @@ struct StageView<'a> {
     key: String,
 }
 
-#[derive(Serialize)]
-struct TableView<'a> {
-    record: &'a TableRecord,
-    content: String,
-    columns: Vec<ColumnView<'a>>,
-    rows: Vec<Vec<String>>,
-    is_stored: bool,
-}
-
-#[derive(Serialize)]
-struct ColumnView<'a> {
-    name: &'a str,
-    unit: String,
-    description: &'a str,
-    key: bool,
-    volatile: bool,
-    is_number: bool,
-}
-
 /// # Errors
 /// When a table is of another shape.
 pub fn html(
     manifest: &Manifest,
     parts: &[ReportPart],
-    tables: &dyn Fn(&str) -> Option<Table>,
+    figures: &[Figure],
+    tables: Tables<'_>,
 ) -> Result<String, ReportError> {
     let failed = |error: minijinja::Error| ReportError::Page(format!("{error:#}"));
     let mut environment = Environment::new();
     environment.set_syntax(SyntaxConfig::builder().trim_blocks(true).lstrip_blocks(true).build().map_err(failed)?);
-    environment.add_template("page.html", include_str!("page.html")).map_err(failed)?;
+    for (name, text) in [
+        ("page.html", include_str!("page/page.html")),
+        ("figure.html", include_str!("page/figure.html")),
+        ("verdict.html", include_str!("page/verdict.html")),
+    ] {
+        environment.add_template(name, text).map_err(failed)?;
+    }
     let counts = counts(parts)?;
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
-    let remarks = |pick: fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
+    let remarks = |pick: &dyn Fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
             pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
         };
         manifest.stages.iter().flat_map(of).collect()
     };
-    let left_out = remarks(|stage| {
-        let saved = |left: &OmissionRecord| left.saved_seconds.map_or_else(String::new, seconds);
-        stage.left_out.iter().map(|left| (left.what.clone(), left.why.clone(), saved(left))).collect()
+    let least = WORTH_NAMING * manifest.seconds;
+    let is_worth = |left: &&OmissionRecord| left.saved_seconds.is_some_and(|saved| saved >= least);
+    let left_out = remarks(&|stage| {
+        let said = |left: &OmissionRecord| {
+            (left.what.clone(), left.why.clone(), left.saved_seconds.map_or_else(String::new, seconds))
+        };
+        stage.left_out.iter().filter(is_worth).map(said).collect()
     });
-    let warnings =
-        remarks(|stage| stage.warnings.iter().map(|warning| (warning.clone(), String::new(), String::new())).collect());
+    let warnings = remarks(&|stage| {
+        stage.warnings.iter().map(|warning| (warning.clone(), String::new(), String::new())).collect()
+    });
     let failures: Vec<&StageRecord> =
         manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
     let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
-    let index: Vec<TableView> =
-        manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| table_view(record, tables)).collect();
-    let parts = parts.iter().map(part_view).collect::<Result<Vec<_>, _>>()?;
+    let inputs = Inputs::of(manifest);
+    let mut comparisons: Vec<&comparison::Row> = parts.iter().flat_map(|part| &part.comparisons).collect();
+    comparisons.sort_by_key(|row| row.rank());
+    let parts = parts.iter().map(|part| part_view(part, &inputs)).collect::<Result<Vec<_>, _>>()?;
+    let records = records::records(manifest, tables)?;
     let view = View {
         manifest,
         counts,
         total,
         attention,
-        varies: parts.iter().flat_map(|part| &part.figures).any(|figure| figure.varies),
+        is_plain: total == 0,
+        differing: comparisons.iter().filter(|row| row.rank() == 0).count(),
+        comparisons,
         parts,
+        varies: figures.iter().any(|figure| figure.varies),
+        figures: figures.iter().map(figure_view).collect(),
         choices: choice::choices(manifest, tables)?,
         sweeps: sweep::sweeps(manifest, tables)?,
+        sheets: sheet::sheets(manifest, tables),
+        omissions: manifest.stages.iter().map(|stage| stage.left_out.len()).sum(),
         left_out,
         warnings,
         failures,
         stages,
-        tables: index,
+        tables: records.stages,
+        packed: records.packed,
         seconds: seconds(manifest.seconds),
-        style: studygraph::page::STYLE,
+        styles: [studygraph::page::STYLE, include_str!("page/page.css")],
         plot_style: plot::STYLE,
-        script: include_str!("page.js"),
+        script: script(),
     };
     environment.get_template("page.html").and_then(|template| template.render(Serde(view))).map_err(failed)
+}
+
+/// Without indents and the lines that are remarks.
+fn script() -> String {
+    let sources = [include_str!("page/common.js"), include_str!("page/figure.js"), include_str!("page/tables.js")];
+    let lines = sources.into_iter().flat_map(str::lines).map(str::trim_start);
+    lines.filter(|line| !line.starts_with("//")).collect::<Vec<_>>().join("\n")
 }
 
 fn counts(parts: &[ReportPart]) -> Result<Vec<Count>, ReportError> {
@@ -188,16 +224,30 @@ fn counts(parts: &[ReportPart]) -> Result<Vec<Count>, ReportError> {
     Ok(counts)
 }
 
-fn part_view(part: &ReportPart) -> Result<PartView, ReportError> {
-    let figures = part.figures.iter().map(|figure| FigureView {
+fn part_view(part: &ReportPart, inputs: &Inputs) -> Result<PartView, ReportError> {
+    let is_input = |row: &verdict::Row| row.verdict == "reproduced" && row.with.is_empty() && inputs.has(&row.cell);
+    let (inputs, rows) = verdict::rows(&part.verdicts)?.into_iter().partition(is_input);
+    Ok(PartView { stage: part.stage.clone(), rows, inputs })
+}
+
+fn figure_view(figure: &Figure) -> FigureView {
+    let folder = if figure.varies { "figures/measured" } else { "figures" };
+    let item = |item: &super::legend::Item| LegendView {
+        label: item.label.clone(),
+        key: item.key.clone(),
+        swatch: item.swatch(),
+    };
+    FigureView {
         name: figure.name.clone(),
         title: figure.plot.title.clone(),
         note: figure.note.clone(),
         tables: figure.tables.clone(),
-        svg: figure.plot.svg(false),
+        svg: figure.plot.inline(),
+        legend: figure.plot.legend().iter().map(item).collect(),
+        narrow: figure.plot.narrow(),
+        file: format!("{folder}/{}", figure.name),
         varies: figure.varies,
-    });
-    Ok(PartView { stage: part.stage.clone(), rows: verdict::rows(&part.verdicts)?, figures: figures.collect() })
+    }
 }
 
 fn stage_view(record: &StageRecord) -> StageView<'_> {
@@ -210,33 +260,4 @@ fn stage_view(record: &StageRecord) -> StageView<'_> {
     let work = record.work.iter().map(|(counter, count)| format!("{count} {}", counter.replace('_', " ")));
     let work = work.collect::<Vec<_>>().join(", ");
     StageView { record, seconds: seconds(record.seconds), work, rows, key }
-}
-
-fn table_view<'a>(record: &'a TableRecord, tables: &dyn Fn(&str) -> Option<Table>) -> TableView<'a> {
-    let table = tables(&record.name);
-    let columns = record.columns.iter().map(|column| ColumnView {
-        name: &column.name,
-        unit: unit_symbol(&column.unit),
-        description: &column.description,
-        key: column.key,
-        volatile: column.volatile,
-        is_number: matches!(column.kind.as_str(), "float" | "integer"),
-    });
-    let rows = table.as_ref().map_or_else(Vec::new, |table| {
-        // By the record's columns, and only what it says: a volatile value would make the page differ from run to run.
-        let cell = |row: usize, column: &studygraph::store::manifest::ColumnRecord| match table.column(&column.name) {
-            None => String::new(),
-            Some(_) if column.volatile => "varies".to_owned(),
-            Some(Data::Float(values)) => significant(values[row], 6),
-            Some(other) => other.cell(row).to_string(),
-        };
-        (0..table.rows().min(SHOWN_ROWS))
-            .map(|row| record.columns.iter().map(|column| cell(row, column)).collect())
-            .collect()
-    });
-    TableView { record, content: short(&record.content), columns: columns.collect(), rows, is_stored: table.is_some() }
-}
-
-fn short(digest: &str) -> String {
-    digest.chars().take(12).collect()
 }

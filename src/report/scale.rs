@@ -126,8 +126,17 @@ impl Scale {
                 }
             }
         }
-        ticks
+        // A scale with one label shows no scale: within a small part of a decade round values do, as on a linear one.
+        if ticks.len() < 2 { self.linear_ticks(4) } else { ticks }
     }
+}
+
+/// The largest of 1, 1.5, 2, 2.5, 3, 4, 5, 6, 8 times a power of ten that is not larger.
+#[must_use]
+pub fn rounded_down(value: f64) -> f64 {
+    let exponent = magnitude(value, 15).saturating_sub(1);
+    let rounded = [80, 60, 50, 40, 30, 25, 20, 15, 10].map(|digits| decimal(digits, exponent));
+    rounded.into_iter().find(|rounded| *rounded <= value).unwrap_or(value)
 }
 
 fn log_label(digit: i64, exponent: i32) -> String {
@@ -170,6 +179,28 @@ mod tests {
         assert_eq!(labels(0.5, 40.0, true), ["0.5", "1", "2", "5", "10", "20"]);
         assert_eq!(labels(1e-12, 1e-2, true)[0], "10⁻¹²");
         assert!(labels(1e-300, 1e300, true).len() < 30);
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_two_labels_at_least() {
+        assert_eq!(labels(3.2, 4.8, true), ["3.5", "4.0", "4.5"]);
+        for low in [1e-12, 0.013, 0.97, 3.1, 5.1, 9.9, 72.0, 1.9e9] {
+            for ratio in [1.002, 1.02, 1.2, 1.9, 3.0, 9.5, 11.0, 99.0, 1e4, 1e13] {
+                let shown = labels(low, low * ratio, true);
+                assert!(shown.len() >= 2, "{low} to {}: {shown:?}", low * ratio);
+                let mut distinct = shown.clone();
+                distinct.dedup();
+                assert_eq!(distinct, shown);
+            }
+        }
+    }
+
+    #[test]
+    fn factors_are_round() {
+        for (value, rounded) in [(1999.0, 1500.0), (2000.0, 2000.0), (0.49, 0.4), (0.5, 0.5), (7.2e5, 6e5), (9.99, 8.0)]
+        {
+            assert_eq!(rounded_down(value).to_bits(), f64::to_bits(rounded), "{value}");
+        }
     }
 
     #[test]

@@ -1,9 +1,6 @@
-//! What SVG is written with: text, coordinates, the width of a character.
+//! What SVG is written with: text and coordinates.
 //!
 //! Must not know: what is drawn.
-
-/// Average width of a character at the size of a label: browsers differ, so places that depend on it leave room.
-pub const CHARACTER: f64 = 7.0;
 
 /// Text as it may stand in an element or an attribute.
 #[must_use]

@@ -5,7 +5,8 @@
 
 use std::collections::BTreeSet;
 
-use super::plot::{Frame, Kind, Plot, Series};
+use super::frame::{Frame, Layout};
+use super::plot::{Kind, Plot, Series, Size};
 
 /// Points of a series that are few enough.
 const FEW: usize = 6000;
@@ -21,12 +22,14 @@ impl Plot {
             return self;
         }
         // How far from the top it stands changes nothing.
-        let Some(frame) = self.frame(0.0) else { return self };
+        let Some(frame) = self.frame(0.0, Layout::of_file(Size::Page)) else { return self };
         for series in self.series.iter_mut().filter(|series| is_long(series)) {
             match self.kind {
                 Kind::Points => spread(&mut series.runs, &frame),
-                Kind::Line | Kind::Drawing => series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame)),
-                Kind::Bar => {}
+                Kind::Line | Kind::Drawing | Kind::Chart => {
+                    series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame))
+                }
+                Kind::Bar | Kind::Map => {}
             }
         }
         self
@@ -71,13 +74,10 @@ fn outlined(run: &[(f64, f64)], frame: &Frame) -> Vec<(f64, f64)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::plot::Axis;
     use super::*;
 
     fn plot(kind: Kind, points: Vec<(f64, f64)>) -> Plot {
-        let axis = || Axis { label: "x".to_owned(), unit: String::new(), is_log: false };
-        let series = vec![Series { label: "s".to_owned(), runs: vec![points] }];
-        Plot { title: "t".to_owned(), kind, x: axis(), y: axis(), series, marks: Vec::new(), categories: Vec::new() }
+        Plot { series: vec![Series::new("s", vec![points])], ..Plot::new("t", kind) }
     }
 
     /// 200,000 points of a wave whose every period has one spike: the drawing is a hundredth as long, has every spike, and
@@ -94,7 +94,7 @@ mod tests {
             assert!(kept.iter().all(|point| points.contains(point)), "nothing is made up");
             let spikes = |points: &[(f64, f64)]| points.iter().filter(|point| point.1 > 2.0).count();
             assert_eq!(spikes(kept), spikes(&points), "{kind:?}");
-            let frame = whole.frame(0.0).unwrap();
+            let frame = whole.frame(0.0, Layout::of_file(Size::Page)).unwrap();
             let cells: BTreeSet<_> = kept.iter().filter_map(|point| cell(&frame, *point)).collect();
             if kind == Kind::Points {
                 assert!(points.iter().all(|point| cells.contains(&cell(&frame, *point).unwrap())));

@@ -74,11 +74,15 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             with: with[row].clone(),
             is_claim,
             published: if is_claim { "claimed".to_owned() } else { as_printed(&stated[row]) },
-            computed: if is_claim { found[row].clone() } else { with_unit(&close(computed[row], printed), unit) },
+            computed: if is_claim {
+                found[row].clone()
+            } else {
+                with_unit(&near(computed[row], tolerance[row], printed), unit)
+            },
             difference: if is_claim {
                 String::new()
             } else {
-                with_unit(&signed(close(difference[row], printed)), unit)
+                with_unit(&signed(near(difference[row], tolerance[row], printed)), unit)
             },
             relative: if is_claim || relative[row].is_nan() { String::new() } else { percent(relative[row]) },
             tolerance: if is_claim {
@@ -96,7 +100,18 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             failing: failing[row].clone(),
         }
     };
-    Ok((0..table.rows()).map(one).collect())
+    // What needs attention, what is explained, what agrees; each in the order of the study.
+    let mut order: Vec<usize> = (0..table.rows()).collect();
+    order.sort_by_key(|&row| rank(&verdicts[row]));
+    Ok(order.into_iter().map(one).collect())
+}
+
+fn rank(verdict: &str) -> usize {
+    match sign(verdict) {
+        "✓" => 2,
+        "≠" => 1,
+        _ => 0,
+    }
 }
 
 /// The printed text with the typography of a journal: `2.738e8 N/m` as `2.738×10⁸ N/m`.
@@ -108,9 +123,15 @@ fn as_printed(text: &str) -> String {
     }
 }
 
-/// In the manner of the printed value with one more digit; by significant digits where that would show nothing.
+/// As [`close`]; 0 where it is less than a thousandth of the tolerance, which says no more of it.
+fn near(value: f64, tolerance: f64, printed: Printed) -> String {
+    if value.abs() < 1e-3 * tolerance { "0".to_owned() } else { close(value, printed) }
+}
+
+/// In the manner of the printed value with one more digit; a count as a count; by significant digits where that would show nothing.
 fn close(value: f64, printed: Printed) -> String {
-    let shown = printed.show(value, 1);
+    let is_count = printed.decimals == 0 && printed.exponent == 0 && value.fract() == 0.0;
+    let shown = printed.show(value, usize::from(!is_count));
     let is_lost = value != 0.0 && !shown.chars().any(|digit| ('1'..='9').contains(&digit));
     if is_lost || shown.chars().count() > 14 { significant(value, 3) } else { shown }
 }
@@ -120,7 +141,7 @@ fn signed(text: String) -> String {
     if text.starts_with('−') || is_zero { text } else { format!("+{text}") }
 }
 
-fn percent(share: f64) -> String {
+pub fn percent(share: f64) -> String {
     let percent = 100.0 * share;
     if percent.abs() < 0.005 {
         return "0.00\u{202f}%".to_owned();
@@ -150,5 +171,26 @@ mod tests {
         assert_eq!(signed("0.0000".to_owned()), "0.0000");
         assert_eq!((percent(0.2957).as_str(), percent(-0.0123).as_str()), ("+29.6\u{202f}%", "−1.23\u{202f}%"));
         assert_eq!(percent(-0.000_01), "0.00\u{202f}%");
+    }
+
+    #[test]
+    fn counts_are_counts_and_what_is_nothing_is_0() {
+        let teeth = Printed::read("19").unwrap();
+        assert_eq!((close(19.0, teeth).as_str(), close(19.2, teeth).as_str()), ("19", "19.2"));
+        assert_eq!(close(2.0, Printed::read("2.0").unwrap()), "2.00");
+        let gap = Printed::read("0 mm").unwrap();
+        // ±1 nm: below a picometre there is nothing to see.
+        assert_eq!(near(-28.4e-15, 1e-6, gap), "0");
+        assert_eq!(near(2e-9, 1e-6, gap), "2×10⁻⁹");
+        assert_eq!(near(0.5e-9, 1e-6, gap), "0");
+        assert_eq!(near(-28.4e-15, 0.0, gap), "−28.4×10⁻¹⁵", "without a tolerance nothing is small");
+    }
+
+    #[test]
+    fn what_needs_attention_is_first() {
+        let words = ["reproduced", "explained", "holds", "outdated", "refuted", "unexplained", "moved"];
+        let mut sorted = words;
+        sorted.sort_by_key(|word| rank(word));
+        assert_eq!(sorted, ["outdated", "unexplained", "moved", "explained", "refuted", "reproduced", "holds"]);
     }
 }

@@ -16,6 +16,7 @@ mod extremes;
 mod fuzz;
 mod layering;
 mod numbers;
+mod page;
 mod pressure;
 mod properties;
 mod python;

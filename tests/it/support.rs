@@ -12,6 +12,7 @@ pub fn with_code(study: Study, code_of: fn(&str) -> String) -> Study {
         code_of,
         counters: PROGRAM.counters,
         about: PROGRAM.about,
+        pictures: PROGRAM.pictures,
     };
     Study { program: Box::leak(Box::new(program)), ..study }
 }

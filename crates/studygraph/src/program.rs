@@ -27,6 +27,20 @@ pub struct Program {
     /// What its stages count of their work.
     pub counters: &'static [&'static Counter],
     pub about: About,
+    pub pictures: Pictures,
+}
+
+/// What a study has for people to look at that says nothing of it: tables on demand are computed then all the same.
+#[derive(Clone, Copy)]
+pub struct Pictures {
+    /// The kind of stage by which a study says itself what is shown; with one of them nothing is added.
+    pub reader: &'static str,
+    /// Kinds of stages, and the tables of each.
+    pub tables: &'static [(&'static str, &'static str)],
+}
+
+impl Pictures {
+    pub const NONE: Self = Self { reader: "", tables: &[] };
 }
 
 impl Program {

@@ -3,6 +3,8 @@
 //! Families and their parameters come from `gear/modification`; this file only reads them and shows what they come to
 //! on the pair. Must not know: any single family.
 
+mod charts;
+
 use crate::stage::designs::{self, Elements, NamedDesign};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair};
 use declare::Declared;
@@ -145,7 +147,8 @@ impl Stage for Modification {
 
     fn outputs(&self) -> Vec<Schema> {
         let [designs, elements] = designs::schemas();
-        vec![designs, elements, resolved().schema(), parameters().schema()]
+        let charts = [charts::profile().schema(), charts::lead().schema()];
+        [designs, elements, resolved().schema(), parameters().schema()].into_iter().chain(charts).collect()
     }
 
     fn keys(&self, _table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
@@ -163,19 +166,34 @@ impl Stage for Modification {
             .rows(demand, of_elements, RowCount::exact(elements().map(designs::rows_of).sum()))
             .rows(demand, resolved().schema(), RowCount::at_most(maximum))
             .rows(demand, parameters().schema(), RowCount::at_most(maximum * MOST_RESOLVED))
+            .rows(demand, charts::profile().schema(), RowCount::about(self.designs.len() * charts::ROWS))
+            .rows(demand, charts::lead().schema(), RowCount::about(self.designs.len() * charts::ROWS))
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
-        let mut rows = Vec::new();
+        let (mut rows, mut profiles, mut leads) = (Vec::new(), Vec::new(), Vec::new());
+        let is_charted = context.demand.table(charts::PROFILE) || context.demand.table(charts::LEAD);
         for named in &self.designs {
-            rows.extend(resolved_rows(&named.name, &named.built(&pair)?));
+            let built = named.built(&pair)?;
+            rows.extend(resolved_rows(&named.name, &built));
+            if is_charted {
+                let [profile, lead] = charts::rows(&named.name, &built, &pair);
+                profiles.extend(profile);
+                leads.extend(lead);
+            }
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
         tables.push(resolved().table(&rows).map_err(failed)?);
         if context.demand.table(PARAMETERS) {
             tables.push(parameters().table(&parameter_rows(&rows)).map_err(failed)?);
+        }
+        if context.demand.table(charts::PROFILE) {
+            tables.push(charts::profile().table(&profiles).map_err(failed)?);
+        }
+        if context.demand.table(charts::LEAD) {
+            tables.push(charts::lead().table(&leads).map_err(failed)?);
         }
         Ok(tables)
     }

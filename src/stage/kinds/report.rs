@@ -5,23 +5,27 @@
 //! can carry arithmetic that proves it and the value that is expected instead; both are checked each time. Must not
 //! know: how the report is drawn. Values in the row's unit, as printed.
 
+mod compare;
 mod entry;
 mod figure;
 mod operand;
 mod rows;
 mod stated;
+mod stated_figure;
 mod verdict;
 
 use std::collections::BTreeSet;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
+use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
-use figure::{Figure, StatedFigure, figures, marks};
+use figure::{Figure, figures, marks};
 use stated::Published;
+use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
@@ -62,6 +66,8 @@ figures:
 struct Stated {
     /// the paper's numbers and claims
     pub published: Option<Vec<Published>>,
+    /// results beside others: methods, settings, designs
+    pub compare: Option<Vec<Compared>>,
     /// the figures of the report
     pub figures: Option<Vec<StatedFigure>>,
 }
@@ -77,6 +83,7 @@ const SECONDS_OF_DRAWN: f64 = 5e-6;
 /// The stage as configured.
 struct Report {
     entries: Vec<ReportEntry>,
+    comparisons: Vec<Comparison>,
     figures: Vec<Figure>,
 }
 
@@ -85,22 +92,26 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
     let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
     let entries = entries.collect::<Result<_, _>>()?;
+    let compared = (1..).zip(stated.compare.iter().flatten()).zip(record.each_inside(Stated::NAMES.compare));
+    let comparisons = compared.map(|((number, stated), record)| Comparison::read(number, stated, record));
+    let comparisons = comparisons.collect::<Result<_, _>>()?;
     let drawn: Vec<&Record> = record.each_inside(Stated::NAMES.figures).collect();
     let figures = (1..).zip(stated.figures.iter().flatten()).zip(&drawn);
     let figures = figures.map(|((number, stated), record)| Figure::read(number, stated, record));
     let figures: Vec<Figure> = figures.collect::<Result<_, _>>()?;
     figure::check_names(&figures, &drawn)?;
-    Ok(Box::new(Report { entries, figures }))
+    Ok(Box::new(Report { entries, comparisons, figures }))
 }
 
 impl Stage for Report {
     fn inputs(&self) -> Vec<Port> {
         let mut ports: Vec<Port> = Vec::new();
-        let cells =
-            self.entries.iter().flat_map(ReportEntry::operands).filter_map(operand::Operand::cell).map(|cell| {
-                let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
-                (cell.stage.as_str(), cell.table.as_str(), columns.collect())
-            });
+        let operands = self.entries.iter().flat_map(ReportEntry::operands);
+        let operands = operands.chain(self.comparisons.iter().flat_map(Comparison::operands));
+        let cells = operands.filter_map(operand::Operand::cell).map(|cell| {
+            let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
+            (cell.stage.as_str(), cell.table.as_str(), columns.collect())
+        });
         for (stage, table, columns) in cells.chain(self.figures.iter().flat_map(Figure::wants)) {
             want(&mut ports, stage, table, columns);
         }
@@ -113,7 +124,8 @@ impl Stage for Report {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        vec![verdicts().schema(), verdict_counts().schema(), figures().schema(), marks().schema()]
+        let verdicts = [verdicts().schema(), verdict_counts().schema(), comparisons().schema()];
+        verdicts.into_iter().chain([figures().schema(), marks().schema()]).collect()
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -126,6 +138,7 @@ impl Stage for Report {
             .holding(self.entries.len() as u64 * 1000)
             .rows(demand, verdicts().schema(), RowCount::exact(self.entries.len()))
             .rows(demand, verdict_counts().schema(), RowCount::exact(Verdict::ALL.len()))
+            .rows(demand, comparisons().schema(), RowCount::exact(self.comparisons.len()))
             .rows(demand, figures().schema(), RowCount::exact(self.figures.len()))
             .rows(demand, marks().schema(), RowCount::exact(self.figures.iter().map(Figure::marks).sum()))
     }
@@ -135,6 +148,10 @@ impl Stage for Report {
         for entry in &self.entries {
             context.check_stop()?;
             found.push(entry.find(inputs).map_err(Failure::Failed)?);
+        }
+        let mut compared = Vec::new();
+        for comparison in &self.comparisons {
+            compared.push(comparison.find(inputs).map_err(Failure::Failed)?);
         }
         let count = |verdict| found.iter().filter(|finding| finding.verdict == verdict).count();
         let counts = (1..).zip(Verdict::ALL).map(|(order, verdict)| CountRow { order, verdict, count: count(verdict) });
@@ -146,6 +163,7 @@ impl Stage for Report {
         let table = |name: &str| match name {
             "verdicts" => verdicts().table(&found),
             "verdict_counts" => verdict_counts().table(&counts),
+            "comparisons" => comparisons().table(&compared),
             "figures" => figures().table(&drawn),
             _ => marks().table(&marked),
         };

@@ -133,7 +133,7 @@ fn source(study: &Study, ports: &[Vec<Port>], node: &Node, port: &Port, depth: u
     source(study, ports, via, next, depth + 1)
 }
 
-/// What is asked of each node by the user and by nodes that read it. Inputs that nothing asked of their reader needs are
+/// What is asked of each node by the user, by nodes that read it, and by what a study shows that says nothing of it. Inputs that nothing asked of their reader needs are
 /// taken out.
 fn demand(
     study: &Study,
@@ -150,6 +150,16 @@ fn demand(
     for Wanted { stage, want } in wanted {
         let index = find(study, stage)?;
         add(&mut demands[index], &study.nodes[index], &outputs[index], want)?;
+    }
+    let pictures = study.program.pictures;
+    if study.nodes.iter().all(|node| node.kind.name != pictures.reader) {
+        for (index, node) in study.nodes.iter().enumerate() {
+            let shown = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name).map(|(_, table)| *table);
+            // One gear alone has no mesh to draw.
+            for table in shown.filter(|table| outputs[index].iter().any(|schema| schema.name == *table)) {
+                demands[index].tables.entry(table.to_owned()).or_default();
+            }
+        }
     }
     // All that is asked of a reader is known before what it reads itself.
     for &reader in order.iter().rev() {

@@ -21,7 +21,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::plan::{Plan, plan};
 use crate::about::ABOUT;
-use crate::program::Program;
+use crate::program::{Pictures, Program};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
 use crate::store::cache::Cache;
 use crate::study::{Node, Study};
@@ -247,10 +247,22 @@ impl Spec {
     }
 }
 
-static PROGRAM: Program =
-    Program { kinds: &[], foreign: &[], code_of: |_| String::from("code"), counters: &[], about: ABOUT };
-static OTHER: Program =
-    Program { kinds: &[], foreign: &[], code_of: |_| String::from("other code"), counters: &[], about: ABOUT };
+static PROGRAM: Program = Program {
+    kinds: &[],
+    foreign: &[],
+    code_of: |_| String::from("code"),
+    counters: &[],
+    about: ABOUT,
+    pictures: Pictures::NONE,
+};
+static OTHER: Program = Program {
+    kinds: &[],
+    foreign: &[],
+    code_of: |_| String::from("other code"),
+    counters: &[],
+    about: ABOUT,
+    pictures: Pictures::NONE,
+};
 
 /// A folder with a cache, and the studies run on it.
 struct Bench {

@@ -4,6 +4,7 @@
 //! not know: how anything is drawn.
 
 use super::operand::{in_si, no_rows, table};
+use super::stated_figure::{How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
 use crate::stage::quantity::{described, same_dimension};
 use crate::stage::{Ahead, Inputs};
 use declare::declared::{Placed, Words};
@@ -11,87 +12,10 @@ use declare::error::Diagnostic;
 use declare::record::Record;
 use declare::text::is_device;
 use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
-use declare::{Declared, Words};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Column, Type};
 use studygraph::table::select::{rows_where, unknown_column};
-
-/// A figure as a study states it.
-#[derive(Debug, Declared)]
-pub struct StatedFigure {
-    /// name of the file in `figures/`: letters, digits, - and _
-    pub name: String,
-    /// what is shown
-    pub title: String,
-    /// how it is drawn
-    #[declared(default = "line")]
-    pub kind: How,
-    /// `stage.table`; several are drawn together, told apart by stage
-    pub table: Vec<Placed<String>>,
-    /// column of the x axis
-    pub x: String,
-    /// column of the y axis; several need one unit
-    pub y: Vec<String>,
-    /// column whose values are drawn apart, one line each
-    pub series: Option<String>,
-    /// column at whose changes a line is interrupted (a jump stays a jump)
-    pub segments: Option<String>,
-    /// only the rows with these values, column: value
-    #[declared(name = "where")]
-    pub conditions: Option<Vec<(String, String)>>,
-    /// `stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|
-    pub reference: Option<Placed<String>>,
-    /// name of the x axis; otherwise that of the column
-    pub x_label: Option<String>,
-    /// name of the y axis; otherwise that of the column
-    pub y_label: Option<String>,
-    /// axes with a logarithmic scale
-    #[declared(default = "none")]
-    pub log: Logarithmic,
-    /// what the paper says, drawn for comparison
-    pub published: Option<Vec<StatedMark>>,
-    /// what to see in it
-    pub note: Option<String>,
-}
-
-/// A published point or line as a study states it.
-#[derive(Debug, Declared)]
-pub struct StatedMark {
-    /// place on the x axis, with its unit; without it a line across the figure
-    pub x: Option<Placed<String>>,
-    /// place on the y axis, with its unit; without it an upright line
-    pub y: Option<Placed<String>>,
-    /// name in the legend; the name of a series takes that series' colour
-    #[declared(default = "published")]
-    pub label: String,
-}
-
-/// How a figure is drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
-pub enum How {
-    /// a line for each series
-    Line,
-    /// markers only
-    Points,
-    /// bars over the words or numbers of the x column
-    Bar,
-    /// lines, true to scale: both axes have one length per unit
-    Drawing,
-}
-
-/// Which axes are logarithmic.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
-pub enum Logarithmic {
-    /// both axes linear
-    None,
-    /// the x axis
-    X,
-    /// the y axis
-    Y,
-    /// both axes
-    Both,
-}
 
 /// A published point or line; lengths along the axes, in SI.
 struct Mark {
@@ -115,8 +39,12 @@ pub struct Figure {
     tables: Vec<(String, String)>,
     x: String,
     y: Vec<String>,
+    value: String,
     series: String,
     segments: String,
+    length: String,
+    labels: Vec<(String, String)>,
+    width: Width,
     /// Stage and table.
     reference: Option<(String, String)>,
     conditions: Vec<(String, String)>,
@@ -159,6 +87,7 @@ impl Figure {
             let message = "a drawing that is true to scale has no logarithmic axis";
             return Err(Diagnostic::new(message).at(record.place_of(NAMES.log)));
         }
+        check_map(stated, record)?;
         Ok(Self {
             number,
             line: record.place.line,
@@ -168,8 +97,12 @@ impl Figure {
             tables,
             x: text(&stated.x),
             y: stated.y.iter().map(text).collect(),
+            value: maybe(&stated.value),
             series: maybe(&stated.series),
             segments: maybe(&stated.segments),
+            length: maybe(&stated.length),
+            labels: stated.labels.iter().flatten().map(|(of, label)| (of.clone(), text(label))).collect(),
+            width: stated.width,
             reference,
             conditions: conditions.map(|(column, value)| (column.clone(), text(value))).collect(),
             x_label: maybe(&stated.x_label),
@@ -183,7 +116,7 @@ impl Figure {
     /// Stage, table and columns that it draws.
     pub fn wants(&self) -> impl Iterator<Item = (&str, &str, Vec<&str>)> {
         let columns = || {
-            let single = [self.x.as_str(), self.series.as_str(), self.segments.as_str()];
+            let single = [&self.x, &self.value, &self.series, &self.segments, &self.length].map(String::as_str);
             let several = self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
             single.into_iter().filter(|column| !column.is_empty()).chain(several).collect()
         };
@@ -242,6 +175,11 @@ impl Figure {
         Ok(marks)
     }
 
+    /// As JSON: a name may have any character.
+    fn labels(&self) -> String {
+        if self.labels.is_empty() { String::new() } else { serde_json::json!(self.labels).to_string() }
+    }
+
     fn conditions(&self) -> String {
         let conditions = self.conditions.iter().map(|(column, value)| format!("{column}={value}"));
         conditions.collect::<Vec<_>>().join(", ")
@@ -296,6 +234,11 @@ impl Figure {
         for name in [&self.series, &self.segments] {
             if !name.is_empty() {
                 column(name)?;
+            }
+        }
+        for name in [&self.value, &self.length] {
+            if !name.is_empty() {
+                numbers(column(name)?)?;
             }
         }
         if self.kind == How::Drawing && unit != Some(&x.unit) {
@@ -382,12 +325,16 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar or drawing.", |row| row.kind.word())
+        .text("kind", "Line, points, bar, drawing, map or chart.", |row| row.kind.word())
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
+        .text("value", "Column that a map shows as colours.", |row| row.value.as_str())
         .text("series", "Column whose values are drawn apart.", |row| row.series.as_str())
         .text("segments", "Column at whose changes a line is interrupted.", |row| row.segments.as_str())
+        .text("length", "Column of the length that x stands for.", |row| row.length.as_str())
+        .text("labels", "What values are called, pairs of a value and its name in JSON.", |row| row.labels())
+        .text("width", "Page or column of a journal.", |row| row.width.word())
         .text("reference", "The table from whose values the relative distance is drawn.", |row| dotted(&row.reference))
         .text("conditions", conditions, |row| row.conditions())
         .text("x_label", "Name of the x axis, if not that of the column.", |row| row.x_label.as_str())

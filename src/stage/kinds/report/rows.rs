@@ -101,6 +101,17 @@ impl<'a> OperandRows<'a> {
         self.with.iter().enumerate().map(one).collect::<Vec<_>>().join(", ")
     }
 
+    /// The keys of a row with their values; of quantities as written which one it is. Empty where there is one row.
+    pub fn place(&self, row: usize) -> String {
+        self.leader.map_or_else(String::new, |leader| self.place_of(leader, row))
+    }
+
+    fn place_of(&self, leader: usize, row: usize) -> String {
+        let parts = self.values[leader].keys.iter().zip(&self.values[leader].rows[row]);
+        let place = parts.map(|(key, value)| format!("{key} {value}")).collect::<Vec<_>>().join(", ");
+        if place.is_empty() { format!("value {}", row + 1) } else { place }
+    }
+
     /// Where a claim does not hold, with the numbers of the first such row.
     ///
     /// # Errors
@@ -112,12 +123,7 @@ impl<'a> OperandRows<'a> {
         let Some(leader) = self.leader.filter(|_| self.judged(formula) > 1) else {
             return formula.with_numbers(self.names(first, &value), "");
         };
-        let (keys, rows) = (&self.values[leader].keys, &self.values[leader].rows);
-        let at = |row: usize| {
-            let parts = keys.iter().zip(&rows[row]).map(|(key, value)| format!("{key} {value}"));
-            let place = parts.collect::<Vec<_>>().join(", ");
-            if place.is_empty() { format!("value {}", row + 1) } else { place }
-        };
+        let at = |row: usize| self.place_of(leader, row);
         let mut places: Vec<String> = failing.iter().take(MOST).map(|&row| at(row)).collect();
         if failing.len() > MOST {
             places.push(format!("and {} more", failing.len() - MOST));

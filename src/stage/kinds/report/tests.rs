@@ -2,8 +2,8 @@
 
 use std::sync::atomic::AtomicBool;
 
-use super::figure::StatedMark;
 use super::stated::{Expected, StatedProof};
+use super::stated_figure::StatedMark;
 use super::*;
 use crate::stage::Demand;
 use declare::declared::record_of;

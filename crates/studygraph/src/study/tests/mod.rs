@@ -15,7 +15,7 @@ use std::path::Path;
 
 use super::{LoadError, Study, load_text};
 use crate::about::ABOUT;
-use crate::program::{Foreign, Program};
+use crate::program::{Foreign, Pictures, Program};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, Stage, Want};
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
@@ -172,8 +172,14 @@ static FOREIGN: &[Foreign] = &[
     Foreign { word: "diameter", field: Some("teeth"), remark: "a length over the module" },
     Foreign { word: "helix_angle", field: None, remark: "spur gears only" },
 ];
-static PROGRAM: Program =
-    Program { kinds: KINDS, foreign: FOREIGN, code_of: |_| String::new(), counters: &[], about: ABOUT };
+static PROGRAM: Program = Program {
+    kinds: KINDS,
+    foreign: FOREIGN,
+    code_of: |_| String::new(),
+    counters: &[],
+    about: ABOUT,
+    pictures: Pictures::NONE,
+};
 pub static KINDS: &[&Kind] = &[&KIND_GEOMETRY, &KIND_MODIFICATION, &KIND_OPTIMIZER, &KIND_STE, &KIND_REPORT];
 
 /// A valid study that uses every shape.

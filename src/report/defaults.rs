@@ -1,0 +1,185 @@
+//! The figures of a study that declares none: what an engineer looks at first, as far as its tables go.
+//!
+//! Must not know: how anything is drawn. A figure whose table or column is not among the results is left out.
+
+use super::ReportError;
+use super::figure::{Figure, Tables, figure};
+use super::order::Order;
+use super::plot::Kind;
+use super::spec::Spec;
+use declare::number::{significant, with_unit};
+use studygraph::store::manifest::{Manifest, StageRecord};
+use studygraph::table::data::{Data, Table};
+
+/// # Errors
+/// When a table is damaged.
+pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result<Vec<Figure>, ReportError> {
+    let mut drawn = Vec::new();
+    // Results first, what they come from after them.
+    for kind in ["ste", "stiffness", "optimizer", "modification", "geometry"] {
+        for stage in manifest.stages.iter().filter(|stage| stage.kind == kind) {
+            for spec in specs(stage, manifest, tables) {
+                let mut figure = figure(&spec, order, tables)?;
+                // Two designs may differ in nothing that the name of a file can have.
+                let is_taken = |name: &str| drawn.iter().any(|other: &Figure| other.name.eq_ignore_ascii_case(name));
+                let mut number = 2;
+                while is_taken(&figure.name) {
+                    figure.name = format!("{}-{number}", spec.name);
+                    number += 1;
+                }
+                drawn.push(figure);
+            }
+        }
+    }
+    Ok(drawn)
+}
+
+fn specs(stage: &StageRecord, manifest: &Manifest, tables: Tables<'_>) -> Vec<Spec> {
+    let name = &stage.name;
+    // With several stages of a kind a title says which it is.
+    let several = manifest.stages.iter().filter(|other| other.kind == stage.kind).count() > 1;
+    let draw = |what: &str, title: &str, kind: Kind, table: &str, x: &str, y: &str| {
+        let title = if several { format!("{title} ({name})") } else { title.to_owned() };
+        Spec::new(&format!("{name}_{what}"), &title, kind, &format!("{name}.{table}"), x, y)
+    };
+    let labelled = |spec: Spec, x: &str, y: &str| Spec { x_label: x.to_owned(), y_label: y.to_owned(), ..spec };
+    let by = |spec: Spec, series: &str| Spec { series: series.to_owned(), ..spec };
+    let cycle = "Path position in the mesh cycle";
+    let mut found = match stage.kind.as_str() {
+        "ste" => of_transmission_error(name, &draw, tables),
+        "stiffness" => {
+            let curve =
+                draw("mesh", "Mesh stiffness over the mesh cycle", Kind::Line, "curve", "cycle_position", "stiffness");
+            vec![Spec { segments: "pairs".to_owned(), ..labelled(curve, cycle, "Mesh stiffness") }]
+        }
+        "optimizer" => {
+            let history = draw("search", "The search", Kind::Line, "history", "evaluations", "best_so_far");
+            vec![labelled(history, "Designs tried", "Best objective so far")]
+        }
+        "modification" => of_modification(&draw, &by),
+        "geometry" => {
+            let mesh =
+                draw("teeth", "The pair in mesh, with its path of contact", Kind::Drawing, "mesh_drawing", "x", "y");
+            let curves =
+                ["pinion", "gear", "path of contact", "line of action", "pitch circles", "base circles", "tip circles"];
+            let labels = curves.map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
+            vec![Spec { segments: "run".to_owned(), labels, ..by(labelled(mesh, "x", "y"), "curve") }]
+        }
+        _ => Vec::new(),
+    };
+    found.retain(|spec| fits(spec, tables));
+    found
+}
+
+type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
+
+fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Spec> {
+    let Some(summary) = tables(&format!("{stage}.summary")) else { return Vec::new() };
+    let torques = torques(&summary);
+    // The one in the middle: at the ends there is often no contact, or nothing but deflection.
+    let Some(&torque) = torques.get(torques.len() / 2) else { return Vec::new() };
+    let at = with_unit(&significant(torque, 6), "N m");
+    let at_torque = |spec: Spec| Spec { conditions: vec![("torque".to_owned(), format!("{torque} N m"))], ..spec };
+    let by_design = |spec: Spec| Spec { series: "design".to_owned(), ..spec };
+    let cycle = |spec: Spec, y: &str| Spec {
+        x_label: "Path position in the mesh cycle".to_owned(),
+        y_label: y.to_owned(),
+        segments: "pairs".to_owned(),
+        ..at_torque(by_design(spec))
+    };
+    let title = format!("Transmission error over the mesh cycle at {at}");
+    let error = draw("transmission_error", &title, Kind::Line, "curve", "cycle_position", "transmission_error");
+    let title = format!("Share of the load on the pair that came last, at {at}");
+    let share = draw("load_share", &title, Kind::Line, "curve", "cycle_position", "newest_load_share");
+    let amplitude = if torques.len() > 1 {
+        let over = draw(
+            "torque",
+            "Peak-to-peak transmission error over torque",
+            Kind::Line,
+            "summary",
+            "torque",
+            "peak_to_peak",
+        );
+        by_design(over)
+    } else {
+        let title = format!("Peak-to-peak transmission error at {at}");
+        draw("peak_to_peak", &title, Kind::Bar, "summary", "design", "peak_to_peak")
+    };
+    let mut found = vec![
+        cycle(error, "Transmission error"),
+        Spec { y_label: "Peak-to-peak transmission error".to_owned(), ..amplitude },
+        cycle(share, "Load share"),
+    ];
+    for design in designs(&summary) {
+        for (what, column, label) in
+            [("pressure", "pressure", "Pressure"), ("load", "load_per_width", "Load per width")]
+        {
+            let title = format!("{label} over path of contact and face, {design} at {at}");
+            let map =
+                draw(&format!("{what}_{}", file_name(&design)), &title, Kind::Map, "pressure", "path_position", "z");
+            let mut map = at_torque(map);
+            map.conditions.push(("design".to_owned(), design.clone()));
+            found.push(Spec {
+                value: column.to_owned(),
+                x_label: "Distance from A along the line of action".to_owned(),
+                y_label: "Across the face".to_owned(),
+                ..map
+            });
+        }
+    }
+    found
+}
+
+fn of_modification(draw: &Draw<'_>, by: &dyn Fn(Spec, &str) -> Spec) -> Vec<Spec> {
+    let chart = |gear: &str, (what, table, x): (&str, &str, &str), (x_label, length): (&str, &str)| {
+        let title = format!("{what} of the {gear}");
+        let spec = draw(&format!("{table}_{gear}"), &title, Kind::Chart, table, x, "depth");
+        Spec {
+            conditions: vec![("gear".to_owned(), gear.to_owned())],
+            length: length.to_owned(),
+            x_label: x_label.to_owned(),
+            y_label: "Depth".to_owned(),
+            ..by(spec, "design")
+        }
+    };
+    let profile = ("Profile modification", "profile", "roll_angle");
+    let lead = ("Lead modification", "lead", "z");
+    ["pinion", "gear"]
+        .iter()
+        .flat_map(|gear| {
+            [chart(gear, profile, ("Roll angle", "roll_length")), chart(gear, lead, ("Across the face", "z"))]
+        })
+        .collect()
+}
+
+/// Whether all that it draws is there, and there are rows to draw.
+fn fits(spec: &Spec, tables: Tables<'_>) -> bool {
+    let columns = [&spec.x, &spec.value, &spec.series, &spec.segments, &spec.length].into_iter().chain(&spec.y);
+    let mut columns = columns.chain(spec.conditions.iter().map(|(column, _)| column)).filter(|name| !name.is_empty());
+    let table = tables(&spec.tables[0]);
+    table.is_some_and(|table| {
+        columns.all(|name| table.column(name).is_some())
+            && studygraph::table::select::rows_where(&table, &spec.conditions).is_ok_and(|rows| !rows.is_empty())
+    })
+}
+
+/// The different torques of a summary, ascending.
+fn torques(summary: &Table) -> Vec<f64> {
+    let Some(Data::Float(values)) = summary.column("torque") else { return Vec::new() };
+    let mut values = values.clone();
+    values.sort_by(f64::total_cmp);
+    values.dedup();
+    values
+}
+
+fn designs(summary: &Table) -> Vec<String> {
+    let Some(Data::Text(values)) = summary.column("design") else { return Vec::new() };
+    let mut values = values.clone();
+    values.dedup();
+    values
+}
+
+/// A design's name as a part of a file's.
+fn file_name(design: &str) -> String {
+    design.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).take(40).collect()
+}

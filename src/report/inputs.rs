@@ -1,0 +1,77 @@
+//! Which verdicts only read back what the study states: they say that it was typed in right, and nothing of a result.
+//!
+//! Must not know: what any field means. A cell is an input where the configuration of its stage has a field of the name of
+//! its column, `teeth` or, inside `rack`, `rack_addendum`.
+
+use std::collections::BTreeMap;
+
+use serde_json::Value;
+use studygraph::store::manifest::Manifest;
+
+/// Names of fields with a value, by stage.
+pub struct Inputs(BTreeMap<String, Vec<String>>);
+
+impl Inputs {
+    #[must_use]
+    pub fn of(manifest: &Manifest) -> Self {
+        let fields = |config: &Value| {
+            let mut found = Vec::new();
+            collect("", config, &mut found);
+            found
+        };
+        Self(manifest.stages.iter().map(|stage| (stage.name.clone(), fields(&stage.config))).collect())
+    }
+
+    /// Whether a cell, `stage.table[…].column`, is one of them.
+    #[must_use]
+    pub fn has(&self, cell: &str) -> bool {
+        let (stage, column) = (cell.split('.').next().unwrap_or_default(), cell.rsplit('.').next().unwrap_or_default());
+        let is_cell = cell.split('.').count() > 2 && !cell.contains(' ') || cell.contains('[');
+        is_cell && self.0.get(stage).is_some_and(|fields| fields.iter().any(|field| field == column))
+    }
+}
+
+fn collect(group: &str, config: &Value, found: &mut Vec<String>) {
+    let Some(fields) = config.as_object() else { return };
+    for (name, value) in fields {
+        if value.is_object() {
+            collect(name, value, found);
+        } else {
+            found.push(name.clone());
+            if !group.is_empty() {
+                found.push(format!("{group}_{name}"));
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::json;
+    use studygraph::store::manifest::StageRecord;
+
+    #[test]
+    fn a_cell_is_an_input_where_its_stage_has_the_field() {
+        let config = json!({ "module": "3 mm", "rack": { "addendum": 1.0 }, "pinion": { "teeth": 19 } });
+        let stage: StageRecord = serde_json::from_value(json!({
+            "name": "pair", "kind": "geometry", "version": 1, "keys": [], "config": config, "status": "ran", "why": "",
+            "seconds": 0.0, "warnings": [], "left_out": [], "tables": [],
+        }))
+        .unwrap();
+        let inputs = Inputs::of(&Manifest { stages: vec![stage], ..Manifest::default() });
+        for cell in
+            ["pair.gears[gear=pinion].teeth", "pair.gears[gear=gear].module", "pair.gears[gear=gear].rack_addendum"]
+        {
+            assert!(inputs.has(cell), "{cell}");
+        }
+        for cell in [
+            "pair.gears[gear=pinion].tip_radius",
+            "ste.gears[gear=pinion].teeth",
+            "pair.pair.contact_ratio",
+            "1 - teeth",
+        ] {
+            assert!(!inputs.has(cell), "{cell}");
+        }
+    }
+}

@@ -1,0 +1,126 @@
+//! The data sheet of a gear pair, from the tables of a geometry stage: what was given and what follows from it.
+//!
+//! Must not know: figures. It shows cells and computes none.
+
+use serde::Serialize;
+
+use super::figure::Tables;
+use declare::number::{significant, with_unit};
+use studygraph::store::manifest::Manifest;
+use studygraph::table::data::{Cell, Table};
+
+/// A pair and its loads.
+#[derive(Serialize)]
+pub struct Sheet {
+    stage: String,
+    /// Pinion and gear, or the one there is.
+    gears: Vec<String>,
+    /// Of each gear.
+    rows: Vec<Line>,
+    /// Of both together.
+    pair: Vec<Line>,
+    /// What each stage of transmission error loads it with.
+    loads: Vec<Line>,
+}
+
+#[derive(Serialize)]
+struct Line {
+    what: &'static str,
+    symbol: &'static str,
+    of: String,
+    values: Vec<String>,
+}
+
+/// What of `gears` is shown: words, symbol by ISO 21771, column.
+const GEARS: [(&str, &str, &str); 18] = [
+    ("Teeth", "z", "teeth"),
+    ("Module", "m", "module"),
+    ("Pressure angle", "α", "pressure_angle"),
+    ("Profile shift coefficient", "x", "profile_shift"),
+    ("Addendum of the rack", "h*aP", "rack_addendum"),
+    ("Dedendum of the rack", "h*fP", "rack_dedendum"),
+    ("Rounding of the rack", "ρ*fP", "rack_tip_radius"),
+    ("Face width", "b", "face_width"),
+    ("Reference circle, radius", "r", "reference_radius"),
+    ("Base circle, radius", "r_b", "base_radius"),
+    ("Tip circle, radius", "r_a", "tip_radius"),
+    ("Tip form circle, radius", "r_Fa", "tip_form_radius"),
+    ("Form circle, radius", "r_Ff", "form_radius"),
+    ("Root circle, radius", "r_f", "root_radius"),
+    ("Bore, radius", "", "bore_radius"),
+    ("Tooth thickness at the tip", "s_a", "tip_thickness"),
+    ("Young's modulus", "E", "youngs_modulus"),
+    ("Poisson's ratio", "ν", "poisson_ratio"),
+];
+
+const PAIR: [(&str, &str, &str); 5] = [
+    ("Centre distance", "a", "centre_distance"),
+    ("Working pressure angle", "α_w", "working_pressure_angle"),
+    ("Transverse contact ratio", "ε_α", "contact_ratio"),
+    ("Base pitch", "p_b", "base_pitch"),
+    ("Path of contact, from T₁ to E", "", "end_of_contact"),
+];
+
+#[must_use]
+pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
+    let loads: Vec<Line> = manifest
+        .stages
+        .iter()
+        .filter(|stage| stage.kind == "ste")
+        .filter_map(|stage| {
+            let table = tables(&format!("{}.summary", stage.name))?;
+            let torques = distinct(&table, "torque");
+            let said = match torques.as_slice() {
+                [] => return None,
+                [first, .., last] if torques.len() > 4 => format!("{} from {first} to {last}", torques.len()),
+                few => few.join(", "),
+            };
+            Some(Line { what: "Torque on the pinion", symbol: "T", of: stage.name.clone(), values: vec![said] })
+        })
+        .collect();
+    let geometries = manifest.stages.iter().filter(|stage| stage.kind == "geometry");
+    let mut loads = Some(loads);
+    geometries
+        .filter_map(|stage| {
+            let table = |name: &str| tables(&format!("{}.{name}", stage.name));
+            let (gears, pair) = (table("gears")?, table("pair"));
+            let lines = |table: &Table, shown: &[(&'static str, &'static str, &'static str)]| -> Vec<Line> {
+                let line = |&(what, symbol, column): &(&'static str, &'static str, &'static str)| {
+                    let values: Vec<String> = (0..table.rows()).rev().map(|row| cell(table, column, row)).collect();
+                    (!values.iter().all(String::is_empty)).then(|| Line { what, symbol, of: String::new(), values })
+                };
+                shown.iter().filter_map(line).collect()
+            };
+            Some(Sheet {
+                stage: stage.name.clone(),
+                // By name: the gear stands first in the table.
+                gears: (0..gears.rows()).rev().map(|row| cell(&gears, "gear", row)).collect(),
+                rows: lines(&gears, &GEARS),
+                pair: pair.map_or_else(Vec::new, |pair| lines(&pair, &PAIR)),
+                loads: loads.take().unwrap_or_default(),
+            })
+        })
+        .collect()
+}
+
+/// A cell with its unit; empty where there is none.
+fn cell(table: &Table, column: &str, row: usize) -> String {
+    let unit = table.schema().column(column).map_or("", |column| column.unit.as_str());
+    match table.column(column).map(|data| data.cell(row)) {
+        Some(Cell::Float(value)) if value.is_finite() => with_unit(&significant(value, 6), unit),
+        Some(Cell::Float(_)) | None => String::new(),
+        Some(other) => other.to_string(),
+    }
+}
+
+/// The different values of a column, in the order of the rows.
+fn distinct(table: &Table, column: &str) -> Vec<String> {
+    let mut found: Vec<String> = Vec::new();
+    for row in 0..table.rows() {
+        let value = cell(table, column, row);
+        if !value.is_empty() && !found.contains(&value) {
+            found.push(value);
+        }
+    }
+    found
+}

@@ -1,0 +1,140 @@
+//! Figures as a study states them.
+//!
+//! Must not know: tables.
+
+use declare::declared::Placed;
+use declare::error::Diagnostic;
+use declare::record::Record;
+use declare::{Declared, Words};
+
+/// A figure as a study states it.
+#[derive(Debug, Declared)]
+pub struct StatedFigure {
+    /// name of the file in `figures/`: letters, digits, - and _
+    pub name: String,
+    /// what is shown
+    pub title: String,
+    /// how it is drawn
+    #[declared(default = "line")]
+    pub kind: How,
+    /// `stage.table`; several are drawn together, told apart by stage
+    pub table: Vec<Placed<String>>,
+    /// column of the x axis
+    pub x: String,
+    /// column of the y axis; several need one unit
+    pub y: Vec<String>,
+    /// column that a map shows as colours
+    pub value: Option<String>,
+    /// column whose values are drawn apart, one line each
+    pub series: Option<String>,
+    /// column at whose changes a line is interrupted (a jump stays a jump)
+    pub segments: Option<String>,
+    /// column of the length that x stands for: a chart says how many times as long depths are drawn
+    pub length: Option<String>,
+    /// only the rows with these values, column: value
+    #[declared(name = "where")]
+    pub conditions: Option<Vec<(String, String)>>,
+    /// `stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|
+    pub reference: Option<Placed<String>>,
+    /// name of the x axis; otherwise that of the column
+    pub x_label: Option<String>,
+    /// name of the y axis; otherwise that of the column
+    pub y_label: Option<String>,
+    /// what values of `series`, columns and stages are called, value: name; series are drawn in this order
+    pub labels: Option<Vec<(String, String)>>,
+    /// how large its file is
+    #[declared(default = "page")]
+    pub width: Width,
+    /// axes with a logarithmic scale
+    #[declared(default = "none")]
+    pub log: Logarithmic,
+    /// what the paper says, drawn for comparison
+    pub published: Option<Vec<StatedMark>>,
+    /// what to see in it
+    pub note: Option<String>,
+}
+
+/// A published point or line as a study states it.
+#[derive(Debug, Declared)]
+pub struct StatedMark {
+    /// place on the x axis, with its unit; without it a line across the figure
+    pub x: Option<Placed<String>>,
+    /// place on the y axis, with its unit; without it an upright line
+    pub y: Option<Placed<String>>,
+    /// name in the legend; the name of a series takes that series' colour
+    #[declared(default = "published")]
+    pub label: String,
+}
+
+/// How a figure is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum How {
+    /// a line for each series
+    Line,
+    /// markers only
+    Points,
+    /// bars over the words or numbers of the x column
+    Bar,
+    /// lines, true to scale: both axes have one length per unit
+    Drawing,
+    /// colours over both axes; cells without a value stay blank
+    Map,
+    /// lines that go down with depth, a round number of times as long as `length`
+    Chart,
+}
+
+/// How large the file of a figure is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Width {
+    /// as in the page
+    Page,
+    /// 90 mm, a column of a journal, without a title
+    Column,
+}
+
+/// Which axes are logarithmic.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Logarithmic {
+    /// both axes linear
+    None,
+    /// the x axis
+    X,
+    /// the y axis
+    Y,
+    /// both axes
+    Both,
+}
+
+/// A map has a value, one y and one table; other figures have no value.
+///
+/// # Errors
+/// At the field that does not fit.
+pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnostic> {
+    const NAMES: StatedFigureNames = StatedFigure::NAMES;
+    let refused = |field: &str, message: &str| Err(Diagnostic::new(message).at(record.place_of(field)));
+    if stated.kind != How::Map {
+        return match &stated.value {
+            Some(_) => refused(NAMES.value, "`value` is the column that a map shows as colours; write `kind: map`"),
+            None => Ok(()),
+        };
+    }
+    if stated.value.is_none() {
+        let message = "a map needs `value`, the column that it shows as colours";
+        return Err(Diagnostic::new(message).at(record.place).help("for example `value: pressure`"));
+    }
+    if stated.y.len() > 1 {
+        return refused(NAMES.y, "a map has one column on its y axis");
+    }
+    if stated.table.len() > 1 {
+        return refused(NAMES.table, "a map shows one table");
+    }
+    if stated.log != Logarithmic::None {
+        return refused(NAMES.log, "a map has no logarithmic axis");
+    }
+    for (field, is_given) in [(NAMES.series, stated.series.is_some()), (NAMES.reference, stated.reference.is_some())] {
+        if is_given {
+            return refused(field, &format!("a map has no `{field}`"));
+        }
+    }
+    Ok(())
+}
