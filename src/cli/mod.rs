@@ -134,6 +134,9 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         Command::Run { studies, selection, limits, explain, keep_going, jobs, .. } => {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
+            if run::is_up_to_date(studies, places, selection, &how)? {
+                return Ok(());
+            }
             run::run(&load_all(studies)?, places, selection, &how)
         }
         Command::Status { studies: words, json, check } => status::status(words, places, *json, *check),

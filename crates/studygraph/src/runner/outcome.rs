@@ -2,6 +2,8 @@
 //!
 //! Must not know: how it is shown; threads.
 
+use std::collections::HashMap;
+
 use super::board::{Board, StageState};
 use super::fault::Fault;
 use super::key::phrase;
@@ -23,6 +25,7 @@ use declare::work::Work;
 pub struct Outcome {
     /// Every stage after all it reads.
     pub stages: Vec<StageOutcome>,
+    places: HashMap<String, usize>,
     /// Whether the user stopped it.
     pub stopped: bool,
     pub seconds: f64,
@@ -53,6 +56,7 @@ pub struct StageOutcome {
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
     pub tables: Vec<(Schema, StoredTable)>,
     parts: Vec<Digest>,
+    whole: Option<Digest>,
 }
 
 impl Outcome {
@@ -92,14 +96,17 @@ impl Outcome {
                 config: settings::shown(of_study.kind.fields, &of_study.record),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
+                whole: progress.whole,
             }
         });
-        Self { stages: stages.collect(), stopped, seconds }
+        let stages: Vec<StageOutcome> = stages.collect();
+        let places = stages.iter().enumerate().map(|(place, stage)| (stage.name.clone(), place)).collect();
+        Self { stages, places, stopped, seconds }
     }
 
     #[must_use]
     pub fn stage(&self, name: &str) -> Option<&StageOutcome> {
-        self.stages.iter().find(|stage| stage.name == name)
+        self.places.get(name).map(|&place| &self.stages[place])
     }
 
     /// The faults, with the names of their stages.
@@ -140,6 +147,12 @@ impl Outcome {
     #[must_use]
     pub fn unkept(&self, cache: &Cache) -> usize {
         self.stages.iter().filter(|stage| stage.parts.iter().any(|key| cache.is_unkept(*key))).count()
+    }
+
+    /// The keys under which the cache has what came of it.
+    pub fn keys(&self) -> impl Iterator<Item = Digest> {
+        let done = self.stages.iter().filter(|stage| stage.state.has_tables());
+        done.flat_map(|stage| stage.parts.iter().copied().chain(stage.whole))
     }
 
     fn parts(&self, stage: &str) -> &[Digest] {

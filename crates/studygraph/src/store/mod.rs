@@ -4,16 +4,19 @@
 //! Must not know: stages, the graph.
 
 pub mod archive;
+pub mod bundle;
 pub mod cache;
 pub mod csv;
 pub mod entry;
 pub mod error;
 pub mod facts;
 pub mod file;
+pub(crate) mod hexadecimal;
 #[cfg(feature = "hdf5")]
 pub mod hdf5;
 pub mod index;
 pub mod journal;
+pub mod key_record;
 pub mod lock;
 pub mod manifest;
 pub mod parquet;

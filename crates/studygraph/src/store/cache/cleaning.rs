@@ -9,7 +9,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::Cache;
+use super::{Cache, NOTES};
+use super::packs::{self, Content as OfPack, FOLDER, Packs};
 use crate::store::error::StoreError;
 use crate::store::file::{self, TEMPORARY};
 use crate::store::journal::Journal;
@@ -77,6 +78,13 @@ impl Cache {
                 damaged.push((path, problem));
             }
         }
+        for (path, key, problem) in self.packs.checked() {
+            if let Some(key) = key.filter(|_| remove) {
+                self.packs.forget(key);
+            }
+            damaged.push((path, problem));
+        }
+        self.packs.flush();
         damaged
     }
 
@@ -116,6 +124,27 @@ impl Cache {
                 removed.kept_bytes += metadata.len();
             }
         }
+        let packs = Packs::new(root);
+        for OfPack { path, entries, has_waste } in packs.all() {
+            let Some(metadata) = there(fs::metadata(&path)).map_err(StoreError::io("read", &path))? else { continue };
+            let age = metadata.modified().ok().and_then(|time| now.duration_since(time).ok()).unwrap_or_default();
+            let doomed = |key: &Digest| match remove {
+                Remove::All => true,
+                Remove::OlderThan(limit) => age >= limit,
+                Remove::Unreferenced => !referenced.contains(key),
+            };
+            let (gone, kept): (Vec<_>, Vec<_>) = entries.into_iter().partition(|(key, _)| doomed(key));
+            let size = |entries: &[(Digest, u64)]| entries.iter().map(|(_, bytes)| bytes).sum::<u64>();
+            removed.entries += gone.len();
+            removed.kept += kept.len();
+            removed.kept_bytes += size(&kept);
+            removed.bytes += size(&gone);
+            if kept.is_empty() {
+                discard(&path, dry_run)?;
+            } else if !dry_run && (has_waste || !gone.is_empty()) {
+                packs.rewrite(&path, &kept.iter().map(|(key, _)| *key).collect::<Vec<_>>())?;
+            }
+        }
         for path in content.leftovers {
             discard(&path, dry_run)?;
             removed.leftovers += 1;
@@ -144,8 +173,7 @@ fn referenced(root: &Path) -> Result<BTreeSet<Digest>, StoreError> {
         let bytes = file::read(&path, file::MOST_MANIFEST).unwrap_or_default();
         let journal: Journal = serde_json::from_slice(&bytes).unwrap_or_default();
         for stage in journal.stages {
-            let texts = stage.keys.iter().map(|record| &record.key).chain(&stage.whole);
-            keys.extend(texts.filter_map(|text| Digest::from_hex(text)));
+            keys.extend(stage.keys.iter().map(|record| record.key).chain(stage.whole));
         }
     }
     Ok(keys)
@@ -153,7 +181,10 @@ fn referenced(root: &Path) -> Result<BTreeSet<Digest>, StoreError> {
 
 fn content(root: &Path) -> Result<Content, StoreError> {
     let mut content = Content::default();
-    for folder in [root.to_owned(), root.join("journals")] {
+    let packs = list(&root.join(FOLDER))?;
+    let foreign = packs.into_iter().filter(|(path, kind)| !is_leftover(path, *kind) && packs::number(path).is_none());
+    content.foreign.extend(foreign.map(|(path, _)| path));
+    for folder in [root.to_owned(), root.join("journals"), root.join(FOLDER), root.join(NOTES)] {
         let left = list(&folder)?.into_iter().filter(|(path, kind)| is_leftover(path, *kind));
         content.leftovers.extend(left.map(|(path, _)| path));
     }
