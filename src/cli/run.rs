@@ -16,8 +16,8 @@ use super::pages;
 use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
 use super::show::none_yet;
-use super::studies;
 use super::signals::stop_flag;
+use super::studies;
 use crate::program::PROGRAM;
 use crate::stage::Want;
 use declare::error::Diagnostic;
@@ -101,7 +101,12 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
 ///
 /// # Errors
 /// As a run with these options.
-pub(super) fn is_up_to_date(files: &[PathBuf], places: &Places, selection: &Selection, how: &How) -> Result<bool, Ending> {
+pub(super) fn is_up_to_date(
+    files: &[PathBuf],
+    places: &Places,
+    selection: &Selection,
+    how: &How,
+) -> Result<bool, Ending> {
     let options = options(selection, how)?;
     if how.explain {
         return Ok(false);

@@ -12,12 +12,12 @@ use std::sync::atomic::AtomicBool;
 
 use crate::support::with_code;
 use gearstudy::program;
-use studygraph::store::manifest::Short;
 use studygraph::runner::events::Silent;
 use studygraph::runner::execute::execute;
 use studygraph::runner::options::Options;
 use studygraph::runner::outcome::Outcome;
 use studygraph::store::cache::Cache;
+use studygraph::store::manifest::Short;
 use studygraph::study::Study;
 
 fn quick() -> Study {

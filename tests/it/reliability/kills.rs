@@ -19,11 +19,12 @@ use studygraph::store::results::Folder;
 const COMMITTED: Duration = Duration::from_secs(3);
 
 fn study(stages: usize) -> String {
-    let mut text = "study: tiny\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    pressure_angle: 20 deg\n    \
+    let mut text =
+        "study: tiny\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    pressure_angle: 20 deg\n    \
                     material: { youngs_modulus: 206 GPa, poisson_ratio: 0.3 }\n    \
                     pinion: { teeth: 24, face_width: 20 mm, bore_radius: 18 mm }\n    \
                     gear: { teeth: 36, face_width: 20 mm, bore_radius: 28 mm }\n"
-        .to_owned();
+            .to_owned();
     for stage in 0..stages {
         let amount = 5.0 + stage as f64 * 1e-3;
         text += &format!("  m{stage}:\n    kind: modification\n    pair: pair\n    designs: {{ a: [ lead_crowning: ");

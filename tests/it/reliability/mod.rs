@@ -12,6 +12,7 @@ mod faults;
 mod hosts;
 #[cfg(target_os = "linux")]
 mod kills;
+mod notes;
 #[cfg(target_os = "linux")]
 mod power;
 #[cfg(target_os = "linux")]

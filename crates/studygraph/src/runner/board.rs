@@ -182,8 +182,21 @@ impl<'a> Board<'a> {
         let due = (0..graph.order.len()).collect();
         let open_readers = graph.readers.iter().map(Vec::len).collect();
         let halted = None;
-        let mut board =
-            Self { study, graph, nodes, observer, halted, cache, options, journal, last, places, due, open_readers, unread: Vec::new() };
+        let mut board = Self {
+            study,
+            graph,
+            nodes,
+            observer,
+            halted,
+            cache,
+            options,
+            journal,
+            last,
+            places,
+            due,
+            open_readers,
+            unread: Vec::new(),
+        };
         for (node, needed) in needed.into_iter().enumerate() {
             if !needed {
                 board.step(node, Step::Skip("not asked for".to_owned()));

@@ -37,6 +37,8 @@ pub struct Graph {
     pub readers: Vec<Vec<usize>>,
     pub demands: Vec<Demand>,
     pub outputs: Vec<Arc<[Schema]>>,
+    /// What is asked of each node, of what it can give; nodes of which the same is asked share it.
+    pub demanded: Vec<Arc<[Arc<Schema>]>>,
     /// The digest of the code that each node depends on.
     pub codes: Vec<Digest>,
 }
@@ -79,7 +81,8 @@ impl Graph {
                 }
             }
         }
-        Ok(Self { order, inputs, readers, demands, outputs, codes: key::codes(study) })
+        let (demanded, codes) = (demanded(&outputs, &demands), key::codes(study));
+        Ok(Self { order, inputs, readers, demands, outputs, demanded, codes })
     }
 
     /// Which nodes are needed for these.
@@ -136,6 +139,9 @@ pub fn find(study: &Study, name: &str) -> Result<usize, Diagnostic> {
 fn outputs(study: &Study) -> Vec<Arc<[Schema]>> {
     let mut last: HashMap<&str, Arc<[Schema]>> = HashMap::new();
     let of_node = |node: &Node| {
+        if let Some(known) = last.get(node.kind.name).filter(|_| node.stage.gives_what_its_kind_does()) {
+            return Arc::clone(known);
+        }
         let own = node.stage.outputs();
         let known = last.entry(node.kind.name).or_insert_with(|| own.as_slice().into());
         if **known != *own {
@@ -144,6 +150,27 @@ fn outputs(study: &Study) -> Vec<Arc<[Schema]>> {
         Arc::clone(known)
     };
     study.nodes.iter().map(of_node).collect()
+}
+
+/// The demanded tables with the demanded columns.
+fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Arc<[Arc<Schema>]>> {
+    // What can be given and what is asked, last of all nodes that can give the same.
+    let mut last: HashMap<*const Schema, (&Demand, Arc<[Arc<Schema>]>)> = HashMap::new();
+    let of_node = |(outputs, demand): (&Arc<[Schema]>, &'_ Demand)| {
+        outputs
+            .iter()
+            .filter(|schema| demand.table(&schema.name))
+            .map(|schema| Arc::new(demand.narrowed(schema.clone())))
+            .collect::<Arc<[_]>>()
+    };
+    let mut all = Vec::with_capacity(outputs.len());
+    for (outputs, demand) in outputs.iter().zip(demands) {
+        let known = last.get(&outputs.as_ptr()).filter(|(asked, _)| *asked == demand);
+        let own = known.map_or_else(|| of_node((outputs, demand)), |(_, own)| Arc::clone(own));
+        last.insert(outputs.as_ptr(), (demand, Arc::clone(&own)));
+        all.push(own);
+    }
+    all
 }
 
 /// Follows `through`, port by port.

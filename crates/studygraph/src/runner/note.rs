@@ -90,7 +90,14 @@ pub fn of(at: &Where<'_>, code: &str, options: &Options) -> Option<Note> {
 }
 
 /// Notes that a study is up to date, where a run came to its end and all it needs is on the disk.
-pub fn keep(study: &Study, cache: &Cache, options: &Options, folder: &Folder, outcome: &Outcome, published: &Published) {
+pub fn keep(
+    study: &Study,
+    cache: &Cache,
+    options: &Options,
+    folder: &Folder,
+    outcome: &Outcome,
+    published: &Published,
+) {
     let results = folder.path().parent().unwrap_or(folder.path());
     let at = Where { study: &study.path, results, cache: cache.root() };
     let ended = outcome.faults().next().is_none() && !outcome.stopped && published.undrawn.is_none();
@@ -139,7 +146,8 @@ fn files(
         files.push((folder.path().join(&seen.file), seen.bytes, seen.stamp?));
     }
     let own = [MANIFEST, INDEX].map(|name| folder.path().join(name));
-    let of_cache = cache.files(outcome.keys()).into_iter().chain([cache.journal_path(study)]);
+    let of_cache =
+        cache.files(outcome.keys()).into_iter().chain([cache.journal_path(study), cache.root().join("lock")]);
     for path in of_cache.chain(own) {
         let metadata = fs::metadata(&path).ok()?;
         files.push((path, metadata.len(), Stamp::of(&metadata)));

@@ -3,16 +3,20 @@
 //! Must not know: how it is shown; threads.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use super::board::{Board, StageState};
 use super::fault::Fault;
 use super::key::phrase;
 use super::plan::left_out;
 use crate::stage::Omission;
+use crate::store::bundle;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
-use crate::store::manifest::{FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord};
+use crate::store::manifest::{
+    Described, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
+};
 use crate::store::parquet;
 use crate::study::{Study, settings};
 use crate::table::data::Table;
@@ -54,7 +58,7 @@ pub struct StageOutcome {
     /// As the manifest keeps it.
     pub config: serde_json::Value,
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
-    pub tables: Vec<(Schema, StoredTable)>,
+    pub tables: Vec<(Arc<Schema>, StoredTable)>,
     parts: Vec<Digest>,
     whole: Option<Digest>,
 }
@@ -69,11 +73,8 @@ impl Outcome {
             let mut warnings: Vec<String> = progress.of_runs().flat_map(|run| run.warnings.iter().cloned()).collect();
             warnings.sort();
             warnings.dedup();
-            let schema = |name: &str| board.graph.outputs[node].iter().find(|schema| schema.name == name).cloned();
-            let tables = progress.tables.iter().filter_map(|table| {
-                let schema = board.graph.demands[node].narrowed(schema(&table.name)?);
-                Some((schema, table.clone()))
-            });
+            let schema = |name: &str| board.graph.demanded[node].iter().find(|schema| schema.name == name).cloned();
+            let tables = progress.tables.iter().filter_map(|table| Some((schema(&table.name)?, table.clone())));
             StageOutcome {
                 name: of_study.name.clone(),
                 kind: of_study.kind.name,
@@ -167,7 +168,12 @@ impl Outcome {
             tables: source.tables.clone(),
             figures: source.figures.clone(),
         });
-        Manifest {
+        // Tables of one schema share what the manifest says of it.
+        let mut described: HashMap<*const Schema, Described> = HashMap::new();
+        let mut described = |schema: &Arc<Schema>| {
+            described.entry(Arc::as_ptr(schema)).or_insert_with(|| Described::of(schema)).clone()
+        };
+        let mut manifest = Manifest {
             format: FORMAT,
             study: study.name.clone(),
             title: study.title.clone(),
@@ -175,15 +181,17 @@ impl Outcome {
             source,
             study_digest: blake3::hash(study.text.as_bytes()).to_string(),
             seconds: self.seconds,
-            stages: self.stages.iter().map(StageOutcome::record).collect(),
+            stages: self.stages.iter().map(|stage| stage.record(&mut described)).collect(),
             tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),
             ..Manifest::default()
-        }
+        };
+        bundle::assign(&mut manifest);
+        manifest
     }
 }
 
 impl StageOutcome {
-    fn record(&self) -> StageRecord {
+    fn record(&self, described: &mut impl FnMut(&Arc<Schema>) -> Described) -> StageRecord {
         let status = match self.state {
             StageState::Hit if self.ran == 0 => "hit",
             StageState::Hit | StageState::Done => "ran",
@@ -207,7 +215,11 @@ impl StageOutcome {
             work: self.work.named(),
             warnings: self.warnings.clone(),
             left_out: self.left_out.iter().map(omission).collect(),
-            tables: self.tables.iter().map(|(schema, table)| TableRecord::new(&self.name, schema, table)).collect(),
+            tables: self
+                .tables
+                .iter()
+                .map(|(schema, table)| TableRecord::described(&self.name, &described(schema), table))
+                .collect(),
         }
     }
 }

@@ -25,6 +25,32 @@ pub fn is_bundle(file: &str) -> bool {
 
 /// Decides which file each table of a manifest goes into: a question of kinds, columns and rows alone.
 pub fn assign(manifest: &mut Manifest) {
+    let bundles = bundles(manifest);
+    for table in manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables) {
+        if is_bundle(&table.file) {
+            table.file = own_file(&table.name);
+        }
+    }
+    for (file, members) in bundles {
+        members.into_iter().for_each(|(stage, table)| manifest.stages[stage].tables[table].file.clone_from(&file));
+    }
+}
+
+/// Whether that is done.
+#[must_use]
+pub fn is_assigned(manifest: &Manifest) -> bool {
+    let bundles = bundles(manifest);
+    let tables = manifest.stages.iter().flat_map(|stage| &stage.tables);
+    let bundled = tables.filter(|table| is_bundle(&table.file)).count();
+    let of_file = |file: &str, at: &(usize, usize)| manifest.stages[at.0].tables[at.1].file == file;
+    bundled == bundles.iter().map(|(_, members)| members.len()).sum::<usize>()
+        && bundles.iter().all(|(file, members)| members.iter().all(|at| of_file(file, at)))
+}
+
+/// A file, and the places of stages and their tables that go into it.
+type Bundle = (String, Vec<(usize, usize)>);
+
+fn bundles(manifest: &Manifest) -> Vec<Bundle> {
     let mut groups: HashMap<(&str, &str), Vec<(usize, usize)>> = HashMap::new();
     for (stage, record) in manifest.stages.iter().enumerate() {
         for (table, own) in record.tables.iter().enumerate().filter(|(_, own)| fits(own)) {
@@ -39,19 +65,11 @@ pub fn assign(manifest: &mut Manifest) {
             }
         }
     }
-    let bundled: Vec<(String, Vec<(usize, usize)>)> = groups
+    groups
         .into_iter()
         .filter(|(_, members)| members.len() > MANY)
         .map(|((kind, table), members)| (format!("_{kind}.{table}.parquet"), members))
-        .collect();
-    for table in manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables) {
-        if is_bundle(&table.file) {
-            table.file = own_file(&table.name);
-        }
-    }
-    for (file, members) in bundled {
-        members.into_iter().for_each(|(stage, table)| manifest.stages[stage].tables[table].file.clone_from(&file));
-    }
+        .collect()
 }
 
 fn fits(table: &TableRecord) -> bool {

@@ -113,9 +113,8 @@ impl Cache {
     /// Opens the cache in `root`, or does without: then everything is kept in memory, and [`Cache::problems`] says why.
     #[must_use]
     pub fn open_if_possible(root: &Path) -> Self {
-        Self::open(root).unwrap_or_else(|error| {
-            Self::new(root, None, Unkept { why: Some(error.to_string()), ..Unkept::default() })
-        })
+        Self::open(root)
+            .unwrap_or_else(|error| Self::new(root, None, Unkept { why: Some(error.to_string()), ..Unkept::default() }))
     }
 
     fn new(root: &Path, lock: Option<File>, unkept: Unkept) -> Self {

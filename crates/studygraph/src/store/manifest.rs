@@ -4,7 +4,7 @@
 
 mod wire;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
@@ -163,6 +163,9 @@ pub struct PartsRecord {
     pub on_demand: Vec<(String, String)>,
 }
 
+// Numbers in JSON are numbers, so every record equals itself, and shared ones need not be compared.
+impl Eq for ColumnRecord {}
+
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub struct ColumnRecord {
     pub name: String,
@@ -216,8 +219,36 @@ impl Manifest {
     /// # Errors
     /// When it cannot be written as JSON, which cannot be.
     pub fn text(&self) -> Result<Vec<u8>, serde_json::Error> {
+        self.text_with(&self.files)
+    }
+
+    /// Says what is alike with the same words in memory, so that comparing tables of one kind is quick.
+    pub fn share(&mut self, other: &Self) {
+        let mut known: HashMap<(&str, &str), &TableRecord> = HashMap::new();
+        for stage in &other.stages {
+            known.extend(stage.tables.iter().map(|table| ((stage.kind.as_str(), table.table()), table)));
+        }
+        let mut shared: HashMap<*const ColumnRecord, Arc<[ColumnRecord]>> = HashMap::new();
+        for stage in &mut self.stages {
+            for table in &mut stage.tables {
+                let columns = shared.entry(table.columns.as_ptr()).or_insert_with(|| {
+                    let alike = known.get(&(&*stage.kind, table.name.split_once('.').map_or("", |(_, table)| table)));
+                    let alike = alike.filter(|alike| alike.columns == table.columns);
+                    Arc::clone(alike.map_or(&table.columns, |alike| &alike.columns))
+                });
+                table.columns = Arc::clone(columns);
+            }
+        }
+    }
+
+    /// The same with another list of files.
+    ///
+    /// # Errors
+    /// As [`Manifest::text`].
+    pub fn text_with(&self, files: &[FileRecord]) -> Result<Vec<u8>, serde_json::Error> {
         let mut text = Vec::new();
-        self.serialize(&mut serde_json::Serializer::with_formatter(&mut text, wire::Lines::default()))?;
+        wire::text(self, files)
+            .serialize(&mut serde_json::Serializer::with_formatter(&mut text, wire::Lines::default()))?;
         text.push(b'\n');
         Ok(text)
     }
@@ -229,20 +260,42 @@ impl Manifest {
     }
 }
 
+/// What a manifest says of a schema.
+#[derive(Clone)]
+pub struct Described {
+    description: Arc<str>,
+    columns: Arc<[ColumnRecord]>,
+    files: Arc<[String]>,
+}
+
+impl Described {
+    #[must_use]
+    pub fn of(schema: &Schema) -> Self {
+        let columns = schema.columns.iter().map(ColumnRecord::from).collect();
+        Self { description: schema.description.as_str().into(), columns, files: schema.files.as_slice().into() }
+    }
+}
+
 impl TableRecord {
     /// The record of one table of a stage.
     #[must_use]
     pub fn new(stage: &str, schema: &Schema, table: &StoredTable) -> Self {
+        Self::described(stage, &Described::of(schema), table)
+    }
+
+    /// The same where it is known what the manifest says of the schema.
+    #[must_use]
+    pub fn described(stage: &str, described: &Described, table: &StoredTable) -> Self {
         let on_demand = table.columns.iter().map(|column| (column.name.clone(), column.content.to_string()));
         let parts = PartsRecord { base: table.base.to_string(), on_demand: on_demand.collect() };
         Self {
             name: format!("{stage}.{}", table.name),
-            description: schema.description.as_str().into(),
+            description: Arc::clone(&described.description),
             rows: table.rows,
             content: table.content.to_string(),
             file: format!("{stage}.{}.parquet", table.name),
-            columns: schema.columns.iter().map(ColumnRecord::from).collect(),
-            files: schema.files.iter().map(|name| format!("{stage}.{name}")).collect(),
+            columns: Arc::clone(&described.columns),
+            files: described.files.iter().map(|name| format!("{stage}.{name}")).collect(),
             parts: (!table.columns.is_empty()).then_some(parts),
         }
     }

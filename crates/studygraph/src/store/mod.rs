@@ -11,9 +11,9 @@ pub mod entry;
 pub mod error;
 pub mod facts;
 pub mod file;
-pub(crate) mod hexadecimal;
 #[cfg(feature = "hdf5")]
 pub mod hdf5;
+pub(crate) mod hexadecimal;
 pub mod index;
 pub mod journal;
 pub mod key_record;

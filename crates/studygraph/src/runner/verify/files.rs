@@ -153,7 +153,10 @@ impl<R: Read + Seek> Files<'_, R> {
         }
         let found = |wanted: &str| {
             let (_, _, table) = tables.iter().find(|(_, record, _)| record.file == wanted).ok_or_else(|| {
-                crate::store::error::StoreError::Format { table: wanted.to_owned(), problem: "it is missing".to_owned() }
+                crate::store::error::StoreError::Format {
+                    table: wanted.to_owned(),
+                    problem: "it is missing".to_owned(),
+                }
             })?;
             Ok(table.clone())
         };

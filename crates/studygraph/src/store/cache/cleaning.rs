@@ -9,8 +9,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::{Cache, NOTES};
 use super::packs::{self, Content as OfPack, FOLDER, Packs};
+use super::{Cache, NOTES};
 use crate::store::error::StoreError;
 use crate::store::file::{self, TEMPORARY};
 use crate::store::journal::Journal;

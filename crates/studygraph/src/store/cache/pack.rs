@@ -212,7 +212,8 @@ impl Pack {
             file.seek(SeekFrom::Start(pack.end))?;
             let mut prefix = [0; PREFIX as usize];
             file.read_exact(&mut prefix)?;
-            let number = |at: usize| prefix[at..at + 8].iter().rev().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
+            let number =
+                |at: usize| prefix[at..at + 8].iter().rev().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
             let (length, rest) = (number(0), number(8));
             let start = pack.end + PREFIX;
             let end = start.checked_add(length).and_then(|end| end.checked_add(rest));

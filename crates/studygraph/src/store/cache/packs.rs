@@ -235,7 +235,8 @@ impl Packs {
     /// A new pack with the next number.
     fn begin(&self) -> Result<Open, StoreError> {
         fs::create_dir_all(&self.folder).map_err(StoreError::io("make the cache folder", &self.folder))?;
-        let mut number = numbered(&self.folder).ok().and_then(|packs| packs.last().map(|(number, _)| *number)).unwrap_or(0);
+        let mut number =
+            numbered(&self.folder).ok().and_then(|packs| packs.last().map(|(number, _)| *number)).unwrap_or(0);
         let mut options = File::options();
         options.read(true).append(true).create_new(true);
         #[cfg(unix)]
@@ -350,10 +351,13 @@ impl State {
         let (found, mut count) = (&mut self.found, 0);
         let read = Pack::read(&mut file, |key, said| {
             count += 1;
-            found.insert(key, match said {
-                Said::Entry(place) => Found::At { pack: number, place },
-                Said::Gone => Found::Gone,
-            });
+            found.insert(
+                key,
+                match said {
+                    Said::Entry(place) => Found::At { pack: number, place },
+                    Said::Gone => Found::Gone,
+                },
+            );
         });
         let (pack, ending) = read.unwrap_or((Pack::default(), Ending::Damaged));
         self.packs.push(Open { path, file, pack, ending, said: count });

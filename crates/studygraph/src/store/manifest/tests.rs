@@ -27,7 +27,8 @@ const TABLE: &str = r#"{ "name": "ste.NAME", "description": "Words.", "rows": 4,
 
 fn first() -> String {
     let digits = ["KEY1", "KEY2", "CONFIG", "AXIS1", "AXIS2", "CODE", "DEMAND", "INPUT"].iter().enumerate();
-    let text = FIRST.replace("TABLE1", &TABLE.replace("NAME", "curve")).replace("TABLE2", &TABLE.replace("NAME", "other"));
+    let text =
+        FIRST.replace("TABLE1", &TABLE.replace("NAME", "curve")).replace("TABLE2", &TABLE.replace("NAME", "other"));
     digits.fold(text, |text, (digit, name)| text.replace(name, &format!("{digit}").repeat(64)))
 }
 
@@ -37,7 +38,10 @@ fn the_first_format_is_read_and_the_second_says_the_same() {
     let stage = &old.stages[0];
     assert_eq!((old.format, stage.keys.len(), stage.tables[1].file.as_str()), (1, 2, "ste.other.parquet"));
     assert_eq!((stage.keys[1].key, stage.keys[1].seed), (Digest([0x11; 32]), None));
-    assert_eq!((stage.keys[1].config.to_string(), stage.keys[0].axis.unwrap().to_string()), ("222222222222".into(), "333333333333".into()));
+    assert_eq!(
+        (stage.keys[1].config.to_string(), stage.keys[0].axis.unwrap().to_string()),
+        ("222222222222".into(), "333333333333".into())
+    );
     assert_eq!((&*stage.tables[0].description, stage.tables[0].columns[0].unit.as_str()), ("Words.", "um"));
     let text = String::from_utf8(old.text().unwrap()).unwrap();
     let new: Manifest = serde_json::from_str(&text).unwrap();
@@ -72,7 +76,9 @@ fn the_first_format_is_read_and_the_second_says_the_same() {
 #[test]
 fn a_change_is_a_few_lines() {
     let old: Manifest = serde_json::from_str(&first()).unwrap();
-    let lines = |manifest: &Manifest| String::from_utf8(manifest.text().unwrap()).unwrap().lines().map(str::to_owned).collect::<Vec<_>>();
+    let lines = |manifest: &Manifest| {
+        String::from_utf8(manifest.text().unwrap()).unwrap().lines().map(str::to_owned).collect::<Vec<_>>()
+    };
     let mut new = old.clone();
     new.stages[0].tables[1].rows = 5;
     new.stages[0].tables[1].content = "other".to_owned();
@@ -85,6 +91,7 @@ fn a_change_is_a_few_lines() {
 #[test]
 fn a_table_without_columns_is_no_table() {
     let text = String::from_utf8(serde_json::from_str::<Manifest>(&first()).unwrap().text().unwrap()).unwrap();
-    let wrong = serde_json::from_str::<Manifest>(&text.replace("\"schema\": \"ste.other\"", "\"schema\": \"ste.absent\""));
+    let wrong =
+        serde_json::from_str::<Manifest>(&text.replace("\"schema\": \"ste.other\"", "\"schema\": \"ste.absent\""));
     assert!(wrong.unwrap_err().to_string().contains("ste.absent"));
 }

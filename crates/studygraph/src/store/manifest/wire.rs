@@ -14,7 +14,7 @@ use serde_json::ser::Formatter;
 
 use super::{
     ColumnRecord, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
-    StudyFolder, TableRecord, own_file,
+    StudyFolder, TableRecord,
 };
 use crate::store::journal::Failed;
 use crate::store::key_record::{KeyRecord, Short};
@@ -120,8 +120,6 @@ struct Table<'a> {
     description: Option<String>,
     #[serde(default, skip_serializing)]
     columns: Option<Vec<ColumnRecord>>,
-    /// Where it is not the table's own.
-    #[serde(default, skip_serializing_if = "str::is_empty")]
     file: Cow<'a, str>,
     #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
     files: Cow<'a, [String]>,
@@ -148,26 +146,30 @@ impl<'de> Deserialize<'de> for Schemas {
 
 impl Serialize for Manifest {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut named = Named::default();
-        let stages = self.stages.iter().map(|stage| Stage::of(stage, &mut named)).collect();
-        let text = Text {
-            format: super::FORMAT,
-            study: Cow::Borrowed(&self.study),
-            title: Cow::Borrowed(&self.title),
-            seed: self.seed,
-            source: Cow::Borrowed(&self.source),
-            study_digest: Cow::Borrowed(&self.study_digest),
-            program: Cow::Borrowed(&self.program),
-            study_folder: Cow::Borrowed(&self.study_folder),
-            machine: Cow::Borrowed(&self.machine),
-            written: Cow::Borrowed(&self.written),
-            seconds: self.seconds,
-            stages,
-            schemas: Schemas(named.schemas),
-            tolerances: Cow::Borrowed(&self.tolerances),
-            files: Cow::Borrowed(&self.files),
-        };
-        text.serialize(serializer)
+        text(self, &self.files).serialize(serializer)
+    }
+}
+
+/// A manifest that lists these files.
+pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<'a> {
+    let mut named = Named::default();
+    let stages = manifest.stages.iter().map(|stage| Stage::of(stage, &mut named)).collect();
+    Text {
+        format: manifest.format.max(super::FORMAT),
+        study: Cow::Borrowed(&manifest.study),
+        title: Cow::Borrowed(&manifest.title),
+        seed: manifest.seed,
+        source: Cow::Borrowed(&manifest.source),
+        study_digest: Cow::Borrowed(&manifest.study_digest),
+        program: Cow::Borrowed(&manifest.program),
+        study_folder: Cow::Borrowed(&manifest.study_folder),
+        machine: Cow::Borrowed(&manifest.machine),
+        written: Cow::Borrowed(&manifest.written),
+        seconds: manifest.seconds,
+        stages,
+        schemas: Schemas(named.schemas),
+        tolerances: Cow::Borrowed(&manifest.tolerances),
+        files: Cow::Borrowed(files),
     }
 }
 
@@ -177,10 +179,22 @@ struct Named {
     schemas: Vec<(String, TableSchema)>,
     /// Of kind and table, the places of those that were met.
     met: HashMap<(String, String), Vec<usize>>,
+    /// Names by kind and by the columns' place in memory, which alike tables share; it stays theirs while the manifest does.
+    quick: HashMap<(*const ColumnRecord, *const u8, String), String>,
 }
 
 impl Named {
     fn name(&mut self, kind: &str, table: &TableRecord) -> String {
+        let place = (table.columns.as_ptr(), table.description.as_ptr(), format!("{kind}.{}", table.table()));
+        if let Some(name) = self.quick.get(&place) {
+            return name.clone();
+        }
+        let name = self.compared(kind, table);
+        self.quick.insert(place, name.clone());
+        name
+    }
+
+    fn compared(&mut self, kind: &str, table: &TableRecord) -> String {
         let own = table.table();
         let met = self.met.entry((kind.to_owned(), own.to_owned())).or_default();
         let same = |place: &&usize| {
@@ -192,8 +206,7 @@ impl Named {
         }
         let name = if met.is_empty() { format!("{kind}.{own}") } else { format!("{kind}.{own}.{}", met.len() + 1) };
         met.push(self.schemas.len());
-        let schema =
-            TableSchema { description: Arc::clone(&table.description), columns: Arc::clone(&table.columns) };
+        let schema = TableSchema { description: Arc::clone(&table.description), columns: Arc::clone(&table.columns) };
         self.schemas.push((name.clone(), schema));
         name
     }
@@ -210,7 +223,7 @@ impl<'a> Stage<'a> {
                 schema,
                 description: None,
                 columns: None,
-                file: Cow::Borrowed(if table.file == own_file(&table.name) { "" } else { &table.file }),
+                file: Cow::Borrowed(&table.file),
                 files: Cow::Borrowed(&table.files),
                 parts: table.parts.as_ref().map(Cow::Borrowed),
             }
@@ -292,13 +305,16 @@ impl Stage<'_> {
                     TableSchema { description: description.into(), columns: columns.into() }
                 }
                 _ => schemas.get(&*table.schema).map(|schema| (*schema).clone()).ok_or_else(|| {
-                    format!("table `{}` has the columns `{}`, and nothing says which those are", table.name, table.schema)
+                    format!(
+                        "table `{}` has the columns `{}`, and nothing says which those are",
+                        table.name, table.schema
+                    )
                 })?,
             };
             Ok(TableRecord {
                 description,
                 columns,
-                file: if table.file.is_empty() { own_file(&table.name) } else { table.file.into_owned() },
+                file: table.file.into_owned(),
                 name: table.name.into_owned(),
                 rows: table.rows,
                 content: table.content.into_owned(),

@@ -39,7 +39,7 @@ impl Folder {
 /// Stages without tables of their own take those of the earlier manifest that are still there.
 pub(super) fn with_earlier_tables<'m>(old: Option<&Known>, manifest: &'m Manifest) -> Cow<'m, Manifest> {
     let mut new = Cow::Borrowed(manifest);
-    if manifest.stages.len() > bundle::MANY {
+    if !bundle::is_assigned(manifest) {
         bundle::assign(new.to_mut());
     }
     let Some(old) = old.filter(|_| !manifest.stages.iter().all(complete)) else { return new };
@@ -69,9 +69,8 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
     let by_name: HashMap<&str, &TableRecord> = old_tables.iter().map(|table| (&*table.name, *table)).collect();
     let is_known = |table: &TableRecord| by_name.get(&*table.name).is_some_and(|old| *old == table);
     let intact = |file: &str| old.is_some_and(|old| old.state(file) == FileState::Intact);
-    let intact_table = |table: &TableRecord| {
-        is_known(table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact)
-    };
+    let intact_table =
+        |table: &TableRecord| is_known(table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact);
     // A bundle has other rows as well where a stage is no more.
     let mut members: HashMap<&str, isize> = HashMap::new();
     for (tables, step) in [(&old_tables, -1), (&new_tables, 1)] {
@@ -95,9 +94,7 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
     let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&folder.hdf5_file()));
     let of_tables: HashSet<&str> =
         new_tables.iter().flat_map(|table| table.files.iter().chain([&table.file])).map(String::as_str).collect();
-    let listed = |file: &str| {
-        of_tables.contains(file) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file)
-    };
+    let listed = |file: &str| of_tables.contains(file) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file);
     let remove: Vec<String> = old_files().filter(|file| !listed(file) && here(file)).collect();
     let says_something_new = old.is_none_or(|old| !say_the_same(&old.manifest, new));
     let any = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();

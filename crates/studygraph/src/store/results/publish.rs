@@ -103,7 +103,8 @@ impl Folder {
             let seen = if old.is_outdated() { Vec::new() } else { old.index().files.clone() };
             Published { manifest: old.manifest, changes: Changes::default(), undrawn: None, seen }
         };
-        if let Some(old) = self.known().ok().flatten() {
+        if let Some(mut old) = self.known().ok().flatten() {
+            old.manifest.share(manifest);
             let new = with_earlier_tables(Some(&old), manifest);
             if compare(Some(&old), &new, draws, self) == Changes::default() {
                 if old.is_outdated() {
@@ -120,7 +121,10 @@ impl Folder {
             Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
                 return Err(StoreError::Io { action, path, source });
             }
-            known => known.ok().flatten(),
+            known => known.ok().flatten().map(|mut known| {
+                known.manifest.share(manifest);
+                known
+            }),
         };
         let new = with_earlier_tables(old.as_ref(), manifest);
         let changes = compare(old.as_ref(), &new, draws, self);
@@ -211,7 +215,11 @@ impl Folder {
         new = match (old, facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
             (Some(old), _) if say_the_same(&old.manifest, &new) => {
-                Manifest { files: Vec::new(), ..old.manifest.clone() }
+                let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
+                let (program, study_folder) = (program.clone(), study_folder.clone());
+                let (machine, written) = (machine.clone(), written.clone());
+                let stages = old.manifest.stages.clone();
+                Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {
                 let Facts { program, study_folder, machine, written } = facts();
@@ -246,7 +254,7 @@ impl Folder {
         }
         self.remove(&changes.remove)?;
         new.files = listed.files;
-        let text = manifest_bytes(&new)?;
+        let text = new.text().map_err(unwritten)?;
         let seen = listed.seen.clone();
         Index::new(index::digest(&text), drawn_by, listed.seen).write(self.path())?;
         // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
@@ -256,12 +264,7 @@ impl Folder {
     }
 
     /// The file of a bundle. What its file, or a table's own, has already is taken from there.
-    fn bundle(
-        &self,
-        old: Option<&Known>,
-        members: &[&TableRecord],
-        source: Source<'_>,
-    ) -> Result<Vec<u8>, StoreError> {
+    fn bundle(&self, old: Option<&Known>, members: &[&TableRecord], source: Source<'_>) -> Result<Vec<u8>, StoreError> {
         let earlier: HashMap<&str, &TableRecord> = old
             .iter()
             .flat_map(|old| &old.manifest.stages)
@@ -306,15 +309,13 @@ impl Folder {
     fn strike(&self, old: &Manifest, changes: &Changes) -> Result<(), StoreError> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
-            written.contains(file)
-                || (changes.hdf5 && *file == self.hdf5_file())
-                || (changes.drawn && is_drawn(file))
+            written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
         };
         let files: Vec<FileRecord> = old.files.iter().filter(|record| !replaced(&record.file)).cloned().collect();
         if files.len() == old.files.len() {
             return Ok(());
         }
-        let text = manifest_bytes(&Manifest { files, ..old.clone() })?;
+        let text = old.text_with(&files).map_err(unwritten)?;
         file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
@@ -463,6 +464,7 @@ pub fn hdf5_bytes(
     writer.finish()
 }
 
-fn manifest_bytes(manifest: &Manifest) -> Result<Vec<u8>, StoreError> {
-    manifest.text().map_err(|error| StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() })
+#[allow(clippy::needless_pass_by_value)] // for `map_err`
+fn unwritten(error: serde_json::Error) -> StoreError {
+    StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() }
 }
