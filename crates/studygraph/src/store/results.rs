@@ -5,6 +5,7 @@
 //! `known` says which files are as listed, `publish` brings the folder up to date. Must not know: the cache (tables come
 //! through a closure), stages, how anything is drawn.
 
+mod bundled;
 mod changes;
 mod known;
 mod publish;

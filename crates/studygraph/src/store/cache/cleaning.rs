@@ -88,6 +88,15 @@ impl Cache {
         damaged
     }
 
+    /// The keys of all entries, in files of their own and in packs, as far as the folders can be looked into.
+    #[must_use]
+    pub fn keys(&self) -> BTreeSet<Digest> {
+        let mut content = Content::default();
+        content.add_entries(&self.root);
+        let packed = self.packs.all().into_iter().flat_map(|pack| pack.entries).map(|(key, _)| key);
+        content.entries.into_iter().map(|(_, key)| key).chain(packed).collect()
+    }
+
     /// Removes entries, and what killed runs left behind. The cache must not be open anywhere.
     ///
     /// # Errors
