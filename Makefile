@@ -20,10 +20,10 @@ BASE ?= HEAD
 RELEASE := target/release/gearstudy
 STUDIES := $(sort $(wildcard studies/*.yaml))
 
-.PHONY: help setup packages release studies study test bench results diff clean
+.PHONY: help setup packages release studies study test bench bench-peers results diff clean
 
 help:  ## list the targets
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-10s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
 
 setup:  ## install what the machine lacks: Debian packages, Python tools for the cross-checks
 	@scripts/setup
@@ -55,6 +55,10 @@ test: packages  ## format, lints, all tests, and the quick study run twice
 
 bench: packages  ## measure the kernels and the program
 	cargo bench --locked
+
+bench-peers: release  ## measure the runner beside make, ninja and, where they can be had, Snakemake, doit, DVC, redun
+	scripts/setup peers
+	scripts/bench-peers
 
 results: studies  ## refresh the results that are committed, and show what changed
 	@git status --short results

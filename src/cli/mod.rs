@@ -152,6 +152,9 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, .. } => {
             let (explain, keep_going) = (*explain, *keep_going);
             let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
+            if studies::settings(changes).is_empty() && run::is_up_to_date(studies, places, selection, &how)? {
+                return Ok(());
+            }
             run::run(&load_all(studies, changes)?, places, selection, &how)
         }
         Command::Watch { study, changes, selection, port } => {

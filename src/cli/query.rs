@@ -56,7 +56,7 @@ fn list(tables: &mut Tables<'_>) -> Result<String, String> {
     for (name, record) in tables.list()? {
         let rows = record.rows;
         text += &format!("{name}  {rows} {}\n", if rows == 1 { "row" } else { "rows" });
-        for column in &record.columns {
+        for column in record.columns.iter() {
             let unit = if column.unit.is_empty() { String::new() } else { format!(" [{}]", column.unit) };
             text += &format!("  {}{unit}: {}\n", column.name, column.description);
         }

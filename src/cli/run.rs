@@ -3,6 +3,8 @@
 //! Must not know: how any of it is decided.
 
 use std::cell::RefCell;
+use std::collections::BTreeSet;
+use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use indicatif::MultiProgress;
@@ -15,12 +17,14 @@ use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
 use super::show::none_yet;
 use super::signals::stop_flag;
+use super::studies;
 use crate::program::PROGRAM;
 use crate::stage::Want;
 use declare::error::Diagnostic;
 use studygraph::runner::execute::{self, RunError};
 use studygraph::runner::fault::Fault;
 use studygraph::runner::limits::{Limits, MOST_ROWS};
+use studygraph::runner::note::{self, Where};
 use studygraph::runner::options::{Force, Options, Wanted};
 use studygraph::runner::outcome::Outcome;
 use studygraph::runner::plan::{self, Plan};
@@ -93,6 +97,45 @@ pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how
     if failures.is_empty() { Ok(()) } else { Err(Ending::Failed(failures.join("; "))) }
 }
 
+/// Whether all these studies are known to be up to date without being read; says so then.
+///
+/// # Errors
+/// As a run with these options.
+pub(super) fn is_up_to_date(
+    files: &[PathBuf],
+    places: &Places,
+    selection: &Selection,
+    how: &How,
+) -> Result<bool, Ending> {
+    let options = options(selection, how)?;
+    if how.explain {
+        return Ok(false);
+    }
+    let note = |word: &PathBuf| {
+        let study = &studies::file(word).ok()?;
+        let at = Where { study, results: &places.results, cache: &places.cache };
+        note::of(&at, PROGRAM.about.code, &options)
+    };
+    let Some(notes) = files.iter().map(note).collect::<Option<Vec<_>>>() else { return Ok(false) };
+    let names: BTreeSet<&str> = notes.iter().map(|note| note.study.as_str()).collect();
+    if names.len() < notes.len() {
+        return Ok(false);
+    }
+    for note in notes.iter().filter(|_| !how.quiet) {
+        let folder = Folder::new(&places.results, &note.study);
+        tell(&nothing_to_do(&note.study, note.stages, &folder));
+    }
+    Ok(!notes.is_empty())
+}
+
+fn count(stages: usize) -> String {
+    format!("{stages} stage{}", if stages == 1 { "" } else { "s" })
+}
+
+fn nothing_to_do(study: &str, stages: usize, folder: &Folder) -> String {
+    format!("{study}: nothing to do, {} up to date; {}\n", count(stages), pages::path(folder).display())
+}
+
 pub(super) fn run_one(
     study: &Study,
     places: &Places,
@@ -156,9 +199,11 @@ fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&st
     if quiet {
         return Ok(());
     }
-    let count = |number: usize| format!("{number} stage{}", if number == 1 { "" } else { "s" });
     let line = match (outcome.ran(), verdicts) {
-        (0, None) => format!("nothing to do, {} up to date", count(outcome.stages.len())),
+        (0, None) => {
+            tell(&nothing_to_do(&study.name, outcome.stages.len(), folder));
+            return Ok(());
+        }
         (ran, verdicts) => {
             let work = match ran {
                 0 => "nothing to compute, results brought up to date".to_owned(),

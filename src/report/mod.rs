@@ -167,11 +167,6 @@ fn flags<'a>(table: &'a Table, name: &str) -> Result<&'a [bool], ReportError> {
     }
 }
 
-/// The start of a digest.
-fn short(digest: &str) -> String {
-    digest.chars().take(12).collect()
-}
-
 /// A time as pages write it.
 fn seconds(seconds: f64) -> String {
     if seconds < 0.1 {

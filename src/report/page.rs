@@ -2,6 +2,8 @@
 //!
 //! Must not know: how a figure is drawn. Everything that differs from run to run stands behind the template's last mark.
 
+use std::collections::BTreeMap;
+
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::Serde;
@@ -14,12 +16,16 @@ use super::inputs::Inputs;
 use super::records::{self, StageTables};
 use super::sheet::{self, Sheet};
 use super::sweep::{self, Sweep};
-use super::{ReportError, flags, integers, plot, seconds, short, texts, verdict};
+use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
+use studygraph::store::bundle;
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
 use studygraph::table::data::Table;
 
 /// What is not computed is named where it would have taken this share of the run.
 const WORTH_NAMING: f64 = 0.01;
+
+/// Stages of a kind shown on the page where there are more than their tables have files for.
+const SHOWN_STAGES: usize = 8;
 
 /// What one report stage contributes, beside its figures.
 pub struct ReportPart {
@@ -33,7 +39,8 @@ pub struct ReportPart {
 /// Everything the template can name.
 #[derive(Serialize)]
 struct View<'a> {
-    manifest: &'a Manifest,
+    /// Without stages and files.
+    manifest: Manifest,
     counts: Vec<Count>,
     total: i64,
     attention: i64,
@@ -55,6 +62,8 @@ struct View<'a> {
     warnings: Vec<Remark>,
     failures: Vec<&'a StageRecord>,
     stages: Vec<StageView<'a>>,
+    /// Of kinds with very many stages, those that are not shown.
+    more: Vec<More>,
     tables: Vec<StageTables<'a>>,
     packed: String,
     seconds: String,
@@ -112,6 +121,12 @@ struct Remark {
 }
 
 #[derive(Serialize)]
+struct More {
+    kind: String,
+    stages: usize,
+}
+
+#[derive(Serialize)]
 struct StageView<'a> {
     record: &'a StageRecord,
     seconds: String,
@@ -141,34 +156,48 @@ pub fn html(
     let counts = counts(parts)?;
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
-    let remarks = |pick: &dyn Fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
-        let of = |stage: &StageRecord| {
-            let name = stage.name.clone();
-            pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
+    let (shown, more) = shown_stages(manifest);
+    let all: Vec<&StageRecord> = manifest.stages.iter().collect();
+    let remarks =
+        |stages: &[&StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
+            let of = |stage: &StageRecord| {
+                let name = stage.name.clone();
+                pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
+            };
+            stages.iter().copied().flat_map(of).collect()
         };
-        manifest.stages.iter().flat_map(of).collect()
-    };
     let least = WORTH_NAMING * manifest.seconds;
     let is_worth = |left: &&OmissionRecord| left.saved_seconds.is_some_and(|saved| saved >= least);
-    let left_out = remarks(&|stage| {
+    let left_out = remarks(&shown, &|stage| {
         let said = |left: &OmissionRecord| {
             (left.what.clone(), left.why.clone(), left.saved_seconds.map_or_else(String::new, seconds))
         };
         stage.left_out.iter().filter(is_worth).map(said).collect()
     });
-    let warnings = remarks(&|stage| {
+    let warnings = remarks(&all, &|stage| {
         stage.warnings.iter().map(|warning| (warning.clone(), String::new(), String::new())).collect()
     });
     let failures: Vec<&StageRecord> =
         manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
-    let stages: Vec<StageView> = manifest.stages.iter().map(stage_view).collect();
+    let stages: Vec<StageView> = shown.iter().copied().map(stage_view).collect();
     let inputs = Inputs::of(manifest);
     let mut comparisons: Vec<&comparison::Row> = parts.iter().flat_map(|part| &part.comparisons).collect();
     comparisons.sort_by_key(|row| row.rank());
     let parts = parts.iter().map(|part| part_view(part, &inputs)).collect::<Result<Vec<_>, _>>()?;
     let records = records::records(manifest, tables)?;
     let view = View {
-        manifest,
+        manifest: Manifest {
+            study: manifest.study.clone(),
+            title: manifest.title.clone(),
+            seed: manifest.seed,
+            source: manifest.source.clone(),
+            study_digest: manifest.study_digest.clone(),
+            program: manifest.program.clone(),
+            study_folder: manifest.study_folder.clone(),
+            machine: manifest.machine.clone(),
+            written: manifest.written.clone(),
+            ..Manifest::default()
+        },
         counts,
         total,
         attention,
@@ -186,6 +215,7 @@ pub fn html(
         warnings,
         failures,
         stages,
+        more,
         tables: records.stages,
         packed: records.packed,
         seconds: seconds(manifest.seconds),
@@ -250,11 +280,27 @@ fn figure_view(figure: &Figure) -> FigureView {
     }
 }
 
+/// The stages that the page shows; of a kind with very many the first ones and how many more there are.
+fn shown_stages(manifest: &Manifest) -> (Vec<&StageRecord>, Vec<More>) {
+    let mut counts: BTreeMap<&str, (usize, usize)> = BTreeMap::new();
+    manifest.stages.iter().for_each(|stage| counts.entry(&stage.kind).or_default().0 += 1);
+    let mut shown = Vec::new();
+    for stage in &manifest.stages {
+        let Some((all, met)) = counts.get_mut(stage.kind.as_str()) else { continue };
+        if *all <= bundle::MANY || *met < SHOWN_STAGES {
+            *met += 1;
+            shown.push(stage);
+        }
+    }
+    let more = counts.into_iter().filter(|(_, (all, met))| all > met);
+    (shown, more.map(|(kind, (all, met))| More { kind: kind.to_owned(), stages: all - met }).collect())
+}
+
 fn stage_view(record: &StageRecord) -> StageView<'_> {
     let key = match record.keys.as_slice() {
         [] => String::new(),
-        [only] => short(&only.key),
-        [first, rest @ ..] => format!("{} and {} more", short(&first.key), rest.len()),
+        [only] => only.key.short(),
+        [first, rest @ ..] => format!("{} and {} more", first.key.short(), rest.len()),
     };
     let rows = record.tables.iter().map(|table| table.rows).sum();
     let work = record.work.iter().map(|(counter, count)| format!("{count} {}", counter.replace('_', " ")));

@@ -14,7 +14,8 @@ use serde_json::{Value, json};
 use super::ReportError;
 use super::figure::Tables;
 use declare::number::unit_symbol;
-use studygraph::store::manifest::{ColumnRecord, Manifest, TableRecord};
+use studygraph::store::bundle;
+use studygraph::store::manifest::{ColumnRecord, Manifest, StageRecord, TableRecord};
 use studygraph::table::data::{Cell, Data, Table};
 
 /// Bytes of unpacked values on a page. Small tables come first; of one that has no room the page has the first rows.
@@ -34,7 +35,18 @@ pub struct StageTables<'a> {
 #[derive(Serialize)]
 struct TableView<'a> {
     record: &'a TableRecord,
+    /// As it is published: `stage.table`, or `_kind.table` of many stages.
+    name: String,
+    rows: usize,
     is_stored: bool,
+}
+
+impl<'a> StageTables<'a> {
+    /// A stage without its tables.
+    fn of(stage: &'a StageRecord) -> Self {
+        let files = stage.tables.iter().flat_map(|record| &record.files).map(String::as_str).collect();
+        Self { stage: &stage.name, kind: &stage.kind, tables: Vec::new(), files }
+    }
 }
 
 /// What the page shows of tables.
@@ -49,16 +61,27 @@ pub struct Records<'a> {
 pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records<'a>, ReportError> {
     let failed = |error: std::io::Error| ReportError::Page(error.to_string());
     let mut entries: Vec<(Value, Vec<Value>)> = Vec::new();
-    let mut stages = Vec::new();
-    for stage in &manifest.stages {
-        let mut views = Vec::new();
-        for record in &stage.tables {
-            let table = tables(&record.name);
-            views.push(TableView { record, is_stored: table.is_some() });
-            entries.push((described(record), table.map_or_else(Vec::new, |table| columns(record, &table))));
-        }
-        let files = stage.tables.iter().flat_map(|record| &record.files).map(String::as_str).collect();
-        stages.push(StageTables { stage: &stage.name, kind: &stage.kind, tables: views, files });
+    let mut stages: Vec<StageTables> = manifest.stages.iter().map(StageTables::of).collect();
+    // Those of many stages of a kind stand behind those of single stages, as one.
+    for (group, record) in bundle::published(manifest) {
+        let is_bundle = bundle::is_bundle(&record.file);
+        let name = format!("{group}.{}", record.table());
+        let table = tables(&name);
+        let at = stages.iter().position(|known| known.stage == group).unwrap_or_else(|| {
+            stages.push(StageTables {
+                stage: group,
+                kind: "tables of many stages",
+                tables: Vec::new(),
+                files: Vec::new(),
+            });
+            stages.len() - 1
+        });
+        let rows = table.as_ref().filter(|_| is_bundle).map_or(record.rows, Table::rows);
+        entries.push((
+            described(record, &name, rows, is_bundle),
+            table.as_ref().map_or_else(Vec::new, |table| columns(record, table, is_bundle)),
+        ));
+        stages[at].tables.push(TableView { record, name, rows, is_stored: table.is_some() });
     }
     let sizes: Vec<usize> =
         entries.iter().map(|(_, columns)| columns.iter().map(|values| values.to_string().len()).sum()).collect();
@@ -85,7 +108,7 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
 }
 
 /// The script says a column that differs from run to run by a dash.
-fn described(record: &TableRecord) -> Value {
+fn described(record: &TableRecord, name: &str, rows: usize, is_bundle: bool) -> Value {
     let column = |column: &ColumnRecord| {
         let mut meaning = column.description.clone();
         for (is, remark) in [(column.key, "part of the key"), (column.volatile, "varies from run to run")] {
@@ -95,12 +118,14 @@ fn described(record: &TableRecord) -> Value {
         }
         json!({ "name": column.name, "unit": unit_symbol(&column.unit), "kind": column.kind, "meaning": meaning })
     };
-    let columns: Vec<Value> = record.columns.iter().map(column).collect();
-    json!({ "name": record.name, "rows": record.rows, "columns": columns })
+    let stage = json!({ "name": bundle::STAGE, "unit": "", "kind": "text", "meaning": "Name of the stage." });
+    let stage = is_bundle.then_some(stage);
+    let columns: Vec<Value> = stage.into_iter().chain(record.columns.iter().map(column)).collect();
+    json!({ "name": name, "rows": rows, "columns": columns })
 }
 
 /// By the record's columns, and only what it says.
-fn columns(record: &TableRecord, table: &Table) -> Vec<Value> {
+fn columns(record: &TableRecord, table: &Table, is_bundle: bool) -> Vec<Value> {
     let value = |data: &Data, row: usize| match data.cell(row) {
         // JSON has no NaN: null says "not applicable here".
         Cell::Float(value) => serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number),
@@ -108,9 +133,11 @@ fn columns(record: &TableRecord, table: &Table) -> Vec<Value> {
         Cell::Text(value) => json!(value),
         Cell::Flag(value) => json!(value),
     };
-    let column = |column: &ColumnRecord| match table.column(&column.name).filter(|_| !column.volatile) {
+    let all = |data: Option<&Data>| match data {
         Some(data) => Value::Array((0..table.rows()).map(|row| value(data, row)).collect()),
         None => Value::Array(vec![Value::Null; table.rows()]),
     };
-    record.columns.iter().map(column).collect()
+    let stage = is_bundle.then(|| all(table.column(bundle::STAGE)));
+    let own = record.columns.iter().map(|column| all(table.column(&column.name).filter(|_| !column.volatile)));
+    stage.into_iter().chain(own).collect()
 }

@@ -64,7 +64,7 @@ fn of_stage(stage: &StageRecord, tables: &dyn Fn(&str) -> Option<Table>) -> Resu
         return Ok(None);
     };
     let unit = |column: &str| {
-        let columns = stage.tables.iter().find(|table| table.table() == "rows").map(|table| table.columns.as_slice());
+        let columns = stage.tables.iter().find(|table| table.table() == "rows").map(|table| &table.columns[..]);
         let found = columns.unwrap_or_default().iter().find(|known| known.name == column);
         found.map_or_else(String::new, |column| unit_symbol(&column.unit))
     };

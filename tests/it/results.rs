@@ -4,6 +4,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use crate::support::with_code;
@@ -73,7 +74,7 @@ fn changed(study: &Study, folder: &Folder, manifest: &Manifest) -> Vec<String> {
         for record in &stage.tables {
             let name = record.name.split_once('.').map_or("", |(_, name)| name);
             let content =
-                |(schema, table): &(Schema, StoredTable)| (schema.name == name).then(|| table.content.to_string());
+                |(schema, table): &(Arc<Schema>, StoredTable)| (schema.name == name).then(|| table.content.to_string());
             let now = outcome.stage(&stage.name).and_then(|stage| stage.tables.iter().find_map(content));
             let same = now.as_ref() == Some(&record.content);
             let close = || {

@@ -54,12 +54,14 @@ with h5py.File(results / f"{manifest['study']}.h5", "r") as file:
     for record in (table for stage in manifest["stages"] for table in stage["tables"]):
         name = record["name"]
         stage, table_name = name.split(".", 1)
+        schema = manifest["schemas"][record["schema"]]
+        columns = [{"unit": "", "key": False, "volatile": False, **column} for column in schema["columns"]]
         arrow = pyarrow.parquet.read_table(results / record["file"])
         group = file[stage][table_name]
         metadata = {key.decode(): value.decode() for key, value in arrow.schema.metadata.items()}
-        assert metadata["table"] == table_name and metadata["description"] == record["description"], name
-        assert group.attrs["description"] == record["description"], name
-        names = [column["name"] for column in record["columns"]]
+        assert metadata["table"] == table_name and metadata["description"] == schema["description"], name
+        assert group.attrs["description"] == schema["description"], name
+        names = [column["name"] for column in columns]
         assert arrow.column_names == names and list(group.attrs["columns"]) == names, name
         assert set(group) == set(names), name
         assert arrow.num_rows == record["rows"], name
@@ -70,7 +72,7 @@ with h5py.File(results / f"{manifest['study']}.h5", "r") as file:
         assert len(rows) == record["rows"], name
 
         keys = []
-        for index, column in enumerate(record["columns"]):
+        for index, column in enumerate(columns):
             place = f"{name}.{column['name']}"
             kind = column["type"]
             field, dataset = arrow.schema.field(index), group[column["name"]]

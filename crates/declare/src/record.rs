@@ -174,8 +174,13 @@ impl Record {
 
     /// Writes names and values, not places.
     pub fn write(&self, writer: &mut Writer) {
-        writer.count(self.fields.len());
-        for (name, entry) in &self.fields {
+        Self::write_fields(&self.fields, writer);
+    }
+
+    /// The same for some fields, as if they were all.
+    pub fn write_fields(fields: &[(&'static str, PlacedValue)], writer: &mut Writer) {
+        writer.count(fields.len());
+        for (name, entry) in fields {
             writer.text(name);
             entry.value.write(writer);
         }

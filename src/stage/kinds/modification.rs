@@ -156,6 +156,10 @@ impl Stage for Modification {
         (column == names::designs::DESIGN).then(|| names.collect())
     }
 
+    fn gives_what_its_kind_does(&self) -> bool {
+        true
+    }
+
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let elements = || self.designs.iter().flat_map(|design| &design.elements);
         // A modification of both gears is one of each.

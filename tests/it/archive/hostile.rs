@@ -50,9 +50,9 @@ fn what_does_not_belong_together_is_refused() {
         manifest.stages[0].tables[0].file = "../../../etc/passwd".to_owned();
         put_manifest(entries, &manifest);
     });
-    refused(&desk, 1, "it has format 2", |entries| {
+    refused(&desk, 1, "it has format 3", |entries| {
         let mut manifest = manifest(entries);
-        manifest.format = 2;
+        manifest.format = 3;
         put_manifest(entries, &manifest);
     });
     refused(&desk, 1, "its values are not those", |entries| {

@@ -271,7 +271,10 @@ fn other_program(desk: &Desk, folder: &str, change: impl Fn(&mut Value)) {
     for stage in manifest["stages"].as_array_mut().unwrap() {
         for key in stage["keys"].as_array_mut().unwrap() {
             key["code"] = "0".repeat(64).into();
-            key["key"] = "1".repeat(64).into();
+            match key.get_mut("chunks") {
+                Some(chunks) => chunks.as_array_mut().unwrap().iter_mut().for_each(|of| of[0] = "1".repeat(64).into()),
+                None => key["key"] = "1".repeat(64).into(),
+            }
         }
     }
     change(&mut manifest);

@@ -11,6 +11,9 @@ mod faults;
 #[cfg(target_os = "linux")]
 mod hosts;
 #[cfg(target_os = "linux")]
+mod kills;
+mod notes;
+#[cfg(target_os = "linux")]
 mod power;
 #[cfg(target_os = "linux")]
 pub mod published;

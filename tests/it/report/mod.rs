@@ -167,8 +167,8 @@ fn hostile_text_stays_text() {
         saved_seconds: Some(1e-3),
     });
     manifest.stages[0].work.insert(HOSTILE.to_owned(), 1);
-    manifest.stages[3].tables[0].description = HOSTILE.to_owned();
-    manifest.stages[3].tables[0].columns[0].description = HOSTILE.to_owned();
+    manifest.stages[3].tables[0].description = HOSTILE.into();
+    std::sync::Arc::make_mut(&mut manifest.stages[3].tables[0].columns)[0].description = HOSTILE.to_owned();
     let Rendered { html, figures } = render(&manifest, &tables);
     for markup in figures.iter().map(|figure| &figure.svg).chain([&html]) {
         check_tags(markup);

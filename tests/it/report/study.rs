@@ -6,6 +6,7 @@ use std::sync::atomic::AtomicBool;
 use super::record::list;
 use super::tables::tables;
 use declare::declared;
+use declare::digest::Digest;
 use declare::record::Value;
 use declare::seed::Seed;
 use declare::work::Tally;
@@ -13,7 +14,7 @@ use gearstudy::report::{self, Rendered};
 use gearstudy::stage::{self, Context, Demand, Inputs};
 use studygraph::store::entry::StoredTable;
 use studygraph::store::manifest::{
-    KeyRecord, Machine, Manifest, OmissionRecord, Program, Source, StageRecord, TableRecord,
+    KeyRecord, Machine, Manifest, OmissionRecord, Program, Short, Source, StageRecord, TableRecord,
 };
 use studygraph::table::data::Table;
 
@@ -43,11 +44,21 @@ fn record_of(stage: &str, table: &Table) -> TableRecord {
 }
 
 pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
+    let start = Short::from(&Digest([0x3d; 32]));
     let stage = |name: &str, kind: &str, status: &str, why: &str, seconds: f64| StageRecord {
         name: name.to_owned(),
         kind: kind.to_owned(),
         version: 1,
-        keys: vec![KeyRecord { key: "8f3a90c1d2e4b7".repeat(4), ..KeyRecord::default() }],
+        keys: vec![KeyRecord {
+            key: Digest([0x8f; 32]),
+            config: start,
+            fields: Vec::new(),
+            axis: None,
+            code: start,
+            seed: None,
+            demand: start,
+            inputs: Vec::new(),
+        }],
         config: serde_json::Value::Null,
         status: status.to_owned(),
         why: why.to_owned(),

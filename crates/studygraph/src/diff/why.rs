@@ -6,7 +6,7 @@ use serde_json::Value as Json;
 
 use super::model::{ChangedPart, Reason};
 use super::source;
-use crate::store::manifest::{KeyRecord, Manifest, Program, StageRecord};
+use crate::store::manifest::{KeyRecord, Manifest, Program, Short, StageRecord};
 
 /// Places within one field that are told apart; of a field that differs in more only their number is said.
 const MOST_PLACES: usize = 6;
@@ -38,7 +38,7 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
         for name in differing(&first.fields, &second.fields) {
             why.extend(config(&name, old.config.get(&name), new.config.get(&name)));
         }
-        let axes = |stage: &StageRecord| stage.keys.iter().map(|key| key.axis.clone()).collect::<Vec<_>>();
+        let axes = |stage: &StageRecord| stage.keys.iter().map(|key| key.axis).collect::<Vec<_>>();
         if axes(old) != axes(new) {
             let axis = axis(old, first).or_else(|| axis(new, second));
             let value = |stage: &StageRecord| axis.as_ref().and_then(|name| stage.config.get(name).cloned());
@@ -62,7 +62,7 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
         why.push(Reason { part: ChangedPart::Input, from, before, after, what: port });
     }
     if first.seed != second.seed {
-        let seed = |key: &KeyRecord, run: &Manifest| (!key.seed.is_empty()).then(|| run.seed.to_string());
+        let seed = |key: &KeyRecord, run: &Manifest| key.seed.map(|_| run.seed.to_string());
         why.push(Reason {
             part: ChangedPart::Seed,
             what: String::new(),
@@ -125,7 +125,7 @@ fn program(program: &Program) -> String {
 }
 
 /// Names whose digest differs, or that only one has, in the order of the first.
-fn differing(before: &[(String, String)], after: &[(String, String)]) -> Vec<String> {
+fn differing(before: &[(String, Short)], after: &[(String, Short)]) -> Vec<String> {
     let gone_or_other = before.iter().filter(|pair| !after.contains(pair)).map(|(name, _)| name);
     let new = after.iter().map(|(name, _)| name).filter(|name| !before.iter().any(|(old, _)| old == *name));
     gone_or_other.chain(new).cloned().collect()
@@ -133,9 +133,7 @@ fn differing(before: &[(String, String)], after: &[(String, String)]) -> Vec<Str
 
 /// The field along which a stage is cut: the one that is shown but has no digest of its own.
 fn axis(stage: &StageRecord, key: &KeyRecord) -> Option<String> {
-    if key.axis.is_empty() {
-        return None;
-    }
+    key.axis?;
     let mut fields = stage.config.as_object()?.keys();
     fields.find(|name| !key.fields.iter().any(|(field, _)| field == *name)).cloned()
 }

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use rayon::prelude::*;
 
 use super::git::{Commit, Files, Repository};
+use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
 use crate::store::file;
 use crate::store::index;
@@ -15,7 +16,6 @@ use crate::store::manifest::{FORMAT, FileRecord, Manifest, StageRecord, TableRec
 use crate::store::parquet;
 use crate::store::results::{Folder, Known, MANIFEST, held_text, here};
 use crate::table::data::Table;
-use declare::digest::Digest;
 
 /// Where the files come from.
 enum Source {
@@ -30,6 +30,7 @@ pub struct Side {
     source: Source,
     /// Set when the folder is that of one study, not that of all.
     single: bool,
+    opened: Opened,
 }
 
 /// A table of one side.
@@ -54,7 +55,7 @@ impl Side {
     #[must_use]
     pub fn folder(path: &Path, label: impl Into<String>) -> Self {
         let single = path.join(MANIFEST).is_file();
-        Self { label: label.into(), source: Source::Folder(path.to_owned()), single }
+        Self { label: label.into(), source: Source::Folder(path.to_owned()), single, opened: Opened::default() }
     }
 
     /// The results that a commit holds in `folder`.
@@ -64,7 +65,7 @@ impl Side {
     pub fn commit(repository: &Repository, commit: &Commit, folder: &Path) -> Result<Self, String> {
         let files = repository.files(commit, folder)?;
         let single = files.paths().any(|path| path == Path::new(MANIFEST));
-        Ok(Self { label: commit.label(), source: Source::Commit(files), single })
+        Ok(Self { label: commit.label(), source: Source::Commit(files), single, opened: Opened::default() })
     }
 
     /// Whether it holds the results of one study alone, whatever it is called.
@@ -134,10 +135,10 @@ impl Side {
         }
         let manifest: Manifest =
             serde_json::from_slice(&bytes).map_err(|error| wrong(&format!("is damaged: {error}")))?;
-        if manifest.format == FORMAT {
+        if manifest.is_known() {
             Ok(Some(manifest))
         } else {
-            Err(wrong(&format!("has format {}; this version reads format {FORMAT}", manifest.format)))
+            Err(wrong(&format!("has format {}; this version reads formats 1 to {FORMAT}", manifest.format)))
         }
     }
 
@@ -175,7 +176,9 @@ impl Side {
         if let Some(pointer) = pointer(&bytes) {
             return Held::Elsewhere(pointer);
         }
-        match parquet::read(bytes) {
+        let place = format!("{study}/{}", record.file);
+        let read = || parquet::read(bytes);
+        match self.opened.table(record, &place, read, |problem| problem) {
             Err(problem) => Held::Damaged(format!("is damaged: {problem}")),
             Ok(table) if table.content_hash().to_string() == record.content => Held::Table(Box::new(table)),
             Ok(_) => Held::Damaged("holds other values than its manifest says".to_owned()),
@@ -264,8 +267,8 @@ fn pointer(bytes: &[u8]) -> Option<&'static str> {
 
 /// The table as it was computed on this machine, chunk by chunk.
 fn cached(cache: Option<&Cache>, stage: &StageRecord, record: &TableRecord) -> Option<Table> {
-    let part = |key: &str| cache?.table(Digest::from_hex(key)?, record.table()).ok();
-    let parts: Vec<Table> = stage.keys.iter().map(|record| part(&record.key)).collect::<Option<_>>()?;
+    let part = |key| cache?.table(key, record.table()).ok();
+    let parts: Vec<Table> = stage.keys.iter().map(|record| part(record.key)).collect::<Option<_>>()?;
     let table = Table::concatenated(parts).ok()??;
     (table.content_hash().to_string() == record.content).then_some(table)
 }

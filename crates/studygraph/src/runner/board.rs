@@ -9,16 +9,17 @@
 //! A plan is a board on which everything that can be known without computing is known; a run goes on from there. Must
 //! not know: threads, how a stage is computed.
 
+use std::collections::{BTreeSet, HashMap};
 use std::sync::Arc;
 
 use super::events::{Event, Observer};
 use super::fault::Fault;
-use super::graph::Graph;
+use super::graph::{Graph, Input};
 use super::key::{self, KeyedChunk, Why, explain, phrase};
 use super::options::Options;
 use crate::store::cache::{Cache, Lookup};
 use crate::store::entry::{CacheEntry, OfRun, StoredTable};
-use crate::store::journal::{Journal, JournalStage};
+use crate::store::journal::{Failed, Journal, JournalStage};
 use crate::study::Study;
 use crate::table::data::Table;
 use declare::digest::Digest;
@@ -135,6 +136,16 @@ pub struct Board<'a> {
     cache: &'a Cache,
     options: &'a Options,
     pub journal: Journal,
+    /// The places of stages in the journal.
+    last: HashMap<String, usize>,
+    /// The place of every node in the order of the graph.
+    places: Vec<usize>,
+    /// Places of nodes that wait and of which something they read has come to its end, or that were never looked at.
+    due: BTreeSet<usize>,
+    /// How many readers of each node have not come to their end.
+    open_readers: Vec<usize>,
+    /// Nodes whose last reader has come to its end since somebody asked.
+    unread: Vec<usize>,
 }
 
 impl<'a> Board<'a> {
@@ -168,7 +179,27 @@ impl<'a> Board<'a> {
         };
         let nodes = needed.iter().map(|_| progress()).collect();
         let journal = cache.journal(&study.name);
-        let mut board = Self { study, graph, nodes, observer, halted: None, cache, options, journal };
+        let last = journal.by_name();
+        let mut places = vec![0; graph.order.len()];
+        graph.order.iter().enumerate().for_each(|(place, &node)| places[node] = place);
+        let due = (0..graph.order.len()).collect();
+        let open_readers = graph.readers.iter().map(Vec::len).collect();
+        let halted = None;
+        let mut board = Self {
+            study,
+            graph,
+            nodes,
+            observer,
+            halted,
+            cache,
+            options,
+            journal,
+            last,
+            places,
+            due,
+            open_readers,
+            unread: Vec::new(),
+        };
         for (node, needed) in needed.into_iter().enumerate() {
             if !needed {
                 board.step(node, Step::Skip("not asked for".to_owned()));
@@ -184,6 +215,16 @@ impl<'a> Board<'a> {
         let next = step.state();
         debug_assert!(progress.state.may_become(next), "`{stage}`: {:?} to {next:?}", progress.state);
         progress.state = next;
+        if next.is_final() {
+            for input in distinct(&self.graph.inputs[node]) {
+                self.open_readers[input] -= 1;
+                if self.open_readers[input] == 0 {
+                    self.unread.push(input);
+                }
+            }
+            let readers = &self.graph.readers[node];
+            self.due.extend(readers.iter().map(|&reader| self.places[reader]));
+        }
         let event = match step {
             Step::Ready(parts) => {
                 progress.known = parts.iter().map(|_| Known::default()).collect();
@@ -223,10 +264,12 @@ impl<'a> Board<'a> {
         self.observer.event(&event);
     }
 
-    /// Takes every stage as far as it goes without computing; gives those that were queued.
+    /// Takes every stage as far as it goes without computing; gives those that were queued. Looked at are only stages of
+    /// which something has changed: a study may have very many.
     pub fn settle(&mut self) -> Vec<usize> {
         let mut queued = Vec::new();
-        for node in self.graph.order.clone() {
+        while let Some(place) = self.due.pop_first() {
+            let node = self.graph.order[place];
             if self.nodes[node].state != StageState::Want {
                 continue;
             }
@@ -247,11 +290,17 @@ impl<'a> Board<'a> {
         queued
     }
 
+    /// What a stage was last computed from.
+    #[must_use]
+    pub fn last(&self, node: usize) -> Option<&JournalStage> {
+        self.last.get(&self.study.nodes[node].name).map(|&index| &self.journal.stages[index])
+    }
+
     /// Takes a ready stage to Hit, or to Queued (then true).
     fn look_up(&mut self, node: usize) -> bool {
         let name = &self.study.nodes[node].name;
         let none = JournalStage::default();
-        let last = self.journal.stage(name).unwrap_or(&none);
+        let last = self.last.get(name).map_or(&none, |&index| &self.journal.stages[index]);
         let forced = self.options.force.applies(name);
         let parts = Arc::clone(&self.nodes[node].parts);
         let mut reasons: Vec<Why> = Vec::new();
@@ -267,7 +316,7 @@ impl<'a> Board<'a> {
                 Lookup::Missing if last.keys.iter().any(|record| record.key == part.record.key) => {
                     vec![Why::ObjectMissing]
                 }
-                Lookup::Missing if last.failed.contains(&part.record.key) => vec![Why::FailedBefore],
+                Lookup::Missing if last.failed.contains(&Failed(part.key)) => vec![Why::FailedBefore],
                 Lookup::Missing => explain(&last.keys, &part.record, part.axis()),
             };
             progress.missing.push(index);
@@ -327,7 +376,12 @@ impl<'a> Board<'a> {
     /// Whether a stage that is not finished yet reads from this one.
     #[must_use]
     pub fn is_read(&self, node: usize) -> bool {
-        self.graph.readers[node].iter().any(|&reader| !self.nodes[reader].state.is_final())
+        self.open_readers[node] > 0
+    }
+
+    /// The nodes whose last reader has come to its end since this was asked before.
+    pub fn take_unread(&mut self) -> Vec<usize> {
+        std::mem::take(&mut self.unread)
     }
 
     /// Skips what cannot be reached any more.
@@ -344,25 +398,33 @@ impl<'a> Board<'a> {
     #[must_use]
     pub fn next_journal(&self) -> Journal {
         let stages = self.study.nodes.iter().zip(&self.nodes).filter_map(|(node, progress)| {
-            let last = self.journal.stage(&node.name).cloned();
+            let last = || self.last.get(&node.name).map(|&index| self.journal.stages[index].clone());
             let keys = || progress.parts.iter().map(|part| part.record.clone());
             match progress.state {
                 StageState::Hit | StageState::Done => Some(JournalStage {
                     name: node.name.clone(),
                     keys: keys().collect(),
-                    whole: progress.whole.map(|key| key.to_string()),
+                    whole: progress.whole,
                     failed: Vec::new(),
                 }),
                 StageState::Failed => Some(JournalStage {
                     name: node.name.clone(),
-                    failed: keys().map(|record| record.key).collect(),
-                    ..last.unwrap_or_default()
+                    failed: keys().map(|record| Failed(record.key)).collect(),
+                    ..last().unwrap_or_default()
                 }),
-                _ => last,
+                _ => last(),
             }
         });
         Journal { stages: stages.collect() }
     }
+}
+
+/// The nodes that are read, each once.
+pub fn distinct(inputs: &[Input]) -> Vec<usize> {
+    let mut nodes: Vec<usize> = inputs.iter().map(|input| input.node).collect();
+    nodes.sort_unstable();
+    nodes.dedup();
+    nodes
 }
 
 impl Progress {

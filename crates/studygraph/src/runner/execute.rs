@@ -15,6 +15,7 @@ use rayon::{ScopeFifo, ThreadPoolBuilder};
 use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
 use super::fault::Fault;
+use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::plan;
@@ -66,10 +67,11 @@ pub fn run(
             Ok(())
         };
         let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
+        let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
         folder.publish(
             &outcome.manifest(study),
             facts,
-            Source { bytes: &bytes, draw, next: &next, code: study.program.about.code },
+            Source { bytes: &bytes, table: Some(&table), draw, next: &next, code: study.program.about.code },
         )
     };
     let mut outcome = execute(study, cache, options, observer, stop)?;
@@ -82,7 +84,9 @@ pub fn run(
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
-    Ok((outcome, published?))
+    let published = published?;
+    note::keep(study, cache, options, folder, &outcome, &published);
+    Ok((outcome, published))
 }
 
 /// What the next run will miss.
@@ -141,6 +145,7 @@ pub fn execute(
         board = run.board.into_inner().unwrap_or_else(PoisonError::into_inner);
     }
     board.close();
+    cache.flush();
     let journal = board.next_journal();
     if journal == board.journal {
         cache.note_use(&study.name);
@@ -268,7 +273,13 @@ impl Run<'_> {
         }
         board.step(node, step);
         let queued = if board.halted.is_some() { Vec::new() } else { board.settle() };
-        self.loaded().retain(|(node, _), _| board.is_read(*node));
+        let mut loaded = self.loaded();
+        // Its own tables too: the last reader may have been skipped while they were put together.
+        let own = Some(node).filter(|node| !board.is_read(*node));
+        for node in board.take_unread().into_iter().chain(own) {
+            loaded.remove(&node);
+        }
+        drop(loaded);
         drop(board);
         self.spawn(scope, 1, queued);
     }
@@ -297,7 +308,7 @@ impl Run<'_> {
                 stored.push(StoredTable::describe(&table)?);
             }
             if is_read {
-                self.loaded().insert((node, name.clone()), table);
+                self.loaded().entry(node).or_default().insert(name.clone(), table);
             }
         }
         if let Some(known) = known {

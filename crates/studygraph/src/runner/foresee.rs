@@ -5,7 +5,7 @@
 
 use std::collections::BTreeMap;
 
-use super::board::Board;
+use super::board::{Board, distinct};
 use super::chunk::chunks;
 use crate::stage::{Ahead, Estimate, RowCount, Stage};
 use declare::record::Record;
@@ -161,29 +161,52 @@ fn total(board: &Board, stages: &[Option<Expected>], wholes: &[Estimate], proces
 /// The most memory of stages that may run at the same time: whatever set that is, for any of its stages it is among those
 /// that neither read from it nor are read by it, near or far. Of those that take one thread there are no more than threads.
 fn at_once(board: &Board, stages: &[Option<Expected>], threads: usize) -> u64 {
-    let count = stages.len();
-    let mut above = vec![vec![false; count]; count];
-    for &node in &board.graph.order {
-        for input in &board.graph.inputs[node] {
-            let further = above[input.node].clone();
-            above[node][input.node] = true;
-            above[node].iter_mut().zip(further).for_each(|(mine, theirs)| *mine |= theirs);
-        }
-    }
-    let above = &above;
     let memory = |node: usize| stages[node].as_ref().map_or(0, |stage| stage.memory);
-    let beside = |node: usize| {
-        let alone = board.study.nodes[node].stage.runs_alone();
-        let others = (0..count).filter(move |&other| !alone && !board.study.nodes[other].stage.runs_alone());
-        others.filter(move |&other| other != node && !above[node][other] && !above[other][node])
+    let mut running: Vec<usize> = (0..stages.len()).filter(|&node| memory(node) > 0).collect();
+    // Those that take most come first, so that few are looked at where there are very many.
+    running.sort_by_key(|&node| std::cmp::Reverse(memory(node)));
+    let above = Above::of(board, &running);
+    let alone = |node: usize| board.study.nodes[node].stage.runs_alone();
+    let parallel = |node: usize| stages[node].as_ref().is_some_and(|stage| stage.parallel);
+    let shared: Vec<usize> = (0..running.len()).filter(|&place| parallel(running[place])).collect();
+    let single: Vec<usize> = (0..running.len()).filter(|&place| !parallel(running[place])).collect();
+    let all = |(place, &node): (usize, &usize)| {
+        let beside = |&&other: &&usize| {
+            let apart = other != place && !alone(node) && !alone(running[other]);
+            other == place || apart && !above.holds(node, other) && !above.holds(running[other], place)
+        };
+        let single = single.iter().filter(beside).take(threads);
+        shared.iter().filter(beside).chain(single).map(|&place| memory(running[place])).fold(0, u64::saturating_add)
     };
-    let all = |node: usize| {
-        let parallel = |node: usize| stages[node].as_ref().is_some_and(|stage| stage.parallel);
-        let (shared, mut single): (Vec<usize>, Vec<usize>) =
-            beside(node).chain([node]).partition(|node| parallel(*node));
-        single.sort_unstable_by_key(|node| std::cmp::Reverse(memory(*node)));
-        let together = shared.into_iter().chain(single.into_iter().take(threads));
-        together.map(memory).fold(0, u64::saturating_add)
-    };
-    (0..count).filter(|&node| memory(node) > 0).map(all).max().unwrap_or(0)
+    running.iter().enumerate().map(all).max().unwrap_or(0)
+}
+
+/// Which of some nodes each node reads from, near or far: a bit for each of them.
+struct Above {
+    bits: Vec<u64>,
+    words: usize,
+}
+
+impl Above {
+    fn of(board: &Board, some: &[usize]) -> Self {
+        let words = some.len().div_ceil(64);
+        let mut above = Self { bits: vec![0; words * board.nodes.len()], words };
+        let mut place = vec![None; board.nodes.len()];
+        some.iter().enumerate().for_each(|(at, &node)| place[node] = Some(at));
+        for &node in &board.graph.order {
+            for input in distinct(&board.graph.inputs[node]) {
+                for word in 0..words {
+                    above.bits[node * words + word] |= above.bits[input * words + word];
+                }
+                if let Some(at) = place[input] {
+                    above.bits[node * words + at / 64] |= 1 << (at % 64);
+                }
+            }
+        }
+        above
+    }
+
+    fn holds(&self, node: usize, place: usize) -> bool {
+        self.bits[node * self.words + place / 64] >> (place % 64) & 1 == 1
+    }
 }

@@ -3,16 +3,19 @@
 //! Demand is that of the whole study plus what the user asks for, also when only some stages are run: otherwise
 //! `--only` would change keys. Must not know: the cache, states.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
+use std::sync::Arc;
 
 use petgraph::algo::tarjan_scc;
 use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::DfsPostOrder;
 
+use super::key;
 use super::options::Wanted;
 use crate::stage::{Demand, Omission, Port, Stage, Want};
 use crate::study::{Node, Study};
 use crate::table::schema::Schema;
+use declare::digest::Digest;
 use declare::error::{Diagnostic, suggest};
 
 /// A port with its source found.
@@ -33,25 +36,43 @@ pub struct Graph {
     /// The nodes that read from each node, ascending.
     pub readers: Vec<Vec<usize>>,
     pub demands: Vec<Demand>,
-    pub outputs: Vec<Vec<Schema>>,
+    pub outputs: Vec<Arc<[Schema]>>,
+    /// What is asked of each node, of what it can give; nodes of which the same is asked share it.
+    pub demanded: Vec<Arc<[Arc<Schema>]>>,
+    /// The digest of the code that each node depends on.
+    pub codes: Vec<Digest>,
+}
+
+/// The nodes of a study by their names.
+struct Names<'a> {
+    study: &'a Study,
+    nodes: HashMap<&'a str, usize>,
+}
+
+impl Names<'_> {
+    fn find(&self, name: &str) -> Result<usize, Diagnostic> {
+        self.nodes.get(name).copied().map_or_else(|| find(self.study, name), Ok)
+    }
 }
 
 impl Graph {
     /// # Errors
     /// A port whose stage, table or column does not exist; a cycle.
     pub fn new(study: &Study, wanted: &[Wanted]) -> Result<Self, Diagnostic> {
+        let nodes = study.nodes.iter().enumerate().map(|(index, node)| (node.name.as_str(), index)).collect();
+        let names = Names { study, nodes };
         let ports: Vec<Vec<Port>> = study.nodes.iter().map(|node| node.stage.inputs()).collect();
         let mut inputs = Vec::new();
         for (node, of_node) in study.nodes.iter().zip(&ports) {
             let resolved = of_node.iter().map(|port| {
-                let source = source(study, &ports, node, port, 0)?;
+                let source = source(&names, &ports, node, port, 0)?;
                 Ok(Input { port: port.name.clone(), node: source, wants: port.wants.clone() })
             });
             inputs.push(resolved.collect::<Result<Vec<_>, Diagnostic>>().map_err(|error| error.or_at(node.place))?);
         }
         let order = order(study, &inputs)?;
-        let outputs: Vec<Vec<Schema>> = study.nodes.iter().map(|node| node.stage.outputs()).collect();
-        let demands = demand(study, wanted, (&order, &ports, &outputs), &mut inputs)?;
+        let outputs = outputs(study);
+        let demands = demand(&names, wanted, (&order, &ports, &outputs), &mut inputs)?;
         let mut readers = vec![Vec::new(); study.nodes.len()];
         for (reader, of_reader) in inputs.iter().enumerate() {
             for input in of_reader {
@@ -60,7 +81,8 @@ impl Graph {
                 }
             }
         }
-        Ok(Self { order, inputs, readers, demands, outputs })
+        let (demanded, codes) = (demanded(&outputs, &demands), key::codes(study));
+        Ok(Self { order, inputs, readers, demands, outputs, demanded, codes })
     }
 
     /// Which nodes are needed for these.
@@ -86,7 +108,7 @@ impl Graph {
         let demand = &self.demands[node];
         let why = "no stage reads it and nobody asked for it";
         let mut omissions = Vec::new();
-        for schema in &self.outputs[node] {
+        for schema in self.outputs[node].iter() {
             if !demand.table(&schema.name) {
                 let omission = Omission::new(format!("table `{}`", schema.name), why);
                 omissions.push(omission.saving(stage.saved(demand, &schema.name, None)));
@@ -113,9 +135,48 @@ pub fn find(study: &Study, name: &str) -> Result<usize, Diagnostic> {
     })
 }
 
+/// What each node can give; nodes of one kind that can give the same share it.
+fn outputs(study: &Study) -> Vec<Arc<[Schema]>> {
+    let mut last: HashMap<&str, Arc<[Schema]>> = HashMap::new();
+    let of_node = |node: &Node| {
+        if let Some(known) = last.get(node.kind.name).filter(|_| node.stage.gives_what_its_kind_does()) {
+            return Arc::clone(known);
+        }
+        let own = node.stage.outputs();
+        let known = last.entry(node.kind.name).or_insert_with(|| own.as_slice().into());
+        if **known != *own {
+            *known = own.into();
+        }
+        Arc::clone(known)
+    };
+    study.nodes.iter().map(of_node).collect()
+}
+
+/// The demanded tables with the demanded columns.
+fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Arc<[Arc<Schema>]>> {
+    // What can be given and what is asked, last of all nodes that can give the same.
+    let mut last: HashMap<*const Schema, (&Demand, Arc<[Arc<Schema>]>)> = HashMap::new();
+    let of_node = |(outputs, demand): (&Arc<[Schema]>, &'_ Demand)| {
+        outputs
+            .iter()
+            .filter(|schema| demand.table(&schema.name))
+            .map(|schema| Arc::new(demand.narrowed(schema.clone())))
+            .collect::<Arc<[_]>>()
+    };
+    let mut all = Vec::with_capacity(outputs.len());
+    for (outputs, demand) in outputs.iter().zip(demands) {
+        let known = last.get(&outputs.as_ptr()).filter(|(asked, _)| *asked == demand);
+        let own = known.map_or_else(|| of_node((outputs, demand)), |(_, own)| Arc::clone(own));
+        last.insert(outputs.as_ptr(), (demand, Arc::clone(&own)));
+        all.push(own);
+    }
+    all
+}
+
 /// Follows `through`, port by port.
-fn source(study: &Study, ports: &[Vec<Port>], node: &Node, port: &Port, depth: usize) -> Result<usize, Diagnostic> {
-    let index = find(study, &port.stage).map_err(|error| error.or_at(node.place))?;
+fn source(names: &Names, ports: &[Vec<Port>], node: &Node, port: &Port, depth: usize) -> Result<usize, Diagnostic> {
+    let study = names.study;
+    let index = names.find(&port.stage).map_err(|error| error.or_at(node.place))?;
     let Some(through) = port.through else { return Ok(index) };
     let via = &study.nodes[index];
     if depth > study.nodes.len() {
@@ -130,17 +191,18 @@ fn source(study: &Study, ports: &[Vec<Port>], node: &Node, port: &Port, depth: u
         );
         return Err(Diagnostic::new(message).at(node.place).help(suggest(through, known)));
     };
-    source(study, ports, via, next, depth + 1)
+    source(names, ports, via, next, depth + 1)
 }
 
 /// What is asked of each node by the user, by nodes that read it, and by what a study shows that says nothing of it. Inputs that nothing asked of their reader needs are
 /// taken out.
 fn demand(
-    study: &Study,
+    names: &Names,
     wanted: &[Wanted],
-    (order, ports, outputs): (&[usize], &[Vec<Port>], &[Vec<Schema>]),
+    (order, ports, outputs): (&[usize], &[Vec<Port>], &[Arc<[Schema]>]),
     inputs: &mut [Vec<Input>],
 ) -> Result<Vec<Demand>, Diagnostic> {
+    let study = names.study;
     let mut demands: Vec<Demand> = (outputs.iter())
         .map(|outputs| {
             let always = outputs.iter().filter(|schema| !schema.on_demand);
@@ -148,7 +210,7 @@ fn demand(
         })
         .collect();
     for Wanted { stage, want } in wanted {
-        let index = find(study, stage)?;
+        let index = names.find(stage)?;
         add(&mut demands[index], &study.nodes[index], &outputs[index], want)?;
     }
     let pictures = study.program.pictures;

@@ -1,17 +1,18 @@
 //! The cache key of a stage or chunk, and the sentence that says why it differs from the last one.
 //!
-//! Both come from one [`KeyRecord`]: the key is the digest of the record's parts and of nothing else, so whatever
-//! changes a key has a name. Never in it: labels of stages, paths, times, thread counts. The name of a stage enters by
+//! Both come from one [`KeyRecord`]: the key is the digest of the parts that are in the record and of nothing else, so
+//! whatever changes a key has a name. Never in it: labels of stages, paths, times, thread counts. The name of a stage enters by
 //! its seed alone, and only where random numbers are drawn. Must not know: the cache, states.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
 
 use super::chunk::{Chunks, chunks};
 use super::graph::{Graph, Input};
 use crate::stage::{Demand, Kind};
 use crate::store::entry::StoredTable;
-use crate::store::manifest::KeyRecord;
-use crate::study::Study;
+use crate::store::manifest::{KeyRecord, Short};
+use crate::study::{Node, Study};
 use declare::digest::{Digest, Writer};
 use declare::record::Record;
 use declare::seed::Seed;
@@ -70,15 +71,8 @@ pub fn parts<'t>(
     let own = of_study.stage.parts();
     let chunks = if own.is_some() { None } else { chunks(of_study.kind, &of_study.record) };
     let inputs = graph.inputs[node].iter().map(|from| (from.port.clone(), input(from, tables(from.node))));
-    // A stage that runs variants of another depends on that one's code too.
-    let program = study.program;
-    let code = of_study.record.kinds().into_iter().fold((program.code_of)(of_study.kind.name), |all, nested| {
-        let version = program.kind(nested).map_or(0, |kind| kind.version);
-        format!("{all} {nested} {version} {}", (program.code_of)(nested))
-    });
     let common = Parts {
-        kind: of_study.kind,
-        code: &code,
+        code: graph.codes[node],
         record: &of_study.record,
         rows: match (&own, &chunks) {
             (Some(own), _) => own.fields.to_vec(),
@@ -89,13 +83,10 @@ pub fn parts<'t>(
         seed: of_study.stage.uses_seed().then(|| Seed::of_stage(study.seed, &of_study.name)),
         demand: &graph.demands[node],
     };
-    let whole = common.record(None);
+    let common = common.common();
     let part = |axis: Option<Digest>, cut: Cut| {
-        let mut record = whole.clone();
-        record.axis = axis.map_or_else(String::new, |digest| digest.to_string());
-        let key = key(&record);
-        record.key = key.to_string();
-        KeyedChunk { key, record, cut }
+        let record = common.record(axis.as_ref());
+        KeyedChunk { key: record.key, record, cut }
     };
     if let Some(own) = own {
         let field = own.fields.first().copied().unwrap_or_default();
@@ -119,10 +110,34 @@ fn values_of(field: &str, values: &[f64]) -> Digest {
     Writer::new("gearstudy 1 axis").text(field).floats(values).finish()
 }
 
+/// The digest of the code that each stage depends on: that of its kind, and of the kinds of which it runs variants.
+#[must_use]
+pub fn codes(study: &Study) -> Vec<Digest> {
+    let program = study.program;
+    let mut known: BTreeMap<(&str, BTreeSet<&str>), Digest> = BTreeMap::new();
+    let of_node = |node: &Node| {
+        let nested = node.record.kinds();
+        *known.entry((node.kind.name, nested)).or_insert_with_key(|(kind, nested)| {
+            let text = nested.iter().fold((program.code_of)(kind), |all, nested| {
+                let version = program.kind(nested).map_or(0, |kind| kind.version);
+                format!("{all} {nested} {version} {}", (program.code_of)(nested))
+            });
+            code(node.kind, &text)
+        })
+    };
+    study.nodes.iter().map(of_node).collect()
+}
+
+/// The digest of a kind whose sources have this one.
+#[must_use]
+pub fn code(kind: &Kind, sources: &str) -> Digest {
+    Writer::new("gearstudy 1 kind").text(kind.name).integer(kind.version.into()).text(sources).finish()
+}
+
 /// What the chunks of one stage have in common.
 pub struct Parts<'a> {
-    pub kind: &'a Kind,
-    pub code: &'a str,
+    /// As [`code`].
+    pub code: Digest,
     pub record: &'a Record,
     /// The fields that say which rows there are.
     pub rows: Vec<&'static str>,
@@ -136,25 +151,29 @@ pub struct Parts<'a> {
 
 impl Parts<'_> {
     /// The record of one chunk, that has these `values` of the axis; none of a stage that is not cut.
-    #[must_use]
+    #[cfg(test)]
     pub fn record(&self, values: Option<&[f64]>) -> KeyRecord {
+        let axis = values.zip(self.rows.first()).map(|(values, field)| values_of(field, values));
+        self.common().record(axis.as_ref())
+    }
+
+    /// What is digested once for all chunks.
+    #[must_use]
+    pub fn common(&self) -> Common<'_> {
         let mut config = Writer::new("gearstudy 1 config");
         let mut fields = Vec::new();
         for field in self.record.fields.iter().filter(|(name, _)| !self.rows.contains(name)) {
             let mut writer = Writer::new("gearstudy 1 field");
-            Record { fields: vec![field.clone()], place: self.record.place }.write(&mut writer);
+            Record::write_fields(std::slice::from_ref(field), &mut writer);
             let digest = writer.finish();
             config.text(field.0).digest(&digest);
-            fields.push((field.0.to_owned(), digest.short()));
+            fields.push((field.0.to_owned(), Short::from(&digest)));
         }
         if let (Some(shared), Some(field)) = (self.shared, self.rows.first()) {
             config.text(field).digest(&shared);
-            fields.push(((*field).to_owned(), shared.short()));
+            fields.push(((*field).to_owned(), Short::from(&shared)));
         }
         config.count(fields.len());
-        let axis = values.zip(self.rows.first()).map(|(values, field)| values_of(field, values));
-        let version = self.kind.version.into();
-        let code = Writer::new("gearstudy 1 kind").text(self.kind.name).integer(version).text(self.code).finish();
         let mut demand = Writer::new("gearstudy 1 demand");
         demand.count(self.demand.tables.len());
         for (table, columns) in &self.demand.tables {
@@ -163,34 +182,47 @@ impl Parts<'_> {
                 demand.text(column);
             }
         }
-        let hexadecimal = |digest: Option<Digest>| digest.map_or_else(String::new, |digest| digest.to_string());
-        let mut record = KeyRecord {
-            key: String::new(),
-            config: config.finish().to_string(),
-            fields,
-            axis: hexadecimal(axis),
-            code: code.to_string(),
-            seed: hexadecimal(self.seed.map(|seed| seed.digest())),
-            demand: demand.finish().to_string(),
-            inputs: self.inputs.iter().map(|(port, digest)| (port.clone(), digest.to_string())).collect(),
-        };
-        record.key = key(&record).to_string();
-        record
+        let seed = self.seed.map(|seed| seed.digest());
+        Common { code: self.code, config: config.finish(), fields, seed, demand: demand.finish(), inputs: &self.inputs }
     }
 }
 
-/// The key that belongs to the parts in a record.
-#[must_use]
-pub fn key(record: &KeyRecord) -> Digest {
-    let mut writer = Writer::new("gearstudy 1 key");
-    for part in [&record.code, &record.config, &record.axis, &record.seed, &record.demand] {
-        writer.text(part);
+/// Digests that all chunks of a stage have in common.
+pub struct Common<'a> {
+    code: Digest,
+    config: Digest,
+    fields: Vec<(String, Short)>,
+    seed: Option<Digest>,
+    demand: Digest,
+    inputs: &'a [(String, Digest)],
+}
+
+impl Common<'_> {
+    /// The record of the chunk that this digest tells from the others; none of a stage that is not cut.
+    #[must_use]
+    pub fn record(&self, axis: Option<&Digest>) -> KeyRecord {
+        let mut key = Writer::new("gearstudy 1 key");
+        for part in [Some(&self.code), Some(&self.config), axis, self.seed.as_ref(), Some(&self.demand)] {
+            match part {
+                Some(digest) => key.text(&digest.to_string()),
+                None => key.text(""),
+            };
+        }
+        key.count(self.inputs.len());
+        for (port, digest) in self.inputs {
+            key.text(port).text(&digest.to_string());
+        }
+        KeyRecord {
+            key: key.finish(),
+            config: Short::from(&self.config),
+            fields: self.fields.clone(),
+            axis: axis.map(Short::from),
+            code: Short::from(&self.code),
+            seed: self.seed.as_ref().map(Short::from),
+            demand: Short::from(&self.demand),
+            inputs: self.inputs.iter().map(|(port, digest)| (port.clone(), Short::from(digest))).collect(),
+        }
     }
-    writer.count(record.inputs.len());
-    for (port, digest) in &record.inputs {
-        writer.text(port).text(digest);
-    }
-    writer.finish()
 }
 
 /// The digest of what a port reads.
@@ -287,12 +319,12 @@ pub fn explain(last: &[KeyRecord], now: &KeyRecord, axis: Option<&'static str>) 
         why.push(axis.map_or(Why::Config(Vec::new()), Why::Axis));
     }
     why.extend(differences(&nearest.inputs, &now.inputs).into_iter().map(Why::Input));
-    for (was, is, reason) in [
-        (&nearest.seed, &now.seed, Why::Seed),
-        (&nearest.code, &now.code, Why::Code),
-        (&nearest.demand, &now.demand, Why::Demand),
+    for (changed, reason) in [
+        (nearest.seed != now.seed, Why::Seed),
+        (nearest.code != now.code, Why::Code),
+        (nearest.demand != now.demand, Why::Demand),
     ] {
-        if was != is {
+        if changed {
             why.push(reason);
         }
     }
@@ -301,7 +333,7 @@ pub fn explain(last: &[KeyRecord], now: &KeyRecord, axis: Option<&'static str>) 
 }
 
 /// The names whose value differs, or that only one of the two has.
-fn differences(was: &[(String, String)], is: &[(String, String)]) -> Vec<String> {
+fn differences(was: &[(String, Short)], is: &[(String, Short)]) -> Vec<String> {
     let changed = is.iter().filter(|pair| !was.contains(pair)).map(|(name, _)| name.clone());
     let gone = was.iter().filter(|(name, _)| !is.iter().any(|(other, _)| other == name)).map(|(name, _)| name.clone());
     changed.chain(gone).collect()

@@ -11,6 +11,7 @@ pub mod foresee;
 pub mod graph;
 pub mod key;
 pub mod limits;
+pub mod note;
 pub mod options;
 mod others;
 pub mod outcome;

@@ -26,7 +26,7 @@ pub(super) struct OfStage<'r, 'a> {
 impl<'r, 'a> OfStage<'r, 'a> {
     pub(super) fn new(run: &'r Run<'a>, node: usize, parts: &'r [KeyedChunk]) -> Self {
         let board = run.board();
-        let last = board.journal.stage(&board.study.nodes[node].name);
+        let last = board.last(node);
         // A stage that is forced is computed, whatever is known.
         let is_forced = run.options.force.applies(&board.study.nodes[node].name);
         let earlier = match (parts.first(), last) {
@@ -36,7 +36,7 @@ impl<'r, 'a> OfStage<'r, 'a> {
                     (&key.config, &key.code, &key.seed, &key.demand) == (&now.config, &now.code, &now.seed, &now.demand)
                         && key.inputs == now.inputs
                 });
-                alike.filter_map(|key| Digest::from_hex(&key.key)).collect()
+                alike.map(|record| record.key).collect()
             }
             _ => Vec::new(),
         };

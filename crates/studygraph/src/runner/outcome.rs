@@ -2,15 +2,21 @@
 //!
 //! Must not know: how it is shown; threads.
 
+use std::collections::HashMap;
+use std::sync::Arc;
+
 use super::board::{Board, StageState};
 use super::fault::Fault;
 use super::key::phrase;
 use super::plan::left_out;
 use crate::stage::Omission;
+use crate::store::bundle;
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
-use crate::store::manifest::{FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord};
+use crate::store::manifest::{
+    Described, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
+};
 use crate::store::parquet;
 use crate::study::{Study, settings};
 use crate::table::data::Table;
@@ -23,6 +29,7 @@ use declare::work::Work;
 pub struct Outcome {
     /// Every stage after all it reads.
     pub stages: Vec<StageOutcome>,
+    places: HashMap<String, usize>,
     /// Whether the user stopped it.
     pub stopped: bool,
     pub seconds: f64,
@@ -51,8 +58,9 @@ pub struct StageOutcome {
     /// As the manifest keeps it.
     pub config: serde_json::Value,
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
-    pub tables: Vec<(Schema, StoredTable)>,
+    pub tables: Vec<(Arc<Schema>, StoredTable)>,
     parts: Vec<Digest>,
+    whole: Option<Digest>,
 }
 
 impl Outcome {
@@ -65,11 +73,8 @@ impl Outcome {
             let mut warnings: Vec<String> = progress.of_runs().flat_map(|run| run.warnings.iter().cloned()).collect();
             warnings.sort();
             warnings.dedup();
-            let schema = |name: &str| board.graph.outputs[node].iter().find(|schema| schema.name == name).cloned();
-            let tables = progress.tables.iter().filter_map(|table| {
-                let schema = board.graph.demands[node].narrowed(schema(&table.name)?);
-                Some((schema, table.clone()))
-            });
+            let schema = |name: &str| board.graph.demanded[node].iter().find(|schema| schema.name == name).cloned();
+            let tables = progress.tables.iter().filter_map(|table| Some((schema(&table.name)?, table.clone())));
             StageOutcome {
                 name: of_study.name.clone(),
                 kind: of_study.kind.name,
@@ -92,14 +97,17 @@ impl Outcome {
                 config: settings::shown(of_study.kind.fields, &of_study.record),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
+                whole: progress.whole,
             }
         });
-        Self { stages: stages.collect(), stopped, seconds }
+        let stages: Vec<StageOutcome> = stages.collect();
+        let places = stages.iter().enumerate().map(|(place, stage)| (stage.name.clone(), place)).collect();
+        Self { stages, places, stopped, seconds }
     }
 
     #[must_use]
     pub fn stage(&self, name: &str) -> Option<&StageOutcome> {
-        self.stages.iter().find(|stage| stage.name == name)
+        self.places.get(name).map(|&place| &self.stages[place])
     }
 
     /// The faults, with the names of their stages.
@@ -142,6 +150,12 @@ impl Outcome {
         self.stages.iter().filter(|stage| stage.parts.iter().any(|key| cache.is_unkept(*key))).count()
     }
 
+    /// The keys under which the cache has what came of it.
+    pub fn keys(&self) -> impl Iterator<Item = Digest> {
+        let done = self.stages.iter().filter(|stage| stage.state.has_tables());
+        done.flat_map(|stage| stage.parts.iter().copied().chain(stage.whole))
+    }
+
     fn parts(&self, stage: &str) -> &[Digest] {
         self.stage(stage).filter(|stage| stage.state.has_tables()).map_or(&[], |stage| &stage.parts)
     }
@@ -154,7 +168,12 @@ impl Outcome {
             tables: source.tables.clone(),
             figures: source.figures.clone(),
         });
-        Manifest {
+        // Tables of one schema share what the manifest says of it.
+        let mut described: HashMap<*const Schema, Described> = HashMap::new();
+        let mut described = |schema: &Arc<Schema>| {
+            described.entry(Arc::as_ptr(schema)).or_insert_with(|| Described::of(schema)).clone()
+        };
+        let mut manifest = Manifest {
             format: FORMAT,
             study: study.name.clone(),
             title: study.title.clone(),
@@ -162,15 +181,17 @@ impl Outcome {
             source,
             study_digest: blake3::hash(study.text.as_bytes()).to_string(),
             seconds: self.seconds,
-            stages: self.stages.iter().map(StageOutcome::record).collect(),
+            stages: self.stages.iter().map(|stage| stage.record(&mut described)).collect(),
             tolerances: study.tolerances.iter().map(|one| (one.name.clone(), one.text.clone())).collect(),
             ..Manifest::default()
-        }
+        };
+        bundle::assign(&mut manifest);
+        manifest
     }
 }
 
 impl StageOutcome {
-    fn record(&self) -> StageRecord {
+    fn record(&self, described: &mut impl FnMut(&Arc<Schema>) -> Described) -> StageRecord {
         let status = match self.state {
             StageState::Hit if self.ran == 0 => "hit",
             StageState::Hit | StageState::Done => "ran",
@@ -194,7 +215,11 @@ impl StageOutcome {
             work: self.work.named(),
             warnings: self.warnings.clone(),
             left_out: self.left_out.iter().map(omission).collect(),
-            tables: self.tables.iter().map(|(schema, table)| TableRecord::new(&self.name, schema, table)).collect(),
+            tables: self
+                .tables
+                .iter()
+                .map(|(schema, table)| TableRecord::described(&self.name, &described(schema), table))
+                .collect(),
         }
     }
 }

@@ -15,7 +15,7 @@ use declare::digest::Digest;
 pub fn reached(manifest: &Manifest, cache: &Cache) -> BTreeSet<Digest> {
     let mut all = BTreeSet::new();
     for stage in &manifest.stages {
-        let keys: Vec<Digest> = stage.keys.iter().filter_map(|record| Digest::from_hex(&record.key)).collect();
+        let keys: Vec<Digest> = stage.keys.iter().map(|record| record.key).collect();
         if keys.len() > 1 {
             let found = keys.iter().map_while(|key| match cache.look_up(*key) {
                 Lookup::Found(entry) => Some(entry.tables),

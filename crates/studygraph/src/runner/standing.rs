@@ -4,6 +4,8 @@
 //! contents of all tables, so the keys that a run would find can be compared with those the results were made under.
 //! Demand is what the manifest shows was asked for. Must not know: how it is shown.
 
+use std::collections::{HashMap, HashSet};
+
 use super::graph::Graph;
 use super::key::{self, KeyedChunk, explain, phrase};
 use super::options::Wanted;
@@ -11,7 +13,7 @@ use crate::stage::Want;
 use crate::store::entry::StoredTable;
 use crate::store::manifest::{KeyRecord, Manifest, StageRecord, TableRecord};
 use crate::store::results::{FileState, Folder, Known, PAGE, is_drawn};
-use crate::study::Study;
+use crate::study::{Node, Study};
 use declare::digest::Digest;
 use declare::error::Diagnostic;
 
@@ -130,6 +132,8 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
     let manifest = known.map(|known| &known.manifest);
     let graph = Graph::new(study, &manifest.map(|manifest| demand(study, manifest)).unwrap_or_default())?;
     let mut tables: Vec<Option<Vec<StoredTable>>> = vec![None; study.nodes.len()];
+    let records: HashMap<&str, &StageRecord> =
+        manifest.iter().flat_map(|manifest| &manifest.stages).map(|stage| (&*stage.name, stage)).collect();
     let mut stages = Vec::new();
     for &node in &graph.order {
         let name = &study.nodes[node].name;
@@ -137,7 +141,7 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         unknown.sort_unstable();
         unknown.dedup();
         unknown.retain(|&input| tables[input].is_none());
-        let record = manifest.and_then(|manifest| manifest.stages.iter().find(|stage| stage.name == *name));
+        let record = records.get(name.as_str()).copied();
         let (mut absent, mut keys) = (Vec::new(), Vec::new());
         let state = match (known, record) {
             (None, _) => Condition::Missing("there are no results".to_owned()),
@@ -167,17 +171,17 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
         };
         stages.push(StageStanding { name: name.clone(), state, absent, keys });
     }
-    let in_study = |stage: &&StageRecord| study.nodes.iter().any(|node| node.name == stage.name);
+    let names: HashSet<&str> = study.nodes.iter().map(|node| node.name.as_str()).collect();
+    let in_study = |stage: &&StageRecord| names.contains(stage.name.as_str());
     let of_manifest = manifest.iter().flat_map(|manifest| &manifest.stages);
     let digest = blake3::hash(study.text.as_bytes()).to_string();
-    let of_table = |file: &str| {
-        let mut tables = manifest.iter().flat_map(|manifest| &manifest.stages).flat_map(|stage| &stage.tables);
-        tables.any(|table| table.file == file || table.files.iter().any(|held| held == file))
-    };
+    let tables = manifest.iter().flat_map(|manifest| &manifest.stages).flat_map(|stage| &stage.tables);
+    let of_tables: HashSet<&String> = tables.flat_map(|table| table.files.iter().chain([&table.file])).collect();
     let others: Vec<(&str, FileState)> = known
         .iter()
-        .flat_map(|known| known.manifest.files.iter().map(|record| (record.file.as_str(), known.state(&record.file))))
-        .filter(|(file, _)| !of_table(file))
+        .flat_map(|known| known.manifest.files.iter().map(move |record| (known, &record.file)))
+        .filter(|(_, file)| !of_tables.contains(file))
+        .map(|(known, file)| (file.as_str(), known.state(file)))
         .collect();
     let drawn = || others.iter().filter(|(file, _)| is_drawn(file));
     Ok(Standing {
@@ -198,9 +202,10 @@ pub fn standing_of(study: &Study, known: Option<&Known>) -> Result<Standing, Dia
 #[must_use]
 pub fn demand(study: &Study, manifest: &Manifest) -> Vec<Wanted> {
     let mut wanted = Vec::new();
-    for (node, record) in manifest.stages.iter().filter_map(|record| {
-        study.nodes.iter().find(|node| node.name == record.name && node.kind.name == record.kind).zip(Some(record))
-    }) {
+    let nodes: HashMap<(&str, &str), &Node> =
+        study.nodes.iter().map(|node| ((&*node.name, node.kind.name), node)).collect();
+    for record in &manifest.stages {
+        let Some(node) = nodes.get(&(&*record.name, &*record.kind)) else { continue };
         for schema in node.stage.outputs() {
             let name = format!("{}.{}", node.name, schema.name);
             let Some(table) = record.tables.iter().find(|table| table.name == name) else { continue };

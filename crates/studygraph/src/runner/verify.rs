@@ -21,6 +21,7 @@ use crate::diff::table;
 use crate::program::Program;
 use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
+use crate::store::bundle::Opened;
 use crate::store::cache::Cache;
 use crate::store::manifest::{FORMAT, Manifest, TableRecord};
 use crate::store::parquet;
@@ -130,8 +131,8 @@ pub fn unpack<R: Read + Seek>(
     let manifest: Manifest =
         serde_json::from_slice(&bytes).map_err(|error| archive.damaged(&inside, &error.to_string()))?;
     let digest = blake3::hash(study.text.as_bytes()).to_string();
-    let problem = if manifest.format != FORMAT {
-        Some(format!("it has format {}; this program reads format {FORMAT}", manifest.format))
+    let problem = if !manifest.is_known() {
+        Some(format!("it has format {}; this program reads formats 1 to {FORMAT}", manifest.format))
     } else if manifest.study != study.name || manifest.study_digest != digest {
         Some(format!("it is not about the study `{name}` beside it"))
     } else if manifest.stages.iter().all(|stage| stage.tables.is_empty()) {
@@ -162,11 +163,12 @@ pub fn verify<R: Read + Seek>(
     let Unpacked { study, manifest } = unpack(archive, work, program)?;
     let folder = archive::results(&study.name);
     let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
+    let opened = Opened::default();
     for record in &records {
         // Before anything runs: what is not there, or not what it should be, cannot be compared.
         let entry = format!("{folder}{}", record.file);
         let bytes = archive.bytes(&entry)?;
-        archived(archive, &entry, record, bytes)?;
+        archived(archive, &entry, record, bytes, &opened)?;
     }
     let made = files::check(archive, &manifest, (draw, program.about.code), work)?;
     let cache = Cache::open(&work.join("cache")).map_err(RunError::from)?;
@@ -186,7 +188,7 @@ pub fn verify<R: Read + Seek>(
         let diff = match computed(&outcome, &cache, record)? {
             // The very bytes: nothing of the archive need be understood.
             Some((_, computed)) if computed == bytes => TableDiff { by_values: true, ..TableDiff::default() },
-            Some((table, _)) => compared(&archived(archive, &entry, record, bytes)?, &table),
+            Some((table, _)) => compared(&archived(archive, &entry, record, bytes, &opened)?, &table),
             None => TableDiff {
                 state: Difference::Removed,
                 note: "this program gives no such table".to_owned(),
@@ -238,8 +240,10 @@ fn archived<R: Read + Seek>(
     entry: &str,
     record: &TableRecord,
     bytes: Vec<u8>,
+    opened: &Opened,
 ) -> Result<Table, ArchiveError> {
-    let table = parquet::read(bytes).map_err(|problem| archive.damaged(entry, &problem))?;
+    let damaged = |problem: String| archive.damaged(entry, &problem);
+    let table = opened.table(record, entry, || parquet::read(bytes).map_err(damaged), damaged)?;
     if table.content_hash().to_string() == record.content {
         Ok(table)
     } else {

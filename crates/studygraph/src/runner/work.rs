@@ -30,7 +30,7 @@ use declare::seed::Seed;
 use declare::work::Tally;
 
 /// Tables by node and name.
-pub(super) type Loaded = BTreeMap<(usize, String), Arc<Table>>;
+pub(super) type Loaded = BTreeMap<usize, BTreeMap<String, Arc<Table>>>;
 
 pub(super) struct Run<'a> {
     pub(super) cache: &'a Cache,
@@ -127,12 +127,12 @@ impl Run<'_> {
 
     /// A table that some stage reads.
     fn input(&self, node: usize, name: &str) -> Result<Arc<Table>, Ended> {
-        if let Some(table) = self.loaded().get(&(node, name.to_owned())) {
+        if let Some(table) = self.loaded().get(&node).and_then(|tables| tables.get(name)) {
             return Ok(Arc::clone(table));
         }
         let parts = Arc::clone(&self.board().nodes[node].parts);
         let table = self.whole(node, &parts, name)?;
-        self.loaded().insert((node, name.to_owned()), Arc::clone(&table));
+        self.loaded().entry(node).or_default().insert(name.to_owned(), Arc::clone(&table));
         Ok(table)
     }
 

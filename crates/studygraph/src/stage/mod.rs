@@ -50,6 +50,11 @@ pub trait Stage: Send + Sync {
     /// The tables it can give; a table or column marked on demand is computed only when asked for.
     fn outputs(&self) -> Vec<Schema>;
 
+    /// Whether every stage of its kind can give the same: of very many they are asked for once.
+    fn gives_what_its_kind_does(&self) -> bool {
+        false
+    }
+
     /// Why it cannot give a table that other stages of its kind give.
     fn lacks(&self, _table: &str) -> Option<&'static str> {
         None

@@ -1,8 +1,11 @@
 //! The cache: entries by key, and journals by study, in one folder that may be deleted at any time.
 //!
 //! ```text
-//! CACHEDIR.TAG  .gitignore  lock  entries/<2 digits>/<62 digits>  journals/<study>.json
+//! CACHEDIR.TAG  .gitignore  lock  entries/<2 digits>/<62 digits>  packs/<number>.pack  journals/<study>.json
 //! ```
+//!
+//! The first small entries that a run keeps, and every large one, are files of their own, each written through. Where a run
+//! keeps many, the small ones share a pack (`packs.rs`): a file and an `fsync` for each would take longer than to compute them.
 //!
 //! Every file is written under a temporary name and renamed, so a run may be killed at any moment and several may run
 //! at once: both compute, the second finds that the first was right. A run holds the lock shared, cleaning up holds it
@@ -15,18 +18,24 @@
 
 mod carried;
 mod cleaning;
+mod pack;
+mod packs;
 #[cfg(test)]
 mod tests;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{Cursor, ErrorKind};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread::JoinHandle;
 use std::time::{Duration, SystemTime};
 
 pub use cleaning::{Remove, Removed};
 
+use self::pack::Small;
+use self::packs::Packs;
 use super::entry::{self, CacheEntry, OfRun, StoredTable};
 use super::error::StoreError;
 use super::file::{self, Durability};
@@ -37,6 +46,9 @@ use declare::digest::Digest;
 
 /// Where the cache is when nobody says otherwise, under the current folder: one for all studies of a project.
 pub const DEFAULT: &str = ".gearstudy/cache";
+
+/// Where it is noted which studies are up to date.
+pub const NOTES: &str = "notes";
 
 /// Cleaning up takes less.
 const WHILE_CLEANED: Duration = Duration::from_secs(10);
@@ -50,7 +62,15 @@ pub struct Cache {
     /// Held until the cache is dropped; none when nothing is read or written there.
     lock: Option<File>,
     unkept: Mutex<Unkept>,
+    packs: Arc<Packs>,
+    /// Writes packs, once there is something to write.
+    writer: OnceLock<Option<JoinHandle<()>>>,
+    /// Small entries that this run kept.
+    kept: AtomicUsize,
 }
+
+/// So many small entries of a run have files of their own.
+const ALONE: usize = 32;
 
 /// What is not on the disk although it should be.
 #[derive(Default)]
@@ -91,16 +111,19 @@ impl Cache {
             Err(error) => return Err(StoreError::io("open", &path)(error)),
         };
         lock::hold(&lock, &path, true, WHILE_CLEANED)?;
-        Ok(Self { root: root.to_owned(), lock: Some(lock), unkept: Mutex::default() })
+        Ok(Self::new(root, Some(lock), Unkept::default()))
     }
 
     /// Opens the cache in `root`, or does without: then everything is kept in memory, and [`Cache::problems`] says why.
     #[must_use]
     pub fn open_if_possible(root: &Path) -> Self {
-        Self::open(root).unwrap_or_else(|error| {
-            let unkept = Unkept { why: Some(error.to_string()), ..Unkept::default() };
-            Self { root: root.to_owned(), lock: None, unkept: Mutex::new(unkept) }
-        })
+        Self::open(root)
+            .unwrap_or_else(|error| Self::new(root, None, Unkept { why: Some(error.to_string()), ..Unkept::default() }))
+    }
+
+    fn new(root: &Path, lock: Option<File>, unkept: Unkept) -> Self {
+        let (unkept, packs) = (Mutex::new(unkept), Arc::new(Packs::new(root)));
+        Self { root: root.to_owned(), lock, unkept, packs, writer: OnceLock::new(), kept: AtomicUsize::new(0) }
     }
 
     fn create(root: &Path, lock: &Path) -> Result<File, StoreError> {
@@ -115,6 +138,12 @@ impl Cache {
         options.map_err(StoreError::io("open", lock))
     }
 
+    /// The files that hold the entries of these keys.
+    #[must_use]
+    pub fn files(&self, keys: impl Iterator<Item = Digest>) -> BTreeSet<PathBuf> {
+        keys.map(|key| self.packs.path(key).unwrap_or_else(|| self.path(key))).collect()
+    }
+
     fn unkept(&self) -> MutexGuard<'_, Unkept> {
         self.unkept.lock().unwrap_or_else(PoisonError::into_inner)
     }
@@ -126,13 +155,16 @@ impl Cache {
     /// Whether an entry is in memory alone: the next run will not find it.
     #[must_use]
     pub fn is_unkept(&self, key: Digest) -> bool {
-        self.in_memory(key).is_some()
+        self.in_memory(key).is_some() || self.packs.is_unkept(key)
     }
 
     /// What went wrong that costs no results: with entries, with journals.
     #[must_use]
     pub fn problems(&self) -> (Option<String>, Option<String>) {
-        let unkept = self.unkept();
+        let mut unkept = self.unkept();
+        if let Some(problem) = self.packs.take_problem() {
+            unkept.why.get_or_insert(problem);
+        }
         (unkept.why.clone(), unkept.journal.clone())
     }
 
@@ -152,6 +184,7 @@ impl Cache {
         let found = match self.in_memory(key) {
             Some(bytes) => CacheEntry::read(&mut Cursor::new(&*bytes), bytes.len() as u64, key).map(Some),
             None if self.lock.is_none() => Ok(None),
+            None if let Some(found) = self.packs.look_up(key) => found.map(Some),
             None => entry::open(&self.path(key), key).map(|found| found.map(|(entry, _)| entry)),
         };
         match found {
@@ -167,9 +200,35 @@ impl Cache {
     /// [`StoreError::NotDeterministic`] when there are other tables under this key already; when a table cannot be written
     /// as Parquet.
     pub fn put(&self, key: Digest, tables: &[&Table], of_run: OfRun) -> Result<CacheEntry, StoreError> {
+        let is_small = || tables.iter().map(|table| pack::size(table)).sum::<usize>() <= pack::SMALL;
+        if self.lock.is_some() && is_small() && self.kept.fetch_add(1, Ordering::Relaxed) >= ALONE {
+            return self.put_small(key, tables, of_run);
+        }
         let (entry, bytes) = CacheEntry::encode(key, tables, of_run)?;
         self.keep(&entry, bytes)?;
         Ok(entry)
+    }
+
+    fn put_small(&self, key: Digest, tables: &[&Table], of_run: OfRun) -> Result<CacheEntry, StoreError> {
+        let small = Small::new(key, tables, of_run)?;
+        let entry = small.entry.clone();
+        if let Lookup::Found(earlier) = self.look_up(key) {
+            earlier.agree(&entry)?;
+            // Computed again although it is there.
+            if self.packs.is_sound(key) {
+                return Ok(entry);
+            }
+        }
+        // A damaged file would be in its way only where no pack has the key.
+        self.packs.put(small);
+        // Without the thread it is written at the end.
+        self.writer.get_or_init(|| self.packs.keep_writing().ok());
+        Ok(entry)
+    }
+
+    /// Writes through what waits for others to be written with. What the disk does not take stays in memory.
+    pub fn flush(&self) {
+        self.packs.flush();
     }
 
     /// Keeps what is known about tables whose rows lie under other keys.
@@ -209,6 +268,9 @@ impl Cache {
     /// # Errors
     /// [`StoreError::Damaged`] also when there is no such entry or table: the caller computes it again.
     pub fn bytes(&self, key: Digest, table: &str) -> Result<Vec<u8>, StoreError> {
+        if let Some(table) = self.packed(key, table)? {
+            return parquet::write(&table);
+        }
         let path = self.path(key);
         let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
         let bytes = if let Some(bytes) = self.in_memory(key) {
@@ -223,9 +285,26 @@ impl Cache {
         bytes.ok_or_else(|| damaged(format!("it has no table `{table}`")))
     }
 
+    /// A table from a pack; none when its entry is in none.
+    fn packed(&self, key: Digest, table: &str) -> Result<Option<Table>, StoreError> {
+        if self.lock.is_none() || self.in_memory(key).is_some() {
+            return Ok(None);
+        }
+        let damaged = |path: PathBuf, problem| StoreError::Damaged { path: path.display().to_string(), problem };
+        match self.packs.table(key, table) {
+            None => Ok(None),
+            Some(Err((path, problem))) => Err(damaged(path, problem)),
+            Some(Ok(None)) => Err(damaged(self.root.join(packs::FOLDER), format!("an entry has no table `{table}`"))),
+            Some(Ok(found)) => Ok(found),
+        }
+    }
+
     /// # Errors
     /// As [`Cache::bytes`].
     pub fn table(&self, key: Digest, table: &str) -> Result<Table, StoreError> {
+        if let Some(table) = self.packed(key, table)? {
+            return Ok(table);
+        }
         let path = self.path(key).display().to_string();
         parquet::read(self.bytes(key, table)?).map_err(|problem| StoreError::Damaged { path, problem })
     }
@@ -236,10 +315,13 @@ impl Cache {
             // Somebody else may have removed it, or written it anew, already: either is as good. What cannot be removed
             // is found damaged again.
             let _ = fs::remove_file(self.path(key));
+            self.packs.forget(key);
         }
     }
 
-    fn journal_path(&self, study: &str) -> PathBuf {
+    /// Where the journal of a study lies.
+    #[must_use]
+    pub fn journal_path(&self, study: &str) -> PathBuf {
         self.root.join("journals").join(format!("{study}.json"))
     }
 
@@ -288,6 +370,17 @@ impl Cache {
         if let Err(error) = written {
             self.unkept().journal = Some(error.to_string());
         }
+    }
+}
+
+impl Drop for Cache {
+    fn drop(&mut self) {
+        self.packs.close();
+        if let Some(writer) = self.writer.take().flatten() {
+            // A thread that panicked has written what it could.
+            let _ = writer.join();
+        }
+        self.packs.flush();
     }
 }
 

@@ -33,7 +33,7 @@ const LONGEST_HEADER: u64 = 1 << 28;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CacheEntry {
     /// The key again, so that a file under a wrong name is found out.
-    #[serde(with = "hexadecimal")]
+    #[serde(with = "super::hexadecimal")]
     pub key: Digest,
     pub tables: Vec<StoredTable>,
     #[serde(flatten)]
@@ -56,10 +56,10 @@ pub struct StoredTable {
     pub name: String,
     pub rows: usize,
     /// [`Table::content_hash`].
-    #[serde(with = "hexadecimal")]
+    #[serde(with = "super::hexadecimal")]
     pub content: Digest,
     /// The same without the columns on demand: what a reader sees who asked for none of them.
-    #[serde(with = "hexadecimal")]
+    #[serde(with = "super::hexadecimal")]
     pub base: Digest,
     /// Each column on demand by itself.
     pub columns: Vec<StoredColumn>,
@@ -70,7 +70,7 @@ pub struct StoredTable {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct StoredColumn {
     pub name: String,
-    #[serde(with = "hexadecimal")]
+    #[serde(with = "super::hexadecimal")]
     pub content: Digest,
 }
 
@@ -78,7 +78,7 @@ pub struct StoredColumn {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     pub bytes: u64,
-    #[serde(with = "hexadecimal")]
+    #[serde(with = "super::hexadecimal")]
     pub digest: Digest,
 }
 
@@ -252,21 +252,6 @@ pub fn open(path: &Path, key: Digest) -> Result<Option<(CacheEntry, File)>, Stri
 
 fn digest(bytes: &[u8]) -> Digest {
     Digest(*blake3::hash(bytes).as_bytes())
-}
-
-mod hexadecimal {
-    use serde::{Deserialize, Deserializer, Serializer, de::Error};
-
-    use declare::digest::Digest;
-
-    pub fn serialize<S: Serializer>(digest: &Digest, serializer: S) -> Result<S::Ok, S::Error> {
-        serializer.collect_str(digest)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Digest, D::Error> {
-        let text = String::deserialize(deserializer)?;
-        Digest::from_hex(&text).ok_or_else(|| D::Error::custom("64 hexadecimal digits expected"))
-    }
 }
 
 #[cfg(test)]

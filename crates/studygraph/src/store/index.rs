@@ -23,7 +23,7 @@ const FORMAT: u32 = 1;
 const PIECE: usize = 1 << 18;
 /// Longer than a system's clock stands still for its files: 10 ms at most on Linux, more on a machine that waits for its
 /// processor meanwhile.
-const TICK: Duration = Duration::from_millis(12);
+pub const TICK: Duration = Duration::from_millis(12);
 /// How often an index is written at most, until its own stamp is later than those in it.
 const MOST_WRITES: usize = 6;
 /// Nanoseconds by which a stamp is of another clock: waiting does not help.
@@ -156,11 +156,15 @@ impl Stamp {
         }
     }
 
-    fn earlier(&self) -> i64 {
+    /// The earlier of its two times.
+    #[must_use]
+    pub fn earlier(&self) -> i64 {
         self.modified.min(self.changed)
     }
 
-    fn later(&self) -> i64 {
+    /// The later of its two times.
+    #[must_use]
+    pub fn later(&self) -> i64 {
         self.modified.max(self.changed)
     }
 

@@ -1,19 +1,24 @@
 //! `manifest.json`: what was run, from what, where, and what came of it.
 //!
-//! Must not know: how any of it was computed. Field names are read by other programs: additions only.
+//! Must not know: how any of it was computed. Field names are read by other programs: additions only, or another format.
 
-use std::collections::BTreeMap;
+mod wire;
+
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
 use super::entry::{StoredColumn, StoredTable};
+pub use super::key_record::{KeyRecord, Short};
 use crate::table::schema::{Column, Schema};
 use declare::digest::Digest;
 
-pub const FORMAT: u32 = 1;
+/// The format that is written; all up to it are read.
+pub const FORMAT: u32 = 2;
 
 /// The record of one run of one study.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Manifest {
     pub format: u32,
     pub study: String,
@@ -25,7 +30,6 @@ pub struct Manifest {
     pub study_digest: String,
     pub program: Program,
     /// The repository that the study's file lies in.
-    #[serde(default)]
     pub study_folder: StudyFolder,
     pub machine: Machine,
     /// UTC, RFC 3339. The only time in the file besides the seconds.
@@ -33,10 +37,8 @@ pub struct Manifest {
     pub seconds: f64,
     pub stages: Vec<StageRecord>,
     /// Tolerances of the study, by column: they decide what a comparison calls a difference, never a result.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub tolerances: Vec<(String, String)>,
     /// Every file beside the manifest that belongs to it, so that a later run can tell what is missing or stale.
-    #[serde(default)]
     pub files: Vec<FileRecord>,
 }
 
@@ -100,7 +102,7 @@ pub struct Machine {
     pub threads: usize,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct StageRecord {
     pub name: String,
     pub kind: String,
@@ -109,7 +111,6 @@ pub struct StageRecord {
     pub keys: Vec<KeyRecord>,
     /// The fields after defaults as a reader would write them, so that two runs can say *from what to what*. No part of
     /// any key; null in manifests of earlier versions.
-    #[serde(default, skip_serializing_if = "serde_json::Value::is_null")]
     pub config: serde_json::Value,
     /// `hit`, `ran`, `failed`, `skipped`.
     pub status: String,
@@ -118,32 +119,10 @@ pub struct StageRecord {
     /// Seconds of computing, when it was computed (kept from then on a hit).
     pub seconds: f64,
     /// Work that was counted then, by name.
-    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub work: BTreeMap<String, u64>,
     pub warnings: Vec<String>,
     pub left_out: Vec<OmissionRecord>,
     pub tables: Vec<TableRecord>,
-}
-
-/// The parts of a cache key, each a digest in hexadecimal, so that two runs can say *why* they differ.
-#[derive(Clone, Debug, Default, Serialize, Deserialize, PartialEq, Eq)]
-pub struct KeyRecord {
-    pub key: String,
-    /// All fields but the chunked axis.
-    pub config: String,
-    /// Field, and the start of its digest: which part of `config` it was that changed.
-    #[serde(default)]
-    pub fields: Vec<(String, String)>,
-    /// The values of the chunked axis; empty for a stage that runs in one piece.
-    #[serde(default)]
-    pub axis: String,
-    /// Kind, version and sources.
-    pub code: String,
-    /// Empty for a stage that draws no random numbers.
-    pub seed: String,
-    pub demand: String,
-    /// Port, and the digest of what came in through it.
-    pub inputs: Vec<(String, String)>,
 }
 
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
@@ -155,23 +134,23 @@ pub struct OmissionRecord {
     pub saved_seconds: Option<f64>,
 }
 
-#[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
+#[derive(Clone, Debug, Serialize, PartialEq)]
 pub struct TableRecord {
     /// `stage.table`.
     pub name: String,
-    pub description: String,
+    #[serde(serialize_with = "shared::serialize")]
+    pub description: Arc<str>,
     pub rows: usize,
     /// Content hash: schema and values without volatile columns.
     pub content: String,
-    /// The Parquet file, relative to the manifest.
+    /// The Parquet file, relative to the manifest: its own, or one that many tables share (`bundle.rs`).
     pub file: String,
-    pub columns: Vec<ColumnRecord>,
+    #[serde(serialize_with = "shared::serialize")]
+    pub columns: Arc<[ColumnRecord]>,
     /// Files beside the manifest that hold the table's lines: `stage.name`.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub files: Vec<String>,
     /// What readers may see of a table with columns on demand: each sees some of them, so the content of all does not
     /// tell. None for a table that every reader sees whole.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
     pub parts: Option<PartsRecord>,
 }
 
@@ -184,33 +163,139 @@ pub struct PartsRecord {
     pub on_demand: Vec<(String, String)>,
 }
 
+// Numbers in JSON are numbers, so every record equals itself, and shared ones need not be compared.
+impl Eq for ColumnRecord {}
+
 #[derive(Clone, Debug, Serialize, Deserialize, PartialEq)]
 pub struct ColumnRecord {
     pub name: String,
     #[serde(rename = "type")]
     pub kind: String,
+    #[serde(default, skip_serializing_if = "String::is_empty")]
     pub unit: String,
     pub description: String,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub key: bool,
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub volatile: bool,
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub absolute_tolerance: f64,
+    #[serde(default, skip_serializing_if = "is_zero")]
     pub relative_tolerance: f64,
+}
+
+/// What many records share.
+mod shared {
+    use std::sync::Arc;
+
+    use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+    pub fn serialize<T: Serialize + ?Sized, S: Serializer>(value: &Arc<T>, serializer: S) -> Result<S::Ok, S::Error> {
+        (**value).serialize(serializer)
+    }
+
+    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<str>, D::Error> {
+        String::deserialize(deserializer).map(Arc::from)
+    }
+
+    pub fn all<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<[T]>, D::Error> {
+        Vec::deserialize(deserializer).map(Arc::from)
+    }
+}
+
+#[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
+fn is_zero(number: &f64) -> bool {
+    *number == 0.0
+}
+
+/// The name of the file that a table has by itself.
+pub(super) fn own_file(table: &str) -> String {
+    format!("{table}.parquet")
+}
+
+impl Manifest {
+    /// As text, lines of which differ where something else differs.
+    ///
+    /// # Errors
+    /// When it cannot be written as JSON, which cannot be.
+    pub fn text(&self) -> Result<Vec<u8>, serde_json::Error> {
+        self.text_with(&self.files)
+    }
+
+    /// Says what is alike with the same words in memory, so that comparing tables of one kind is quick.
+    pub fn share(&mut self, other: &Self) {
+        let mut known: HashMap<(&str, &str), &TableRecord> = HashMap::new();
+        for stage in &other.stages {
+            known.extend(stage.tables.iter().map(|table| ((stage.kind.as_str(), table.table()), table)));
+        }
+        let mut shared: HashMap<*const ColumnRecord, Arc<[ColumnRecord]>> = HashMap::new();
+        for stage in &mut self.stages {
+            for table in &mut stage.tables {
+                let columns = shared.entry(table.columns.as_ptr()).or_insert_with(|| {
+                    let alike = known.get(&(&*stage.kind, table.name.split_once('.').map_or("", |(_, table)| table)));
+                    let alike = alike.filter(|alike| alike.columns == table.columns);
+                    Arc::clone(alike.map_or(&table.columns, |alike| &alike.columns))
+                });
+                table.columns = Arc::clone(columns);
+            }
+        }
+    }
+
+    /// The same with another list of files.
+    ///
+    /// # Errors
+    /// As [`Manifest::text`].
+    pub fn text_with(&self, files: &[FileRecord]) -> Result<Vec<u8>, serde_json::Error> {
+        let mut text = Vec::new();
+        wire::text(self, files)
+            .serialize(&mut serde_json::Serializer::with_formatter(&mut text, wire::Lines::default()))?;
+        text.push(b'\n');
+        Ok(text)
+    }
+
+    /// Whether this program can read its format.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        (1..=FORMAT).contains(&self.format)
+    }
+}
+
+/// What a manifest says of a schema.
+#[derive(Clone)]
+pub struct Described {
+    description: Arc<str>,
+    columns: Arc<[ColumnRecord]>,
+    files: Arc<[String]>,
+}
+
+impl Described {
+    #[must_use]
+    pub fn of(schema: &Schema) -> Self {
+        let columns = schema.columns.iter().map(ColumnRecord::from).collect();
+        Self { description: schema.description.as_str().into(), columns, files: schema.files.as_slice().into() }
+    }
 }
 
 impl TableRecord {
     /// The record of one table of a stage.
     #[must_use]
     pub fn new(stage: &str, schema: &Schema, table: &StoredTable) -> Self {
+        Self::described(stage, &Described::of(schema), table)
+    }
+
+    /// The same where it is known what the manifest says of the schema.
+    #[must_use]
+    pub fn described(stage: &str, described: &Described, table: &StoredTable) -> Self {
         let on_demand = table.columns.iter().map(|column| (column.name.clone(), column.content.to_string()));
         let parts = PartsRecord { base: table.base.to_string(), on_demand: on_demand.collect() };
         Self {
             name: format!("{stage}.{}", table.name),
-            description: schema.description.clone(),
+            description: Arc::clone(&described.description),
             rows: table.rows,
             content: table.content.to_string(),
             file: format!("{stage}.{}.parquet", table.name),
-            columns: schema.columns.iter().map(ColumnRecord::from).collect(),
-            files: schema.files.iter().map(|name| format!("{stage}.{name}")).collect(),
+            columns: Arc::clone(&described.columns),
+            files: described.files.iter().map(|name| format!("{stage}.{name}")).collect(),
             parts: (!table.columns.is_empty()).then_some(parts),
         }
     }
@@ -219,6 +304,12 @@ impl TableRecord {
     #[must_use]
     pub fn varies(&self) -> bool {
         self.columns.iter().any(|column| column.volatile)
+    }
+
+    /// The name of its stage.
+    #[must_use]
+    pub fn stage(&self) -> &str {
+        self.name.split_once('.').map_or(&self.name, |(stage, _)| stage)
     }
 
     /// The table's own name, without its stage's.
@@ -259,3 +350,6 @@ impl From<&Column> for ColumnRecord {
         }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -4,6 +4,7 @@
 //! Must not know: stages, the graph.
 
 pub mod archive;
+pub mod bundle;
 pub mod cache;
 pub mod csv;
 pub mod entry;
@@ -12,8 +13,10 @@ pub mod facts;
 pub mod file;
 #[cfg(feature = "hdf5")]
 pub mod hdf5;
+pub(crate) mod hexadecimal;
 pub mod index;
 pub mod journal;
+pub mod key_record;
 pub mod lock;
 pub mod manifest;
 pub mod parquet;

@@ -5,6 +5,7 @@
 //! `known` says which files are as listed, `publish` brings the folder up to date. Must not know: the cache (tables come
 //! through a closure), stages, how anything is drawn.
 
+mod bundled;
 mod changes;
 mod known;
 mod publish;
@@ -13,6 +14,7 @@ mod remove;
 mod tests;
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 pub use changes::Changes;
 pub use known::{FileState, Known};
@@ -20,6 +22,7 @@ pub use known::{FileState, Known};
 pub use publish::hdf5_bytes;
 pub use publish::{Bytes, Draw, Drawn, Published, Source, Tables};
 
+use super::bundle::Opened;
 use super::error::StoreError;
 use super::file;
 use super::lock::{self, Lock, Told};
@@ -39,13 +42,14 @@ pub struct Folder {
     path: PathBuf,
     study: String,
     told: Told,
+    opened: Arc<Opened>,
 }
 
 impl Folder {
     /// The folder of `study` under `results`; nothing is made yet.
     #[must_use]
     pub fn new(results: &Path, study: &str) -> Self {
-        Self { path: results.join(study), study: study.to_owned(), told: |_| {} }
+        Self { path: results.join(study), study: study.to_owned(), told: |_| {}, opened: Arc::default() }
     }
 
     /// The folder at a path, whatever links lead there; none where there is no such folder.
@@ -101,10 +105,10 @@ impl Folder {
         };
         let damaged = |problem: String| StoreError::Damaged { path: path.display().to_string(), problem };
         let manifest: Manifest = serde_json::from_slice(&bytes).map_err(|error| damaged(error.to_string()))?;
-        if manifest.format == FORMAT {
+        if manifest.is_known() {
             return Ok(Some((manifest, bytes)));
         }
-        Err(damaged(format!("it has format {}; this program reads format {FORMAT}", manifest.format)))
+        Err(damaged(format!("it has format {}; this program reads formats 1 to {FORMAT}", manifest.format)))
     }
 
     /// A published table.
@@ -112,18 +116,28 @@ impl Folder {
     /// # Errors
     /// When its file is missing, damaged, or holds other values than the manifest says.
     pub fn table(&self, record: &TableRecord) -> Result<Table, StoreError> {
-        let path = self.path.join(&record.file);
-        let bytes = file::read(&path, file::MOST_TABLE).map_err(StoreError::io("read", &path))?;
-        let damaged = |problem: String| StoreError::Damaged {
-            path: path.display().to_string(),
-            problem: format!("{problem}; `gearstudy run` writes it anew"),
-        };
-        let table = parquet::read(bytes).map_err(damaged)?;
+        let damaged = |problem: String| self.damaged(&record.file, &problem);
+        let table = self.opened.table(record, &record.file, || self.whole(&record.file), damaged)?;
         if table.content_hash().to_string() == record.content {
             Ok(table)
         } else {
             Err(damaged("its values are not those that the manifest names".to_owned()))
         }
+    }
+
+    fn damaged(&self, file: &str, problem: &str) -> StoreError {
+        let path = self.path.join(file).display().to_string();
+        StoreError::Damaged { path, problem: format!("{problem}; `gearstudy run` writes it anew") }
+    }
+
+    /// All that a Parquet file holds.
+    ///
+    /// # Errors
+    /// When it is missing or damaged.
+    pub fn whole(&self, file: &str) -> Result<Table, StoreError> {
+        let path = self.path.join(file);
+        let bytes = file::read(&path, file::MOST_TABLE).map_err(StoreError::io("read", &path))?;
+        parquet::read(bytes).map_err(|problem| self.damaged(file, &problem))
     }
 
     /// What `look` finds, which reads the manifest and then files. While a run publishes, its files and its manifest do
@@ -147,7 +161,10 @@ impl Folder {
     /// # Errors
     /// As [`lock::publisher`].
     pub fn lock(&self) -> Result<Lock, StoreError> {
-        lock::publisher(&self.path, self.told)
+        let lock = lock::publisher(&self.path, self.told)?;
+        // Somebody else may have published until now.
+        self.opened.clear();
+        Ok(lock)
     }
 }
 

@@ -2,6 +2,7 @@
 //!
 //! Must not know: when or how stages run.
 
+use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::Node;
@@ -105,7 +106,9 @@ fn does_not_fit(reference: &Reference, found: Option<&str>, fitting: Vec<&str>) 
 pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
     let index = by_name(nodes.iter().map(|node| node.name.as_str()));
     let ports: Vec<Vec<Port>> = nodes.iter().map(|node| node.stage.inputs()).collect();
-    let outputs: Vec<Vec<Schema>> = nodes.iter().map(|node| node.stage.outputs()).collect();
+    // Of stages that others read; they may be many, and those that are read few.
+    let outputs: Vec<OnceCell<Vec<Schema>>> = nodes.iter().map(|_| OnceCell::new()).collect();
+    let outputs = |node: usize| outputs[node].get_or_init(|| nodes[node].stage.outputs()).as_slice();
     let mut edges = Vec::with_capacity(nodes.len());
     for (node, own) in nodes.iter().zip(&ports) {
         let edge = |port: &Port| {
@@ -126,14 +129,14 @@ pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
         for port in own.iter().filter(|port| port.only_for.is_empty()) {
             let target = source(port, &index, &ports).map_err(|found| found.at(place_of(&node.record, port, None)))?;
             for want in &port.wants {
-                check_want(&nodes[target], want, &outputs[target])
+                check_want(&nodes[target], want, outputs(target))
                     .map_err(|(found, column)| found.at(place_of(&node.record, port, Some((&want.table, column)))))?;
                 // What that takes in turn, since it is wanted.
                 for needed in &ports[target] {
                     let Some(column) = asked(needed, want) else { continue };
                     let from = source(needed, &index, &ports)?;
                     for missing in &needed.wants {
-                        check_want(&nodes[from], missing, &outputs[from]).map_err(|(found, _)| {
+                        check_want(&nodes[from], missing, outputs(from)).map_err(|(found, _)| {
                             let whole = format!("{}.{}.{column}", nodes[target].name, want.table);
                             let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
                             let place = place_of(&node.record, port, Some((&want.table, Some(column))));

@@ -1,12 +1,15 @@
 //! A table's rows: built once, checked against the schema, sorted by key, hashed by content.
 
 use std::cmp::Ordering;
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
 
 use super::schema::{Column, Schema, Type};
 use declare::digest::{Digest, Writer};
 
 /// The values of one column.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Data {
     Float(Vec<f64>),
     Integer(Vec<i64>),
@@ -113,6 +116,20 @@ impl Data {
         }
     }
 
+    /// Some of the rows.
+    ///
+    /// # Panics
+    /// When there are no such rows.
+    #[must_use]
+    pub fn slice(&self, rows: std::ops::Range<usize>) -> Self {
+        match self {
+            Self::Float(values) => Self::Float(values[rows].to_vec()),
+            Self::Integer(values) => Self::Integer(values[rows].to_vec()),
+            Self::Text(values) => Self::Text(values[rows].to_vec()),
+            Self::Flag(values) => Self::Flag(values[rows].to_vec()),
+        }
+    }
+
     fn reordered(&self, order: &[usize]) -> Self {
         match self {
             Self::Float(values) => Self::Float(order.iter().map(|&row| values[row]).collect()),
@@ -174,7 +191,7 @@ pub enum TableError {
 /// Rows of a schema, sorted by key, keys unique, finite (or NaN where the schema allows it).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Table {
-    schema: Schema,
+    schema: Arc<Schema>,
     columns: Vec<Data>,
     rows: usize,
 }
@@ -208,10 +225,12 @@ impl Table {
 
     /// # Errors
     /// As [`Table::from_rows`].
-    pub fn from_columns(schema: Schema, columns: Vec<Data>) -> Result<Self, TableError> {
+    pub fn from_columns(schema: impl Into<Arc<Schema>>, columns: Vec<Data>) -> Result<Self, TableError> {
+        let schema = schema.into();
         let rows = columns.first().map_or(0, Data::len);
         if columns.len() != schema.columns.len() {
-            return Err(TableError::Width { table: schema.name, found: columns.len(), expected: schema.columns.len() });
+            let (found, expected) = (columns.len(), schema.columns.len());
+            return Err(TableError::Width { table: schema.name.clone(), found, expected });
         }
         for (column, data) in schema.columns.iter().zip(&columns) {
             let problem = if data.kind() != column.kind {
@@ -245,7 +264,7 @@ impl Table {
             order.sort_by(|&a, &b| compare(a, b));
             if let Some(pair) = order.windows(2).find(|pair| compare(pair[0], pair[1]).is_eq()) {
                 let key: Vec<String> = keys.iter().map(|&key| self.columns[key].cell(pair[0]).to_string()).collect();
-                return Err(TableError::RepeatedKey { table: self.schema.name, key: key.join(", ") });
+                return Err(TableError::RepeatedKey { table: self.schema.name.clone(), key: key.join(", ") });
             }
             // One after the other: two of a column are held, not two of the table.
             for column in &mut self.columns {
@@ -263,10 +282,10 @@ impl Table {
         if parts.len() < 2 {
             return Ok(parts.pop());
         }
-        let schema = parts[0].schema.clone();
+        let schema = Arc::clone(&parts[0].schema);
         if parts.iter().any(|part| part.schema != schema) {
             return Err(TableError::Column {
-                table: schema.name,
+                table: schema.name.clone(),
                 column: String::new(),
                 problem: "two chunks have different columns".to_owned(),
             });
@@ -275,6 +294,25 @@ impl Table {
         // Only where two parts meet can rows be out of order.
         let starts = parts.iter().scan(0, |end, part| Some(std::mem::replace(end, *end + part.rows)));
         let borders: Vec<usize> = starts.filter(|&row| row > 0 && row < rows).collect();
+        let columns = Self::chained(parts)?;
+        Self { schema, columns, rows }.sorted(borders.into_iter()).map(Some)
+    }
+
+    /// The columns of several tables of one schema, one table after the other.
+    ///
+    /// # Errors
+    /// When the schemas differ.
+    pub fn chained(mut parts: Vec<Self>) -> Result<Vec<Data>, TableError> {
+        let Some(first) = parts.first() else { return Ok(Vec::new()) };
+        let schema = Arc::clone(&first.schema);
+        if parts.iter().any(|part| !Arc::ptr_eq(&part.schema, &schema) && part.schema != schema) {
+            return Err(TableError::Column {
+                table: schema.name.clone(),
+                column: String::new(),
+                problem: "two parts have different columns".to_owned(),
+            });
+        }
+        let rows = parts.iter().map(|part| part.rows).sum();
         // One after the other: what is held twice is a column, not the table.
         let mut columns = Vec::with_capacity(schema.columns.len());
         for (index, column) in schema.columns.iter().enumerate() {
@@ -284,11 +322,17 @@ impl Table {
             }
             columns.push(whole);
         }
-        Self { schema, columns, rows }.sorted(borders.into_iter()).map(Some)
+        Ok(columns)
     }
 
     #[must_use]
     pub fn schema(&self) -> &Schema {
+        &self.schema
+    }
+
+    /// The same, for those who keep it.
+    #[must_use]
+    pub fn shared_schema(&self) -> &Arc<Schema> {
         &self.schema
     }
 

@@ -1,9 +1,11 @@
 //! What a table's columns are: name, type, unit, meaning, and how far two values may differ and still agree.
 
+use serde::{Deserialize, Serialize};
+
 use declare::digest::Writer;
 
 /// The type of a column.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Type {
     Float,
     Integer,
@@ -30,7 +32,7 @@ impl Type {
 }
 
 /// How far two values of a column may be apart and still count as the same: `|a − b| ≤ absolute + relative·max(|a|, |b|)`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Tolerance {
     /// In the column's unit.
     pub absolute: f64,
@@ -38,7 +40,7 @@ pub struct Tolerance {
 }
 
 /// One column. Values are kept in `unit`, as a reader sees them, not in SI.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Column {
     pub name: String,
     pub kind: Type,
@@ -128,7 +130,7 @@ impl Column {
 }
 
 /// The columns of a table.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Schema {
     pub name: String,
     pub description: String,

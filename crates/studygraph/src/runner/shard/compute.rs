@@ -16,7 +16,6 @@ use crate::store::cache::Cache;
 use crate::store::file::{self, Durability};
 use crate::store::shards::{self, Part};
 use crate::study::Study;
-use declare::digest::Digest;
 
 /// What came of a shard.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -96,7 +95,7 @@ pub(in crate::runner) fn of_study(
     for (stage, own) in &options.share {
         let keys = outcome.stage(stage).map(|stage| stage.keys.as_slice()).unwrap_or_default();
         for &part in own {
-            let key = keys.get(part).and_then(|record| Digest::from_hex(&record.key));
+            let key = keys.get(part).map(|record| record.key);
             let missing =
                 || ShardError::Plan(format!("stage `{stage}` has no part {part}; the plan is not of this study"));
             parts.push((stage.clone(), part, key.ok_or_else(missing)?));

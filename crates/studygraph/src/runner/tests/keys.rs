@@ -1,15 +1,14 @@
 //! Keys do not change by accident.
 
 use super::*;
-use crate::runner::key::{Parts, key};
+use crate::runner::key::{Parts, code};
 use crate::stage::Demand;
 use declare::digest::Digest;
 use declare::seed::Seed;
 
 fn parts<'a>(record: &'a Record, demand: &'a Demand) -> Parts<'a> {
     Parts {
-        kind: &CUT,
-        code: "code",
+        code: code(&CUT, "code"),
         record,
         rows: vec!["torque"],
         shared: None,
@@ -40,10 +39,10 @@ fn demand() -> Demand {
 fn golden_keys() {
     let (record, demand) = (record(), demand());
     let parts = parts(&record, &demand);
-    let digests = [&[][..], &[25.0], &[25.0, 50.0]].map(|values| key(&parts.record(Some(values))).short());
+    let digests = [&[][..], &[25.0], &[25.0, 50.0]].map(|values| parts.record(Some(values)).key.short());
     assert_eq!(digests, ["383d39fe2cd4", "aa4c0e25e7d2", "19a87f545dd4"]);
     let whole = Parts { rows: Vec::new(), seed: None, inputs: Vec::new(), ..parts };
-    assert_eq!(key(&whole.record(None)).short(), "c84a8d1a4ec7");
+    assert_eq!(whole.record(None).key.short(), "c84a8d1a4ec7");
 }
 
 #[test]
@@ -54,7 +53,7 @@ fn every_part_is_in_the_key_and_has_a_name() {
     let last = [base().record(Some(&[25.0]))];
     let why = |parts: Parts, values: &[f64]| {
         let now = parts.record(Some(values));
-        assert_ne!(key(&now), key(&last[0]));
+        assert_ne!(now.key, last[0].key);
         explain(&last, &now, Some("torque"))
     };
     let mut other = record.clone();
@@ -63,8 +62,8 @@ fn every_part_is_in_the_key_and_has_a_name() {
     other.fields.remove(0);
     assert_eq!(why(Parts { record: &other, ..base() }, &[25.0]), [Why::Config(vec!["value".to_owned()])]);
     assert_eq!(why(base(), &[50.0]), [Why::Axis("torque")]);
-    assert_eq!(why(Parts { code: "new", ..base() }, &[25.0]), [Why::Code]);
-    assert_eq!(why(Parts { kind: &PLAIN, ..base() }, &[25.0]), [Why::Code]);
+    assert_eq!(why(Parts { code: code(&CUT, "new"), ..base() }, &[25.0]), [Why::Code]);
+    assert_eq!(why(Parts { code: code(&PLAIN, "code"), ..base() }, &[25.0]), [Why::Code]);
     assert_eq!(why(Parts { seed: None, ..base() }, &[25.0]), [Why::Seed]);
     assert_eq!(why(Parts { demand: &Demand::default(), ..base() }, &[25.0]), [Why::Demand]);
     let inputs = vec![("pair".to_owned(), Digest([8; 32]))];

@@ -10,9 +10,13 @@ use super::{Agreement, VerifiedFile, VerifyError, archived};
 use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
 #[cfg(feature = "hdf5")]
+use crate::store::bundle::published;
+use crate::store::bundle::{Opened, is_bundle};
+#[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::index::{self, INDEX, Index};
 use crate::store::manifest::{Manifest, TableRecord};
+use crate::store::parquet;
 #[cfg(feature = "hdf5")]
 use crate::store::results::hdf5_bytes;
 use crate::store::results::{Draw, Drawn, MANIFEST, PAGE, held_text, is_drawn};
@@ -24,6 +28,7 @@ struct Files<'a, R> {
     manifest: &'a Manifest,
     /// By their names in the results folder.
     bytes: BTreeMap<String, Vec<u8>>,
+    opened: Opened,
 }
 
 /// Compares digests with those in the manifest and the index, then makes every file that is not a table again, with
@@ -54,7 +59,7 @@ pub fn check<R: Read + Seek>(
         }
     }
     let drawn_by = if index.drawn_by.is_empty() { &manifest.program.code } else { &index.drawn_by };
-    let files = Files { archive, manifest, bytes };
+    let files = Files { archive, manifest, bytes, opened: Opened::default() };
     let mut made = files.drawn(draw, drawn_by == code);
     made.extend(files.held()?);
     made.extend(files.hdf5(work)?);
@@ -70,7 +75,14 @@ impl<R: Read + Seek> Files<'_, R> {
         let entry = format!("{}{}", archive::results(&self.manifest.study), record.file);
         let bytes = self.bytes.get(&record.file).cloned();
         let bytes = bytes.ok_or_else(|| self.archive.damaged(&entry, "its manifest does not list it"))?;
-        archived(self.archive, &entry, record, bytes)
+        archived(self.archive, &entry, record, bytes, &self.opened)
+    }
+
+    /// All that a Parquet file holds.
+    fn whole(&self, file: &str) -> Result<Table, ArchiveError> {
+        let damaged = |problem: &str| self.archive.damaged(file, problem);
+        let bytes = self.bytes.get(file).ok_or_else(|| damaged("its manifest does not list it"))?;
+        parquet::read(bytes.clone()).map_err(|problem| damaged(&problem))
     }
 
     fn compared(&self, file: &str, bytes: &[u8], otherwise: impl FnOnce() -> Agreement) -> VerifiedFile {
@@ -92,7 +104,12 @@ impl<R: Read + Seek> Files<'_, R> {
             }
         };
         let listed = self.bytes.keys().filter(|file| is_drawn(file));
-        let table = |name: &str| self.table(self.records().find(|record| record.name == name)?).ok();
+        let table = |name: &str| {
+            if is_bundle(name) {
+                return self.whole(&format!("{name}.parquet")).ok();
+            }
+            self.table(self.records().find(|record| record.name == name)?).ok()
+        };
         match draw(self.manifest, &table) {
             Err(problem) => vec![VerifiedFile { file: PAGE.to_owned(), agreement: other(&problem) }],
             Ok(drawn) => {
@@ -130,26 +147,27 @@ impl<R: Read + Seek> Files<'_, R> {
         let Some(archived) = self.bytes.get(&name) else { return Ok(None) };
         let failed = |problem: String| self.archive.damaged(&name, &problem);
         let mut tables = Vec::new();
-        for record in self.records().filter(|record| record.files.is_empty()) {
-            tables.push((record, self.table(record)?));
+        for (group, record) in published(self.manifest).filter(|(_, record)| record.files.is_empty()) {
+            let table = if is_bundle(&record.file) { self.whole(&record.file)? } else { self.table(record)? };
+            tables.push((group, record, table));
         }
-        let found = |wanted: &TableRecord| {
-            let (_, table) = tables.iter().find(|(record, _)| *record == wanted).ok_or_else(|| {
+        let found = |wanted: &str| {
+            let (_, _, table) = tables.iter().find(|(_, record, _)| record.file == wanted).ok_or_else(|| {
                 crate::store::error::StoreError::Format {
-                    table: wanted.name.clone(),
+                    table: wanted.to_owned(),
                     problem: "it is missing".to_owned(),
                 }
             })?;
             Ok(table.clone())
         };
+        let of_record = |record: &TableRecord| found(&record.file);
         // A manifest may list what no file can hold; its tables are looked at all the same.
-        if hdf5_bytes(&name, self.manifest, &found).is_ok_and(|bytes| *archived == bytes) {
+        if hdf5_bytes(&name, self.manifest, &of_record, &found).is_ok_and(|bytes| *archived == bytes) {
             return Ok(Some(VerifiedFile { file: name, agreement: Agreement::Identical }));
         }
         let path = work.join("archived.h5");
         std::fs::write(&path, archived).map_err(|error| failed(error.to_string()))?;
-        let other = tables.iter().find_map(|(record, table)| {
-            let stage = record.name.split_once('.').map_or("", |(stage, _)| stage);
+        let other = tables.iter().find_map(|(stage, record, table)| {
             // The same table gives the same Parquet file, NaN and signs of zero as well.
             let same = hdf5::read(&path, stage, record.table())
                 .is_ok_and(|read| matches!((parquet_of(&read), parquet_of(table)), (Some(a), Some(b)) if a == b));

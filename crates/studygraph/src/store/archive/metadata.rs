@@ -326,7 +326,7 @@ fn actions(description: &Description<'_>) -> Vec<Value> {
             "@id": run(stage), "@type": "CreateAction", "name": format!("Run of the stage {}", stage.name),
             "description": format!(
                 "Kind {}, version {}; keys {}.", stage.kind, stage.version,
-                stage.keys.iter().map(|key| key.key.as_str()).collect::<Vec<_>>().join(", ")
+                stage.keys.iter().map(|key| key.key.to_string()).collect::<Vec<_>>().join(", ")
             ),
             "instrument": reference(&tool(&stage.kind)),
             "actionStatus": reference("http://schema.org/CompletedActionStatus"),
@@ -379,7 +379,7 @@ fn files(description: &Description<'_>) -> Vec<Value> {
             MANIFEST => "What was run, from what, where, and what came of it.",
             SCHEMA => "The schema of the study.",
             CITATION => "How to cite gearstudy.",
-            _ => table.or(holder).map_or("", |table| table.description.as_str()),
+            _ => table.or(holder).map_or("", |table| &*table.description),
         };
         if !what.is_empty() {
             put("description", json!(what));

@@ -9,7 +9,8 @@ use std::io::{self, ErrorKind};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, SystemTime};
 
-use super::Cache;
+use super::packs::{self, FOLDER, Packs};
+use super::{Cache, NOTES};
 use crate::store::error::StoreError;
 use crate::store::file::{self, TEMPORARY};
 use crate::store::journal::Journal;
@@ -57,11 +58,18 @@ struct Content {
 
 /// An entry that may go.
 struct Found {
-    path: PathBuf,
+    place: Place,
     key: Digest,
     bytes: u64,
     /// Since it was written or last used.
     age: Duration,
+}
+
+/// Where an entry lies.
+enum Place {
+    File(PathBuf),
+    /// Which of all packs.
+    Pack(usize),
 }
 
 impl Cache {
@@ -90,7 +98,23 @@ impl Cache {
                 damaged.push((path, problem));
             }
         }
+        for (path, key, problem) in self.packs.checked() {
+            if let Some(key) = key.filter(|_| remove) {
+                self.packs.forget(key);
+            }
+            damaged.push((path, problem));
+        }
+        self.packs.flush();
         damaged
+    }
+
+    /// The keys of all entries, in files of their own and in packs, as far as the folders can be looked into.
+    #[must_use]
+    pub fn keys(&self) -> BTreeSet<Digest> {
+        let mut content = Content::default();
+        content.add_entries(&self.root);
+        let packed = self.packs.all().into_iter().flat_map(|pack| pack.entries).map(|(key, _)| key);
+        content.entries.into_iter().map(|(_, key)| key).chain(packed).collect()
     }
 
     /// Removes entries, and what killed runs left behind. The cache must not be open anywhere.
@@ -112,17 +136,29 @@ impl Cache {
         let content = content(root)?;
         let mut removed = Removed { foreign: content.foreign, ..Removed::default() };
         let mut found = Vec::new();
+        let used = |key: &Digest, written: SystemTime| journals.get(key).map_or(written, |used| written.max(*used));
+        let age = |used: SystemTime| now.duration_since(used).unwrap_or_default();
         for (path, key) in content.entries {
             // Another computer may be cleaning up too.
             let Some(metadata) = there(fs::metadata(&path)).map_err(StoreError::io("read", &path))? else { continue };
+            let age = age(used(&key, metadata.modified().unwrap_or(now)));
+            found.push(Found { place: Place::File(path), key, bytes: metadata.len(), age });
+        }
+        let packs = Packs::new(root);
+        let all_packs = packs.all();
+        for (index, pack) in all_packs.iter().enumerate() {
+            let Some(metadata) = there(fs::metadata(&pack.path)).map_err(StoreError::io("read", &pack.path))? else {
+                continue;
+            };
             let written = metadata.modified().unwrap_or(now);
-            let used = journals.get(&key).map_or(written, |used| written.max(*used));
-            let age = now.duration_since(used).unwrap_or_default();
-            found.push(Found { path, key, bytes: metadata.len(), age });
+            for (key, bytes) in &pack.entries {
+                found.push(Found { place: Place::Pack(index), key: *key, bytes: *bytes, age: age(used(key, written)) });
+            }
         }
         // The longest unused first; of equals the order of their keys.
         found.sort_by(|a, b| b.age.cmp(&a.age).then(a.key.0.cmp(&b.key.0)));
         let mut left: u64 = found.iter().map(|entry| entry.bytes).sum();
+        let mut kept: Vec<Vec<Digest>> = all_packs.iter().map(|_| Vec::new()).collect();
         for entry in found {
             let is_kept = matches!(remove, Remove::Unused { keep, .. } if keep.contains(&entry.key));
             let doomed = match remove {
@@ -133,15 +169,31 @@ impl Cache {
                 Remove::Unreferenced => !journals.contains_key(&entry.key),
             };
             if doomed {
-                discard(&entry.path, dry_run)?;
+                if let Place::File(path) = &entry.place {
+                    discard(path, dry_run)?;
+                }
                 left -= entry.bytes;
                 removed.entries += 1;
                 removed.bytes += entry.bytes;
-            } else {
-                removed.kept += 1;
-                removed.kept_bytes += entry.bytes;
-                removed.needed += usize::from(is_kept);
-                removed.needed_bytes += if is_kept { entry.bytes } else { 0 };
+                continue;
+            }
+            if let Place::Pack(index) = entry.place {
+                kept[index].push(entry.key);
+            }
+            removed.kept += 1;
+            removed.kept_bytes += entry.bytes;
+            removed.needed += usize::from(is_kept);
+            removed.needed_bytes += if is_kept { entry.bytes } else { 0 };
+        }
+        for (pack, mut kept) in all_packs.into_iter().zip(kept) {
+            if kept.is_empty() {
+                discard(&pack.path, dry_run)?;
+            } else if !dry_run && (pack.has_waste || kept.len() < pack.entries.len()) {
+                // In the order in which they were written.
+                let order: BTreeMap<Digest, usize> =
+                    pack.entries.iter().enumerate().map(|(at, (key, _))| (*key, at)).collect();
+                kept.sort_by_key(|key| order.get(key).copied());
+                packs.rewrite(&pack.path, &kept)?;
             }
         }
         for path in content.leftovers {
@@ -173,8 +225,7 @@ fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
         let journal: Journal = serde_json::from_slice(&bytes).unwrap_or_default();
         let used = fs::metadata(&path).and_then(|found| found.modified()).unwrap_or(SystemTime::UNIX_EPOCH);
         for stage in journal.stages {
-            let texts = stage.keys.iter().map(|record| &record.key).chain(&stage.whole);
-            for key in texts.filter_map(|text| Digest::from_hex(text)) {
+            for key in stage.keys.iter().map(|record| record.key).chain(stage.whole) {
                 let known = keys.entry(key).or_insert(used);
                 *known = used.max(*known);
             }
@@ -185,7 +236,10 @@ fn journals(root: &Path) -> Result<BTreeMap<Digest, SystemTime>, StoreError> {
 
 fn content(root: &Path) -> Result<Content, StoreError> {
     let mut content = Content::default();
-    for folder in [root.to_owned(), root.join("journals")] {
+    let packs = list(&root.join(FOLDER))?;
+    let foreign = packs.into_iter().filter(|(path, kind)| !is_leftover(path, *kind) && packs::number(path).is_none());
+    content.foreign.extend(foreign.map(|(path, _)| path));
+    for folder in [root.to_owned(), root.join("journals"), root.join(FOLDER), root.join(NOTES)] {
         let left = list(&folder)?.into_iter().filter(|(path, kind)| is_leftover(path, *kind));
         content.leftovers.extend(left.map(|(path, _)| path));
     }

@@ -1,8 +1,10 @@
 //! The cache: what it keeps, what it notices, what cleaning removes.
 
+mod packs;
+
 use super::*;
 use crate::store::journal::JournalStage;
-use crate::store::manifest::KeyRecord;
+use crate::store::manifest::{KeyRecord, Short};
 use crate::store::parquet::tests::{assert_identical, everything};
 use crate::table::schema::Schema;
 use declare::digest::Writer;
@@ -85,10 +87,13 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     let folder = tempfile::tempdir().unwrap();
     let cache = filled(folder.path());
     cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
-    let record = KeyRecord { key: key("a").to_string(), ..KeyRecord::default() };
+    let start = Short::from(&key("part"));
+    let (fields, inputs) = (Vec::new(), Vec::new());
+    let (config, code, demand) = (start, start, start);
+    let record = KeyRecord { key: key("a"), config, fields, axis: None, code, seed: None, demand, inputs };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
     cache.put_journal("study", &Journal { stages: vec![stage.clone()] });
-    assert_eq!(cache.journal("study").stage("s"), Some(&stage));
+    assert_eq!(cache.journal("study").stages, [stage]);
     fs::write(cache.path(key("a")).with_file_name(".partial-x"), "left behind").unwrap();
 
     let busy = Cache::clean(folder.path(), Remove::All, false).unwrap_err();

@@ -3,8 +3,10 @@
 //! Must not know: how anything is written.
 
 use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
 
 use super::{FileState, Folder, Known, PAGE, complete, here, is_drawn};
+use crate::store::bundle::{self, is_bundle};
 use crate::store::manifest::{Manifest, OmissionRecord, StageRecord, TableRecord};
 
 /// What publishing would write and remove.
@@ -37,15 +39,23 @@ impl Folder {
 /// Stages without tables of their own take those of the earlier manifest that are still there.
 pub(super) fn with_earlier_tables<'m>(old: Option<&Known>, manifest: &'m Manifest) -> Cow<'m, Manifest> {
     let mut new = Cow::Borrowed(manifest);
-    let Some(old) = old else { return new };
+    if !bundle::is_assigned(manifest) {
+        bundle::assign(new.to_mut());
+    }
+    let Some(old) = old.filter(|_| !manifest.stages.iter().all(complete)) else { return new };
+    let stages: HashMap<(&str, &str), &StageRecord> =
+        old.manifest.stages.iter().map(|stage| ((&*stage.name, &*stage.kind), stage)).collect();
     for (index, stage) in manifest.stages.iter().enumerate().filter(|(_, stage)| !complete(stage)) {
-        let mut stages = old.manifest.stages.iter();
-        let earlier = stages.find(|earlier| earlier.name == stage.name && earlier.kind == stage.kind);
+        let earlier = stages.get(&(&*stage.name, &*stage.kind)).copied();
         let intact = |table: &TableRecord| old.table_state(table) == FileState::Intact;
         if let Some(earlier) = earlier.filter(|earlier| earlier.tables.iter().all(intact)) {
             let (status, why) = (stage.status.clone(), stage.why.clone());
             new.to_mut().stages[index] = StageRecord { status, why, ..earlier.clone() };
         }
+    }
+    // Stages that take their tables along may make or unmake a bundle.
+    if matches!(new, Cow::Owned(_)) {
+        bundle::assign(new.to_mut());
     }
     new
 }
@@ -56,23 +66,35 @@ pub(super) fn compare(old: Option<&Known>, new: &Manifest, draws: bool, folder: 
     let old_files = || old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone());
     let old_tables: Vec<&TableRecord> =
         old.iter().flat_map(|old| &old.manifest.stages).flat_map(|stage| &stage.tables).collect();
+    let by_name: HashMap<&str, &TableRecord> = old_tables.iter().map(|table| (&*table.name, *table)).collect();
+    let is_known = |table: &TableRecord| by_name.get(&*table.name).is_some_and(|old| *old == table);
     let intact = |file: &str| old.is_some_and(|old| old.state(file) == FileState::Intact);
-    let intact_table = |table: &TableRecord| {
-        old_tables.contains(&table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact)
-    };
-    let tables: Vec<String> =
-        new_tables.iter().filter(|table| !intact_table(table)).map(|table| table.file.clone()).collect();
+    let intact_table =
+        |table: &TableRecord| is_known(table) && old.is_some_and(|old| old.table_state(table) == FileState::Intact);
+    // A bundle has other rows as well where a stage is no more.
+    let mut members: HashMap<&str, isize> = HashMap::new();
+    for (tables, step) in [(&old_tables, -1), (&new_tables, 1)] {
+        for table in tables.iter().filter(|table| is_bundle(&table.file)) {
+            *members.entry(&table.file).or_default() += step;
+        }
+    }
+    let is_whole = |table: &TableRecord| members.get(&*table.file).is_none_or(|more| *more == 0);
+    let mut met = HashSet::new();
+    let tables: Vec<String> = new_tables
+        .iter()
+        .filter(|table| !(is_whole(table) && intact_table(table)) && met.insert(&table.file))
+        .map(|table| table.file.clone())
+        .collect();
     let held = |table: &&TableRecord| {
-        let known = old_tables.contains(table);
+        let known = is_known(table);
         table.files.iter().filter(|file| !(known && intact(file))).cloned().collect::<Vec<_>>()
     };
     let files: Vec<String> = new_tables.iter().flat_map(held).collect();
     let with_hdf5 = cfg!(feature = "hdf5");
     let hdf5 = with_hdf5 && (new_tables != old_tables || !tables.is_empty() || !intact(&folder.hdf5_file()));
-    let listed = |file: &str| {
-        let of_table = |table: &&TableRecord| table.file == file || table.files.iter().any(|held| held == file);
-        new_tables.iter().any(of_table) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file)
-    };
+    let of_tables: HashSet<&str> =
+        new_tables.iter().flat_map(|table| table.files.iter().chain([&table.file])).map(String::as_str).collect();
+    let listed = |file: &str| of_tables.contains(file) || (with_hdf5 && file == folder.hdf5_file()) || is_drawn(file);
     let remove: Vec<String> = old_files().filter(|file| !listed(file) && here(file)).collect();
     let says_something_new = old.is_none_or(|old| !say_the_same(&old.manifest, new));
     let any = says_something_new || hdf5 || !tables.is_empty() || !files.is_empty() || !remove.is_empty();

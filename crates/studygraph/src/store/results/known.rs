@@ -2,7 +2,7 @@
 //!
 //! A file whose stamp is as noted in the index is not read; any other one is, once. Must not know: what is done about it.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::fs;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -10,7 +10,7 @@ use rayon::prelude::*;
 
 use super::{Folder, here};
 use crate::store::index::{self, Index, Seen};
-use crate::store::manifest::{FileRecord, Manifest, TableRecord};
+use crate::store::manifest::{FileRecord, Manifest, StageRecord, TableRecord};
 
 /// What became of a published file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,6 +33,11 @@ pub struct Known {
     /// Of the manifest's bytes.
     pub(super) digest: String,
     index: Index,
+    /// Places in the manifest's list of files, and in the index.
+    records: HashMap<String, usize>,
+    noted: HashMap<String, usize>,
+    /// Of each table's file: which stage, which of its tables.
+    tables: HashMap<String, (usize, usize)>,
     /// Whether the digests in the index are those of this manifest.
     belongs: bool,
     /// Stamps tell something of files that were not touched since this moment; none when they tell nothing.
@@ -52,7 +57,22 @@ impl Known {
         let belongs = index.manifest == digest;
         let moment = index.is_of_this_boot().then_some(moment);
         let (states, looked, values) = (Mutex::default(), Mutex::default(), Mutex::default());
-        Self { manifest, folder, digest, index, belongs, moment, states, looked, values }
+        let places = |names: &mut dyn Iterator<Item = &String>| -> HashMap<String, usize> {
+            names.enumerate().map(|(place, name)| (name.clone(), place)).collect()
+        };
+        let records = places(&mut manifest.files.iter().map(|record| &record.file));
+        let noted = places(&mut index.files.iter().map(|seen| &seen.file));
+        let of_stage = |(stage, record): (usize, &StageRecord)| {
+            let files = record.tables.iter().map(|table| table.file.clone()).enumerate();
+            files.map(move |(table, file)| (file, (stage, table))).collect::<Vec<_>>()
+        };
+        let tables = manifest.stages.iter().enumerate().flat_map(of_stage).collect();
+        Self { manifest, folder, digest, index, records, noted, tables, belongs, moment, states, looked, values }
+    }
+
+    /// A file as it was last looked at.
+    fn noted(&self, file: &str) -> Option<&Seen> {
+        self.noted.get(file).map(|&place| &self.index.files[place])
     }
 
     /// The same, but every file is going to be read.
@@ -83,7 +103,7 @@ impl Known {
     pub fn expected(&self, file: &str) -> Option<(u64, &str)> {
         let record = self.record(file)?;
         if record.varies {
-            let seen = self.index.find(file).filter(|_| self.belongs)?;
+            let seen = self.noted(file).filter(|_| self.belongs)?;
             return Some((seen.bytes, &seen.digest));
         }
         Some((record.bytes?, record.digest.as_deref()?))
@@ -129,9 +149,9 @@ impl Known {
         if state != FileState::Unknown {
             return state;
         }
-        let known = held(&self.values).get(&record.file).copied();
+        let known = held(&self.values).get(&record.name).copied();
         let good = known.unwrap_or_else(|| self.folder.table(record).is_ok());
-        held(&self.values).insert(record.file.clone(), good);
+        held(&self.values).insert(record.name.clone(), good);
         if good { FileState::Intact } else { FileState::Changed }
     }
 
@@ -150,8 +170,7 @@ impl Known {
     }
 
     fn is_changed(&self, record: &FileRecord) -> bool {
-        let mut tables = self.manifest.stages.iter().flat_map(|stage| &stage.tables);
-        let table = tables.find(|table| table.file == record.file);
+        let table = self.tables.get(&record.file).map(|&(stage, table)| &self.manifest.stages[stage].tables[table]);
         table.map_or_else(|| self.state(&record.file), |table| self.table_state(table)) == FileState::Changed
     }
 
@@ -167,18 +186,18 @@ impl Known {
                 Some((FileRecord { bytes, digest, varies, ..record }, Some(seen)))
             }
             // What it should be is known still.
-            _ => Some((record, self.index.find(file).filter(|_| self.belongs).cloned())),
+            _ => Some((record, self.noted(file).filter(|_| self.belongs).cloned())),
         }
     }
 
     fn record(&self, file: &str) -> Option<&FileRecord> {
-        self.manifest.files.iter().find(|record| record.file == file)
+        self.records.get(file).map(|&place| &self.manifest.files[place])
     }
 
     /// What a file is now; from the index where its stamp is as noted.
     fn seen(&self, file: &str) -> Option<Seen> {
         let path = self.folder.path().join(file);
-        if let (Some(moment), Some(noted)) = (self.moment, self.index.find(file))
+        if let (Some(moment), Some(noted)) = (self.moment, self.noted(file))
             && let (Some(stamp), Ok(metadata)) = (noted.stamp, fs::metadata(&path))
             && stamp.is_before(moment)
             && (stamp, noted.bytes) == (index::Stamp::of(&metadata), metadata.len())

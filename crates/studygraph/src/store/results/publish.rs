@@ -7,12 +7,14 @@
 //! how anything is drawn.
 
 use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::ErrorKind;
 use std::path::Path;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, held_text, here, is_drawn, split};
+use crate::store::bundle::{self, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
 use crate::store::file::{self, Durability};
@@ -20,12 +22,15 @@ use crate::store::file::{self, Durability};
 use crate::store::hdf5;
 use crate::store::index::{self, Index, Seen};
 use crate::store::lock;
-use crate::store::manifest::{FileRecord, Manifest, TableRecord};
+use crate::store::manifest::{FileRecord, Manifest, TableRecord, own_file};
+use crate::store::parquet;
 use crate::table::data::Table;
 
 /// Gives the Parquet file of (stage, table).
 pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
-/// Gives a published table by its name, `stage.table`.
+/// Gives the table of (stage, table).
+pub type TableOf<'a> = &'a dyn Fn(&str, &str) -> Result<Table, StoreError>;
+/// Gives a published table by its name, `stage.table`; of many stages as one, `_kind.table`.
 pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
 /// Draws page and figures of a manifest and its tables.
 pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
@@ -36,6 +41,8 @@ pub type Next<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     pub bytes: Bytes<'a>,
+    /// Gives a table of a bundle; where there is nothing, it is read from its Parquet file.
+    pub table: Option<TableOf<'a>>,
     pub draw: Option<Draw<'a>>,
     pub next: Next<'a>,
     /// The digest of the code that draws.
@@ -46,7 +53,7 @@ impl<'a> Source<'a> {
     /// Tables without a page, all in one go.
     #[must_use]
     pub fn of(bytes: Bytes<'a>) -> Self {
-        Self { bytes, draw: None, next: &|_| Ok(()), code: "" }
+        Self { bytes, table: None, draw: None, next: &|_| Ok(()), code: "" }
     }
 }
 
@@ -68,6 +75,8 @@ pub struct Published {
     pub changes: Changes,
     /// Why there is no page; all else is published.
     pub undrawn: Option<String>,
+    /// The files as the index has them; none where that had to be written anew.
+    pub seen: Vec<Seen>,
 }
 
 /// What the new manifest and the new index list.
@@ -90,8 +99,12 @@ impl Folder {
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
         let draws = source.draw.is_some();
-        let nothing = |old: Known| Published { manifest: old.manifest, changes: Changes::default(), undrawn: None };
-        if let Some(old) = self.known().ok().flatten() {
+        let nothing = |old: Known| {
+            let seen = if old.is_outdated() { Vec::new() } else { old.index().files.clone() };
+            Published { manifest: old.manifest, changes: Changes::default(), undrawn: None, seen }
+        };
+        if let Some(mut old) = self.known().ok().flatten() {
+            old.manifest.share(manifest);
             let new = with_earlier_tables(Some(&old), manifest);
             if compare(Some(&old), &new, draws, self) == Changes::default() {
                 if old.is_outdated() {
@@ -108,7 +121,10 @@ impl Folder {
             Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
                 return Err(StoreError::Io { action, path, source });
             }
-            known => known.ok().flatten(),
+            known => known.ok().flatten().map(|mut known| {
+                known.manifest.share(manifest);
+                known
+            }),
         };
         let new = with_earlier_tables(old.as_ref(), manifest);
         let changes = compare(old.as_ref(), &new, draws, self);
@@ -134,7 +150,8 @@ impl Folder {
             Ok(drawn) => drawn,
             Err(problem) => {
                 let changes = Changes::default();
-                return Ok(Some(Published { manifest: old.manifest, changes, undrawn: Some(problem) }));
+                let (undrawn, seen) = (Some(problem), Vec::new());
+                return Ok(Some(Published { manifest: old.manifest, changes, undrawn, seen }));
             }
         };
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
@@ -157,16 +174,31 @@ impl Folder {
             self.strike(&old.manifest, &changes)?;
         }
         let mut listed = Listed::default();
-        for table in new.stages.iter().flat_map(|stage| &stage.tables) {
-            if changes.tables.contains(&table.file) {
+        let (tables, files): (HashSet<&String>, HashSet<&String>) =
+            (changes.tables.iter().collect(), changes.files.iter().collect());
+        let mut bundles: HashMap<&str, Vec<&TableRecord>> = HashMap::new();
+        for table in new.stages.iter().flat_map(|stage| &stage.tables).filter(|table| is_bundle(&table.file)) {
+            bundles.entry(&table.file).or_default().push(table);
+        }
+        for (_, table) in bundle::published(&new) {
+            if let Some(members) = bundles.get(table.file.as_str()).filter(|_| tables.contains(&table.file)) {
+                (source.next)(&table.file)?;
+                let bytes = self.bundle(old, members, source)?;
+                self.put(&mut listed, &table.file, &bytes, table.varies())?;
+                self.opened.clear();
+            } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
-                self.put(&mut listed, &table.file, &(source.bytes)(stage, name)?, table.varies())?;
+                let bytes = match self.kept_by_bundle(old, table) {
+                    Some(kept) => parquet::write(&kept)?,
+                    None => (source.bytes)(stage, name)?,
+                };
+                self.put(&mut listed, &table.file, &bytes, table.varies())?;
             } else {
                 let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
                 listed.keep(old, &table.file, is_good.then(|| table.varies()));
             }
-            let wanted: Vec<&String> = table.files.iter().filter(|file| changes.files.contains(file)).collect();
+            let wanted: Vec<&String> = table.files.iter().filter(|file| files.contains(file)).collect();
             if let Some(first) = wanted.first() {
                 (source.next)(first)?;
                 self.put_held(&mut listed, table, &wanted)?;
@@ -183,7 +215,11 @@ impl Folder {
         new = match (old, facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
             (Some(old), _) if say_the_same(&old.manifest, &new) => {
-                Manifest { files: Vec::new(), ..old.manifest.clone() }
+                let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
+                let (program, study_folder) = (program.clone(), study_folder.clone());
+                let (machine, written) = (machine.clone(), written.clone());
+                let stages = old.manifest.stages.clone();
+                Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {
                 let Facts { program, study_folder, machine, written } = facts();
@@ -218,28 +254,27 @@ impl Folder {
         }
         self.remove(&changes.remove)?;
         new.files = listed.files;
-        let text = manifest_bytes(&new)?;
+        let text = new.text().map_err(unwritten)?;
+        let seen = listed.seen.clone();
         Index::new(index::digest(&text), drawn_by, listed.seen).write(self.path())?;
         // A manifest that replaces another is there whole, or the other one is: what it lists would be nobody's.
         let durability = if old.is_some() { Durability::Synced } else { Durability::Lazy };
         file::write(&self.path().join(MANIFEST), &text, durability)?;
-        Ok(Published { manifest: new, changes, undrawn })
+        Ok(Published { manifest: new, changes, undrawn, seen })
     }
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one.
     fn strike(&self, old: &Manifest, changes: &Changes) -> Result<(), StoreError> {
+        let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
-            changes.tables.contains(file)
-                || changes.files.contains(file)
-                || (changes.hdf5 && *file == self.hdf5_file())
-                || (changes.drawn && is_drawn(file))
+            written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
         };
         let files: Vec<FileRecord> = old.files.iter().filter(|record| !replaced(&record.file)).cloned().collect();
         if files.len() == old.files.len() {
             return Ok(());
         }
-        let text = manifest_bytes(&Manifest { files, ..old.clone() })?;
+        let text = old.text_with(&files).map_err(unwritten)?;
         file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
@@ -269,7 +304,7 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record))?;
+        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record), &|file| self.whole(file))?;
         // Its bytes depend on the version of libhdf5 as well.
         self.put(listed, &name, &bytes, true)
     }
@@ -282,9 +317,15 @@ impl Folder {
 
     fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
         let fault = RefCell::new(None);
+        let records: HashMap<&str, &TableRecord> =
+            manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| (&*record.name, record)).collect();
         let table = |name: &str| {
-            let record = manifest.stages.iter().flat_map(|stage| &stage.tables).find(|record| record.name == name)?;
-            self.table(record).map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
+            let found = match records.get(name) {
+                Some(record) => self.table(record),
+                None if is_bundle(name) => self.whole(&own_file(name)),
+                None => return None,
+            };
+            found.map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
         };
         let drawn = draw(manifest, &table);
         match (drawn, fault.take()) {
@@ -313,7 +354,8 @@ impl Folder {
     /// Figures that are no more, which would be taken for current ones. Where no page was listed, by an earlier version or
     /// because a run was killed, nobody knows which were ours: what is called a figure is taken for one.
     fn former(&self, earlier: &[String], drawn: &Listed) -> Vec<String> {
-        let is_new = |file: &String| drawn.files.iter().any(|record| record.file == *file);
+        let new: HashSet<&String> = drawn.files.iter().map(|record| &record.file).collect();
+        let is_new = |file: &String| new.contains(file);
         if earlier.iter().any(|file| file == PAGE) {
             return earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect();
         }
@@ -371,18 +413,17 @@ pub fn hdf5_bytes(
     name: &str,
     manifest: &Manifest,
     table: &dyn Fn(&TableRecord) -> Result<Table, StoreError>,
+    whole: &dyn Fn(&str) -> Result<Table, StoreError>,
 ) -> Result<Vec<u8>, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
-    let tables = manifest.stages.iter().flat_map(|stage| &stage.tables);
-    for record in tables.filter(|record| record.files.is_empty()) {
-        writer.add(split(&record.name).0, &table(record)?)?;
+    for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
+        let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)? };
+        writer.add(group, &table)?;
     }
     writer.finish()
 }
 
-fn manifest_bytes(manifest: &Manifest) -> Result<Vec<u8>, StoreError> {
-    let mut bytes = serde_json::to_vec_pretty(manifest)
-        .map_err(|error| StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() })?;
-    bytes.push(b'\n');
-    Ok(bytes)
+#[allow(clippy::needless_pass_by_value)] // for `map_err`
+fn unwritten(error: serde_json::Error) -> StoreError {
+    StoreError::Format { table: MANIFEST.to_owned(), problem: error.to_string() }
 }

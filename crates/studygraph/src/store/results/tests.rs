@@ -1,5 +1,7 @@
 //! Publishing: once, only what changed, after failures and kills, in clones.
 
+mod bundles;
+
 use std::cell::Cell;
 use std::fs;
 

@@ -1,0 +1,186 @@
+//! Small tables of many stages of one kind, published as one: `_<kind>.<table>.parquet`, the rows of all stages with a column
+//! `stage` before the others. Thousands of files of one row each would help nobody.
+//!
+//! A stage's own table is the rows that have its name, without that column; its digest is that of those rows. No stage can be
+//! called as a bundle is: names do not begin with `_`. Must not know: where files lie.
+
+use std::collections::HashMap;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use super::manifest::{Manifest, TableRecord, own_file};
+use crate::table::data::{Data, Table, TableError};
+use crate::table::schema::{Column, Schema};
+
+/// Up to so many stages that have such a table each has its file.
+pub const MANY: usize = 32;
+/// A table of more rows has its own file.
+const MOST_ROWS: usize = 4096;
+/// The column that says whose a row is.
+pub const STAGE: &str = "stage";
+
+/// Whether a file holds the tables of many stages.
+#[must_use]
+pub fn is_bundle(file: &str) -> bool {
+    file.starts_with('_')
+}
+
+/// Decides which file each table of a manifest goes into: a question of kinds, columns and rows alone.
+pub fn assign(manifest: &mut Manifest) {
+    let bundles = bundles(manifest);
+    for table in manifest.stages.iter_mut().flat_map(|stage| &mut stage.tables) {
+        if is_bundle(&table.file) {
+            table.file = own_file(&table.name);
+        }
+    }
+    for (file, members) in bundles {
+        members.into_iter().for_each(|(stage, table)| manifest.stages[stage].tables[table].file.clone_from(&file));
+    }
+}
+
+/// Whether that is done.
+#[must_use]
+pub fn is_assigned(manifest: &Manifest) -> bool {
+    let bundles = bundles(manifest);
+    let tables = manifest.stages.iter().flat_map(|stage| &stage.tables);
+    let bundled = tables.filter(|table| is_bundle(&table.file)).count();
+    let of_file = |file: &str, at: &(usize, usize)| manifest.stages[at.0].tables[at.1].file == file;
+    bundled == bundles.iter().map(|(_, members)| members.len()).sum::<usize>()
+        && bundles.iter().all(|(file, members)| members.iter().all(|at| of_file(file, at)))
+}
+
+/// A file, and the places of stages and their tables that go into it.
+type Bundle = (String, Vec<(usize, usize)>);
+
+fn bundles(manifest: &Manifest) -> Vec<Bundle> {
+    let mut groups: HashMap<(&str, &str), Vec<(usize, usize)>> = HashMap::new();
+    for (stage, record) in manifest.stages.iter().enumerate() {
+        for (table, own) in record.tables.iter().enumerate().filter(|(_, own)| fits(own)) {
+            let group = groups.entry((&record.kind, own.table())).or_default();
+            let alike = group.first().is_none_or(|&(stage, table): &(usize, usize)| {
+                let first = &manifest.stages[stage].tables[table];
+                (Arc::ptr_eq(&first.columns, &own.columns) || first.columns == own.columns)
+                    && first.description == own.description
+            });
+            if alike {
+                group.push((stage, table));
+            }
+        }
+    }
+    groups
+        .into_iter()
+        .filter(|(_, members)| members.len() > MANY)
+        .map(|((kind, table), members)| (format!("_{kind}.{table}.parquet"), members))
+        .collect()
+}
+
+fn fits(table: &TableRecord) -> bool {
+    let columns = &table.columns;
+    let keyed = columns.iter().any(|column| column.key) && columns.iter().all(|column| column.name != STAGE);
+    keyed && table.files.is_empty() && table.rows <= MOST_ROWS
+}
+
+/// The tables of stages as one; all have one schema.
+///
+/// # Errors
+/// As [`Table::concatenated`].
+pub fn together(mut parts: Vec<(&str, Table)>) -> Result<Table, TableError> {
+    parts.sort_by_key(|(stage, _)| *stage);
+    let Some((_, first)) = parts.first() else { return Table::from_rows(Schema::new("", "", Vec::new()), Vec::new()) };
+    let column = Column::text(STAGE, "Name of the stage.").key();
+    let columns = [column].into_iter().chain(first.schema().columns.iter().cloned()).collect();
+    let schema = Schema { columns, ..first.schema().clone() };
+    let names = parts.iter().flat_map(|(stage, table)| std::iter::repeat_n((*stage).to_owned(), table.rows()));
+    let names = Data::Text(names.collect());
+    let all = Table::chained(parts.into_iter().map(|(_, table)| table).collect())?;
+    Table::from_columns(schema, [names].into_iter().chain(all).collect())
+}
+
+/// The table of one stage; empty where no row has its name.
+///
+/// # Errors
+/// When it is no bundle.
+pub fn part(bundle: &Table, stage: &str) -> Result<Table, String> {
+    let (Some(Data::Text(names)), Some(0)) = (bundle.column(STAGE), bundle.schema().position(STAGE)) else {
+        return Err("it has no column `stage` before the others".to_owned());
+    };
+    let start = names.partition_point(|name| name.as_str() < stage);
+    let rows = start..start + names[start..].partition_point(|name| name == stage);
+    let schema = Schema { columns: bundle.schema().columns[1..].to_vec(), ..bundle.schema().clone() };
+    let columns = bundle.columns()[1..].iter().map(|data| data.slice(rows.clone())).collect();
+    Table::from_columns(schema, columns).map_err(|error| error.to_string())
+}
+
+/// Bundles that were read, so that each is read once for all its tables.
+#[derive(Debug, Default)]
+pub struct Opened(Mutex<HashMap<String, Arc<Table>>>);
+
+impl Opened {
+    /// The table of a record, from the table that its file holds.
+    ///
+    /// # Errors
+    /// Those of `read`; `damaged` makes one of a sentence.
+    pub fn table<E>(
+        &self,
+        record: &TableRecord,
+        place: &str,
+        read: impl FnOnce() -> Result<Table, E>,
+        damaged: impl FnOnce(String) -> E,
+    ) -> Result<Table, E> {
+        if !is_bundle(&record.file) {
+            return read();
+        }
+        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(place).cloned();
+        let bundle = match known {
+            Some(bundle) => bundle,
+            None => {
+                let bundle = Arc::new(read()?);
+                let mut opened = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+                opened.insert(place.to_owned(), Arc::clone(&bundle));
+                bundle
+            }
+        };
+        part(&bundle, record.stage()).map_err(damaged)
+    }
+
+    /// Files may be others by now.
+    pub fn clear(&self) {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).clear();
+    }
+}
+
+/// The tables as they are published: each by itself, and the tables of a bundle as one under the name `_kind`, with the first
+/// of its records.
+pub fn published(manifest: &Manifest) -> impl Iterator<Item = (&str, &TableRecord)> {
+    let mut met = std::collections::HashSet::new();
+    manifest.stages.iter().flat_map(|stage| &stage.tables).filter_map(move |table| {
+        if !is_bundle(&table.file) {
+            return Some((table.stage(), table));
+        }
+        let (kind, _) = table.file.split_once('.')?;
+        met.insert(table.file.as_str()).then_some((kind, table))
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::store::parquet::tests::{assert_identical, everything};
+
+    #[test]
+    fn the_parts_of_a_bundle_are_what_went_into_it() {
+        let names: Vec<String> = (0..40).map(|index| format!("m{index}")).collect();
+        let own = |index: usize| everything(index % 4);
+        let bundle = together(names.iter().enumerate().map(|(index, name)| (&**name, own(index))).collect()).unwrap();
+        assert_eq!(bundle.rows(), 60);
+        let bytes = crate::store::parquet::write(&bundle).unwrap();
+        let bundle = crate::store::parquet::read(bytes).unwrap();
+        for (index, name) in names.iter().enumerate() {
+            assert_identical(&part(&bundle, name).unwrap(), &own(index));
+        }
+        assert_eq!(part(&bundle, "absent").unwrap().rows(), 0);
+        assert!(part(&everything(3), "m1").unwrap_err().contains("stage"));
+        // Whatever order they come in.
+        let reversed = names.iter().enumerate().rev().map(|(index, name)| (&**name, own(index))).collect();
+        assert_identical(&together(reversed).unwrap(), &bundle);
+    }
+}

@@ -1,0 +1,435 @@
+//! A manifest as text. Format 2 says once what many tables and chunks have in common, and has one line for each table,
+//! column and file, so that a difference between two commits can be read. Format 1, of earlier versions, is still read.
+//!
+//! Must not know: what any of it is for.
+
+use std::borrow::Cow;
+use std::collections::{BTreeMap, HashMap};
+use std::io;
+use std::sync::Arc;
+
+use serde::ser::SerializeMap;
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde_json::ser::Formatter;
+
+use super::{
+    ColumnRecord, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
+    StudyFolder, TableRecord,
+};
+use crate::store::journal::Failed;
+use crate::store::key_record::{KeyRecord, Short};
+
+#[derive(Serialize, Deserialize)]
+pub(super) struct Text<'a> {
+    format: u32,
+    study: Cow<'a, str>,
+    title: Cow<'a, str>,
+    seed: u64,
+    source: Cow<'a, Option<Source>>,
+    study_digest: Cow<'a, str>,
+    program: Cow<'a, Program>,
+    #[serde(default)]
+    study_folder: Cow<'a, StudyFolder>,
+    machine: Cow<'a, Machine>,
+    written: Cow<'a, str>,
+    seconds: f64,
+    /// What tables are, by a name for those that are alike.
+    #[serde(default)]
+    schemas: Schemas,
+    stages: Vec<Stage<'a>>,
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    tolerances: Cow<'a, [(String, String)]>,
+    #[serde(default)]
+    files: Cow<'a, [FileRecord]>,
+}
+
+/// In the order in which they were first needed.
+#[derive(Default)]
+struct Schemas(Vec<(String, TableSchema)>);
+
+#[derive(Clone, Serialize, Deserialize)]
+struct TableSchema {
+    #[serde(with = "super::shared")]
+    description: Arc<str>,
+    #[serde(serialize_with = "super::shared::serialize", deserialize_with = "super::shared::all")]
+    columns: Arc<[ColumnRecord]>,
+}
+
+#[derive(Serialize, Deserialize)]
+struct Stage<'a> {
+    name: Cow<'a, str>,
+    kind: Cow<'a, str>,
+    version: u32,
+    keys: Vec<Keys>,
+    #[serde(default, skip_serializing_if = "is_null")]
+    config: Cow<'a, serde_json::Value>,
+    status: Cow<'a, str>,
+    why: Cow<'a, str>,
+    seconds: f64,
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    work: Cow<'a, BTreeMap<String, u64>>,
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    warnings: Cow<'a, [String]>,
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    left_out: Cow<'a, [OmissionRecord]>,
+    tables: Vec<Table<'a>>,
+}
+
+fn is_null(value: &serde_json::Value) -> bool {
+    value.is_null()
+}
+
+/// The keys of chunks that differ by their axis alone. Format 1 has one `key` and `axis` for each.
+#[derive(Serialize, Deserialize)]
+struct Keys {
+    config: Short,
+    #[serde(default)]
+    fields: Vec<(String, Short)>,
+    code: Short,
+    #[serde(default, skip_serializing_if = "Nothing::is_empty")]
+    seed: Nothing,
+    demand: Short,
+    inputs: Vec<(String, Short)>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    key: Option<Failed>,
+    #[serde(default, skip_serializing_if = "Nothing::is_empty")]
+    axis: Nothing,
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    chunks: Vec<(Failed, Short)>,
+}
+
+/// Nothing is an empty text.
+#[derive(Clone, Copy, Default, PartialEq, Serialize, Deserialize)]
+struct Nothing(#[serde(with = "crate::store::key_record::optional")] Option<Short>);
+
+impl Nothing {
+    fn is_empty(&self) -> bool {
+        self.0.is_none()
+    }
+}
+
+#[derive(Serialize, Deserialize)]
+struct Table<'a> {
+    name: Cow<'a, str>,
+    rows: usize,
+    content: Cow<'a, str>,
+    /// The name of its schema; none in format 1.
+    #[serde(default, skip_serializing_if = "str::is_empty")]
+    schema: Cow<'a, str>,
+    #[serde(default, skip_serializing)]
+    description: Option<String>,
+    #[serde(default, skip_serializing)]
+    columns: Option<Vec<ColumnRecord>>,
+    file: Cow<'a, str>,
+    #[serde(default, skip_serializing_if = "<[_]>::is_empty")]
+    files: Cow<'a, [String]>,
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    parts: Option<Cow<'a, PartsRecord>>,
+}
+
+impl Serialize for Schemas {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut map = serializer.serialize_map(Some(self.0.len()))?;
+        for (name, schema) in &self.0 {
+            map.serialize_entry(name, schema)?;
+        }
+        map.end()
+    }
+}
+
+impl<'de> Deserialize<'de> for Schemas {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let known = BTreeMap::<String, TableSchema>::deserialize(deserializer)?;
+        Ok(Self(known.into_iter().collect()))
+    }
+}
+
+impl Serialize for Manifest {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        text(self, &self.files).serialize(serializer)
+    }
+}
+
+/// A manifest that lists these files.
+pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<'a> {
+    let mut named = Named::default();
+    let stages = manifest.stages.iter().map(|stage| Stage::of(stage, &mut named)).collect();
+    Text {
+        format: manifest.format.max(super::FORMAT),
+        study: Cow::Borrowed(&manifest.study),
+        title: Cow::Borrowed(&manifest.title),
+        seed: manifest.seed,
+        source: Cow::Borrowed(&manifest.source),
+        study_digest: Cow::Borrowed(&manifest.study_digest),
+        program: Cow::Borrowed(&manifest.program),
+        study_folder: Cow::Borrowed(&manifest.study_folder),
+        machine: Cow::Borrowed(&manifest.machine),
+        written: Cow::Borrowed(&manifest.written),
+        seconds: manifest.seconds,
+        stages,
+        schemas: Schemas(named.schemas),
+        tolerances: Cow::Borrowed(&manifest.tolerances),
+        files: Cow::Borrowed(files),
+    }
+}
+
+/// Names for schemas: that of kind and table, with a number where that is taken.
+#[derive(Default)]
+struct Named {
+    schemas: Vec<(String, TableSchema)>,
+    /// Of kind and table, the places of those that were met.
+    met: HashMap<(String, String), Vec<usize>>,
+    /// Names by kind and by the columns' place in memory, which alike tables share; it stays theirs while the manifest does.
+    quick: HashMap<(*const ColumnRecord, *const u8, String), String>,
+}
+
+impl Named {
+    fn name(&mut self, kind: &str, table: &TableRecord) -> String {
+        let place = (table.columns.as_ptr(), table.description.as_ptr(), format!("{kind}.{}", table.table()));
+        if let Some(name) = self.quick.get(&place) {
+            return name.clone();
+        }
+        let name = self.compared(kind, table);
+        self.quick.insert(place, name.clone());
+        name
+    }
+
+    fn compared(&mut self, kind: &str, table: &TableRecord) -> String {
+        let own = table.table();
+        let met = self.met.entry((kind.to_owned(), own.to_owned())).or_default();
+        let same = |place: &&usize| {
+            let TableSchema { description, columns } = &self.schemas[**place].1;
+            (Arc::ptr_eq(columns, &table.columns) || *columns == table.columns) && *description == table.description
+        };
+        if let Some(place) = met.iter().find(same) {
+            return self.schemas[*place].0.clone();
+        }
+        let name = if met.is_empty() { format!("{kind}.{own}") } else { format!("{kind}.{own}.{}", met.len() + 1) };
+        met.push(self.schemas.len());
+        let schema = TableSchema { description: Arc::clone(&table.description), columns: Arc::clone(&table.columns) };
+        self.schemas.push((name.clone(), schema));
+        name
+    }
+}
+
+impl<'a> Stage<'a> {
+    fn of(stage: &'a StageRecord, named: &mut Named) -> Self {
+        let tables = stage.tables.iter().map(|table| {
+            let schema = Cow::Owned(named.name(&stage.kind, table));
+            Table {
+                name: Cow::Borrowed(&table.name),
+                rows: table.rows,
+                content: Cow::Borrowed(&table.content),
+                schema,
+                description: None,
+                columns: None,
+                file: Cow::Borrowed(&table.file),
+                files: Cow::Borrowed(&table.files),
+                parts: table.parts.as_ref().map(Cow::Borrowed),
+            }
+        });
+        Self {
+            name: Cow::Borrowed(&stage.name),
+            kind: Cow::Borrowed(&stage.kind),
+            version: stage.version,
+            keys: keys(&stage.keys),
+            config: Cow::Borrowed(&stage.config),
+            status: Cow::Borrowed(&stage.status),
+            why: Cow::Borrowed(&stage.why),
+            seconds: stage.seconds,
+            work: Cow::Borrowed(&stage.work),
+            warnings: Cow::Borrowed(&stage.warnings),
+            left_out: Cow::Borrowed(&stage.left_out),
+            tables: tables.collect(),
+        }
+    }
+}
+
+/// Chunks one after the other that differ by their axis alone stand together.
+fn keys(records: &[KeyRecord]) -> Vec<Keys> {
+    let mut all: Vec<Keys> = Vec::new();
+    for KeyRecord { key, config, fields, axis, code, seed, demand, inputs } in records {
+        let last = all.last_mut().filter(|last| {
+            let same = (&last.config, &last.code, last.seed.0, &last.demand) == (config, code, *seed, demand);
+            same && last.fields == *fields && last.inputs == *inputs
+        });
+        match (last, axis) {
+            (Some(Keys { chunks, .. }), Some(axis)) if !chunks.is_empty() => chunks.push((Failed(*key), *axis)),
+            (_, axis) => all.push(Keys {
+                config: *config,
+                fields: fields.clone(),
+                code: *code,
+                seed: Nothing(*seed),
+                demand: *demand,
+                inputs: inputs.clone(),
+                key: axis.is_none().then_some(Failed(*key)),
+                axis: Nothing(None),
+                chunks: axis.iter().map(|axis| (Failed(*key), *axis)).collect(),
+            }),
+        }
+    }
+    all
+}
+
+impl<'de> Deserialize<'de> for Manifest {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let text = Text::deserialize(deserializer)?;
+        let schemas: HashMap<&str, &TableSchema> =
+            text.schemas.0.iter().map(|(name, schema)| (name.as_str(), schema)).collect();
+        let wrong = |problem: String| serde::de::Error::custom(problem);
+        let stages = text.stages.into_iter().map(|stage| stage.record(&schemas).map_err(wrong));
+        Ok(Self {
+            stages: stages.collect::<Result<_, D::Error>>()?,
+            format: text.format,
+            study: text.study.into_owned(),
+            title: text.title.into_owned(),
+            seed: text.seed,
+            source: text.source.into_owned(),
+            study_digest: text.study_digest.into_owned(),
+            program: text.program.into_owned(),
+            study_folder: text.study_folder.into_owned(),
+            machine: text.machine.into_owned(),
+            written: text.written.into_owned(),
+            seconds: text.seconds,
+            tolerances: text.tolerances.into_owned(),
+            files: text.files.into_owned(),
+        })
+    }
+}
+
+impl Stage<'_> {
+    fn record(self, schemas: &HashMap<&str, &TableSchema>) -> Result<StageRecord, String> {
+        let table = |table: Table| {
+            let TableSchema { description, columns } = match (table.description, table.columns) {
+                (Some(description), Some(columns)) => {
+                    TableSchema { description: description.into(), columns: columns.into() }
+                }
+                _ => schemas.get(&*table.schema).map(|schema| (*schema).clone()).ok_or_else(|| {
+                    format!(
+                        "table `{}` has the columns `{}`, and nothing says which those are",
+                        table.name, table.schema
+                    )
+                })?,
+            };
+            Ok(TableRecord {
+                description,
+                columns,
+                file: table.file.into_owned(),
+                name: table.name.into_owned(),
+                rows: table.rows,
+                content: table.content.into_owned(),
+                files: table.files.into_owned(),
+                parts: table.parts.map(Cow::into_owned),
+            })
+        };
+        let keys = self.keys.into_iter().flat_map(|keys| {
+            let single = keys.key.map(|key| (key, keys.axis.0));
+            let chunks = keys.chunks.into_iter().map(|(key, axis)| (key, Some(axis)));
+            let record = move |(Failed(key), axis)| KeyRecord {
+                key,
+                config: keys.config,
+                fields: keys.fields.clone(),
+                axis,
+                code: keys.code,
+                seed: keys.seed.0,
+                demand: keys.demand,
+                inputs: keys.inputs.clone(),
+            };
+            single.into_iter().chain(chunks).map(record)
+        });
+        Ok(StageRecord {
+            keys: keys.collect(),
+            name: self.name.into_owned(),
+            kind: self.kind.into_owned(),
+            version: self.version,
+            config: self.config.into_owned(),
+            status: self.status.into_owned(),
+            why: self.why.into_owned(),
+            seconds: self.seconds,
+            work: self.work.into_owned(),
+            warnings: self.warnings.into_owned(),
+            left_out: self.left_out.into_owned(),
+            tables: self.tables.into_iter().map(table).collect::<Result<_, String>>()?,
+        })
+    }
+}
+
+/// One line for each value down to this depth, and what is deeper on its line.
+const DEPTH: usize = 4;
+
+/// Writes JSON whose outer levels have lines of their own.
+#[derive(Default)]
+pub(super) struct Lines {
+    depth: usize,
+    has_value: bool,
+}
+
+impl Lines {
+    fn open<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
+        self.depth += 1;
+        self.has_value = false;
+        writer.write_all(bracket)
+    }
+
+    fn close<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
+        self.depth -= 1;
+        if self.has_value && self.depth < DEPTH {
+            self.line(writer)?;
+        }
+        self.has_value = true;
+        writer.write_all(bracket)
+    }
+
+    fn next<W: ?Sized + io::Write>(&self, writer: &mut W, first: bool) -> io::Result<()> {
+        match (first, self.depth <= DEPTH) {
+            (true, false) => Ok(()),
+            (false, false) => writer.write_all(b", "),
+            (true, true) => self.line(writer),
+            (false, true) => writer.write_all(b",").and_then(|()| self.line(writer)),
+        }
+    }
+
+    fn line<W: ?Sized + io::Write>(&self, writer: &mut W) -> io::Result<()> {
+        writer.write_all(&b"\n          "[..1 + self.depth.min(DEPTH)])
+    }
+}
+
+impl Formatter for Lines {
+    fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.open(writer, b"[")
+    }
+
+    fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.close(writer, b"]")
+    }
+
+    fn begin_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.next(writer, first)
+    }
+
+    fn end_array_value<W: ?Sized + io::Write>(&mut self, _writer: &mut W) -> io::Result<()> {
+        self.has_value = true;
+        Ok(())
+    }
+
+    fn begin_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.open(writer, b"{")
+    }
+
+    fn end_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        self.close(writer, b"}")
+    }
+
+    fn begin_object_key<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
+        self.next(writer, first)
+    }
+
+    fn begin_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
+        writer.write_all(b": ")
+    }
+
+    fn end_object_value<W: ?Sized + io::Write>(&mut self, _writer: &mut W) -> io::Result<()> {
+        self.has_value = true;
+        Ok(())
+    }
+}
