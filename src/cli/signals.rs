@@ -4,8 +4,8 @@
 //! when the program was started stays ignored: so `nohup` and the background of a script do it. Must not know: what is
 //! stopped.
 
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicI32, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use indicatif::MultiProgress;
 
@@ -28,12 +28,16 @@ pub fn code() -> i32 {
     }
 }
 
-/// Set by the first signal. Without a handler any signal ends the program at once; what is finished is kept in that case
-/// too.
+/// Set by the first signal, and the same for all who ask: two that heard one signal would take it for two. Without a
+/// handler any signal ends the program at once; what is finished is kept in that case too.
 pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
-    let stop = Arc::new(AtomicBool::new(false));
-    watch(&stop, bars);
-    stop
+    static STOP: OnceLock<Arc<AtomicBool>> = OnceLock::new();
+    let made = || {
+        let stop = Arc::new(AtomicBool::new(false));
+        watch(&stop, bars);
+        stop
+    };
+    Arc::clone(STOP.get_or_init(made))
 }
 
 #[cfg(unix)]

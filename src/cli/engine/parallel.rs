@@ -85,7 +85,11 @@ impl Starter for Parallel<'_> {
     }
 
     fn leave(&mut self) -> String {
-        // It heard Ctrl-C too, and stops its jobs; what they were at is computed again.
+        // What it has started ends by itself; whoever starts that again does no harm.
+        if let Some((mut child, _)) = self.running.take() {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
         String::new()
     }
 }
