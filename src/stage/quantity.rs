@@ -45,6 +45,8 @@ pub fn product(a: Dimension, b: Dimension, power: i8) -> Dimension {
     }
 }
 
+/// # Errors
+/// A sentence: an exponent that has a unit, or a power that has none.
 pub fn power(base: Dimension, exponent: Number) -> Result<Dimension, String> {
     if !same_dimension(exponent.dimension, RATIO) {
         return Err(format!("an exponent is a plain number, not {}", described(exponent.dimension)));

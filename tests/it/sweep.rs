@@ -36,7 +36,7 @@ fn study(stages: &[&str]) -> String {
 
 /// The same with a sweep of `ste` that has these fields.
 fn swept(fields: &str) -> String {
-    let fields: String = fields.trim().lines().map(|line| format!("    {line}\n")).collect();
+    let fields = format!("    {}\n", fields.trim().replace('\n', "\n    "));
     study(&[PAIR, STIFFNESS, DESIGN, STE, "  sweep:\n    kind: sweep\n    of: ste\n", &fields])
 }
 

@@ -75,7 +75,9 @@ impl Random {
     /// The coordinates of point `index`, each in 0..1; more coordinates leave the first ones as they are.
     pub fn point(&self, index: usize, coordinates: &mut [f64]) {
         let mut generator = self.seed.generator(index as u64);
-        coordinates.iter_mut().for_each(|coordinate| *coordinate = uniform(&mut generator));
+        for coordinate in coordinates {
+            *coordinate = uniform(&mut generator);
+        }
     }
 }
 
@@ -168,9 +170,11 @@ mod tests {
         for index in 0..20_000 {
             sample.point(index, &mut many);
             sample.point(index, &mut few);
-            assert!(few == many[..2]);
+            assert_eq!(few.map(f64::to_bits), [many[0].to_bits(), many[1].to_bits()]);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            many.iter().for_each(|value| counts[(value * 20.0) as usize] += 1);
+            for value in many {
+                counts[(value * 20.0) as usize] += 1;
+            }
         }
         // 19 degrees of freedom: 99.9 % stay below 43.8.
         let square: f64 = counts.iter().map(|count| (f64::from(*count) - 5000.0).powi(2) / 5000.0).sum();

@@ -3,6 +3,7 @@
 //! Must not know: what is in a part.
 
 use std::cmp::Ordering;
+use std::collections::BTreeMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::key::{Cut, KeyedChunk};
@@ -64,6 +65,9 @@ impl Others for OfStage<'_, '_> {
         known.iter().filter(meets).filter_map(|span| self.run.cache.table(span.key, table).ok().map(Arc::new)).collect()
     }
 }
+
+/// By node and table, what its parts hold.
+pub(super) type Spans = BTreeMap<(usize, String), Arc<Vec<Span>>>;
 
 /// A table of a part, and the keys of its first and its last row.
 pub(super) struct Span {

@@ -15,7 +15,7 @@ use super::events::{Event, Observer};
 use super::fault::Fault;
 use super::key::{Cut, KeyedChunk, Why};
 use super::options::Options;
-use super::others::{OfStage, Span};
+use super::others::{OfStage, Spans};
 use super::outcome::together;
 use crate::stage::{Context, Demand, Inputs, Kind, Stage};
 use crate::store::cache::Cache;
@@ -44,7 +44,7 @@ pub(super) struct Run<'a> {
     pub(super) shares: Mutex<BTreeMap<(usize, usize), f64>>,
     pub(super) turns: Mutex<Turns>,
     /// By node and table, what parts of the last success hold.
-    pub(super) spans: Mutex<BTreeMap<(usize, String), Arc<Vec<Span>>>>,
+    pub(super) spans: Mutex<Spans>,
 }
 
 /// Who is at work, and who waits until nobody is.

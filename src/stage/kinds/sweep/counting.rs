@@ -114,6 +114,7 @@ pub fn quantile(counts: &[u64], moments: &Moments, share: f64) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp)] // what must be met exactly
 mod tests {
     use super::*;
 
@@ -121,7 +122,9 @@ mod tests {
     fn moments_are_those_of_their_formulas() {
         let values = [3.0, -1.0, 4.5, 4.5, 0.25];
         let mut moments = Moments::default();
-        values.iter().for_each(|value| moments.add(*value));
+        for value in &values {
+            moments.add(*value);
+        }
         let mean = values.iter().sum::<f64>() / 5.0;
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         assert!((moments.mean - mean).abs() < 1e-15 && (moments.squares - squares).abs() < 1e-13);
@@ -133,9 +136,13 @@ mod tests {
     fn quantiles_are_right_to_a_step() {
         let mut moments = Moments::default();
         let values: Vec<f64> = (0..=10_000).map(|at| f64::from(at) * 1e-4).collect();
-        values.iter().for_each(|value| moments.add(*value));
+        for value in &values {
+            moments.add(*value);
+        }
         let mut counts = vec![0; BINS];
-        values.iter().for_each(|value| counts[bin(*value, 0.0, 1.0, BINS)] += 1);
+        for value in &values {
+            counts[bin(*value, 0.0, 1.0, BINS)] += 1;
+        }
         for share in [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0] {
             assert!((quantile(&counts, &moments, share) - share).abs() <= 1.0 / BINS as f64, "{share}");
         }

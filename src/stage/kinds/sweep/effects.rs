@@ -77,11 +77,11 @@ impl<'s> Tally<'s> {
         let outputs: Vec<&[f64]> = sweep.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
         let reasons = table.texts(REASON);
         let mut at = vec![0; fields.len()];
-        for row in 0..table.rows() {
-            if !reasons[row].is_empty() {
+        for (row, reason) in reasons.iter().enumerate() {
+            if !reason.is_empty() {
                 if pass == 0 {
                     self.rows += 1;
-                    self.add_invalid(&reasons[row], || described(sweep, &fields, row));
+                    self.add_invalid(reason, || described(sweep, &fields, row));
                 }
                 continue;
             }
@@ -192,7 +192,7 @@ impl<'s> Tally<'s> {
         for (output, asked) in sweep.outputs.iter().enumerate() {
             let name = asked.column.name.as_str();
             for (field, column) in sweep.layout.columns.iter().enumerate() {
-                shares.push(Share { field: &column.axis.name, output: name, share: self.share(field, output) });
+                shares.push(Share { field: &column.axis.name, output: name, explained: self.share(field, output) });
                 for group in 0..self.groups[field].len() {
                     let moments = &self.effects[field][group][output];
                     if moments.count == 0 {
@@ -217,12 +217,12 @@ impl<'s> Tally<'s> {
             }
             quantiles.extend(QUANTILES.map(|share| {
                 let value = quantile(&self.whole[output], moments, share);
-                Quantile { output: name, share, value }
+                Quantile { output: name, share, at: value }
             }));
             let width = (moments.high - moments.low) / SHOWN_BINS as f64;
             bins.extend(self.whole[output].chunks(BINS / SHOWN_BINS).enumerate().map(|(at, counts)| Bin {
                 output: name,
-                bin: at + 1,
+                number: at + 1,
                 from: moments.low + width * at as f64,
                 to: moments.low + width * (at + 1) as f64,
                 count: counts.iter().sum(),

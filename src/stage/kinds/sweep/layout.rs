@@ -350,8 +350,9 @@ fn zip(columns: &[Column]) -> Result<Rows, Diagnostic> {
         pairs.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
     };
     rows.sort_by(order);
-    if let Some(pair) = rows.windows(2).find(|pair| order(&pair[0], &pair[1]).is_eq()) {
-        let shown = columns.iter().zip(&pair[0]).map(|(column, level)| {
+    let twice = rows.iter().zip(&rows[1..]).find(|(one, two)| order(one, two).is_eq());
+    if let Some((row, _)) = twice {
+        let shown = columns.iter().zip(row).map(|(column, level)| {
             format!("{} = {} {}", column.axis.name, level.shown, column.axis.unit).trim().to_owned()
         });
         let message = format!("two designs are the same: {}", shown.collect::<Vec<_>>().join(", "));

@@ -81,7 +81,7 @@ pub fn effects<'a>() -> Columns<EffectRow<'a>> {
 pub struct Share<'a> {
     pub field: &'a str,
     pub output: &'a str,
-    pub share: f64,
+    pub explained: f64,
 }
 
 pub fn shares<'a>() -> Columns<Share<'a>> {
@@ -94,7 +94,7 @@ pub fn shares<'a>() -> Columns<Share<'a>> {
         .key()
         .text("output", "Column of the output.", |row| row.output)
         .key()
-        .shown("share", "", share, |row| row.share)
+        .shown("share", "", share, |row| row.explained)
         .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
 }
 
@@ -129,7 +129,7 @@ pub fn maps<'a>() -> Columns<MapCell<'a>> {
 /// How many rows have an output between two values.
 pub struct Bin<'a> {
     pub output: &'a str,
-    pub bin: usize,
+    pub number: usize,
     pub from: f64,
     pub to: f64,
     pub count: u64,
@@ -139,7 +139,7 @@ pub fn distribution<'a>() -> Columns<Bin<'a>> {
     Columns::new("distribution", "How many rows have an output in each of 32 equal steps between its extremes.")
         .text("output", "Column of the output.", |row: &Bin<'a>| row.output)
         .key()
-        .integer("bin", "Counts the steps, from 1.", |row| row.bin)
+        .integer("bin", "Counts the steps, from 1.", |row| row.number)
         .key()
         .shown("from", "", "Where it begins, in the unit of the output.", |row| row.from)
         .but(|column| column.tolerance(1e-12, 1e-6))
@@ -152,7 +152,7 @@ pub fn distribution<'a>() -> Columns<Bin<'a>> {
 pub struct Quantile<'a> {
     pub output: &'a str,
     pub share: f64,
-    pub value: f64,
+    pub at: f64,
 }
 
 pub fn quantiles<'a>() -> Columns<Quantile<'a>> {
@@ -162,7 +162,7 @@ pub fn quantiles<'a>() -> Columns<Quantile<'a>> {
         .key()
         .shown("share", "", "The share of the rows.", |row| row.share)
         .key()
-        .shown("value", "", value, |row| row.value)
+        .shown("value", "", value, |row| row.at)
         .but(|column| column.tolerance(1e-12, 1e-3))
 }
 

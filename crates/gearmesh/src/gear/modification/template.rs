@@ -28,8 +28,8 @@ pub struct Variable {
 pub struct Template {
     parts: Vec<(&'static Family, Record)>,
     variables: Vec<Variable>,
-    /// Part and field of each variable.
-    slots: Vec<(usize, usize)>,
+    /// Part and field of each variable, and whether the field is a plain number: a ratio may be either.
+    slots: Vec<(usize, usize, bool)>,
 }
 
 impl Template {
@@ -64,7 +64,8 @@ impl Template {
             let numbered = (2..).map(|number| format!("{plain}_{number}"));
             let name = std::iter::once(plain.clone()).chain(numbered).find(|name| !taken(name)).unwrap_or(plain);
             self.variables.push(Variable { name, dimension, minimum, maximum });
-            self.slots.push((self.parts.len(), slot));
+            let plain = !matches!(shape, Some(Shape::Quantity { .. }));
+            self.slots.push((self.parts.len(), slot, plain));
         }
     }
 
@@ -99,15 +100,14 @@ impl Template {
         let mut design = Design::default();
         let mut next = 0;
         for (index, (family, record)) in self.parts.iter().enumerate() {
-            if self.slots.get(next).is_none_or(|(part, _)| *part != index) {
+            if self.slots.get(next).is_none_or(|(part, ..)| *part != index) {
                 put(&mut design, family, record)?;
                 continue;
             }
             let mut record = record.clone();
-            while let Some((_, field)) = self.slots.get(next).filter(|(part, _)| *part == index) {
-                let plain = self.variables[next].dimension == RATIO;
+            while let Some((_, field, plain)) = self.slots.get(next).filter(|(part, ..)| *part == index) {
                 let value = values[next];
-                record.fields[*field].1.value = if plain { Value::Number(value) } else { Value::Quantity(value) };
+                record.fields[*field].1.value = if *plain { Value::Number(value) } else { Value::Quantity(value) };
                 next += 1;
             }
             put(&mut design, family, &record)?;
