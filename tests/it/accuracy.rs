@@ -177,7 +177,8 @@ fn meshes_converge_and_seeds_spread() {
     let errors = column("relative_error", "summary.mean");
     assert!(errors[0] > 0.02 && errors[1] < 0.01 && errors[2] < 0.4 * errors[1], "{errors:?}");
     let orders = column("observed_order", "summary.mean");
-    assert!(orders[0].is_nan() && orders[1].is_nan() && (1.5..6.0).contains(&orders[2]), "{orders:?}");
+    // With 10 across the fourth power of the size is taken off, with 6 it is not.
+    assert!(orders[0].is_nan() && orders[1].is_nan() && (3.0..9.0).contains(&orders[2]), "{orders:?}");
 
     let spread = table(&ran["searches"], "spread");
     assert_eq!(spread.integers("seeds"), [6, 6]);

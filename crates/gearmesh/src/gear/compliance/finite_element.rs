@@ -43,15 +43,14 @@ const LEAST: usize = 4;
 const MOST_ELEMENTS: usize = 64;
 /// ν up to which plane strain does not lock.
 const MOST_POISSON: f64 = 0.49;
-/// The order that the error estimate counts on; 2 to 4 are observed, the least near the corner of the tip where contact is
-/// resolved.
+/// The order that the error estimate counts on where nothing is extrapolated; 2 to 4 are observed.
 const ORDER: f64 = 1.5;
 /// The distance from a resolved contact, in modules, at which the surface's displacement is the tooth's: far for any contact,
 /// and so near that what is left for the tooth is positive.
 const LENGTH: f64 = 0.25;
 /// Parts of an element of the mesh half as fine, in each direction.
 const HALVED: usize = 2;
-/// Rows of the body that make the block of a resolved load another one: what it gives must not depend on it.
+/// Rows of the body in another block of a resolved load: what it gives must not depend on it.
 const OTHER_BLOCK: usize = 1;
 /// The least chamfer or rounding of a tip \[modules\]: it is smaller than the elements there, and than contacts are.
 const LEAST_TIP_BREAK: f64 = 0.01;
@@ -420,8 +419,7 @@ fn root_influences(task: &Task, model: &GearModel) -> Result<RootInfluences, Mes
     let mut loads: Vec<FlankLoad> = task.rolls.iter().map(|&roll| FlankLoad::normal(roll)).collect();
     let normal = loads.len();
     if task.resolved {
-        let [turned, _] = inclined::loads(task.rolls[normal - 1]);
-        loads.push(turned);
+        loads.push(inclined::loads(task.rolls[normal - 1])[0]);
     }
     let found = model.stress_influences_of(&loads, task.neighbours)?;
     let module = task.gear.specification.module;
