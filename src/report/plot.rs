@@ -166,12 +166,12 @@ impl Plot {
         svg
     }
 
-    /// How wide the figure in a page is drawn, where it is narrower than the page.
+    /// How wide the figure in a page is drawn, where two have room beside each other.
     #[must_use]
     pub fn narrow(&self) -> Option<f64> {
         let frame = self.frame(0.0, Layout::PAGE)?;
         let width = self.extent(&frame).0;
-        (width < 0.9 * Layout::PAGE.width).then_some(width.round())
+        (width < 680.0).then_some(width.round().min(535.0))
     }
 
     /// Axes and data, and the end of the figure.
