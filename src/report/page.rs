@@ -20,6 +20,9 @@ use studygraph::table::data::Table;
 /// What is not computed is named where it would have taken this share of the run.
 const WORTH_NAMING: f64 = 0.01;
 
+/// What, why, and about how much it would have taken.
+type Said = (String, String, String);
+
 /// What one report stage contributes, beside its figures.
 pub struct ReportPart {
     pub stage: String,
@@ -139,7 +142,7 @@ pub fn html(
     let counts = counts(parts)?;
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
-    let remarks = |pick: &dyn Fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
+    let remarks = |pick: &dyn Fn(&StageRecord) -> Vec<Said>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
             pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
