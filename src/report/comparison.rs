@@ -15,7 +15,7 @@ pub struct Row {
     cell: String,
     against: String,
     /// The row that is furthest apart.
-    row: String,
+    furthest: String,
     rows: i64,
     value: String,
     reference: String,
@@ -66,7 +66,7 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             label: labels[row].clone(),
             cell: cells[row].clone(),
             against: against[row].clone(),
-            row: places[row].clone(),
+            furthest: places[row].clone(),
             rows: counts[row],
             value: said(values[row]),
             reference: said(references[row]),

@@ -256,10 +256,12 @@ impl Drawing {
         let mut places: Vec<usize> = (0..self.categories.len()).collect();
         places.sort_by_cached_key(|&place| order.rank_in(&spec.x, spec, &self.categories[place]));
         self.categories = places.iter().map(|&place| self.categories[place].clone()).collect();
+        if spec.kind != Kind::Bar {
+            return;
+        }
         for point in self.series.iter_mut().flat_map(|series| &mut series.runs).flatten() {
-            if let Some(at) =
-                places.iter().position(|&place| place as f64 == point.0).filter(|_| spec.kind == Kind::Bar)
-            {
+            // Both are counts.
+            if let Some(at) = places.iter().position(|&place| (place as f64 - point.0).abs() < 0.5) {
                 point.0 = at as f64;
             }
         }

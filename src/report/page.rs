@@ -27,6 +27,9 @@ const WORTH_NAMING: f64 = 0.01;
 /// Stages of a kind shown on the page where there are more than their tables have files for.
 const SHOWN_STAGES: usize = 8;
 
+/// What, why, and about how much it would have taken.
+type Said = (String, String, String);
+
 /// What one report stage contributes, beside its figures.
 pub struct ReportPart {
     pub stage: String,
@@ -158,14 +161,13 @@ pub fn html(
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
     let (shown, more) = shown_stages(manifest);
     let all: Vec<&StageRecord> = manifest.stages.iter().collect();
-    let remarks =
-        |stages: &[&StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<(String, String, String)>| -> Vec<Remark> {
-            let of = |stage: &StageRecord| {
-                let name = stage.name.clone();
-                pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
-            };
-            stages.iter().copied().flat_map(of).collect()
+    let remarks = |stages: &[&StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<Said>| -> Vec<Remark> {
+        let of = |stage: &StageRecord| {
+            let name = stage.name.clone();
+            pick(stage).into_iter().map(move |(what, why, saved)| Remark { stage: name.clone(), what, why, saved })
         };
+        stages.iter().copied().flat_map(of).collect()
+    };
     let least = WORTH_NAMING * manifest.seconds;
     let is_worth = |left: &&OmissionRecord| left.saved_seconds.is_some_and(|saved| saved >= least);
     let left_out = remarks(&shown, &|stage| {

@@ -100,7 +100,7 @@ mod tests {
 
     #[test]
     fn a_value_has_one_colour_on_the_page() {
-        let mut plots = vec![
+        let mut plots = [
             plot(&[("iso", Of::Word), ("genetic", Of::Word)]),
             plot(&[("alone", Of::Word)]),
             plot(&[("genetic", Of::Word), ("long", Of::Word)]),

@@ -12,6 +12,9 @@ use super::legend::{self, Item, Sign};
 use super::look::Look;
 use super::svg::{at, escape};
 
+/// About the frame nothing is cut off, so that a line on its edge is not cut in half \[px\].
+const ROOM: f64 = 6.0;
+
 /// Colours, type and strokes of every figure; light, dark and print.
 pub const STYLE: &str = include_str!("plot.css");
 
@@ -156,9 +159,11 @@ impl Plot {
         let Some(frame) = self.frame(8.0, layout) else { return self.empty(layout) };
         let (width, height) = self.extent(&frame);
         let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" tabindex="0" aria-label="{}" data-plot="{}">"#,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" tabindex="0" style="max-width:{}px" aria-label="{}" data-plot="{}">"#,
             at(width),
             at(height),
+            // Larger would be crude, smaller would leave blank beside it.
+            at(1.3 * width),
             escape(&self.title),
             escape(&self.data(&frame))
         );
@@ -166,12 +171,12 @@ impl Plot {
         svg
     }
 
-    /// How wide the figure in a page is drawn, where it is narrower than the page.
+    /// How wide the figure in a page is drawn, where two have room beside each other.
     #[must_use]
     pub fn narrow(&self) -> Option<f64> {
         let frame = self.frame(0.0, Layout::PAGE)?;
         let width = self.extent(&frame).0;
-        (width < 0.9 * Layout::PAGE.width).then_some(width.round())
+        (width < 680.0).then_some(width.round().min(535.0))
     }
 
     /// Axes and data, and the end of the figure.
@@ -179,8 +184,7 @@ impl Plot {
         svg.push_str(r#"<g class="axes">"#);
         self.draw_axes(svg, frame);
         svg.push_str("</g>");
-        // A frame of its own cuts off what lies outside; a little more, so that a line on the edge is not cut in half.
-        const ROOM: f64 = 6.0;
+        // A frame of its own cuts off what lies outside.
         let view = [frame.left - ROOM, frame.top - ROOM, frame.width + 2.0 * ROOM, frame.height + 2.0 * ROOM];
         let [x, y, width, height] = view.map(at);
         let _ = write!(

@@ -27,7 +27,7 @@ impl Plot {
             match self.kind {
                 Kind::Points => spread(&mut series.runs, &frame),
                 Kind::Line | Kind::Drawing | Kind::Chart => {
-                    series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame))
+                    series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame));
                 }
                 Kind::Bar | Kind::Map => {}
             }

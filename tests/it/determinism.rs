@@ -88,7 +88,7 @@ fn golden_parts_of_keys_of_the_quick_study() {
         "designs 1 22814846 ce4d65dc   6f955979 pair",
         "optimum 1 1d30b231 399f809a  d2243232 8244e95e pair,stiffness",
         "ste 5 c46fabaa 56a9f616 8dec8e6f  2221bda4 pair,stiffness,designs_1,designs_2",
-        "report 1 aa3bad51 b8fcfd01   6b0e2c9f ste,stiffness",
+        "report 1 aa3bad51 c6c7c9a9   9385dcdd ste,stiffness",
     ];
     assert_eq!(found, golden, "\n{}", found.join("\n"));
     // A stage that reads nothing has a key without results in it.

@@ -89,7 +89,7 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
     }
     // Altair reads every figure, by the schema of Vega-Lite.
     let said = python::run("vega.py", &[desk.path("results/plain/figures").as_os_str()]);
-    assert!(said.is_none_or(|said| said.starts_with("11 figures")), "eleven figures");
+    assert!(said.is_none_or(|said| said.starts_with("9 figures")), "all figures");
     // The contact ratio is that of the closed form, by radii alone.
     let (tip, base, pitch): (fn(f64) -> f64, f64, f64) =
         (|z| 3.0 * (z + 2.0) / 2.0, 20f64.to_radians().cos(), std::f64::consts::PI * 3.0 * 20f64.to_radians().cos());
@@ -141,7 +141,7 @@ fn results_stand_beside_results() {
         ("against: stiffness.summary.double_max", "against: ste.summary.mean"),
     ]
     .into_iter()
-    .zip(["`value` is the column that a map shows", "a map needs `value`", "do not line up"])
+    .zip(["`value` is the column that a map shows", "a map needs `value`", "is compared with a length"])
     .map(|((from, to), message)| (COMPARE.replacen(from, to, 1), message))
     {
         fs::write(desk.path("plain.yaml"), format!("{PLAIN}{wrong}")).unwrap();

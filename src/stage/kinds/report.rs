@@ -124,8 +124,8 @@ impl Stage for Report {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let verdicts = [verdicts().schema(), verdict_counts().schema(), comparisons().schema()];
-        verdicts.into_iter().chain([figures().schema(), marks().schema()]).collect()
+        let of_verdicts = [verdicts().schema(), verdict_counts().schema()];
+        of_verdicts.into_iter().chain([figures().schema(), marks().schema(), comparisons().schema()]).collect()
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {

@@ -173,12 +173,14 @@ fn what_an_archive_shows_is_what_its_tables_hold() {
             *bytes = text.replacen(from, to, 1).into_bytes();
         }
     };
-    for (file, change) in
-        [("report.html", other("holds", "fails")), ("figures/torque.svg", other("<svg", "<svg data-x='1'"))]
-    {
+    for (file, change) in [
+        ("report.html", other("holds", "fails")),
+        ("figures/torque.svg", other("<svg", "<svg data-x='1'")),
+        ("figures/torque.vl.json", other("Torque", "Force")),
+    ] {
         let (out, error) = said(&change, file, 4);
         assert!(out.contains(&format!("{file}: different: it is not what its tables show")), "{out}");
-        assert!(error.contains("1 of 5 other files are not what the tables hold"), "{error}");
+        assert!(error.contains("1 of 8 other files are not what the tables hold"), "{error}");
     }
     // As another version of libhdf5 might write it: tables in another order. Then one number is another.
     let hdf5 = |by: f64| {

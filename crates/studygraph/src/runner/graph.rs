@@ -12,7 +12,7 @@ use petgraph::visit::DfsPostOrder;
 
 use super::key;
 use super::options::Wanted;
-use crate::stage::{Demand, Omission, Port, Stage, Want};
+use crate::stage::{Ahead, Demand, Omission, Port, Stage, Want};
 use crate::study::{Node, Study};
 use crate::table::schema::Schema;
 use declare::digest::Digest;
@@ -217,8 +217,9 @@ fn demand(
     if study.nodes.iter().all(|node| node.kind.name != pictures.reader) {
         for (index, node) in study.nodes.iter().enumerate() {
             let shown = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name).map(|(_, table)| *table);
-            // One gear alone has no mesh to draw.
-            for table in shown.filter(|table| outputs[index].iter().any(|schema| schema.name == *table)) {
+            // One gear alone has no mesh to draw; and what nobody asked for must not make a run long.
+            let is_there = |table: &str| outputs[index].iter().any(|schema| schema.name == table);
+            for table in shown.filter(|table| is_there(table) && rows_of(node, table) <= MOST_PICTURED) {
                 demands[index].tables.entry(table.to_owned()).or_default();
             }
         }
@@ -242,6 +243,16 @@ fn demand(
         }
     }
     Ok(demands)
+}
+
+/// Rows of a picture: a drawing has no use for more.
+const MOST_PICTURED: u64 = 20_000;
+
+/// How many rows a table will have, as far as its stage knows by itself.
+fn rows_of(node: &Node, table: &str) -> u64 {
+    let alone = Demand { tables: [(table.to_owned(), BTreeSet::new())].into() };
+    let foreseen = node.stage.estimate(&alone, &Ahead::default()).tables;
+    foreseen.iter().filter(|(name, _)| name == table).map(|(_, rows)| rows.count).sum()
 }
 
 fn add(demand: &mut Demand, node: &Node, outputs: &[Schema], want: &Want) -> Result<(), Diagnostic> {
