@@ -38,10 +38,15 @@ pub struct Graph {
     pub demands: Vec<Demand>,
     pub outputs: Vec<Arc<[Schema]>>,
     /// What is asked of each node, of what it can give; nodes of which the same is asked share it.
-    pub demanded: Vec<Arc<[Arc<Schema>]>>,
+    pub demanded: Vec<Demanded>,
     /// The digest of the code that each node depends on.
     pub codes: Vec<Digest>,
 }
+
+/// What a node can give.
+type Outputs = Arc<[Schema]>;
+/// What of it is asked.
+pub type Demanded = Arc<[Arc<Schema>]>;
 
 /// The nodes of a study by their names.
 struct Names<'a> {
@@ -153,9 +158,9 @@ fn outputs(study: &Study) -> Vec<Arc<[Schema]>> {
 }
 
 /// The demanded tables with the demanded columns.
-fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Arc<[Arc<Schema>]>> {
+fn demanded(outputs: &[Arc<[Schema]>], demands: &[Demand]) -> Vec<Demanded> {
     // What can be given and what is asked, last of all nodes that can give the same.
-    let mut last: HashMap<*const Schema, (&Demand, Arc<[Arc<Schema>]>)> = HashMap::new();
+    let mut last: HashMap<*const Schema, (&Demand, Demanded)> = HashMap::new();
     let of_node = |(outputs, demand): (&Arc<[Schema]>, &'_ Demand)| {
         outputs
             .iter()
@@ -199,7 +204,7 @@ fn source(names: &Names, ports: &[Vec<Port>], node: &Node, port: &Port, depth: u
 fn demand(
     names: &Names,
     wanted: &[Wanted],
-    (order, ports, outputs): (&[usize], &[Vec<Port>], &[Arc<[Schema]>]),
+    (order, ports, outputs): (&[usize], &[Vec<Port>], &[Outputs]),
     inputs: &mut [Vec<Input>],
 ) -> Result<Vec<Demand>, Diagnostic> {
     let study = names.study;

@@ -33,7 +33,9 @@ pub fn assign(manifest: &mut Manifest) {
         }
     }
     for (file, members) in bundles {
-        members.into_iter().for_each(|(stage, table)| manifest.stages[stage].tables[table].file.clone_from(&file));
+        for (stage, table) in members {
+            manifest.stages[stage].tables[table].file.clone_from(&file);
+        }
     }
 }
 

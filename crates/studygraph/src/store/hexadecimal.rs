@@ -18,17 +18,18 @@ pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Digest,
     if !deserializer.is_human_readable() {
         return <[u8; 32]>::deserialize(deserializer).map(Digest);
     }
-    struct Visitor;
-    impl serde::de::Visitor<'_> for Visitor {
-        type Value = Digest;
-
-        fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-            formatter.write_str("64 hexadecimal digits")
-        }
-
-        fn visit_str<E: Error>(self, text: &str) -> Result<Digest, E> {
-            Digest::from_hex(text).ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(text), &self))
-        }
-    }
     deserializer.deserialize_str(Visitor)
+}
+
+struct Visitor;
+impl serde::de::Visitor<'_> for Visitor {
+    type Value = Digest;
+
+    fn expecting(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        formatter.write_str("64 hexadecimal digits")
+    }
+
+    fn visit_str<E: Error>(self, text: &str) -> Result<Digest, E> {
+        Digest::from_hex(text).ok_or_else(|| E::invalid_value(serde::de::Unexpected::Str(text), &self))
+    }
 }

@@ -97,7 +97,7 @@ pub(super) mod optional {
     use super::{Short, short};
     use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
-    #[allow(clippy::ref_option)] // as serde calls it
+    #[allow(clippy::ref_option, clippy::trivially_copy_pass_by_ref)] // as serde calls it
     pub fn serialize<S: Serializer>(value: &Option<Short>, serializer: S) -> Result<S::Ok, S::Error> {
         match value {
             Some(value) => value.serialize(serializer),

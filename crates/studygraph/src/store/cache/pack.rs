@@ -24,7 +24,8 @@ use crate::table::schema::Schema;
 use declare::digest::Digest;
 
 pub(super) const MAGIC: &[u8; 17] = b"gearstudy pack 1\n";
-const PREFIX: u64 = 8 + 8 + 32;
+const PREFIX_BYTES: usize = 8 + 8 + 32;
+const PREFIX: u64 = PREFIX_BYTES as u64;
 /// Contents longer than this are not ours: a group has far fewer.
 const LONGEST: u64 = 1 << 28;
 
@@ -210,7 +211,7 @@ impl Pack {
                 return Ok((pack, Ending::Cut));
             }
             file.seek(SeekFrom::Start(pack.end))?;
-            let mut prefix = [0; PREFIX as usize];
+            let mut prefix = [0; PREFIX_BYTES];
             file.read_exact(&mut prefix)?;
             let number =
                 |at: usize| prefix[at..at + 8].iter().rev().fold(0_u64, |all, byte| all << 8 | u64::from(*byte));
@@ -282,7 +283,7 @@ impl Pack {
         contents.schemas = self.schemas[known..].iter().map(|schema| (**schema).clone()).collect();
         self.schemas.truncate(known);
         let written = encoded("", &contents)?;
-        let mut segment = Vec::with_capacity(PREFIX as usize + written.len() + headers.len() + bodies.len());
+        let mut segment = Vec::with_capacity(PREFIX_BYTES + written.len() + headers.len() + bodies.len());
         segment.extend((written.len() as u64).to_le_bytes());
         segment.extend(((headers.len() + bodies.len()) as u64).to_le_bytes());
         let digest = blake3::Hasher::new().update(&segment).update(&written).finalize();

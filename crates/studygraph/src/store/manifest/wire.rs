@@ -103,6 +103,7 @@ struct Keys {
 struct Nothing(#[serde(with = "crate::store::key_record::optional")] Option<Short>);
 
 impl Nothing {
+    #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
     fn is_empty(&self) -> bool {
         self.0.is_none()
     }
@@ -390,7 +391,7 @@ impl Lines {
     }
 
     fn line<W: ?Sized + io::Write>(&self, writer: &mut W) -> io::Result<()> {
-        writer.write_all(&b"\n          "[..1 + self.depth.min(DEPTH)])
+        writer.write_all(&b"\n          "[..=self.depth.min(DEPTH)])
     }
 }
 

@@ -146,7 +146,9 @@ fn a_damaged_pack_is_noticed() {
         assert_eq!(found(&cache), MANY);
         drop(cache);
         assert_eq!(found(&Cache::open(folder.path()).unwrap()), MANY, "{at}");
-        packs(folder.path()).iter().for_each(|path| fs::remove_file(path).unwrap());
+        for path in packs(folder.path()) {
+            fs::remove_file(path).unwrap();
+        }
     }
 }
 

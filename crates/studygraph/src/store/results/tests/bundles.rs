@@ -116,8 +116,7 @@ fn tables_of_other_columns_have_their_files() {
     let root = tempfile::tempdir().unwrap();
     let folder = Folder::new(root.path(), "s");
     let mut tables = many(STAGES);
-    let narrow = |table: &Table| crate::store::entry::part(table, |column| column.name != "stiffness").unwrap();
-    tables[STAGES - 1].1 = narrow(&everything(5));
+    tables[STAGES - 1].1 = crate::store::entry::part(&everything(5), |column| column.name != "stiffness").unwrap();
     tables[STAGES - 2].1 = everything(5000);
     publish_all(&folder, &tables, &manifest_of(&tables));
     let own = ["m38.curve.parquet", "m39.curve.parquet"];
