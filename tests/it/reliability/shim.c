@@ -309,7 +309,10 @@ int unlinkat(int at, const char *path, int flags) { return take_away(at, path, f
 int statx(int at, const char *path, int flags, unsigned mask, struct statx *result)
 {
     char whole[PATH_MAX];
-    int watched = *path ? below(at, path, whole) : known(at);
+    /* Rust asks without a path whether there is such a call, when the first one finds nothing; the header promises the
+       compiler that nobody does. */
+    const char *volatile given = path;
+    int watched = !given ? 0 : *path ? below(at, path, whole) : known(at);
     if (watched && fails("stat", *path ? whole : files[at].path)) return -1;
     return (int)syscall(SYS_statx, at, path, flags, mask, result);
 }
