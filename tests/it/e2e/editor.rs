@@ -25,9 +25,9 @@ impl Editor {
         let mut child = command.arg("lsp").stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().unwrap();
         let (to, from) = (child.stdin.take().unwrap(), BufReader::new(child.stdout.take().unwrap()));
         let mut editor = Self { child, to, from, requests: 0 };
-        let able = editor.ask("initialize", json!({ "capabilities": {} }));
+        let able = editor.ask("initialize", &json!({ "capabilities": {} }));
         assert_eq!(able["capabilities"]["hoverProvider"], true);
-        editor.tell("initialized", json!({}));
+        editor.tell("initialized", &json!({}));
         editor
     }
 
@@ -53,11 +53,11 @@ impl Editor {
         serde_json::from_slice(&bytes).unwrap()
     }
 
-    fn tell(&mut self, method: &str, params: Value) {
+    fn tell(&mut self, method: &str, params: &Value) {
         self.send(&json!({ "jsonrpc": "2.0", "method": method, "params": params }));
     }
 
-    fn ask(&mut self, method: &str, params: Value) -> Value {
+    fn ask(&mut self, method: &str, params: &Value) -> Value {
         self.requests += 1;
         self.send(&json!({ "jsonrpc": "2.0", "id": self.requests, "method": method, "params": params }));
         let answer = self.receive();
@@ -68,7 +68,7 @@ impl Editor {
     /// What is wrong with a text that is opened.
     fn open(&mut self, text: &str) -> Vec<Value> {
         let document = json!({ "uri": URI, "languageId": "yaml", "version": 1, "text": text });
-        self.tell("textDocument/didOpen", json!({ "textDocument": document }));
+        self.tell("textDocument/didOpen", &json!({ "textDocument": document }));
         let told = self.receive();
         assert_eq!(told["method"], "textDocument/publishDiagnostics");
         told["params"]["diagnostics"].as_array().unwrap().clone()
@@ -81,7 +81,7 @@ impl Editor {
         let line = before.rfind('\n').map_or(0, |at| at + 1);
         let position =
             json!({ "line": before.matches('\n').count(), "character": before[line..].encode_utf16().count() });
-        self.ask(method, json!({ "textDocument": { "uri": URI }, "position": position }))
+        self.ask(method, &json!({ "textDocument": { "uri": URI }, "position": position }))
     }
 
     fn offered(&mut self, marked: &str) -> Vec<String> {
@@ -130,8 +130,8 @@ fn an_editor_is_told_what_check_says_where_it_is() {
     }
     // Put right, it is told so.
     assert_eq!(editor.open(&quick()), Vec::<Value>::new());
-    assert_eq!(editor.ask("shutdown", Value::Null), Value::Null);
-    editor.tell("exit", Value::Null);
+    assert_eq!(editor.ask("shutdown", &Value::Null), Value::Null);
+    editor.tell("exit", &Value::Null);
     assert!(editor.child.wait().unwrap().success());
 }
 

@@ -75,7 +75,7 @@ fn any_threads_give_the_same_bits_and_an_added_value_computes_its_rows_alone() {
     assert_eq!(contents(&more), contents(&alone), "to the last bit");
 
     let amounts = AMOUNTS.replace("to: 12 um, count: 12", "to: 13 um, count: 13");
-    let before = sweep(&more).keys.iter().map(|key| key.key.clone()).collect::<Vec<_>>();
+    let before = sweep(&more).keys.iter().map(|key| key.key).collect::<Vec<_>>();
     let wider = run(&grid(&amounts, &torques), &cache(one.path()), 2);
     let kept = sweep(&wider).keys.iter().filter(|key| before.contains(&key.key)).count();
     assert!(kept >= 1, "no part stayed as it was");

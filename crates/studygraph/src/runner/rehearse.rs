@@ -59,7 +59,7 @@ pub fn rehearse(study: &Study) -> Result<Vec<Diagnostic>, Diagnostic> {
         };
         match result {
             Ok(tables) => {
-                known.extend(tables.into_iter().map(|table| ((node, table.name().to_owned()), Arc::new(table))))
+                known.extend(tables.into_iter().map(|table| ((node, table.name().to_owned()), Arc::new(table))));
             }
             Err(Failure::Study(found)) => wrong.push(*found),
             Err(Failure::Failed(message)) => {

@@ -161,8 +161,8 @@ fn of_kind(kind: &Kind) -> String {
 }
 
 fn of_member(member: &Member) -> String {
-    let fields: String = member.fields.iter().map(|field| format!("\n- {}", describe::field(field))).collect();
-    format!("{}: {}{fields}", member.name, member.summary)
+    let own = format!("{}: {}", member.name, member.summary);
+    member.fields.iter().fold(own, |text, field| text + "\n- " + &describe::field(field))
 }
 
 fn stages(root: &Node) -> &[KeyValue] {

@@ -121,10 +121,10 @@ impl LoadError {
         let at = |found: &Diagnostic| found.place.map_or(0, |place| place.offset);
         others.sort_by_key(at);
         if let Some(earlier) = others.first_mut().filter(|other| at(other) < at(&first)) {
-            std::mem::swap(earlier, &mut first);
+            std::mem::swap(earlier, first.as_mut());
             others.sort_by_key(at);
         }
-        Self { path: path.to_owned(), text, diagnostic: Box::new(first), others }
+        Self { path: path.to_owned(), text, diagnostic: first, others }
     }
 
     /// Everything that is wrong.
@@ -135,13 +135,13 @@ impl LoadError {
 
 /// What is wrong with a study: something, and whatever else was found with it.
 struct Faults {
-    first: Diagnostic,
+    first: Box<Diagnostic>,
     others: Vec<Diagnostic>,
 }
 
 impl From<Diagnostic> for Faults {
     fn from(first: Diagnostic) -> Self {
-        Self { first, others: Vec::new() }
+        Self { first: Box::new(first), others: Vec::new() }
     }
 }
 
@@ -150,7 +150,7 @@ impl Faults {
     fn all(found: Vec<Diagnostic>) -> Result<(), Self> {
         let mut found = found.into_iter();
         match found.next() {
-            Some(first) => Err(Self { first, others: found.collect() }),
+            Some(first) => Err(Self { first: Box::new(first), others: found.collect() }),
             None => Ok(()),
         }
     }

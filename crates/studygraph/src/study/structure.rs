@@ -196,11 +196,7 @@ fn open_bracket(text: &str, end: usize) -> Option<(char, usize)> {
         match (quote, c) {
             (_, '\n') => comment = false,
             _ if comment => {}
-            (Some(mark), _) => {
-                if c == mark {
-                    quote = None;
-                }
-            }
+            (Some(mark), _) => quote = Some(mark).filter(|mark| *mark != c),
             (None, '#') if before.is_whitespace() => comment = true,
             // In the middle of a word it is an apostrophe.
             (None, '"' | '\'') if !before.is_alphanumeric() => quote = Some(c),

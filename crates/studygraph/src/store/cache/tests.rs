@@ -185,7 +185,17 @@ fn the_longest_unused_goes_first_and_what_is_kept_never() {
     for (name, old) in names.iter().zip([50, 60, 70, 5]) {
         age(&cache.path(key(name)), days(old));
     }
-    let record = KeyRecord { key: key("used").to_string(), ..KeyRecord::default() };
+    let short = Short::from(&key("part"));
+    let record = KeyRecord {
+        key: key("used"),
+        config: short,
+        fields: Vec::new(),
+        axis: None,
+        code: short,
+        seed: None,
+        demand: short,
+        inputs: Vec::new(),
+    };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
     cache.put_journal("study", &Journal { stages: vec![stage] });
     let journal = cache.journal_path("study");

@@ -61,7 +61,8 @@ fn all_mistakes_that_can_be_told_by_themselves_are_told_at_once_in_the_order_of_
     }
     // What stands there under another name is not missing as well.
     assert!(!lines.iter().any(|line| line.contains("has no `module`")));
-    let many: String = (0..14).map(|index| format!("    extra{index}: 1\n")).collect();
+    let many: Vec<String> = (0..14).map(|index| format!("    extra{index}: 1\n")).collect();
+    let many = many.concat();
     let error = load(&VALID.replacen("    module: 3 mm\n", &format!("    module: 3 mm\n{many}"), 1)).err().unwrap();
     assert_eq!(error.each().count(), 14);
     assert!(error.to_string().ends_with("\nt.yaml: and 4 more"), "{error}");
