@@ -5,7 +5,7 @@
 use std::io::Cursor;
 
 use super::{Cache, Lookup};
-use crate::store::entry::CacheEntry;
+use crate::store::entry::{Body, CacheEntry};
 use crate::store::error::StoreError;
 use declare::digest::Digest;
 
@@ -16,14 +16,18 @@ impl Cache {
     /// [`StoreError::Damaged`] also when there is no such entry.
     pub fn entry_bytes(&self, key: Digest) -> Result<Vec<u8>, StoreError> {
         let damaged = |problem: String| StoreError::Damaged { path: format!("entry {key}"), problem };
-        let entry = match self.look_up(key) {
+        let mut entry = match self.look_up(key) {
             Lookup::Found(entry) => entry,
             Lookup::Missing => return Err(damaged("it is missing".to_owned())),
             Lookup::Damaged(problem) => return Err(damaged(problem)),
         };
         let mut bodies = Vec::new();
-        for table in entry.tables.iter().filter(|table| table.body.is_some()) {
-            bodies.extend(self.bytes(key, &table.name)?);
+        for table in &mut entry.tables {
+            let Some(body) = &mut table.body else { continue };
+            // In a pack a table is not the Parquet that it is elsewhere.
+            let bytes = self.bytes(key, &table.name)?;
+            *body = Body { bytes: bytes.len() as u64, digest: Digest(*blake3::hash(&bytes).as_bytes()) };
+            bodies.extend(bytes);
         }
         entry.file(&bodies)
     }

@@ -10,7 +10,6 @@ use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::ErrorKind;
-use std::path::Path;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, held_text, here, is_drawn, split};
@@ -362,7 +361,8 @@ impl Folder {
         let figures = |folder: &str| -> Vec<String> {
             let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
             let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-            let figures = names.filter(|name| Path::new(name).extension().is_some_and(|ending| ending == "svg"));
+            let figures = names
+                .filter(|name| name.split_once('.').is_some_and(|(_, ending)| ["svg", "vl.json"].contains(&ending)));
             figures.map(|name| format!("{folder}/{name}")).collect()
         };
         [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
