@@ -125,7 +125,7 @@ impl LoadCase<'_> {
         }
         // To press flanks together takes some ten times as long as a curve: where most is expected first, and no longer than
         // there may be more.
-        found.sort_by(|one, other| other.1.size.total_cmp(&one.1.size));
+        found.sort_by(|one, other| other.1.at_most().size.total_cmp(&one.1.at_most().size));
         let mut worst: Option<Doubt> = None;
         for (place, quick) in found {
             if worst.is_some_and(|worst| worst.size >= quick.at_most().size) {
