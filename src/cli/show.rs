@@ -20,14 +20,17 @@ use studygraph::store::results::Folder;
 use studygraph::study::{LoadError, Study, describe, schema as schemas};
 use studygraph::table::data::Table;
 
-/// Studies to start from: each is called as its template.
-const TEMPLATES: &[(&str, &str)] = &[("quick", include_str!("../../studies/quick.yaml"))];
+/// Studies to start from: what they are asked for by, how they are called, their texts.
+const TEMPLATES: [(&str, &str, &str); 2] = [
+    ("quick", "quick", include_str!("../../studies/quick.yaml")),
+    ("sweep", "sweep_quick", include_str!("../../studies/sweep_quick.yaml")),
+];
 
 /// Writes a small study; never over a file that is there.
 pub(super) fn new_study(file: &Path, template: &str) -> Result<(), Ending> {
-    let found = TEMPLATES.iter().find(|(name, _)| *name == template);
-    let (called, template) = found.ok_or_else(|| {
-        let names = TEMPLATES.iter().map(|(name, _)| *name);
+    let found = TEMPLATES.iter().find(|(name, ..)| *name == template);
+    let (_, called, template) = found.ok_or_else(|| {
+        let names = TEMPLATES.iter().map(|(name, ..)| *name);
         Ending::Usage(format!("there is no template `{template}`; {}", suggest(template, names)))
     })?;
     let stem = file.file_stem().map(|stem| stem.to_string_lossy().to_lowercase()).unwrap_or_default();

@@ -152,6 +152,7 @@ pub fn html(
     for (name, text) in [
         ("page.html", include_str!("page/page.html")),
         ("figure.html", include_str!("page/figure.html")),
+        ("sheet.html", include_str!("page/sheet.html")),
         ("verdict.html", include_str!("page/verdict.html")),
     ] {
         environment.add_template(name, text).map_err(failed)?;

@@ -76,6 +76,8 @@ fn slips_are_told_at_the_option() {
 fn templates_are_named() {
     let desk = Desk::with("quick.yaml");
     desk.run(&["new", "mine.yaml", "--template", "quick"], 0);
+    desk.run(&["new", "swept.yaml", "--template", "sweep"], 0);
+    assert!(desk.run(&["check", "swept.yaml"], 0).0.contains("`swept` is valid"));
     desk.run(&["check", "mine.yaml"], 0);
     let (_, error) = desk.run(&["new", "other.yaml", "--template", "quik"], 1);
     assert!(error.contains("there is no template `quik`; did you mean `quick`?"), "{error}");

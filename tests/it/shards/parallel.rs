@@ -30,7 +30,8 @@ fn gnu_parallel_runs_the_pieces_over_two_slots() {
     assert!(said.contains("shards 2 were started 2 times and left nothing; what they said is in `"), "{said}");
 }
 
-/// Ctrl-C ends the watching with its code, and the same command goes on from there.
+/// A signal ends the watching with its code, and the same command goes on from there. Not that of Ctrl-C, which is ignored, and
+/// is to stay so, where tests run in the background of a script.
 #[test]
 fn a_stopped_command_goes_on_from_where_it_was() {
     if !installed("shards by GNU Parallel", &["parallel"], "parallel") {
@@ -48,10 +49,10 @@ fn a_stopped_command_goes_on_from_where_it_was() {
     {
         std::thread::sleep(Duration::from_millis(10));
     }
-    assert!(Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap().success());
+    assert!(Command::new("kill").args(["-TERM", &child.id().to_string()]).status().unwrap().success());
     let output = child.wait_with_output().unwrap();
     let error = String::from_utf8_lossy(&output.stderr);
-    assert_eq!(output.status.code(), Some(130), "{error}");
+    assert_eq!(output.status.code(), Some(143), "{error}");
     assert!(error.contains("the same command goes on from here"), "{error}");
     assert!(!desk.path("results").exists());
     let (out, error) = desk.run(&words, 0);
