@@ -18,6 +18,7 @@ use declare::units::RATIO;
 use quantity::Quantity;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
+use studygraph::warning::Warning;
 use trial::{Plan, Trial};
 use variant::Variant;
 
@@ -193,7 +194,7 @@ impl Stage for Accuracy {
             let (reached, share) = (done as f64 / total, runs((index, variant)) as f64 / total);
             let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
             // What a coarse setting warns of is in the ladder's own columns.
-            let warn: &(dyn Fn(String) + Sync) = if index == 0 { context.warn } else { &|_| () };
+            let warn: &(dyn Fn(Warning) + Sync) = if index == 0 { context.warn } else { &|_| () };
             let inner = Context { demand: &demand, progress: &progress, warn, ..*context };
             let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
             trials.push(trial::run(variant, plan(index), asked, &inner, &inputs)?);

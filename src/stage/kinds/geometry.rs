@@ -338,7 +338,7 @@ impl Stage for Geometry {
         };
         for (drawn, mating) in mated.iter().filter_map(|(drawn, mate)| Some((drawn, mate.as_ref()?.1))) {
             for text in valid::warnings(drawn, &mating) {
-                (context.warn)(text);
+                (context.warn)(text.into());
             }
         }
         for schema in schemas {

@@ -316,14 +316,14 @@ impl Stage for Stiffness {
         let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
-            (context.warn)(warning);
+            (context.warn)(warning.into());
         }
         if let Some(accuracy) = self.accuracy.filter(|accuracy| error_estimate > *accuracy) {
             (context.warn)(format!(
                 "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
                  {accuracy:.1e}",
                 self.teeth.method.name()
-            ));
+            ).into());
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];

@@ -322,7 +322,7 @@ impl Sweep {
         }
         let mut tables = vec![Table::from_rows(self.schema.clone(), Vec::new()).map_err(failed)?];
         if let Some(sentence) = tally.warning() {
-            (context.warn)(sentence);
+            (context.warn)(sentence.into());
         }
         tables.extend(tally.tables().map_err(failed)?);
         Ok(tables)
