@@ -45,6 +45,7 @@ struct Stated {
     #[declared(kinds = [])]
     pub of: String,
     /// Columns of its tables, `table.column` or `table[key=value, …].column`; of several rows the worst one counts.
+    #[declared(example = "summary.peak_to_peak")]
     pub quantities: Vec<Placed<String>>,
     /// The settings that count as converged.
     #[declared(overrides = Stated::NAMES.of)]
@@ -53,6 +54,7 @@ struct Stated {
     #[declared(overrides = Stated::NAMES.of)]
     pub ladders: Vec<(String, Vec<record::Variant>)>,
     /// A column of its tables that counts its work; of several rows the sum counts.
+    #[declared(example = "summary.evaluations")]
     pub evaluations: Option<Placed<String>>,
     /// How often each run of a ladder is repeated; the median time counts.
     #[declared(minimum = 1, maximum = 1000, default = "3")]

@@ -17,7 +17,7 @@ use declare::record::{Record, Value};
 use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::modification::Design;
+use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::modification::template::{Template, Variable};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -75,7 +75,7 @@ struct Stated {
     #[declared(flatten)]
     pub slices: Slices,
     /// Wanted relative accuracy of the objective at the design that is found; sets positions and slices.
-    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     #[declared(flatten)]
     pub contact: Contact,
@@ -85,7 +85,7 @@ struct Stated {
 #[derive(Debug, Declared)]
 struct Loads {
     /// Torque on the pinion, one or several.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX)]
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX, example = "100 N m")]
     pub torque: Vec<f64>,
     /// What counts when there are several.
     #[declared(default = "worst")]
@@ -384,7 +384,7 @@ impl Optimizer {
             self.best().table(&[row]).map_err(failed)?,
             self.history().table_of(&(1..).zip(search.history().iter().copied())).map_err(failed)?,
         ];
-        tables.extend(designs::write(&[design]).map_err(failed)?);
+        tables.extend(designs::write(&[design], modification::members()).map_err(failed)?);
         Ok(tables)
     }
 }

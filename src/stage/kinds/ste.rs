@@ -68,10 +68,10 @@ struct Ste {
     #[declared(kinds = ["modification", "optimizer"])]
     pub designs: Vec<Placed<String>>,
     /// Torque on the pinion.
-    #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1)]
+    #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1, example = "100 N m")]
     pub torque: Vec<f64>,
     /// Wanted relative accuracy of the peak-to-peak; sets positions and slices.
-    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     #[declared(minimum = 8, maximum = 100_000, default = "64")]

@@ -60,11 +60,11 @@ struct Stiffness {
     #[declared(default = "body")]
     pub coupling: Coupling,
     /// Torque on the pinion for the mesh stiffness, which all but the linear contact depend on.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE)]
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, example = "100 N m")]
     pub torque: Option<f64>,
     /// Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet
     /// it.
-    #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     /// Positions per base pitch; the ends of contact come on top.
     #[declared(minimum = 8, maximum = 100_000, default = "64")]

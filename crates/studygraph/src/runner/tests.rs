@@ -68,6 +68,7 @@ const fn axis(chunk: usize) -> Field {
         span: Span::Axis { chunk },
         chooses: false,
         summary: "",
+        example: Some("3"),
     }
 }
 
