@@ -6,9 +6,11 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
+use serde_json::json;
+
 use super::arguments::Places;
 use super::progress::{self, out};
-use super::{Ending, rights};
+use super::{Ending, json, rights};
 use crate::program::PROGRAM;
 use crate::stage::kinds::KINDS;
 use studygraph::runner::graph::Graph;
@@ -36,6 +38,7 @@ pub(super) fn archive(
     places: &Places,
     output: &Path,
     about: &About<'_>,
+    as_json: bool,
     quiet: bool,
 ) -> Result<(), Ending> {
     let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.name));
@@ -78,7 +81,11 @@ pub(super) fn archive(
     entries.insert(METADATA.to_owned(), described);
     let bytes = pack(&entries).map_err(usage)?;
     file::write(output, &bytes, Durability::Synced).map_err(|error| Ending::Usage(error.to_string()))?;
-    if !quiet {
+    if as_json {
+        json::answer(&json!({
+            "study": study.name, "file": output.display().to_string(), "files": entries.len(), "bytes": bytes.len(),
+        }));
+    } else if !quiet {
         let size = bytes.len().div_ceil(1000);
         out(&format!("{}: {} files, {size} kB; {}\n", study.name, entries.len(), output.display()));
     }

@@ -1,5 +1,6 @@
 //! The words of the command line. Must not know: what any command does.
 
+mod answers;
 mod sharding;
 
 use std::ffi::OsStr;
@@ -9,6 +10,7 @@ use clap::builder::{PathBufValueParser, TypedValueParser};
 use clap::parser::ValueSource;
 use clap::{Arg, Args, Parser, Subcommand, ValueEnum};
 
+pub use answers::{Differences, Format, Output, Question, Shown};
 pub use sharding::{Elsewhere, Engine, Sharding};
 
 /// Declarative, reproducible studies of spur-gear tooth modifications.
@@ -16,7 +18,7 @@ pub use sharding::{Elsewhere, Engine, Sharding};
 #[command(version, max_term_width = 110, disable_help_subcommand = true, arg_required_else_help = true)]
 #[command(after_help = "Exit codes: 0 done, 1 usage, 2 invalid study or query, or a study beyond the \
     limits, 3 a stage failed, \
-    4 differences or damage found, 70 a bug of this program, 130 stopped by Ctrl-C \
+    4 differences, damage, or with --check what is stale or needs attention, 70 a bug of this program, 130 stopped by Ctrl-C \
     (143 by SIGTERM, 129 by SIGHUP).")]
 pub struct Arguments {
     #[command(subcommand)]
@@ -29,12 +31,14 @@ pub struct Arguments {
 }
 
 const CACHE: &str = ".gearstudy/cache";
+/// Where results are, if nobody says it.
+pub const RESULTS: &str = "results";
 
 /// Where things are.
 #[derive(Args, Debug, Clone)]
 pub struct Places {
     /// Folder for tables, manifest and report; each study has a folder of its own in it.
-    #[arg(long, global = true, value_name = "DIR", default_value = "results")]
+    #[arg(long, global = true, value_name = "DIR", default_value = RESULTS)]
     pub results: PathBuf,
     /// Folder of the cache of computed tables.
     #[arg(long, global = true, value_name = "DIR", env = "GEARSTUDY_CACHE", default_value = CACHE, value_parser = Cache)]
@@ -97,6 +101,8 @@ pub enum Command {
         /// Which study to start from.
         #[arg(long, value_name = "NAME", default_value = "quick")]
         template: String,
+        #[command(flatten)]
+        output: Output,
     },
     /// Read studies and say what is wrong with them, without running anything.
     Check {
@@ -104,6 +110,8 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         changes: Changes,
+        #[command(flatten)]
+        output: Output,
     },
     /// Say what a run would do, and why, what it would leave out, and what it would take.
     Plan {
@@ -115,9 +123,8 @@ pub enum Command {
         selection: Selection,
         #[command(flatten)]
         limits: Limits,
-        /// As JSON.
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        output: Output,
     },
     /// Run studies: compute what is missing, write tables, manifest and report.
     Run {
@@ -144,6 +151,8 @@ pub enum Command {
         jobs: Option<u16>,
         #[command(flatten)]
         elsewhere: Elsewhere,
+        #[command(flatten)]
+        output: Output,
     },
     /// Run a study whenever its file is saved, and show its page in a browser on this computer, which follows.
     Watch {
@@ -155,6 +164,8 @@ pub enum Command {
         /// Where the page is served, on this computer alone [default: a free port].
         #[arg(long, value_name = "N", default_value_t = 0, hide_default_value = true)]
         port: u16,
+        #[command(flatten)]
+        output: Output,
     },
     /// Run a study in pieces on any number of machines: plan, run each piece, merge.
     #[command(subcommand)]
@@ -165,12 +176,11 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         changes: Changes,
-        /// Read every byte of results and cache; what is damaged ends with code 4.
+        /// Read every byte of results and cache; what is damaged, stale or missing ends with code 4.
         #[arg(long)]
         check: bool,
-        /// As JSON.
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        output: Output,
     },
     /// Print the verdicts of a study that was run, and write its report anew.
     Report {
@@ -178,6 +188,11 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         changes: Changes,
+        /// Write nothing; end with code 4 where a verdict needs attention or the results are not those of the study.
+        #[arg(long)]
+        check: bool,
+        #[command(flatten)]
+        output: Output,
     },
     /// Print a table of a study that was run.
     Table {
@@ -213,15 +228,16 @@ pub enum Command {
         /// Who made the study, with an ORCID iD behind the name if there is one; may be given several times.
         #[arg(long = "author", value_name = "NAME")]
         authors: Vec<String>,
+        #[command(flatten)]
+        telling: Output,
     },
     /// Run the study of an archive again, from nothing, and compare every table.
     Verify {
         file: PathBuf,
         #[command(flatten)]
         limits: Limits,
-        /// As JSON.
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        output: Output,
         /// How many threads to use [default: one per processor].
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
@@ -234,16 +250,44 @@ pub enum Command {
         /// Which cylindrical stage, by its id, where the file has several.
         #[arg(long, value_name = "ID")]
         stage: Option<String>,
+        #[command(flatten)]
+        output: Output,
     },
     /// List the kinds of stages, or say everything about one, or about a field of it.
     Kinds {
         /// `optimizer`, or `optimizer.design.tip_relief` for what it says of that.
         kind: Option<String>,
+        #[command(flatten)]
+        output: Output,
     },
     /// Print the JSON schema of a study, for editors.
     Schema,
+    /// Say what a command does: its words, its options; or write the manual as man pages.
+    Help {
+        /// The command, as `run` or `shard plan`.
+        #[arg(value_name = "COMMAND")]
+        command: Vec<String>,
+        /// Write a man page for each command into this folder.
+        #[arg(long, value_name = "DIR", conflicts_with = "command")]
+        man: Option<PathBuf>,
+    },
+    /// Print what makes a shell complete words, those of a study too: `source <(gearstudy completions bash)`.
+    Completions {
+        #[arg(value_enum)]
+        shell: Shell,
+    },
     /// Serve an editor: mistakes, meanings, completion, by the Language Server Protocol on standard input and output.
     Lsp,
+}
+
+/// A shell that completions are made for.
+#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shell {
+    Bash,
+    Zsh,
+    Fish,
+    Elvish,
+    Powershell,
 }
 
 /// What of a study is other than its file says.
@@ -273,6 +317,8 @@ pub struct Cleaning {
     /// Only say what would be deleted.
     #[arg(long)]
     pub dry_run: bool,
+    #[command(flatten)]
+    pub output: Output,
 }
 
 /// Which stages, and whether to trust the cache.
@@ -314,62 +360,6 @@ fn bytes(text: &str) -> Result<u64, String> {
     // Above 2^64 it is as good as no limit.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     Ok((number * *factor as f64) as u64)
-}
-
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Format {
-    Pretty,
-    Csv,
-    /// CSV that Excel opens by a double click: in UTF-8 with its mark, where numbers have a decimal point
-    Excel,
-    /// The same where numbers have a decimal comma: cells parted by semicolons
-    ExcelComma,
-    Json,
-    Markdown,
-}
-
-/// What is asked, of which results.
-#[derive(Args, Debug, Clone)]
-pub struct Question {
-    /// One SELECT; a table is `study.stage.table`, at a commit `"REVISION:study.stage.table"`.
-    pub sql: Option<String>,
-    /// The revision or folder of results that is meant where a table does not say it [default: the results folder].
-    #[arg(long, value_name = "REVISION")]
-    pub at: Option<String>,
-    /// The study whose tables may be called `stage.table`; not needed where there is one alone.
-    #[arg(long, value_name = "NAME")]
-    pub study: Option<String>,
-    #[arg(long, value_enum, default_value_t = Format::Pretty, requires = "sql")]
-    pub format: Format,
-    /// Write to this file, as its name ends: .csv, .json, .md or .parquet.
-    #[arg(long, short, value_name = "FILE", conflicts_with = "format", requires = "sql")]
-    pub output: Option<PathBuf>,
-}
-
-/// What to compare, and how far apart is the same.
-#[derive(Args, Debug, Clone)]
-pub struct Differences {
-    /// Up to two revisions or folders of results, then studies: by default HEAD and the results folder, every study.
-    #[arg(value_name = "[A [B]] [STUDY]")]
-    pub words: Vec<String>,
-    /// Studies whose names are also revisions.
-    #[arg(last = true, value_name = "STUDY")]
-    pub studies: Vec<String>,
-    /// How far a column may differ: relative as a number, absolute with a unit; `stage.table.column`, `table.column` or
-    /// `column`; may be given several times.
-    #[arg(long = "tolerance", value_name = "COLUMN=VALUE")]
-    pub tolerances: Vec<String>,
-    #[arg(long, value_enum, default_value_t = Shown::Pretty)]
-    pub format: Shown,
-}
-
-/// How a comparison is shown.
-#[derive(ValueEnum, Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Shown {
-    Pretty,
-    Json,
-    Markdown,
-    Html,
 }
 
 #[cfg(test)]

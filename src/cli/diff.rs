@@ -10,6 +10,7 @@ use super::arguments::{Differences, Places, Shown};
 use super::pages::terminal_width;
 use super::progress::out;
 use crate::program;
+use crate::stage::kind;
 use declare::error::nearest;
 use studygraph::diff::compare::{Options, compare};
 use studygraph::diff::model::Comparison;
@@ -45,11 +46,16 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         before.path().is_none() && repository.leaves_out(&folder.join(study).join(MANIFEST))
     };
     let not_kept = |file: &Path| Repository::around(file).is_ok_and(|repository| repository.leaves_out(file));
+    let curves = |of: &str, table: &str| {
+        let all = kind(of).map_or(&[][..], |kind| kind.curves);
+        all.iter().find(|curves| curves.table == table).map(|curves| curves.along)
+    };
     let options = Options {
         studies: &studies,
         tolerances: &tolerances,
         cache: cache.as_ref(),
         leaves_out: Some(&ignored),
+        curves: Some(&curves),
         not_kept: Some(&not_kept),
     };
     let mut comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;

@@ -5,9 +5,11 @@
 use std::collections::BTreeSet;
 use std::time::Duration;
 
-use super::Ending;
+use serde_json::json;
+
 use super::arguments::{Cleaning, Places};
 use super::progress::{self, out};
+use super::{Ending, json};
 use studygraph::history::git::Repository;
 use studygraph::history::side::Side;
 use studygraph::runner::reach::reached;
@@ -39,6 +41,15 @@ pub(super) fn gc(places: &Places, asked: &Cleaning) -> Result<(), Ending> {
     let unused = Duration::from_secs(u64::from(asked.days) * 86_400);
     let remove = Remove::Unused { keep: &keep, unused, most: asked.max_size };
     let removed = Cache::clean(&places.cache, remove, asked.dry_run).map_err(|error| usage(&error))?;
+    if asked.output.is_json() {
+        let foreign: Vec<String> = removed.foreign.iter().map(|path| path.display().to_string()).collect();
+        json::answer(&json!({
+            "dry_run": asked.dry_run, "deleted": { "entries": removed.entries, "bytes": removed.bytes },
+            "leftovers": removed.leftovers, "kept": { "entries": removed.kept, "bytes": removed.kept_bytes },
+            "needed": { "entries": removed.needed, "bytes": removed.needed_bytes }, "left_alone": foreign,
+        }));
+        return Ok(());
+    }
     let word = if asked.dry_run { "would delete" } else { "deleted" };
     #[allow(clippy::cast_precision_loss)]
     let megabytes = |bytes: u64| bytes as f64 / 1e6;

@@ -4,16 +4,21 @@
 
 pub mod archive;
 pub mod arguments;
+mod complete;
 mod diff;
 pub mod draw;
 mod engine;
+mod events;
 mod gc;
+mod help;
+mod json;
 mod lsp;
 pub mod pages;
 mod plan;
 pub mod print;
 pub mod progress;
 mod query;
+mod report;
 mod rights;
 pub mod run;
 mod serve;
@@ -38,7 +43,7 @@ use clap::Parser;
 use studygraph::store::parquet;
 use studygraph::study::LoadError;
 
-use arguments::{Arguments, Command};
+use arguments::{Arguments, Command, Places};
 use studies::load_all;
 
 /// Why a command ended without doing all of its work.
@@ -98,6 +103,9 @@ pub fn tell_panics() {
 
 /// Runs the program with these words and gives its exit code.
 pub fn main(words: impl Iterator<Item = OsString>) -> i32 {
+    if let Some(code) = complete::asked() {
+        return code;
+    }
     let arguments = match Arguments::try_parse_from(words) {
         Ok(arguments) => arguments,
         Err(error) => {
@@ -124,53 +132,46 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
     places.check().map_err(Ending::Usage)?;
     let quiet = arguments.quiet;
     match &arguments.command {
-        Command::New { file, template } => show::new_study(file, template),
-        Command::Check { studies: words, changes } => show::check(&studies::named_or_all(words)?, changes, quiet),
-        Command::Plan { studies, changes, selection, limits, json } => run::plan(
+        Command::New { file, template, output } => show::new_study(file, template, output.is_json()),
+        Command::Check { studies: words, changes, output } => {
+            show::check(&studies::named_or_all(words)?, changes, output.is_json(), quiet)
+        }
+        Command::Plan { studies, changes, selection, limits, output } => run::plan(
             &load_all(studies, changes)?,
             places,
             selection,
             &run::How { limits: *limits, ..run::How::default() },
-            *json,
+            output.is_json(),
         ),
-        Command::Run { studies, changes, selection, limits, jobs, dry_run: true, .. } => {
+        Command::Run { studies, changes, selection, limits, jobs, dry_run: true, output, .. } => {
             let how = run::How { limits: *limits, jobs: jobs.map(usize::from), ..run::How::default() };
-            run::plan(&load_all(studies, changes)?, places, selection, &how, false)
+            run::plan(&load_all(studies, changes)?, places, selection, &how, output.is_json())
         }
-        Command::Run { studies, changes, selection, limits, jobs, elsewhere, .. } if elsewhere.engine.is_some() => {
-            engine::run(
-                &load_all(studies, changes)?,
-                places,
-                selection,
-                limits,
-                jobs.map(usize::from),
-                elsewhere,
-                quiet,
-            )
+        Command::Run { output, .. } => {
+            let result = run_studies(&arguments.command, places, quiet);
+            if output.is_json() {
+                events::ended(&result);
+            }
+            result
         }
         Command::Shard(asked) => shard::shard(asked, places, quiet),
-        Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, .. } => {
-            let (explain, keep_going) = (*explain, *keep_going);
-            let how = run::How { explain, keep_going, jobs: jobs.map(usize::from), limits: *limits, quiet };
-            if studies::settings(changes).is_empty() && run::is_up_to_date(studies, places, selection, &how)? {
-                return Ok(());
-            }
-            run::run(&load_all(studies, changes)?, places, selection, &how)
+        Command::Watch { study, changes, selection, port, output } => {
+            watch::watch(study, changes, places, selection, *port, (output.is_json(), quiet))
         }
-        Command::Watch { study, changes, selection, port } => {
-            watch::watch(study, changes, places, selection, *port, quiet)
+        Command::Status { studies: words, changes, output, check } => {
+            status::status(words, changes, places, output.is_json(), *check)
         }
-        Command::Status { studies: words, changes, json, check } => {
-            status::status(words, changes, places, *json, *check)
-        }
-        Command::Archive { study, changes, output, license, authors } => {
+        Command::Archive { study, changes, output, license, authors, telling } => {
             let about = archive::About { license: license.as_deref(), authors };
-            archive::archive(&load_all(std::slice::from_ref(study), changes)?[0], places, output, &about, quiet)
+            let study = &load_all(std::slice::from_ref(study), changes)?[0];
+            archive::archive(study, places, output, &about, telling.is_json(), quiet)
         }
-        Command::Verify { file, limits, jobs, json } => {
-            verify::verify(file, jobs.map(usize::from), limits, *json, quiet)
+        Command::Verify { file, limits, jobs, output } => {
+            verify::verify(file, jobs.map(usize::from), limits, output.is_json(), quiet)
         }
-        Command::Report { studies, changes } => run::report(&load_all(studies, changes)?, places, quiet),
+        Command::Report { studies, changes, check, output } => {
+            report::report(&load_all(studies, changes)?, places, *check, output.is_json(), quiet)
+        }
         Command::Table { study, changes, table, conditions, columns, format } => show::table(
             &load_all(std::slice::from_ref(study), changes)?[0],
             places,
@@ -182,12 +183,35 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Query(asked) => query::query(asked, places, quiet),
         Command::Gc(asked) => gc::gc(places, asked),
-        Command::Import { file, stage } => show::import(file, stage.as_deref()),
-        Command::Kinds { kind } => show::kinds(kind.as_deref()),
+        Command::Import { file, stage, output } => show::import(file, stage.as_deref(), output.is_json()),
+        Command::Kinds { kind, output } => show::kinds(kind.as_deref(), output.is_json()),
         Command::Lsp => lsp::lsp(),
+        Command::Help { command, man } => help::help(command, man.as_deref()),
+        Command::Completions { shell } => complete::script(*shell),
         Command::Schema => {
             show::schema();
             Ok(())
         }
     }
+}
+
+/// `run`, here or elsewhere.
+fn run_studies(command: &Command, places: &Places, quiet: bool) -> Result<(), Ending> {
+    let Command::Run {
+        studies, changes, selection, limits, explain, keep_going, jobs, elsewhere, output, ..
+    } = command
+    else {
+        return Ok(());
+    };
+    let jobs = jobs.map(usize::from);
+    if elsewhere.engine.is_some() {
+        let (studies, told) = (load_all(studies, changes)?, shard::told(quiet, *output));
+        return engine::run(&studies, places, selection, limits, jobs, elsewhere, told);
+    }
+    let (explain, keep_going, json) = (*explain, *keep_going, output.is_json());
+    let how = run::How { explain, keep_going, jobs, limits: *limits, quiet, json };
+    if studies::settings(changes).is_empty() && run::is_up_to_date(studies, places, selection, &how)? {
+        return Ok(());
+    }
+    run::run(&load_all(studies, changes)?, places, selection, &how)
 }

@@ -9,7 +9,7 @@ use crate::report;
 use crate::report::text as as_text;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Drawn, FIGURES, Folder, MEASURED, PAGE, Tables};
-use studygraph::table::data::Table;
+use studygraph::table::data::{Data, Table};
 
 #[must_use]
 pub(super) fn path(folder: &Folder) -> PathBuf {
@@ -43,23 +43,61 @@ fn of_reports(manifest: &Manifest, tables: Tables<'_>, name: &str) -> Vec<Table>
     reports.filter_map(|stage| tables(&format!("{}.{name}", stage.name))).collect()
 }
 
-/// One sentence about the verdicts; empty where there are none.
-pub(super) fn summary(manifest: &Manifest, tables: Tables<'_>) -> String {
-    let mut parts = Vec::new();
-    let mut all = 0;
-    for counts in of_reports(manifest, tables, "verdict_counts") {
-        for (word, count) in counts.texts("verdict").iter().zip(counts.integers("count")) {
-            all += count;
-            if *count > 0 {
-                parts.push(format!("{count} {word}"));
+/// How many verdicts there are of one word.
+pub(super) struct Count {
+    pub(super) verdict: String,
+    pub(super) entries: i64,
+    pub(super) needs_attention: bool,
+}
+
+/// How many verdicts there are of each word, of all reports together; what needs attention first.
+pub(super) fn counts(manifest: &Manifest, tables: Tables<'_>) -> Vec<Count> {
+    let mut all: Vec<Count> = Vec::new();
+    for table in of_reports(manifest, tables, "verdict_counts") {
+        let columns = ["verdict", "count", "needs_attention"].map(|name| table.column(name));
+        let [Some(Data::Text(words)), Some(Data::Integer(entries)), Some(Data::Flag(attention))] = columns else {
+            continue;
+        };
+        for ((word, &entries), &needs_attention) in words.iter().zip(entries).zip(attention) {
+            match all.iter_mut().find(|count| count.verdict == *word) {
+                Some(count) => count.entries += entries,
+                None => all.push(Count { verdict: word.clone(), entries, needs_attention }),
             }
         }
     }
-    match all {
+    all
+}
+
+/// The number of verdicts that somebody has to look at.
+pub(super) fn attention(counts: &[Count]) -> i64 {
+    counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum()
+}
+
+/// One sentence about the verdicts; empty where there are none.
+pub(super) fn summary(counts: &[Count]) -> String {
+    let parts: Vec<String> = counts
+        .iter()
+        .filter(|count| count.entries > 0)
+        .map(|count| format!("{} {}", count.entries, count.verdict))
+        .collect();
+    match counts.iter().map(|count| count.entries).sum() {
         0 => String::new(),
         1 => format!("1 verdict: {}", parts.join(", ")),
         all => format!("{all} verdicts: {}", parts.join(", ")),
     }
+}
+
+/// The tables of a folder of results, for those who read it.
+pub(super) fn read<'a>(folder: &'a Folder, manifest: &'a Manifest) -> impl Fn(&str) -> Option<Table> + 'a {
+    |name| {
+        let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
+        records.filter(|record| record.name == name).find_map(|record| folder.table(record).ok())
+    }
+}
+
+/// The tables of verdicts of a run.
+pub(super) fn verdict_tables(manifest: &Manifest, tables: Tables<'_>) -> Vec<Table> {
+    of_reports(manifest, tables, "verdicts")
 }
 
 /// The verdicts of a run as text.

@@ -49,6 +49,13 @@ pub fn table(table: &Table, conditions: &[String], columns: &[String], format: F
     grid(table, &chosen, &rows).text(format)
 }
 
+/// All rows of a table as JSON.
+pub(super) fn objects(table: &Table) -> Vec<Value> {
+    let columns: Vec<usize> = (0..table.schema().columns.len()).collect();
+    let rows: Vec<usize> = (0..table.rows()).collect();
+    grid(table, &columns, &rows).objects().collect()
+}
+
 /// Some columns and rows of a table.
 fn grid<'a>(table: &'a Table, columns: &'a [usize], rows: &'a [usize]) -> Grid<'a> {
     let headings = columns.iter().map(|&index| {
@@ -143,7 +150,8 @@ impl Grid<'_> {
         String::from_utf8(bytes).map_err(|error| broken(&error))
     }
 
-    fn json(&self) -> String {
+    /// The rows as objects.
+    fn objects(&self) -> impl Iterator<Item = Value> {
         let value = |cell: Option<Cell>| match cell {
             // JSON has no NaN: null says "not applicable here".
             Some(Cell::Float(value)) => serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number),
@@ -152,12 +160,14 @@ impl Grid<'_> {
             Some(Cell::Flag(value)) => json!(value),
             None => Value::Null,
         };
-        let line = |row: usize| {
+        (0..self.rows).map(move |row| {
             let names = self.columns.iter().map(|column| column.name.clone());
-            let object: Map<String, Value> = names.zip(self.row(row).map(value)).collect();
-            format!("  {}", Value::Object(object))
-        };
-        let lines: Vec<String> = (0..self.rows).map(line).collect();
+            Value::Object(names.zip(self.row(row).map(value)).collect::<Map<_, _>>())
+        })
+    }
+
+    fn json(&self) -> String {
+        let lines: Vec<String> = self.objects().map(|object| format!("  {object}")).collect();
         if lines.is_empty() { "[]\n".to_owned() } else { format!("[\n{}\n]\n", lines.join(",\n")) }
     }
 

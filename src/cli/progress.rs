@@ -79,7 +79,7 @@ impl Running {
 
 /// Seconds left where a share was done after some of those that have gone by. Nothing at the beginning, which tells
 /// nothing; nothing once they are over and the share still stands where it stood.
-fn left(share: f64, done_after: f64, elapsed: f64) -> Option<f64> {
+pub(super) fn left(share: f64, done_after: f64, elapsed: f64) -> Option<f64> {
     let left = done_after / share - elapsed;
     ((0.02..1.0).contains(&share) && elapsed >= 2.0 && left > 0.0).then_some(left)
 }

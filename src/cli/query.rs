@@ -4,11 +4,14 @@
 
 use std::path::Path;
 
-use super::Ending;
+use serde_json::Value;
+
 use super::arguments::{Format, Places, Question};
 use super::diff::{side, study_name, working_tree};
 use super::print::{Grid, Heading};
 use super::progress::out;
+use super::show::table_value;
+use super::{Ending, json};
 use crate::query::tables::Tables;
 use crate::query::{Answer, Kind, ask};
 use studygraph::history::git::Repository;
@@ -37,7 +40,13 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
     let study = asked.study.as_deref().map(study_name);
     let mut tables = Tables::new(&open, study.as_deref(), cache.as_ref());
     let Some(text) = &asked.sql else {
-        out(&list(&mut tables).map_err(Ending::Usage)?);
+        match asked.format {
+            Format::Pretty => out(&list(&mut tables).map_err(Ending::Usage)?),
+            Format::Json => json::answer(&listed(&mut tables).map_err(Ending::Usage)?),
+            Format::Csv | Format::Excel | Format::ExcelComma | Format::Markdown => {
+                return Err(Ending::Usage("the list of tables is shown as `pretty` or as `json`".to_owned()));
+            }
+        }
         return Ok(());
     };
     let answer = ask(text, &mut tables).map_err(Ending::Query)?;
@@ -62,6 +71,10 @@ fn list(tables: &mut Tables<'_>) -> Result<String, String> {
         }
     }
     Ok(text)
+}
+
+fn listed(tables: &mut Tables<'_>) -> Result<Value, String> {
+    Ok(tables.list()?.iter().map(|(name, record)| table_value(record, name)).collect())
 }
 
 fn grid(answer: &Answer) -> Grid<'_> {

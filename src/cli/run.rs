@@ -8,19 +8,19 @@ use std::path::PathBuf;
 use std::sync::atomic::AtomicBool;
 
 use indicatif::MultiProgress;
+use serde_json::{Value, json};
 
-use super::Ending;
 use super::arguments::{self, Places, Selection};
-use super::draw;
-use super::pages;
+use super::events::{self, Lines};
+use super::pages::{self, Count};
 use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
-use super::show::none_yet;
 use super::signals::stop_flag;
-use super::studies;
+use super::{Ending, draw, json, studies};
 use crate::program::PROGRAM;
 use crate::stage::Want;
 use declare::error::Diagnostic;
+use studygraph::runner::events::Observer;
 use studygraph::runner::execute::{self, RunError};
 use studygraph::runner::fault::Fault;
 use studygraph::runner::limits::{Limits, MOST_ROWS};
@@ -31,7 +31,7 @@ use studygraph::runner::plan::{self, Plan};
 use studygraph::store::cache::Cache;
 use studygraph::store::error::StoreError;
 use studygraph::store::manifest::Manifest;
-use studygraph::store::results::{Folder, Published, Tables};
+use studygraph::store::results::{Folder, Tables};
 use studygraph::study::Study;
 
 /// How to run.
@@ -41,7 +41,16 @@ pub(super) struct How {
     pub(super) explain: bool,
     pub(super) keep_going: bool,
     pub(super) jobs: Option<usize>,
-    pub quiet: bool,
+    pub(super) quiet: bool,
+    /// As lines of JSON.
+    pub(super) json: bool,
+}
+
+impl How {
+    /// Whether nobody is told in words how it goes.
+    fn is_silent(&self) -> bool {
+        self.quiet || self.json
+    }
 }
 
 pub(super) fn limits(given: &arguments::Limits) -> Limits {
@@ -79,12 +88,8 @@ fn unknown(diagnostic: &Diagnostic) -> Ending {
     Ending::Usage(format!("{}{help}", diagnostic.message))
 }
 
-fn stored(error: &StoreError) -> Ending {
-    Ending::Usage(error.to_string())
-}
-
 pub(super) fn run(studies: &[Study], places: &Places, selection: &Selection, how: &How) -> Result<(), Ending> {
-    let bars = progress::bars(how.quiet);
+    let bars = progress::bars(how.is_silent());
     let stop = stop_flag(bars.clone());
     let mut failures = Vec::new();
     for study in studies {
@@ -108,7 +113,8 @@ pub(super) fn is_up_to_date(
     how: &How,
 ) -> Result<bool, Ending> {
     let options = options(selection, how)?;
-    if how.explain {
+    // Lines of JSON have the verdicts too, which no note has.
+    if how.explain || how.json {
         return Ok(false);
     }
     let note = |word: &PathBuf| {
@@ -147,43 +153,60 @@ pub(super) fn run_one(
     let cache = Cache::open_if_possible(&places.cache);
     let folder = Folder::new(&places.results, &study.name).telling(progress::told);
     let options = options(selection, how)?;
+    let lines = how.json.then(|| Lines::of(study));
     if how.explain {
         let plan = plan::plan(study, &cache, &options).map_err(|error| unknown(&error))?;
-        tell(&plan_text(study, &plan));
+        match lines {
+            Some(_) => events::line(&json!({ "event": "planned", "plan": plan_json(study, &plan) })),
+            None => tell(&plan_text(study, &plan)),
+        }
     }
     let width = study.nodes.iter().map(|node| node.name.chars().count()).max().unwrap_or(0);
-    let watcher = Watcher::new(how.quiet, width, bars.cloned());
+    let watcher = Watcher::new(how.is_silent(), width, bars.cloned());
+    let observer: &dyn Observer = lines.as_ref().map_or(&watcher, |lines| lines);
     // Tables are read while the folder is locked; afterwards they may be those of another run.
     let verdicts = RefCell::new(None);
     let draw = |manifest: &Manifest, tables: Tables<'_>| {
         let drawn = pages::draw(manifest, tables)?;
-        verdicts.replace(Some(pages::summary(manifest, tables)));
+        verdicts.replace(Some(pages::counts(manifest, tables)));
         Ok(drawn)
     };
-    let run = || execute::run(study, &cache, &options, &watcher, stop, &folder, Some(&draw));
+    let run = || execute::run(study, &cache, &options, observer, stop, &folder, Some(&draw));
     let (outcome, published) = watcher.telling(run).map_err(|error| match error {
         RunError::Study(diagnostic) => unknown(&diagnostic),
         RunError::Beyond(diagnostic) => Ending::Invalid(Box::new(study.refused(*diagnostic))),
         RunError::Store(StoreError::Stopped { .. }) => Ending::Stopped,
         other => Ending::Usage(other.to_string()),
     })?;
-    if !how.quiet {
-        tell(&rewritten(study, &published));
+    for file in &published.changes.foreign {
+        // Somebody else had changed it.
+        let message = format!("`{file}` was not what the last run wrote; it is written anew");
+        match &lines {
+            Some(lines) => lines.note(&message),
+            None if how.quiet => {}
+            None => tell(&format!("{}: {message}\n", study.name)),
+        }
     }
     if let Some(problem) = published.undrawn {
         return Err(Ending::Usage(problem));
     }
-    ended(study, &outcome, &folder, verdicts.take().as_deref(), how.quiet)
+    succeeded(study, &outcome)?;
+    let verdicts = verdicts.take();
+    match &lines {
+        Some(lines) => {
+            let manifest = &published.manifest;
+            let counts = verdicts.unwrap_or_else(|| pages::counts(manifest, &pages::read(&folder, manifest)));
+            lines.finished(outcome.stages.len(), outcome.ran(), outcome.seconds, &folder, &counts);
+        }
+        None if how.quiet => {}
+        None => tell(&summed_up(study, &outcome, &folder, verdicts.as_deref())),
+    }
+    Ok(())
 }
 
-/// What somebody else had changed.
-fn rewritten(study: &Study, published: &Published) -> String {
-    let line =
-        |file: &String| format!("{}: `{file}` was not what the last run wrote; it is written anew\n", study.name);
-    published.changes.foreign.iter().map(line).collect()
-}
-
-fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&str>, quiet: bool) -> Result<(), Ending> {
+/// # Errors
+/// What ended the run before everything was there.
+fn succeeded(study: &Study, outcome: &Outcome) -> Result<(), Ending> {
     if outcome.stopped {
         return Err(Ending::Stopped);
     }
@@ -196,25 +219,17 @@ fn ended(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&st
     if !failed.is_empty() {
         return Err(Ending::Failed(format!("{}: {} failed", study.name, failed.join(", "))));
     }
-    if quiet {
-        return Ok(());
-    }
-    let line = match (outcome.ran(), verdicts) {
-        (0, None) => {
-            tell(&nothing_to_do(&study.name, outcome.stages.len(), folder));
-            return Ok(());
-        }
-        (ran, verdicts) => {
-            let work = match ran {
-                0 => "nothing to compute, results brought up to date".to_owned(),
-                ran => format!("{} ran in {}", count(ran), duration(outcome.seconds)),
-            };
-            let verdicts = verdicts.filter(|text| !text.is_empty()).map(|text| format!("; {text}"));
-            work + &verdicts.unwrap_or_default()
-        }
-    };
-    tell(&format!("{}: {line}; {}\n", study.name, pages::path(folder).display()));
     Ok(())
+}
+
+fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&[Count]>) -> String {
+    let work = match (outcome.ran(), verdicts) {
+        (0, None) => return nothing_to_do(&study.name, outcome.stages.len(), folder),
+        (0, Some(_)) => "nothing to compute, results brought up to date".to_owned(),
+        (ran, _) => format!("{} ran in {}", count(ran), duration(outcome.seconds)),
+    };
+    let verdicts = verdicts.map(pages::summary).filter(|text| !text.is_empty()).map(|text| format!("; {text}"));
+    format!("{}: {work}{}; {}\n", study.name, verdicts.unwrap_or_default(), pages::path(folder).display())
 }
 
 /// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.
@@ -253,30 +268,8 @@ pub(super) fn plan(
         }
     }
     if as_json {
-        out(&format!("{:#}\n", serde_json::Value::Array(all)));
+        json::answer(&Value::Array(all));
     }
     Ok(())
 }
 
-pub(super) fn report(studies: &[Study], places: &Places, quiet: bool) -> Result<(), Ending> {
-    for study in studies {
-        let folder = Folder::new(&places.results, &study.name).telling(progress::told);
-        let told = RefCell::new(String::new());
-        let draw = |manifest: &Manifest, tables: Tables<'_>| {
-            let drawn = pages::draw(manifest, tables)?;
-            let summary = pages::summary(manifest, tables);
-            let summary = if summary.is_empty() { "no verdicts" } else { &summary };
-            let line = format!("{}: {summary}; {}\n", study.name, pages::path(&folder).display());
-            told.replace(pages::verdicts(manifest, tables)? + &line);
-            Ok(drawn)
-        };
-        let published = folder.redraw(&draw, PROGRAM.about.code).map_err(|error| stored(&error))?;
-        if let Some(problem) = published.ok_or_else(|| none_yet(study, &folder))?.undrawn {
-            return Err(Ending::Usage(problem));
-        }
-        if !quiet {
-            out(&told.take());
-        }
-    }
-    Ok(())
-}

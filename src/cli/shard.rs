@@ -6,11 +6,11 @@ use std::path::{Path, PathBuf};
 
 use serde_json::{Value as Json, json};
 
-use super::arguments::{Limits, Places, Selection, Sharding};
+use super::arguments::{Limits, Output, Places, Selection, Sharding};
 use super::progress::{self, Watcher, duration, out, rough};
 use super::signals::stop_flag;
 use super::studies::load_all;
-use super::{Ending, engine, run};
+use super::{Ending, engine, events, json, run};
 use crate::program::PROGRAM;
 use studygraph::runner::execute::RunError;
 use studygraph::runner::options::Options;
@@ -20,18 +20,42 @@ use studygraph::study::Study;
 
 pub(super) fn shard(asked: &Sharding, places: &Places, quiet: bool) -> Result<(), Ending> {
     match asked {
-        Sharding::Plan { study, changes, only, want, shards, into, manifest } => {
+        Sharding::Plan { study, changes, only, want, shards, into, manifest, output } => {
             let study = &load_all(std::slice::from_ref(study), changes)?[0];
             let selection = Selection { only: only.clone(), want: want.clone(), force: None };
-            let plan = planned(study, places, &selection, *shards as usize, into, quiet)?;
+            let plan = planned(study, places, &selection, *shards as usize, into, told(quiet, *output))?;
             if let Some(image) = manifest {
-                engine::kubernetes::write(&plan, into, image, quiet)?;
+                engine::kubernetes::write(&plan, into, image, quiet || output.is_json())?;
             }
             Ok(())
         }
-        Sharding::Run { folder, shard, limits, jobs } => one(folder, *shard, limits, jobs.map(usize::from), quiet),
-        Sharding::Status { folder, check, missing, json } => status(folder, *check, *missing, *json),
-        Sharding::Merge { folder, limits, jobs } => merge(folder, places, limits, jobs.map(usize::from), quiet),
+        Sharding::Run { folder, shard, limits, jobs, output } => {
+            one(folder, *shard, limits, jobs.map(usize::from), told(quiet, *output))
+        }
+        Sharding::Status { folder, check, missing, output } => status(folder, *check, *missing, output.is_json()),
+        Sharding::Merge { folder, limits, jobs, output } => {
+            let result = merge(folder, places, limits, jobs.map(usize::from), told(quiet, *output));
+            if output.is_json() {
+                events::ended(&result);
+            }
+            result
+        }
+    }
+}
+
+/// How it is told what was done.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Told {
+    Nothing,
+    Words,
+    Json,
+}
+
+pub(super) const fn told(quiet: bool, output: Output) -> Told {
+    match (output.is_json(), quiet) {
+        (true, _) => Told::Json,
+        (false, true) => Told::Nothing,
+        (false, false) => Told::Words,
     }
 }
 
@@ -54,7 +78,7 @@ pub(super) fn planned(
     selection: &Selection,
     count: usize,
     into: &Path,
-    quiet: bool,
+    told: Told,
 ) -> Result<ShardPlan, Ending> {
     let options = run::options(selection, &run::How::default())?;
     // Only looked into: what is known already is not computed again.
@@ -62,9 +86,14 @@ pub(super) fn planned(
     let elsewhere = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
     let cache = known.unwrap_or_else(|| Cache::open_if_possible(elsewhere.path()));
     let (plan, was_there) = shard::plan(study, &cache, &options, count, into).map_err(ending)?;
-    if !quiet {
-        let longest = plan.shards.iter().map(|shard| shard.seconds).fold(0.0, f64::max);
-        let all: f64 = plan.shards.iter().map(|shard| shard.seconds).sum();
+    let longest = plan.shards.iter().map(|shard| shard.seconds).fold(0.0, f64::max);
+    let all: f64 = plan.shards.iter().map(|shard| shard.seconds).sum();
+    if told == Told::Json {
+        json::answer(&json!({
+            "study": plan.study, "folder": into.display().to_string(), "plan": plan.digest, "was_there": was_there,
+            "shards": plan.shards.len(), "levels": plan.levels.len(), "seconds": all, "longest_seconds": longest,
+        }));
+    } else if told == Told::Words {
         let word = if was_there { "was planned already" } else { "planned" };
         let text = match (plan.shards.len(), plan.levels.len()) {
             (0, _) => format!("{}: {word}: nothing is left to compute but what `shard merge` does", plan.study),
@@ -85,14 +114,26 @@ pub(super) fn planned(
     Ok(plan)
 }
 
-fn one(folder: &Path, index: usize, limits: &Limits, jobs: Option<usize>, quiet: bool) -> Result<(), Ending> {
+fn one(folder: &Path, index: usize, limits: &Limits, jobs: Option<usize>, told: Told) -> Result<(), Ending> {
     let scratch = tempfile::tempdir().map_err(|error| Ending::Usage(format!("no temporary folder: {error}")))?;
-    let bars = progress::bars(quiet);
+    let silent = told != Told::Words;
+    let bars = progress::bars(silent);
     let stop = stop_flag(bars.clone());
-    let watcher = Watcher::new(quiet, 12, bars);
+    let watcher = Watcher::new(silent, 12, bars);
     let how = Options { jobs: jobs.unwrap_or(0), limits: run::limits(limits), ..Options::default() };
     let ran = watcher.telling(|| shard::compute(folder, index, scratch.path(), &PROGRAM, &how, &watcher, &stop));
-    let line = match ran.map_err(ending)? {
+    let ran = ran.map_err(ending)?;
+    if told == Told::Json {
+        let (state, parts, bytes, seconds) = match ran {
+            Ran::Already => ("was there", 0, 0, 0.0),
+            Ran::Packed { parts, bytes, seconds } => ("packed", parts, bytes, seconds),
+        };
+        json::answer(&json!({
+            "shard": index, "state": state, "parts": parts, "bytes": bytes, "seconds": seconds,
+        }));
+        return Ok(());
+    }
+    let line = match ran {
         Ran::Already => format!("shard {index}: nothing to do, its pack is there\n"),
         Ran::Packed { parts, bytes, seconds } => {
             #[allow(clippy::cast_precision_loss)]
@@ -100,7 +141,7 @@ fn one(folder: &Path, index: usize, limits: &Limits, jobs: Option<usize>, quiet:
             format!("shard {index}: {parts} parts in {}, {megabytes:.1} MB\n", duration(seconds))
         }
     };
-    if !quiet {
+    if told == Told::Words {
         out(&line);
     }
     Ok(())
@@ -123,20 +164,20 @@ fn status(folder: &Path, check: bool, missing: bool, as_json: bool) -> Result<()
         }
         return Ok(());
     }
-    let told = |index: &usize| match &states[*index] {
+    let problem = |index: &usize| match &states[*index] {
         State::Damaged(problem) | State::Failed(problem) => problem.clone(),
         State::Sound | State::Missing => String::new(),
     };
     if as_json {
         let named = |numbers: &[usize]| -> Vec<Json> {
-            numbers.iter().map(|index| json!({ "shard": index, "problem": told(index) })).collect()
+            numbers.iter().map(|index| json!({ "shard": index, "problem": problem(index) })).collect()
         };
         let levels: Vec<Json> = plan.levels.iter().map(|level| json!([level.first, level.end])).collect();
         let value = json!({
             "study": plan.study, "plan": plan.digest, "shards": states.len(), "levels": levels, "sound": sound,
             "missing": absent, "damaged": named(&damaged), "failed": named(&failed),
         });
-        out(&format!("{value:#}\n"));
+        json::answer(&value);
     } else {
         let count = |word: &str, numbers: &[usize]| match numbers.len() {
             0 => String::new(),
@@ -152,7 +193,7 @@ fn status(folder: &Path, check: bool, missing: bool, as_json: bool) -> Result<()
             count("failed", &failed)
         ));
         for index in damaged.iter().chain(&failed) {
-            out(&format!("  shard {index}: {}\n", told(index)));
+            out(&format!("  shard {index}: {}\n", problem(index)));
         }
     }
     if damaged.is_empty() { Ok(()) } else { Err(Ending::Differs(String::new())) }
@@ -164,7 +205,7 @@ pub(super) fn merge(
     places: &Places,
     limits: &Limits,
     jobs: Option<usize>,
-    quiet: bool,
+    told: Told,
 ) -> Result<(), Ending> {
     let (plan, merged) = {
         let cache = Cache::open_if_possible(&places.cache);
@@ -177,14 +218,22 @@ pub(super) fn merge(
         }
         merged
     };
-    if !quiet {
-        #[allow(clippy::cast_precision_loss)]
-        let megabytes = merged.bytes as f64 / 1e6;
-        out(&format!("{}: {} parts of {} shards, {megabytes:.1} MB\n", plan.study, merged.parts, merged.shards));
+    match told {
+        Told::Nothing => {}
+        Told::Json => events::line(&json!({
+            "event": "merged", "study": plan.study, "parts": merged.parts, "shards": merged.shards,
+            "bytes": merged.bytes,
+        })),
+        Told::Words => {
+            #[allow(clippy::cast_precision_loss)]
+            let megabytes = merged.bytes as f64 / 1e6;
+            out(&format!("{}: {} parts of {} shards, {megabytes:.1} MB\n", plan.study, merged.parts, merged.shards));
+        }
     }
     let study = plan.load(&PROGRAM).map_err(ending)?;
     let selection = Selection { only: plan.only.clone(), want: plan.want.clone(), force: None };
-    let how = run::How { limits: *limits, jobs, quiet, ..run::How::default() };
+    let (quiet, json) = (told == Told::Nothing, told == Told::Json);
+    let how = run::How { limits: *limits, jobs, quiet, json, ..run::How::default() };
     run::run(std::slice::from_ref(&study), places, &selection, &how)
 }
 

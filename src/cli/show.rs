@@ -6,28 +6,29 @@ use std::fs::{File, OpenOptions};
 use std::io::{ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 
-use super::Ending;
+use serde_json::{Value, json};
+
 use super::arguments::{Changes, Format, Places};
 use super::progress::out;
-use super::{draw, print, studies};
+use super::{Ending, draw, json, print, studies};
 use crate::program::{load_changed, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::suggest;
 use studygraph::runner::rehearse::rehearse;
-use studygraph::store::manifest::TableRecord;
+use studygraph::store::manifest::{ColumnRecord, TableRecord};
 use studygraph::store::results::Folder;
-use studygraph::study::{LoadError, Study, describe, schema as schemas};
+use studygraph::study::{LoadError, Study, describe, described, schema as schemas};
 use studygraph::table::data::Table;
 
 /// Studies to start from: what they are asked for by, how they are called, their texts.
-const TEMPLATES: [(&str, &str, &str); 2] = [
+pub(super) const TEMPLATES: [(&str, &str, &str); 2] = [
     ("quick", "quick", include_str!("../../studies/quick.yaml")),
     ("sweep", "sweep_quick", include_str!("../../studies/sweep_quick.yaml")),
 ];
 
 /// Writes a small study; never over a file that is there.
-pub(super) fn new_study(file: &Path, template: &str) -> Result<(), Ending> {
+pub(super) fn new_study(file: &Path, template: &str, as_json: bool) -> Result<(), Ending> {
     let found = TEMPLATES.iter().find(|(name, ..)| *name == template);
     let (_, called, template) = found.ok_or_else(|| {
         let names = TEMPLATES.iter().map(|(name, ..)| *name);
@@ -53,19 +54,30 @@ pub(super) fn new_study(file: &Path, template: &str) -> Result<(), Ending> {
         cannot(error)
     })?;
     opened.write_all(text.as_bytes()).map_err(cannot)?;
-    out(&format!("wrote {0}; next: gearstudy run {0}\n", file.display()));
+    let shown = file.display().to_string();
+    if as_json {
+        let study = load_text(&text, file).ok().map(|study| study.name);
+        json::answer(&json!({ "file": shown, "study": study, "next": ["gearstudy", "run", shown] }));
+    } else {
+        out(&format!("wrote {shown}; next: gearstudy run {shown}\n"));
+    }
     Ok(())
 }
 
 /// Prints the pair of a REXS file as a study.
-pub(super) fn import(file: &Path, stage: Option<&str>) -> Result<(), Ending> {
+pub(super) fn import(file: &Path, stage: Option<&str>, as_json: bool) -> Result<(), Ending> {
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot read {}: {error}", file.display()));
     let refused = |problem: String| Ending::Usage(format!("{}: {problem}", file.display()));
     let mut bytes = Vec::new();
     // No more than one byte too many, whatever the file says of its size.
     File::open(file).map_err(cannot)?.take(rexs::MOST_BYTES as u64 + 1).read_to_end(&mut bytes).map_err(cannot)?;
     let text = String::from_utf8(bytes).map_err(|_| refused("it is not UTF-8".to_owned()))?;
-    out(&rexs::geometry(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?);
+    let study = rexs::geometry(&text, stage).map_err(|error| Ending::Usage(error.in_file(file)))?;
+    if as_json {
+        json::answer(&json!({ "file": file.display().to_string(), "study": study }));
+    } else {
+        out(&study);
+    }
     Ok(())
 }
 
@@ -76,32 +88,59 @@ pub(super) fn rehearsed(study: Study) -> Result<Study, LoadError> {
 }
 
 /// Says of every file whether it is a valid study.
-pub(super) fn check(files: &[PathBuf], changes: &Changes, quiet: bool) -> Result<(), Ending> {
+pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: bool) -> Result<(), Ending> {
     let settings = studies::settings(changes);
-    let mut last = None;
+    let (mut last, mut values) = (None, Vec::new());
     for file in files {
-        match load_changed(file, &settings).and_then(rehearsed) {
-            Ok(study) if !quiet => {
+        let checked = load_changed(file, &settings).and_then(rehearsed);
+        if as_json {
+            values.push(checked_value(file, &checked));
+        }
+        match checked {
+            Ok(study) if !quiet && !as_json => {
                 out(&format!("{}: `{}` is valid, {} stages\n", file.display(), study.name, study.nodes.len()));
             }
             Ok(_) => {}
             Err(error) => {
-                if let Some(earlier) = last.replace(error) {
+                if let Some(earlier) = last.replace(error).filter(|_| !as_json) {
                     draw::invalid_study(&earlier);
                 }
             }
         }
     }
+    if as_json {
+        json::answer(&Value::Array(values));
+        let told = |_| Err(Ending::Unreadable("what is wrong with the study is in the answer".to_owned()));
+        return last.map_or(Ok(()), told);
+    }
     last.map_or(Ok(()), |error| Err(Ending::Invalid(Box::new(error))))
 }
 
-pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
+fn checked_value(file: &Path, checked: &Result<Study, LoadError>) -> Value {
+    let study = checked.as_ref().ok();
+    json!({
+        "file": file.to_string_lossy(), "valid": study.is_some(), "study": study.map(|study| study.name.clone()),
+        "stages": study.map(|study| study.nodes.len()),
+        "mistakes": checked.as_ref().err().map_or_else(|| json!([]), json::mistakes),
+    })
+}
+
+pub(super) fn kinds(name: Option<&str>, as_json: bool) -> Result<(), Ending> {
     let Some(name) = name else {
-        out(&describe::list(KINDS));
+        if as_json {
+            json::answer(&described::list(KINDS));
+        } else {
+            out(&describe::list(KINDS));
+        }
         return Ok(());
     };
     if let Some((kind, path)) = name.split_once('.').and_then(|(kind, path)| Some((stage::kind(kind)?, path))) {
-        out(&describe::within(kind, path).map_err(Ending::Usage)?);
+        let text = describe::within(kind, path).map_err(Ending::Usage)?;
+        if as_json {
+            json::answer(&described::within(kind, path));
+        } else {
+            out(&text);
+        }
         return Ok(());
     }
     let Some(kind) = stage::kind(name) else {
@@ -113,7 +152,11 @@ pub(super) fn kinds(name: Option<&str>) -> Result<(), Ending> {
         };
         return Err(Ending::Usage(format!("there is no kind `{name}`; {help}")));
     };
-    out(&describe::kind(kind));
+    if as_json {
+        json::answer(&described::kind(kind));
+    } else {
+        out(&describe::kind(kind));
+    }
     Ok(())
 }
 
@@ -147,6 +190,10 @@ fn shown(
     let manifest = read.ok_or_else(|| none_yet(study, folder))?;
     let records: Vec<&TableRecord> = manifest.stages.iter().flat_map(|stage| &stage.tables).collect();
     let Some(name) = name else {
+        if format == Format::Json {
+            let listed: Vec<Value> = records.iter().map(|record| table_value(record, &record.name)).collect();
+            return Ok(format!("{:#}\n", Value::Array(listed)));
+        }
         let width = records.iter().map(|record| record.name.len()).max().unwrap_or(0);
         let line = |record: &&TableRecord| {
             format!("{:width$}  {:>8} rows  {}\n", record.name, record.rows, record.description)
@@ -160,6 +207,20 @@ fn shown(
     };
     let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
     print::table(&table, conditions, columns, format).map_err(Ending::Usage)
+}
+
+/// A table that there is, and its columns.
+pub(super) fn table_value(record: &TableRecord, name: &str) -> Value {
+    let column = |column: &ColumnRecord| {
+        json!({
+            "name": column.name, "type": column.kind, "unit": column.unit, "description": column.description,
+            "key": column.key,
+        })
+    };
+    json!({
+        "name": name, "rows": record.rows, "description": &*record.description, "file": record.file,
+        "columns": record.columns.iter().map(column).collect::<Vec<_>>(),
+    })
 }
 
 /// That a study has no results.

@@ -8,7 +8,7 @@ use serde_json::{Value, json};
 
 use super::arguments::{Changes, Places};
 use super::progress::out;
-use super::{Ending, studies};
+use super::{Ending, json, studies};
 use crate::program;
 use declare::error::Diagnostic;
 use studygraph::runner::standing::{Condition, StageStanding, Standing, standing_of};
@@ -42,7 +42,8 @@ enum Fault {
     Other(String),
 }
 
-/// Says it of every study; one that cannot be read silences no other. `check`: every byte is read, of the cache too.
+/// Says it of every study; one that cannot be read silences no other. `check`: every byte is read, of the cache too,
+/// and what is damaged, stale or missing ends with code 4.
 pub(super) fn status(
     words: &[PathBuf],
     changes: &Changes,
@@ -56,7 +57,7 @@ pub(super) fn status(
     let cache = places.cache.is_dir().then(|| Cache::open(&places.cache).ok()).flatten();
     let mut faults = Vec::new();
     let (mut all, mut values) = (Vec::new(), Vec::new());
-    let mut damaged = Vec::new();
+    let (mut damaged, mut stale) = (Vec::new(), Vec::new());
     for file in &files {
         match told(file, &settings, places, cache.as_ref(), check) {
             Ok(told) => {
@@ -69,6 +70,9 @@ pub(super) fn status(
                 let names = told.read.iter().flat_map(|read| &read.damaged);
                 let folder = Folder::new(&places.results, &told.study.name);
                 damaged.extend(names.map(|name| folder.path().join(name).display().to_string()));
+                if check && !is_up_to_date(&told.standing) {
+                    stale.push(told.study.name.clone());
+                }
                 all.push(told.study);
             }
             Err(fault) => {
@@ -87,7 +91,7 @@ pub(super) fn status(
         }
     }
     if as_json {
-        out(&format!("{:#}\n", Value::Array(values)));
+        json::answer(&Value::Array(values));
     }
     let mut advice = Vec::new();
     if !damaged.is_empty() {
@@ -97,6 +101,9 @@ pub(super) fn status(
     if !of_cache.is_empty() {
         let named: Vec<String> = of_cache.iter().map(|(path, why)| format!("{}: {why}", path.display())).collect();
         advice.push(format!("damaged in the cache, and gone from it now:\n  {}", named.join("\n  ")));
+    }
+    if !stale.is_empty() {
+        advice.push(format!("not up to date: {}", stale.join(", ")));
     }
     let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
     match faults.pop() {
@@ -156,6 +163,11 @@ fn is_odd(standing: &Standing) -> bool {
     damaged || !standing.foreign.is_empty() || (!standing.report && standing.has_results)
 }
 
+/// A clone has neither all tables nor the page, and is up to date nevertheless.
+fn is_up_to_date(standing: &Standing) -> bool {
+    standing.is_up_to_date() && (standing.report || !standing.absent().is_empty())
+}
+
 fn value(told: &Told) -> Value {
     let Told { study, standing, read, uncached } = told;
     let report = &standing.report;
@@ -168,8 +180,7 @@ fn value(told: &Told) -> Value {
     let tables_here = standing.has_results && standing.absent().is_empty();
     let mut value = json!({
         "study": study.name, "file": study.path.to_string_lossy(),
-        // A clone has neither all tables nor the page, and is up to date nevertheless.
-        "up_to_date": standing.is_up_to_date() && (*report || !tables_here),
+        "up_to_date": is_up_to_date(standing),
         "results": standing.has_results, "tables_here": tables_here, "stages_not_in_cache": uncached,
         "text_changed": standing.text_changed, "gone": standing.gone, "report_up_to_date": report, "stages": stages,
         "foreign": standing.foreign,

@@ -85,7 +85,7 @@ pub(super) fn distinct(others: &[Study], study: &Study) -> Result<(), Ending> {
 }
 
 /// The files in the folder `studies`, sorted; what is not a file would be waited for.
-fn all() -> Vec<PathBuf> {
+pub(super) fn all() -> Vec<PathBuf> {
     let entries = std::fs::read_dir(FOLDER).into_iter().flatten().flatten().map(|entry| entry.path());
     let mut all: Vec<PathBuf> =
         entries.filter(|path| path.extension().is_some_and(|word| word == "yaml") && path.is_file()).collect();

@@ -132,6 +132,7 @@ fn sentence(diff: &TableDiff) -> String {
     if diff.rows_added + diff.rows_removed > 0 {
         parts.push(words::rows(diff));
     }
+    parts.extend(words::curves(diff).filter(|_| diff.columns.is_empty()));
     parts.extend(diff.schema.iter().filter(|change| change.differs).map(|change| {
         let values = [&change.before, &change.after].map(|value| if value.is_empty() { "–" } else { value });
         format!("column {} {}: {} → {}", change.column, change.what, values[0], values[1])

@@ -10,13 +10,14 @@ use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
 use notify::{EventKind, RecursiveMode, Watcher};
+use serde_json::json;
 
 use super::arguments::{Changes, Places, Selection};
 use super::progress::{self, tell};
 use super::run::{self, How};
 use super::serve::Server;
 use super::signals::stop_flag;
-use super::{Ending, draw, pages, show, studies};
+use super::{Ending, draw, events, pages, show, studies};
 use crate::program::load_changed;
 use studygraph::store::results::Folder;
 
@@ -71,13 +72,16 @@ pub(super) fn watch(
     places: &Places,
     selection: &Selection,
     port: u16,
-    quiet: bool,
+    (as_json, quiet): (bool, bool),
 ) -> Result<(), Ending> {
     let file = studies::file(word)?;
     let cannot = |error: notify::Error| Ending::Usage(format!("cannot watch {}: {error}", file.display()));
     let (saves, stop, board) = (saves_of(&file).map_err(cannot)?, stop_flag(None), Arc::new(Board::default()));
     let server = Server::start(port, Arc::clone(&board)).map_err(Ending::Usage)?;
-    if !quiet {
+    if as_json {
+        let (file, page) = (file.to_string_lossy(), server.address());
+        events::line(&json!({ "event": "watching", "file": file, "page": page }));
+    } else if !quiet {
         tell(&format!("{} is watched; its page: {} (Ctrl-C ends)\n", file.display(), server.address()));
     }
     let mut last = String::new();
@@ -85,7 +89,7 @@ pub(super) fn watch(
         let text = std::fs::read_to_string(&file).unwrap_or_default();
         if last != text {
             last = text;
-            renew(&file, changes, places, selection, quiet, &stop, &board)?;
+            renew(&file, changes, places, selection, (as_json, quiet), &stop, &board)?;
         }
         loop {
             if stop.load(Ordering::Relaxed) {
@@ -126,21 +130,29 @@ fn renew(
     changes: &Changes,
     places: &Places,
     selection: &Selection,
-    quiet: bool,
+    (as_json, quiet): (bool, bool),
     stop: &AtomicBool,
     board: &Board,
 ) -> Result<(), Ending> {
     let study = match load_changed(file, &studies::settings(changes)).and_then(show::rehearsed) {
         Ok(study) => study,
         Err(error) => {
-            draw::invalid_study(&error);
             board.show(error.to_string(), None);
+            if as_json {
+                events::ended(&Err(Ending::Invalid(Box::new(error))));
+            } else {
+                draw::invalid_study(&error);
+            }
             return Ok(());
         }
     };
     let folder = Folder::new(&places.results, &study.name);
-    let how = How { quiet, ..How::default() };
-    match run::run_one(&study, places, selection, &how, progress::bars(quiet).as_ref(), stop) {
+    let how = How { quiet, json: as_json, ..How::default() };
+    let result = run::run_one(&study, places, selection, &how, progress::bars(quiet || as_json).as_ref(), stop);
+    if as_json {
+        events::ended(&result);
+    }
+    match result {
         Ok(()) => board.show(String::new(), Some(folder.path().to_owned())),
         Err(Ending::Stopped) => return Err(Ending::Stopped),
         Err(ending) => {

@@ -16,7 +16,7 @@ pub mod quantity;
 pub mod root_influences;
 
 pub use studygraph::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved, Stage,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved, Stage,
     Want, omission,
 };
 

@@ -4,7 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Subcommand, ValueEnum};
 
-use super::{Changes, Limits};
+use super::{Changes, Limits, Output};
 
 /// Who computes, if not this process.
 #[derive(Args, Debug, Clone, Default)]
@@ -54,6 +54,8 @@ pub enum Sharding {
         /// Also write DIR/job.yaml: indexed Kubernetes jobs with this image.
         #[arg(long, value_name = "IMAGE")]
         manifest: Option<String>,
+        #[command(flatten)]
+        output: Output,
     },
     /// Compute one piece: leaves DIR/shards/I.pack.
     Run {
@@ -66,6 +68,8 @@ pub enum Sharding {
         /// How many threads to use [default: one per processor].
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
+        #[command(flatten)]
+        output: Output,
     },
     /// Say which pieces are there.
     Status {
@@ -75,11 +79,10 @@ pub enum Sharding {
         #[arg(long)]
         check: bool,
         /// Only the numbers of those that are not there, one a line.
-        #[arg(long, conflicts_with = "json")]
+        #[arg(long, conflicts_with_all = ["json", "format"])]
         missing: bool,
-        /// As JSON.
-        #[arg(long)]
-        json: bool,
+        #[command(flatten)]
+        output: Output,
     },
     /// Take all pieces into the cache, compute what is left, and write results as a run does.
     Merge {
@@ -90,5 +93,7 @@ pub enum Sharding {
         /// How many threads to use [default: one per processor].
         #[arg(long, short, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=256))]
         jobs: Option<u16>,
+        #[command(flatten)]
+        output: Output,
     },
 }

@@ -15,7 +15,9 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use super::arguments::{Elsewhere, Engine, Limits, Places, Selection};
+use super::events::Lines;
 use super::progress::{self, tell};
+use super::shard::Told;
 use super::signals::stop_flag;
 use super::{Ending, shard};
 use declare::record::Record;
@@ -58,16 +60,16 @@ pub(super) fn run(
     limits: &Limits,
     jobs: Option<usize>,
     elsewhere: &Elsewhere,
-    quiet: bool,
+    told: Told,
 ) -> Result<(), Ending> {
     let stop = stop_flag(None);
     for study in studies {
         let into = elsewhere.into.clone().unwrap_or_else(|| shard::default_folder(study));
         let shards = elsewhere.shards.unwrap_or(SHARDS) as usize;
-        let plan = shard::planned(study, places, selection, shards, &into, true)?;
+        let plan = shard::planned(study, places, selection, shards, &into, Told::Nothing)?;
         let folder =
             std::path::absolute(&into).map_err(|error| Ending::Usage(format!("{}: {error}", into.display())))?;
-        let job = Job { plan: &plan, folder, quiet };
+        let job = Job { plan: &plan, folder, told };
         // Whatever failed before is tried again: it is the user who asks.
         for index in 0..plan.shards.len() {
             let _ = std::fs::remove_file(failed_file(&job.folder, index));
@@ -94,7 +96,7 @@ pub(super) fn run(
                 job.watch(&mut parallel, profile::attempts(&profile), &stop)?;
             }
         }
-        shard::merge(&job.folder, places, limits, jobs, quiet)?;
+        shard::merge(&job.folder, places, limits, jobs, told)?;
     }
     Ok(())
 }
@@ -104,13 +106,15 @@ struct Job<'a> {
     plan: &'a ShardPlan,
     /// Absolute: jobs start in folders of their own.
     folder: PathBuf,
-    quiet: bool,
+    told: Told,
 }
 
 impl Job<'_> {
     fn tell(&self, text: &str) {
-        if !self.quiet {
-            tell(&format!("{}: {text}\n", self.plan.study));
+        match self.told {
+            Told::Nothing => {}
+            Told::Words => tell(&format!("{}: {text}\n", self.plan.study)),
+            Told::Json => Lines::named(&self.plan.study).note(text),
         }
     }
 

@@ -27,6 +27,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
+    curves: &[],
     example: "
 kind: accuracy
 of: ste

@@ -28,6 +28,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Export::MEMBER.summary,
     fields: Export::MEMBER.fields,
+    curves: &[],
     example: "
 kind: export
 pair: geometry

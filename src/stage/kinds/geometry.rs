@@ -38,6 +38,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
+    curves: &[],
     example: "
 kind: geometry
 module: 3 mm

@@ -6,7 +6,7 @@
 mod charts;
 
 use crate::stage::designs::{self, Elements, NamedDesign};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair};
+use crate::stage::{Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
@@ -24,6 +24,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
+    curves: &[Curves { table: charts::PROFILE, along: "roll_angle" }, Curves { table: charts::LEAD, along: "z" }],
     example: "
 kind: modification
 pair: geometry

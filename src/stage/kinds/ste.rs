@@ -20,7 +20,7 @@ use crate::stage::common::{Contact, Slices};
 use crate::stage::doubts::Doubted;
 use crate::stage::names::{self, summary};
 use crate::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
     root_influences,
 };
 use declare::Declared;
@@ -49,6 +49,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Ste::MEMBER.summary,
     fields: Ste::MEMBER.fields,
+    curves: &[Curves { table: names::curve::TABLE, along: "cycle_position" }],
     example: "
 kind: ste
 stiffness: stiffness

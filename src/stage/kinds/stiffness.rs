@@ -8,7 +8,7 @@ use std::time::Instant;
 use crate::stage::common::Teeth;
 use crate::stage::compliance as codec;
 use crate::stage::{
-    Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names, pair,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names, pair,
     root_influences,
 };
 use declare::declared::{Declared, Words};
@@ -37,6 +37,11 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stiffness::MEMBER.summary,
     fields: Stiffness::MEMBER.fields,
+    curves: &[
+        Curves { table: "curve", along: "cycle_position" },
+        Curves { table: names::compliance::TABLE, along: names::compliance::ROLL_ANGLE },
+        Curves { table: ROOT_STRESS, along: "roll_angle" },
+    ],
     example: "
 kind: stiffness
 pair: geometry

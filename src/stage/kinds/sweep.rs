@@ -46,6 +46,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
+    curves: &[],
     example: "
 kind: sweep
 of: ste

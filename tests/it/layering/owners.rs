@@ -11,6 +11,8 @@ pub const OWNERS: &[(&str, &[&str])] = &[
     ("roxmltree", &["src/rexs"]),
     ("serde_saphyr", &["crates/studygraph/src/study/"]),
     ("clap", &["src/cli/"]),
+    ("clap_complete", &["src/cli/complete.rs"]),
+    ("clap_mangen", &["src/cli/help.rs"]),
     ("rusqlite", &["src/query/database.rs"]),
     ("sqlparser", &["src/query/names.rs", "src/query/kinds.rs"]),
     ("signal_hook", &["src/cli/"]),

@@ -6,10 +6,10 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use super::model::{Comparison, Damage, Difference, Flip, StageDiff, StudyDiff, TableDiff};
-use super::{table, verdict, why};
+use super::{curves, table, verdict, why};
 use crate::history::side::{Got, Side};
 use crate::store::cache::Cache;
-use crate::store::manifest::{Manifest, StageRecord, TableRecord};
+use crate::store::manifest::{FORMAT, Manifest, StageRecord, TableRecord};
 use crate::table::schema::{Column, Type};
 use crate::table::tolerance::{Allowance, find};
 use declare::error::suggest;
@@ -28,6 +28,8 @@ pub struct Options<'a> {
     pub cache: Option<&'a Cache>,
     /// Whether a study that only the later side has is left out on purpose.
     pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
+    /// The column over which the table of a kind of stage holds sampled curves, where it does.
+    pub curves: Option<&'a dyn Fn(&str, &str) -> Option<&'static str>>,
     /// Whether a file of a folder of results is one that is not kept there on purpose.
     pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
 }
@@ -239,7 +241,7 @@ fn check_tolerances(pairs: &[ManifestPair], tolerances: &[Allowance]) -> Result<
 
 fn one_sided(name: &str, manifest: &Manifest, state: Difference) -> StudyDiff {
     let stages = manifest.stages.iter().map(|stage| one_sided_stage(stage, state)).collect();
-    StudyDiff { name: name.to_owned(), state, stages }
+    StudyDiff { name: name.to_owned(), state, remarks: Vec::new(), stages }
 }
 
 fn one_sided_stage(stage: &StageRecord, state: Difference) -> StageDiff {
@@ -307,7 +309,19 @@ impl Task<'_> {
         }
         stages.extend(gone.into_iter().map(|stage| one_sided_stage(stage, Difference::Removed)));
         let state = Difference::of_parts(stages.iter().map(|stage| stage.state));
-        (StudyDiff { name: name.to_owned(), state, stages }, found)
+        (StudyDiff { name: name.to_owned(), state, remarks: self.remarks(), stages }, found)
+    }
+
+    /// What is to be known of the results themselves.
+    fn remarks(&self) -> Vec<String> {
+        let sides = [(self.before, &self.old.1), (self.after, &self.new.1)];
+        let earlier = sides.into_iter().filter(|(_, manifest)| manifest.format < FORMAT).map(|(side, manifest)| {
+            let (format, version) = (manifest.format, &manifest.program.version);
+            format!("{}: results of format {format}, which gearstudy {version} wrote; now it is {FORMAT}", side.label)
+        });
+        let other = self.old.1.study_digest != self.new.1.study_digest;
+        let text = other.then(|| "the two are from different texts of the study".to_owned());
+        earlier.chain(text).collect()
     }
 
     fn stage(&self, study: &str, old: &StageRecord, new: &StageRecord, found: &mut Found) -> StageDiff {
@@ -321,6 +335,8 @@ impl Task<'_> {
         }
         let gone = old.tables.iter().filter(|table| !new.tables.iter().any(|other| other.table() == table.table()));
         tables.extend(gone.map(|table| one_sided_table(table, Difference::Removed)));
+        // What sums up comes before the points that it sums up.
+        tables.sort_by_key(|table| table.curves.is_some());
         let mut why = why::reasons((&self.old.1, old), (&self.new.1, new));
         let mut state = Difference::of_parts(tables.iter().map(|table| table.state));
         if why::complete(old) && !why::complete(new) {
@@ -379,6 +395,10 @@ impl Task<'_> {
         let compared = |key| table::compare(&after.name, &first, &second, key, &tolerances);
         let keys = if of_verdicts { &verdict::KEYS[..] } else { &[] };
         let by_words = keys.iter().map(|key| compared(Some(key))).find(|diff| diff.note.is_empty());
-        by_words.unwrap_or_else(|| compared(None))
+        let mut diff = by_words.unwrap_or_else(|| compared(None));
+        if let Some(along) = self.options.curves.and_then(|curves| curves(&new.kind, name)) {
+            curves::told(&mut diff, &first, &second, along, &tolerances);
+        }
+        diff
     }
 }

@@ -59,6 +59,8 @@ struct TableView<'a> {
     rows: String,
     added: String,
     removed: String,
+    /// Of sampled curves, in the place of columns and rows.
+    curves: String,
     columns: Vec<[String; 6]>,
     worst: Vec<[String; 5]>,
 }
@@ -97,7 +99,7 @@ fn study(study: &StudyDiff) -> StudyView<'_> {
         study,
         sign: study.state.sign(),
         sum: words::sum(study),
-        remarks: words::program(study).into_iter().chain(words::brief(study)).collect(),
+        remarks: words::remarks(study).into_iter().chain(words::brief(study)).collect(),
         tables: tables.map(table).collect(),
         stages: told
             .iter()
@@ -112,7 +114,8 @@ fn study(study: &StudyDiff) -> StudyView<'_> {
 }
 
 fn table(table: &TableDiff) -> TableView<'_> {
-    let columns = table.columns.iter().map(|column| {
+    let by_rows = table.curves.is_none();
+    let columns = table.columns.iter().filter(|_| by_rows).map(|column| {
         let (largest, relative) = (column.largest_absolute.as_ref(), column.largest_relative.as_ref());
         [
             words::column(&column.name, &column.unit),
@@ -123,7 +126,7 @@ fn table(table: &TableDiff) -> TableView<'_> {
             column.shown().map_or_else(String::new, |shown| words::key(&shown.key)),
         ]
     });
-    let worst = table.worst.iter().map(|worst| {
+    let worst = table.worst.iter().filter(|_| by_rows).map(|worst| {
         let (before, after) = words::pair(&worst.before, &worst.after);
         let difference = worst.difference.map_or_else(|| "–".to_owned(), words::difference);
         [words::column(&worst.column, &worst.unit), before, after, difference, words::key(&worst.key)]
@@ -135,6 +138,7 @@ fn table(table: &TableDiff) -> TableView<'_> {
         rows: words::rows(table),
         added: words::keys(&table.added, table.rows_added),
         removed: words::keys(&table.removed, table.rows_removed),
+        curves: words::curves(table).unwrap_or_default(),
         columns: columns.collect(),
         worst: worst.collect(),
     }

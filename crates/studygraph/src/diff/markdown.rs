@@ -44,7 +44,7 @@ fn study(study: &StudyDiff) -> String {
     let mut text =
         format!("\n### {} {}\n\n{}\n", study.state.sign(), escaped(&study.name), escaped(&words::sum(study)));
     let told = words::told(study);
-    for sentence in words::program(study).into_iter().chain(words::brief(study)) {
+    for sentence in words::remarks(study).into_iter().chain(words::brief(study)) {
         text += &format!("\n{}\n", escaped(&sentence));
     }
     if told.is_empty() {
@@ -82,6 +82,9 @@ fn of_table(diff: &TableDiff) -> String {
         if all > 0 {
             text += &format!("\n{word}: {}\n", escaped(&words::keys(keys, all)));
         }
+    }
+    if let Some(curves) = words::curves(diff) {
+        return text + &format!("\n{}\n", escaped(&curves));
     }
     if !diff.columns.is_empty() {
         let rows = diff.columns.iter().map(|column| {

@@ -1,11 +1,12 @@
 //! Two sets of results, from manifests and tables alone: what changed, by how much, and why.
 //!
-//! `rows` and `columns` compare one table, `why` explains one stage, `verdict` one published number; `compare` puts them
+//! `rows` and `columns` compare one table, `curves` one of sampled curves, `why` explains one stage, `verdict` one published number; `compare` puts them
 //! together into the `model`, which `pretty`, `markdown` and `html` show. Must not know: how anything was computed, where
 //! results lie.
 
 mod columns;
 pub mod compare;
+pub mod curves;
 pub mod html;
 pub mod markdown;
 pub mod model;

@@ -113,6 +113,8 @@ pub struct Flip {
 pub struct StudyDiff {
     pub name: String,
     pub state: Difference,
+    /// What is to be known of the results themselves: from another text of the study, of an earlier format.
+    pub remarks: Vec<String>,
     pub stages: Vec<StageDiff>,
 }
 
@@ -194,6 +196,55 @@ pub struct TableDiff {
     pub columns: Vec<ColumnDiff>,
     /// Rows that are beyond tolerance by most, measured by each column's largest value.
     pub worst: Vec<Worst>,
+    /// Of a table that holds sampled curves. Where these are not sampled in the same places, nothing is said of rows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curves: Option<CurvesDiff>,
+}
+
+/// Sampled curves of both tables, each as a whole.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurvesDiff {
+    /// The column over which they are sampled.
+    pub along: String,
+    pub along_unit: String,
+    /// Curves that are in both tables.
+    pub compared: usize,
+    /// Those that are not the same, and those that differ by more than the tolerance.
+    pub changed: usize,
+    pub beyond: usize,
+    /// Sampled in other places.
+    pub resampled: usize,
+    /// Those that begin or end elsewhere, by more than the tolerance of that column.
+    pub moved_ends: usize,
+    pub added: Vec<Key>,
+    pub removed: Vec<Key>,
+    /// Columns in which anything differs, the one first that does by most of its largest value.
+    pub columns: Vec<CurveColumn>,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CurveColumn {
+    pub name: String,
+    pub unit: String,
+    /// Curves that are not the same, and those that differ by more than the tolerance.
+    pub changed: usize,
+    pub beyond: usize,
+    pub largest: Option<Vertical>,
+    /// The largest distance as a share of the largest value.
+    pub share: f64,
+}
+
+/// Two curves where they are furthest apart; interpolated where one is not sampled.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Vertical {
+    /// `after − before`.
+    pub difference: f64,
+    pub before: f64,
+    pub after: f64,
+    /// Where, in the column over which they are sampled.
+    pub at: f64,
+    /// Of the curve.
+    pub key: Key,
 }
 
 /// Column and value of a row's key.

@@ -35,8 +35,8 @@ pub fn text(comparison: &Comparison, width: u16) -> String {
     for study in &comparison.studies {
         page.blank();
         page.wrap("", &format!("{} {}: {}", study.state.sign(), study.name, words::sum(study)));
-        if let Some(program) = words::program(study) {
-            page.wrap("  ", &program);
+        for remark in words::remarks(study) {
+            page.wrap("  ", &remark);
         }
         for stage in words::told(study) {
             page.stage(stage);
@@ -97,6 +97,9 @@ impl Page {
             if all > 0 {
                 self.wrap(&format!("      {word}: "), &words::keys(keys, all));
             }
+        }
+        if let Some(curves) = words::curves(table) {
+            return self.wrap("      ", &curves);
         }
         self.columns(table);
         if !table.worst.is_empty() && table.columns.iter().any(|column| column.compared > 1) {

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use crate::table::data::{Data, Table};
+use crate::table::data::Data;
 
 /// Relative distance within which two numbers of a key are the same.
 const SAME: f64 = 1e-9;
@@ -57,10 +57,10 @@ impl<'a> KeyColumn<'a> {
 ///
 /// # Errors
 /// A phrase, when the key does not tell the rows of one table apart.
-pub fn by_key(before: &Table, after: &Table, keys: &[KeyColumn<'_>]) -> Result<MatchedRows, String> {
+pub fn by_keys(before: usize, after: usize, keys: &[KeyColumn<'_>]) -> Result<MatchedRows, String> {
     let left: Vec<&Data> = keys.iter().map(|key| key.before.as_ref()).collect();
     let right: Vec<&Data> = keys.iter().map(|key| key.after).collect();
-    let (left, right) = (order(before.rows(), &left)?, order(after.rows(), &right)?);
+    let (left, right) = (order(before, &left)?, order(after, &right)?);
     let mut rows = MatchedRows { matched: Vec::with_capacity(left.len().min(right.len())), ..MatchedRows::default() };
     let (mut a, mut b) = (0, 0);
     while a < left.len() && b < right.len() {

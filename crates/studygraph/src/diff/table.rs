@@ -6,7 +6,7 @@ use std::borrow::Cow;
 
 use super::columns::{self, Differences, KEPT};
 use super::model::{ColumnDiff, Difference, Extreme, Key, SchemaChange, TableDiff, Value, Worst};
-use super::rows::{KeyColumn, MatchedRows, by_key, by_position};
+use super::rows::{KeyColumn, MatchedRows, by_keys, by_position};
 use crate::store::manifest::{ColumnRecord, TableRecord};
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Tolerance, Type};
@@ -16,12 +16,12 @@ use declare::units::parse_unit;
 pub type Tolerances<'a> = &'a dyn Fn(&Column) -> Option<Tolerance>;
 
 /// A column of both tables that can be compared.
-struct Shared<'a> {
-    column: &'a Column,
+pub(super) struct Shared<'a> {
+    pub(super) column: &'a Column,
     /// In the unit of `after`.
-    before: Cow<'a, Data>,
-    after: &'a Data,
-    converted: bool,
+    pub(super) before: Cow<'a, Data>,
+    pub(super) after: &'a Data,
+    pub(super) converted: bool,
 }
 
 /// Compares two tables by their values. `key` names the columns to match rows by, where the tables' own key would not do.
@@ -163,7 +163,7 @@ pub fn tolerance_text(absolute: f64, relative: f64, unit: &str) -> String {
     if parts.is_empty() { "exact".to_owned() } else { parts.join(" + ") }
 }
 
-fn shared<'a>(before: &'a Table, after: &'a Table) -> Vec<Shared<'a>> {
+pub(super) fn shared<'a>(before: &'a Table, after: &'a Table) -> Vec<Shared<'a>> {
     let one = |(column, data): (&'a Column, &'a Data)| {
         let old = before.schema().column(&column.name)?;
         let old_data = before.column(&column.name)?;
@@ -204,7 +204,7 @@ fn match_rows(
     let keys = shared.iter().filter(|shared| is_key(shared.column));
     let keys: Vec<_> = keys.map(|shared| KeyColumn::new(Cow::Borrowed(&*shared.before), shared.after)).collect();
     if !keys.is_empty() {
-        return by_key(before, after, &keys);
+        return by_keys(before.rows(), after.rows(), &keys);
     }
     let has_key = |table: &Table| table.schema().key_columns().next().is_some();
     if has_key(before) || has_key(after) {
@@ -214,7 +214,7 @@ fn match_rows(
 }
 
 /// The key of a row; its number, counted from 1, where there is no key.
-fn key_of(table: &Table, row: usize, is_key: &dyn Fn(&Column) -> bool) -> Key {
+pub(super) fn key_of(table: &Table, row: usize, is_key: &dyn Fn(&Column) -> bool) -> Key {
     let columns = table.schema().columns.iter().zip(table.columns()).filter(|(column, _)| is_key(column) || column.key);
     let cell = |(column, data): (&Column, &Data)| {
         let name =

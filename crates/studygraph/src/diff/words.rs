@@ -133,6 +133,11 @@ pub fn program(study: &StudyDiff) -> Option<String> {
     Some(format!("program: {before} → {after}"))
 }
 
+/// What is said of a study as a whole.
+pub fn remarks(study: &StudyDiff) -> Vec<String> {
+    study.remarks.iter().cloned().chain(program(study)).collect()
+}
+
 /// Stages that are told one by one.
 pub fn told(study: &StudyDiff) -> Vec<&StageDiff> {
     if matches!(study.state, Difference::Added | Difference::Removed) {
@@ -267,6 +272,42 @@ pub fn rows(table: &TableDiff) -> String {
         text += &format!(": {}", moved.join(", "));
     }
     text
+}
+
+/// `3 of 15 curves changed; largest vertical distance: transmission_error +0.012 µm (2.31 → 2.32) at cycle_position=3.2 mm,
+/// design=short`.
+pub fn curves(table: &TableDiff) -> Option<String> {
+    let found = table.curves.as_ref()?;
+    let beyond = match found.beyond {
+        0 => ", all within tolerance".to_owned(),
+        all if all == found.changed => String::new(),
+        some => format!(", {some} beyond tolerance"),
+    };
+    let mut parts = vec![format!("{} of {} changed{beyond}", found.changed, count(found.compared, "curve"))];
+    if let Some((column, largest)) = found.columns.first().and_then(|one| Some((one, one.largest.as_ref()?))) {
+        let (before, after) = pair(&Value::Float(largest.before), &Value::Float(largest.after));
+        let at = with_unit(&significant(largest.at, DIGITS), &found.along_unit);
+        let key = if largest.key.is_empty() { String::new() } else { format!(", {}", key(&largest.key)) };
+        parts.push(format!(
+            "largest vertical distance: {} {} ({before} → {after}) at {}={at}{key}",
+            column.name,
+            with_unit(&difference(largest.difference), &column.unit),
+            found.along
+        ));
+    }
+    if let [_, others @ ..] = &found.columns[..]
+        && !others.is_empty()
+    {
+        let names: Vec<&str> = others.iter().map(|column| column.name.as_str()).collect();
+        parts.push(format!("also {}", names.join(", ")));
+    }
+    for (number, what) in [(found.resampled, "sampled in other places"), (found.moved_ends, "with other ends")] {
+        parts.extend((number > 0).then(|| format!("{number} {what}")));
+    }
+    for (keys, what) in [(&found.added, "added"), (&found.removed, "removed")] {
+        parts.extend((!keys.is_empty()).then(|| format!("{what}: {}", self::keys(keys, keys.len()))));
+    }
+    Some(parts.join("; "))
 }
 
 /// The first few keys of many rows.

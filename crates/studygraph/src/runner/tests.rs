@@ -215,6 +215,7 @@ struct Spec {
     name: &'static str,
     kind: &'static Kind,
     fields: Vec<(&'static str, Value)>,
+    curves: &[],
 }
 
 fn stage(name: &'static str, value: f64) -> Spec {

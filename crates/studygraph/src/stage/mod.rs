@@ -34,10 +34,21 @@ pub struct Kind {
     pub version: u32,
     pub summary: &'static str,
     pub fields: &'static [Field],
+    /// Its tables that hold sampled curves.
+    pub curves: &'static [Curves],
     /// A complete stage of this kind, as YAML, with the stages it refers to named after their kinds.
     pub example: &'static str,
     /// Builds a stage from a checked record; refuses what no declaration can express (interference, an empty range).
     pub build: fn(&Record) -> Result<Box<dyn Stage>, Diagnostic>,
+}
+
+/// A table whose rows are points of curves. Its last key counts the points of a curve, unless that is the column over which
+/// they are sampled; the others tell the curves apart.
+#[derive(Clone, Copy, Debug)]
+pub struct Curves {
+    pub table: &'static str,
+    /// The column over which they are sampled, in whose order the points are.
+    pub along: &'static str,
 }
 
 /// Gives the values of a key column of (stage, table, column), where they are known before anything runs.

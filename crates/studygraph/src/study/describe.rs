@@ -70,14 +70,14 @@ pub fn within(kind: &'static Kind, path: &str) -> Result<String, String> {
 }
 
 /// What has names below a field.
-enum Inside {
+pub(super) enum Inside {
     Fields(&'static [Field]),
     Members(&'static [Member]),
     Nothing,
 }
 
 impl Inside {
-    fn of(shape: &'static Shape) -> Self {
+    pub(super) fn of(shape: &'static Shape) -> Self {
         match shape {
             Shape::List(item) | Shape::Map(item) => Self::of(item),
             Shape::Group(fields) => Self::Fields(fields),
@@ -155,7 +155,7 @@ fn inside(text: &mut String, shape: &'static Shape, level: usize, families: &mut
 }
 
 /// What a shape holds, in a few words.
-fn holds(shape: &Shape) -> String {
+pub(super) fn holds(shape: &Shape) -> String {
     let with_range = |what: &str, range: Option<String>| match range {
         Some(range) => format!("{what}, {range}"),
         None => what.to_owned(),

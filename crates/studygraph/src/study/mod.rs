@@ -11,6 +11,7 @@ pub mod cursor;
 pub mod declared;
 mod decode;
 pub mod describe;
+pub mod described;
 mod document;
 mod links;
 mod notation;

@@ -148,6 +148,7 @@ macro_rules! kind {
             version: 1,
             summary: concat!("A stage of the tests: ", $name, "."),
             fields: $fields,
+            curves: &[],
             example: concat!("kind: ", $name),
             build: |record| {
                 // Something that no declaration can say.

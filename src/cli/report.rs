@@ -1,0 +1,119 @@
+//! `report`: the verdicts of a study that was run, and its page drawn anew.
+//!
+//! Must not know: how verdicts are found, how anything is drawn.
+
+use std::cell::RefCell;
+
+use serde_json::{Value, json};
+
+use super::arguments::Places;
+use super::pages::{self, Count};
+use super::print::objects;
+use super::progress::{self, out};
+use super::show::none_yet;
+use super::{Ending, json as shapes};
+use crate::program::PROGRAM;
+use studygraph::runner::standing::standing_of;
+use studygraph::store::manifest::Manifest;
+use studygraph::store::results::{Folder, Tables};
+use studygraph::study::Study;
+use studygraph::table::data::Table;
+
+/// What a report says.
+struct Said {
+    counts: Vec<Count>,
+    tables: Vec<Table>,
+    /// The verdicts and their reasons.
+    text: String,
+}
+
+impl Said {
+    fn of(manifest: &Manifest, tables: Tables<'_>) -> Result<Self, String> {
+        Ok(Self {
+            counts: pages::counts(manifest, tables),
+            tables: pages::verdict_tables(manifest, tables),
+            text: pages::verdicts(manifest, tables)?,
+        })
+    }
+}
+
+/// Prints them for every study. `check`: nothing is written, and what needs attention or is stale ends with code 4.
+pub(super) fn report(
+    studies: &[Study],
+    places: &Places,
+    check: bool,
+    as_json: bool,
+    quiet: bool,
+) -> Result<(), Ending> {
+    let (mut values, mut problems) = (Vec::new(), Vec::new());
+    for study in studies {
+        let folder = Folder::new(&places.results, &study.name).telling(progress::told);
+        let said = if check { looked_at(study, &folder)? } else { drawn(study, &folder)? };
+        let stale = if check { stale(study, &folder)? } else { None };
+        let attention = pages::attention(&said.counts);
+        if as_json {
+            values.push(value(study, &folder, &said, stale.as_deref(), check));
+        } else if !quiet {
+            let summary = pages::summary(&said.counts);
+            let summary = if summary.is_empty() { "no verdicts" } else { &summary };
+            out(&format!("{}{}: {summary}; {}\n", said.text, study.name, pages::path(&folder).display()));
+        }
+        if check && attention > 0 {
+            let verb = if attention == 1 { "verdict needs" } else { "verdicts need" };
+            problems.push(format!("{}: {attention} {verb} attention", study.name));
+        }
+        problems.extend(stale.map(|problem| {
+            format!("{}: {problem}; first: gearstudy run {}", study.name, study.path.display())
+        }));
+    }
+    if as_json {
+        shapes::answer(&Value::Array(values));
+    }
+    if problems.is_empty() { Ok(()) } else { Err(Ending::Differs(problems.join("\n"))) }
+}
+
+/// As the results have it.
+fn looked_at(study: &Study, folder: &Folder) -> Result<Said, Ending> {
+    let look = || {
+        let manifest = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
+        let manifest = manifest.ok_or_else(|| none_yet(study, folder))?;
+        Said::of(&manifest, &pages::read(folder, &manifest)).map_err(Ending::Usage)
+    };
+    folder.settled(look)
+}
+
+/// The same, with page and figures drawn anew.
+fn drawn(study: &Study, folder: &Folder) -> Result<Said, Ending> {
+    let said = RefCell::new(None);
+    let draw = |manifest: &Manifest, tables: Tables<'_>| {
+        let drawn = pages::draw(manifest, tables)?;
+        said.replace(Some(Said::of(manifest, tables)?));
+        Ok(drawn)
+    };
+    let published = folder.redraw(&draw, PROGRAM.about.code).map_err(|error| Ending::Usage(error.to_string()))?;
+    if let Some(problem) = published.ok_or_else(|| none_yet(study, folder))?.undrawn {
+        return Err(Ending::Usage(problem));
+    }
+    said.take().ok_or_else(|| none_yet(study, folder))
+}
+
+/// Why the verdicts are not those of the study as it is now.
+fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
+    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
+    let known = folder.known().map_err(|error| usage(error.to_string()))?;
+    let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
+    Ok(standing.problem())
+}
+
+fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {
+    let verdicts: Vec<Value> = said.tables.iter().flat_map(objects).collect();
+    let mut value = json!({
+        "study": study.name, "file": study.path.to_string_lossy(), "page": pages::path(folder).to_string_lossy(),
+        "verdicts": shapes::verdicts(&said.counts), "needs_attention": pages::attention(&said.counts),
+        "entries": verdicts,
+    });
+    if check {
+        value["stale"] = json!(stale);
+    }
+    value
+}
