@@ -78,11 +78,7 @@ fn wide_contacts_are_as_far_off_as_is_said() {
 }
 
 /// Off and said, where a pair of such gears is pressed together at a share of single contact from B on.
-fn of_others(
-    (teeth, shifts): ([u32; 2], [f64; 2]),
-    plane: Plane,
-    (share, approach): (f64, f64),
-) -> Option<[f64; 2]> {
+fn of_others((teeth, shifts): ([u32; 2], [f64; 2]), plane: Plane, (share, approach): (f64, f64)) -> Option<[f64; 2]> {
     let [one, two] = [0, 1].map(|side| Specification {
         teeth: teeth[side],
         profile_shift: shifts[side],
