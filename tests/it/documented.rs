@@ -35,9 +35,8 @@ impl Results {
     /// A number of a design under a torque \[N m\].
     fn of_design(&self, table: &str, (design, torque): (&str, f64), column: &str) -> f64 {
         let table = self.table(table);
-        let is_it = |row: &usize| {
-            table.texts("design")[*row] == design && (table.floats("torque")[*row] - torque).abs() < 1e-9
-        };
+        let is_it =
+            |row: &usize| table.texts("design")[*row] == design && (table.floats("torque")[*row] - torque).abs() < 1e-9;
         let row = (0..table.rows()).find(is_it).unwrap_or_else(|| panic!("no `{design}` at {torque} N m"));
         table.floats(column)[row]
     }
@@ -154,13 +153,11 @@ fn searches_and_coupling_of_the_article_s_pair_are_the_study_s() {
             genetic.0, genetic.1, evolution.0, evolution.1
         ),
     );
-    let [summed, coupled] =
-        ["ste", "ste_coupled"].map(|stage| {
-            results.of_design(&format!("{stage}.summary"), ("unmodified", 50.0), "peak_to_peak")
-        });
+    let [summed, coupled] = ["ste", "ste_coupled"]
+        .map(|stage| results.of_design(&format!("{stage}.summary"), ("unmodified", 50.0), "peak_to_peak"));
     let change = beyond(coupled, summed);
-    let [before, after] = ["stiffness", "stiffness_coupled"]
-        .map(|stage| results.only(&format!("{stage}.summary"), "double_max"));
+    let [before, after] =
+        ["stiffness", "stiffness_coupled"].map(|stage| results.only(&format!("{stage}.summary"), "double_max"));
     assert_said(
         "docs/methods.md",
         &format!(

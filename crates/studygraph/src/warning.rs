@@ -8,12 +8,15 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use serde::{Deserialize, Serialize};
 
+/// Begins a text that is kept of cases; no sentence begins with it.
+const CASES: &str = "\u{1f}";
 /// So many names are told.
 const NAMED: usize = 4;
 
 /// What a user should know about a result.
+/// Kept as a text, which every format of the cache has.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(untagged)]
+#[serde(from = "String", into = "String")]
 pub enum Warning {
     /// A sentence by itself.
     Alone(String),
@@ -30,8 +33,21 @@ impl Warning {
 }
 
 impl From<String> for Warning {
-    fn from(sentence: String) -> Self {
-        Self::Alone(sentence)
+    fn from(text: String) -> Self {
+        let cases = text.strip_prefix(CASES).and_then(|json| serde_json::from_str(json).ok());
+        cases.map_or(Self::Alone(text), Self::Cases)
+    }
+}
+
+impl From<Warning> for String {
+    fn from(warning: Warning) -> Self {
+        match warning {
+            Warning::Alone(sentence) => sentence,
+            // Texts and numbers that are finite are always JSON.
+            Warning::Cases(cases) => {
+                serde_json::to_string(&cases).map_or_else(|_| cases.sentence(), |json| CASES.to_owned() + &json)
+            }
+        }
     }
 }
 
@@ -215,6 +231,18 @@ mod tests {
     fn cases_about_other_things_stay_apart() {
         let other = Warning::Cases(Cases::one("other", "a", (5.0, "N m"), (f64::INFINITY, "else".to_owned())));
         assert_eq!(sentences([case("a", 5.0, 3.0, 1.0), other]), ["`a` at 5 N m is off by 3 %", "else"]);
+    }
+
+    /// Cases come back to the last bit from the formats of the cache, one of which knows no types.
+    #[test]
+    fn cases_are_kept_in_every_format() {
+        for size in [0.1, 1.0 / 3.0, 1e-300, -f64::MAX, 5e-324] {
+            let all = [case("a", size, size, size), Warning::Alone("alone".to_owned())];
+            let bytes = postcard::to_allocvec(&all).unwrap();
+            assert_eq!(postcard::from_bytes::<[Warning; 2]>(&bytes).unwrap(), all);
+            let text = serde_json::to_string(&all).unwrap();
+            assert_eq!(serde_json::from_str::<[Warning; 2]>(&text).unwrap(), all);
+        }
     }
 
     /// What was kept before there were cases is read.

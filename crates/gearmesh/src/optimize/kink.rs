@@ -43,6 +43,24 @@ pub(super) fn cross(at: &[f64], radius: f64, number: usize) -> Vec<Vec<f64>> {
     basis(number, at.len()).iter().flat_map(|direction| [arm(direction, radius), arm(direction, -radius)]).collect()
 }
 
+/// Two crosses around a point that are turned against each other, others in every try.
+pub(super) fn crosses(at: &[f64], radius: f64, attempt: usize) -> Vec<Vec<f64>> {
+    let first = 2 * attempt + 2;
+    // Points of the sequence that lie opposite each other give the same axes.
+    let other = (first + 1..first + MOST_TURNS).find(|&number| is_turned(first, number, at.len())).unwrap_or(first + 1);
+    [first, other].map(|number| cross(at, radius, number)).concat()
+}
+
+/// Whether no axes of two bases are nearly the same.
+fn is_turned(one: usize, other: usize, dimension: usize) -> bool {
+    let (one, other) = (basis(one, dimension), basis(other, dimension));
+    one.iter().all(|axis| other.iter().all(|next| dot(axis, next).abs() < TURNED))
+}
+
+/// The cosine of 15 degrees.
+const TURNED: f64 = 0.966;
+const MOST_TURNS: usize = 64;
+
 /// Whether differences of second order fall otherwise than like the square of the radius, in any direction: values of a
 /// wide and of a narrow [`cross`] around a point of value `value`, the wide one `ratio` times as large. On a kink they fall
 /// like the radius, and beside one, which only the wide cross meets, much faster.
@@ -201,6 +219,22 @@ mod tests {
                     }
                 }
                 assert!(number == 0 || bases[number - 1] != *basis, "{number}");
+            }
+        }
+    }
+
+    /// Tier: invariant; in two variables the fifth and the sixth cross are the same.
+    #[test]
+    fn two_crosses_are_never_one() {
+        assert!(!is_turned(4, 5, 2));
+        for dimension in 2..=6 {
+            for attempt in 0..200 {
+                let arms = crosses(&vec![0.5; dimension], 0.1, attempt);
+                assert_eq!(arms.len(), 4 * dimension);
+                let (one, other) = arms.split_at(2 * dimension);
+                let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum::<f64>().sqrt();
+                let nearest = one.iter().flat_map(|a| other.iter().map(|b| apart(a, b))).fold(1.0, f64::min);
+                assert!(nearest > 0.02, "{dimension}, {attempt}: {nearest}");
             }
         }
     }

@@ -16,9 +16,10 @@ use super::{Local, Strategy};
 /// The least tolerance that looks follow: below, differences would drown in rounding.
 const FINEST: f64 = 1e-8;
 
-/// Looks at one point, each with a cross that is turned, and their radii. A difference that a kink runs through, or a
-/// point beside the one where several meet, misleads one look; most of them decide.
-const LOOKS: [f64; 3] = [1.0, 0.1, 10.0];
+/// Looks at one point, each with crosses that are turned, and their radii. A difference that a kink runs through, or a
+/// point beside the one where several meet, misleads one look; most of them decide. Near the point where several kinks meet wide looks see all
+/// their sides and find it stationary: it is no nearer than the narrowest.
+const LOOKS: [f64; 4] = [1.0, 0.1, 10.0, 0.01];
 
 enum Phase {
     /// The search itself.
@@ -148,7 +149,7 @@ impl<S: Search> Restarted<S> {
         let (wide, narrow) = self.radii();
         let at = self.search.best().0;
         // Two crosses, so that most sides of several kinks are met.
-        let places = [2, 3].map(|turn| kink::cross(at, wide, 2 * self.looks[1] + turn)).concat();
+        let places = kink::crosses(at, wide, self.looks[1]);
         let batch = kink::stencils(&places, narrow);
         self.ask(Phase::Sloping(places), batch);
     }

@@ -18,14 +18,13 @@ use super::graph::{Graph, Input};
 use super::key::{self, KeyedChunk, Why, explain, phrase};
 use super::options::Options;
 use crate::store::cache::{Cache, Lookup};
-use crate::store::entry::{CacheEntry, OfRun, StoredTable};
+use crate::store::entry::{CacheEntry, StoredTable};
 use crate::store::journal::{Failed, Journal, JournalStage};
 use crate::study::Study;
 use crate::table::data::Table;
-use crate::warning;
+use crate::warning::Warning;
 use declare::digest::Digest;
 use declare::error::Diagnostic;
-use declare::work::{Counter, Work};
 
 /// Where a stage stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -251,9 +250,7 @@ impl<'a> Board<'a> {
                 progress.tables = tables;
                 progress.known.iter_mut().for_each(|known| known.tables.clear());
                 // Sentences by themselves were told as they came.
-                let cases =
-                    progress.of_runs().flat_map(|run| run.warnings.iter().filter(|one| one.is_of_cases()).cloned());
-                for message in &warning::sentences(cases) {
+                for message in &progress.warnings(Warning::is_of_cases) {
                     self.observer.event(&Event::Warned { stage, message });
                 }
                 Event::Finished { stage, seconds: progress.seconds() }
@@ -432,28 +429,4 @@ pub fn distinct(inputs: &[Input]) -> Vec<usize> {
     nodes.sort_unstable();
     nodes.dedup();
     nodes
-}
-
-impl Progress {
-    /// Seconds of computing, whenever that was.
-    #[must_use]
-    pub fn seconds(&self) -> f64 {
-        self.of_runs().map(|of_run| of_run.seconds).sum()
-    }
-
-    /// The work that was counted, of all parts that are known.
-    pub fn work(&self, counters: &[&'static Counter]) -> Work {
-        self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work, counters)))
-    }
-
-    /// What its parts say of their results.
-    #[must_use]
-    pub fn warnings(&self) -> Vec<String> {
-        warning::sentences(self.of_runs().flat_map(|run| run.warnings.iter().cloned()))
-    }
-
-    /// What is told of the parts that are known.
-    pub fn of_runs(&self) -> impl Iterator<Item = &OfRun> {
-        self.known.iter().filter_map(|known| Some(&known.entry.as_ref()?.of_run))
-    }
 }

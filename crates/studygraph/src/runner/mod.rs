@@ -23,5 +23,6 @@ pub mod shard;
 pub mod standing;
 #[cfg(test)]
 mod tests;
+mod told;
 pub mod verify;
 pub mod work;

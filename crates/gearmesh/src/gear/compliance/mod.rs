@@ -306,7 +306,7 @@ pub enum ComplianceError {
         error: MeshError,
     },
     /// So little of the gear yields below the contact that a half plane down to the contact's length is softer.
-    #[error("{}: at a roll angle of {} rad the tooth and its body yield less than the half plane at the contact does within {}, so that nothing is left for resolved contact; `contact: load_dependent` takes it", .side.name(), Plain(*.roll), Millimetres(*.length))]
+    #[error("{}: at a roll angle of {} rad the tooth and its body yield less than the half plane at the contact does within {}, so that nothing is left for resolved contact; a smaller bore leaves some, and where the load line meets the centreline of the tooth outside the bore `contact: load_dependent` needs none", .side.name(), Plain(*.roll), Millimetres(*.length))]
     Stiff {
         /// The gear.
         side: Side,
