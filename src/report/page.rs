@@ -212,7 +212,9 @@ pub fn html(
         sheets: sheet::sheets(manifest, tables),
         omissions: manifest.stages.iter().map(|stage| stage.left_out.len()).sum(),
         left_out,
-        warnings: warnings::warned(manifest.stages.iter().map(|stage| (stage.name.as_str(), stage.warnings.as_slice()))),
+        warnings: warnings::warned(
+            manifest.stages.iter().map(|stage| (stage.name.as_str(), stage.warnings.as_slice())),
+        ),
         failures,
         stages,
         more,

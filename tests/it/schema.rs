@@ -130,7 +130,8 @@ fn the_yaml_language_server_finds_mistakes_and_speaks_in_words() {
     let server = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join(".venv/node/node_modules/yaml-language-server/bin/yaml-language-server");
     if !server.exists() {
-        let line = "\nSKIPPED: yaml_language_server.py: no yaml-language-server; `make setup` installs it where npm is\n";
+        let line =
+            "\nSKIPPED: yaml_language_server.py: no yaml-language-server; `make setup` installs it where npm is\n";
         std::io::stderr().write_all(line.as_bytes()).unwrap();
         return;
     }

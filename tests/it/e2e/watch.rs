@@ -102,7 +102,9 @@ fn the_page_follows_what_is_saved() {
 #[test]
 fn a_browser_shows_what_is_saved_and_what_is_wrong() {
     if !Path::new("/usr/bin/chromium").exists() {
-        eprintln!("\nSKIPPED: a_browser_shows_what_is_saved_and_what_is_wrong: no chromium; `make setup` installs it\n");
+        eprintln!(
+            "\nSKIPPED: a_browser_shows_what_is_saved_and_what_is_wrong: no chromium; `make setup` installs it\n"
+        );
         return;
     }
     let desk = Desk::with("quick.yaml");
