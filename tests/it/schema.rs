@@ -65,7 +65,9 @@ impl Walk {
                     }
                 }
                 ("anyOf" | "oneOf" | "allOf", Value::Array(ways)) => {
-                    ways.iter().for_each(|way| self.schema(way, place));
+                    for way in ways {
+                        self.schema(way, place);
+                    }
                 }
                 // A condition tells kinds apart; what it leads to is a definition.
                 ("items" | "additionalProperties" | "propertyNames", inner) => self.schema(inner, place),
