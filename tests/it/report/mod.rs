@@ -24,7 +24,7 @@ const VERDICTS: [&str; 7] = ["unexplained", "moved", "outdated", "explained", "r
 
 /// The tags of a page or figure are nested properly; gives how many elements there are.
 fn check_tags(markup: &str) -> usize {
-    const VOID: [&str; 5] = ["meta", "br", "hr", "input", "!DOCTYPE"];
+    const VOID: [&str; 6] = ["meta", "link", "br", "hr", "input", "!DOCTYPE"];
     let (mut open, mut count): (Vec<String>, usize) = (Vec::new(), 0);
     let mut rest = markup;
     while let Some(start) = rest.find('<') {
