@@ -82,8 +82,9 @@ fn page(board: &Board) -> String {
     let page = page.unwrap_or_else(|| EMPTY.to_owned());
     // `<` would end the script.
     let message = json!(shown.message).to_string().replace('<', "\\u003c");
-    let script =
-        format!("<script>const shown = {{ version: {}, message: {message} }};\n{SCRIPT}</script>\n", shown.version);
+    // In a scope of its own: the page has names too.
+    let about = format!("{{ version: {}, message: {message} }}", shown.version);
+    let script = format!("<script>(shown => {{\n{SCRIPT}}})({about});</script>\n");
     match page.rfind("</body>") {
         Some(end) => format!("{}{script}{}", &page[..end], &page[end..]),
         None => page + &script,

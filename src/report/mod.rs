@@ -31,6 +31,7 @@ pub mod text;
 mod thin;
 mod vega;
 mod verdict;
+mod warnings;
 
 use std::cell::RefCell;
 

@@ -16,6 +16,7 @@ use super::inputs::Inputs;
 use super::records::{self, StageTables};
 use super::sheet::{self, Sheet};
 use super::sweep::{self, Sweep};
+use super::warnings::{self, Warned};
 use super::{ReportError, flags, integers, plot, seconds, texts, verdict};
 use studygraph::store::bundle;
 use studygraph::store::manifest::{Manifest, OmissionRecord, StageRecord};
@@ -62,7 +63,7 @@ struct View<'a> {
     /// How much was left out, what of it is worth naming.
     omissions: usize,
     left_out: Vec<Remark>,
-    warnings: Vec<Remark>,
+    warnings: Vec<Warned>,
     failures: Vec<&'a StageRecord>,
     stages: Vec<StageView<'a>>,
     /// Of kinds with very many stages, those that are not shown.
@@ -72,7 +73,7 @@ struct View<'a> {
     seconds: String,
     styles: [&'static str; 2],
     plot_style: &'static str,
-    script: String,
+    script: &'static str,
 }
 
 #[derive(Serialize)]
@@ -161,7 +162,6 @@ pub fn html(
     let total: i64 = counts.iter().map(|count| count.entries).sum();
     let attention: i64 = counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum();
     let (shown, more) = shown_stages(manifest);
-    let all: Vec<&StageRecord> = manifest.stages.iter().collect();
     let remarks = |stages: &[&StageRecord], pick: &dyn Fn(&StageRecord) -> Vec<Said>| -> Vec<Remark> {
         let of = |stage: &StageRecord| {
             let name = stage.name.clone();
@@ -176,9 +176,6 @@ pub fn html(
             (left.what.clone(), left.why.clone(), left.saved_seconds.map_or_else(String::new, seconds))
         };
         stage.left_out.iter().filter(is_worth).map(said).collect()
-    });
-    let warnings = remarks(&all, &|stage| {
-        stage.warnings.iter().map(|warning| (warning.clone(), String::new(), String::new())).collect()
     });
     let failures: Vec<&StageRecord> =
         manifest.stages.iter().filter(|stage| matches!(stage.status.as_str(), "failed" | "skipped")).collect();
@@ -215,7 +212,9 @@ pub fn html(
         sheets: sheet::sheets(manifest, tables),
         omissions: manifest.stages.iter().map(|stage| stage.left_out.len()).sum(),
         left_out,
-        warnings,
+        warnings: warnings::warned(
+            manifest.stages.iter().map(|stage| (stage.name.as_str(), stage.warnings.as_slice())),
+        ),
         failures,
         stages,
         more,
@@ -229,11 +228,10 @@ pub fn html(
     environment.get_template("page.html").and_then(|template| template.render(Serde(view))).map_err(failed)
 }
 
-/// Without indents and the lines that are remarks.
-fn script() -> String {
-    let sources = [include_str!("page/common.js"), include_str!("page/figure.js"), include_str!("page/tables.js")];
-    let lines = sources.into_iter().flat_map(str::lines).map(str::trim_start);
-    lines.filter(|line| !line.starts_with("//")).collect::<Vec<_>>().join("\n")
+/// The page's script as `scripts/minify` makes it of `page/*.js`, without the digest of those before it.
+fn script() -> &'static str {
+    let text = include_str!("page/page.min.js");
+    text.split_once('\n').map_or(text, |(_, script)| script)
 }
 
 fn counts(parts: &[ReportPart]) -> Result<Vec<Count>, ReportError> {

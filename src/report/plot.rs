@@ -18,6 +18,12 @@ const ROOM: f64 = 6.0;
 /// Colours, type and strokes of every figure; light, dark and print.
 pub const STYLE: &str = include_str!("plot.css");
 
+/// The page on which a browser prints a figure alone: as large as the figure, in whole points.
+fn sheet(width: f64, height: f64) -> String {
+    let points = |px: f64| (px * 0.75).ceil();
+    format!("@page{{size:{}pt {}pt;margin:0}}", points(width), points(height))
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
     Line,
@@ -138,10 +144,11 @@ impl Plot {
         };
         let class = if self.size == Size::Column { "plot column" } else { "plot" };
         let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" class="{class}" viewBox="0 0 {} {}" role="img" aria-label="{}" {scale}><style>{STYLE}</style><rect class="paper" width="100%" height="100%"/>"#,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="{class}" viewBox="0 0 {} {}" role="img" aria-label="{}" {scale}><style>{}{STYLE}</style><rect class="paper" width="100%" height="100%"/>"#,
             at(width),
             at(height),
-            escape(&self.title)
+            escape(&self.title),
+            sheet(width, height)
         );
         // A journal has a caption of its own.
         if self.size == Size::Page {

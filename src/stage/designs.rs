@@ -406,7 +406,8 @@ mod tests {
 
     #[test]
     fn what_no_row_holds_is_an_error_and_not_dropped() {
-        let refused = write(&[design("a", vec![("amount", entry(Value::Range(0.0, 1.0)))])], &[]).unwrap_err().to_string();
+        let refused =
+            write(&[design("a", vec![("amount", entry(Value::Range(0.0, 1.0)))])], &[]).unwrap_err().to_string();
         let said = "design `a`, curve: no row of a table holds the value of `amount`";
         assert!(refused.contains(said), "{refused}");
     }

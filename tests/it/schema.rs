@@ -65,7 +65,9 @@ impl Walk {
                     }
                 }
                 ("anyOf" | "oneOf" | "allOf", Value::Array(ways)) => {
-                    ways.iter().for_each(|way| self.schema(way, place));
+                    for way in ways {
+                        self.schema(way, place);
+                    }
                 }
                 // A condition tells kinds apart; what it leads to is a definition.
                 ("items" | "additionalProperties" | "propertyNames", inner) => self.schema(inner, place),
@@ -130,7 +132,8 @@ fn the_yaml_language_server_finds_mistakes_and_speaks_in_words() {
     let server = Path::new(env!("CARGO_MANIFEST_DIR"))
         .join(".venv/node/node_modules/yaml-language-server/bin/yaml-language-server");
     if !server.exists() {
-        let line = "\nSKIPPED: yaml_language_server.py: no yaml-language-server; `make setup` installs it where npm is\n";
+        let line =
+            "\nSKIPPED: yaml_language_server.py: no yaml-language-server; `make setup` installs it where npm is\n";
         std::io::stderr().write_all(line.as_bytes()).unwrap();
         return;
     }

@@ -9,6 +9,7 @@ after `--quick` also what a keyboard and a mouse can do. Prints one line; ends w
 
 import csv
 import io
+import math
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
@@ -133,6 +134,26 @@ def ticks(figure):
     return figure.locator("text.tick").all_text_contents()
 
 
+def printed(pdf):
+    """Size of the first page, number of pages, fonts that are in it."""
+    sizes = [numbers(box.decode()) for box in re.findall(rb"/MediaBox *\[([^\]]*)\]", pdf)]
+    pages = len(re.findall(rb"/Type */Page\b", pdf))
+    return sizes[0][2:], pages, len(re.findall(rb"/FontFile[23]?\b", pdf))
+
+
+def files(browser, folder, faults):
+    """The file of each figure, printed by itself: one page of its own size."""
+    for path in sorted(folder.glob("*.svg")):
+        page = browser.new_page()
+        page.goto(path.resolve().as_uri())
+        root = ElementTree.parse(path).getroot()
+        size, sheets, _ = printed(page.pdf(prefer_css_page_size=True))
+        inches = [float(text[:-2]) / 25.4 if text.endswith("mm") else float(text) / 96 for text in map(root.get, ["width", "height"])]
+        fits = all(0 <= points - 72 * inch < 1.1 for points, inch in zip(size, inches))
+        faults.check(sheets == 1 and fits, f"{path}: {sheets} pages of {size} points for {inches} inches")
+        page.close()
+
+
 def downloaded(page, button):
     with page.expect_download() as download:
         button.focus()
@@ -210,6 +231,19 @@ def by_hand(browser, path, faults):
     faults.check(name.endswith(".svg") and "optimum" in said and "16" in said, f"SVG: {said}")
     faults.check("data-plot" not in text and "<style" in text, "the SVG needs the page")
 
+    # A figure alone as PDF, by keyboard: one page as large as the drawing, whose letters are letters.
+    page.evaluate("window.print = () => { window.asked = true; }")
+    figure.locator("[data-do=pdf]").focus()
+    page.keyboard.press("Enter")
+    faults.check(page.evaluate("window.asked") is True, "PDF does not ask to print")
+    size, sheets, fonts = printed(page.pdf(prefer_css_page_size=True))
+    box = numbers(root.get("viewBox"))
+    wanted = [math.ceil(0.75 * length) for length in box[2:]]
+    faults.check(sheets == 1 and all(abs(a - b) < 1 for a, b in zip(size, wanted)), f"PDF: {sheets} pages of {size}, not {wanted}")
+    faults.check(fonts > 0, "PDF: no font is embedded")
+    page.evaluate("dispatchEvent(new Event('afterprint'))")
+    faults.check(page.locator(".alone").count() == 0, "what was printed stays in the page")
+
     # Tables: found by a word in a row, shown in full, given back.
     page.locator("#find").fill("tip_relief")
     page.wait_for_timeout(200)
@@ -253,6 +287,8 @@ def main(arguments):
             everybody(browser, Path(path), faults)
         for path in driven:
             by_hand(browser, Path(path), faults)
+        for path in pages + driven:
+            files(browser, Path(path).parent / "figures", faults)
         browser.close()
     # The same fault in a hundred rows is one.
     print("\n".join(faults.found[:40]) or f"{len(pages + driven)} pages, {faults.checks} checks")

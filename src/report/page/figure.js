@@ -193,9 +193,18 @@ for (const figure of all("figure")) {
     legend.forEach(g => g.setAttribute("transform", g.getAttribute("transform").replace(/ (-?\d+)/, (_, y) => " " + (y - 22 * rows))));
     copy.setAttribute("width", size.width);
     copy.setAttribute("height", size.height + 22 * rows);
-    copy.prepend(tag("style", {}, one("#plot-style").textContent), tag("rect", { class: "paper", y: -22 * rows, width: "100%", height: "100%" }), ...legend);
+    const points = px => Math.ceil(px * 0.75) + "pt";
+    const sheet = `@page{size:${points(size.width)} ${points(size.height + 22 * rows)};margin:0}`;
+    copy.prepend(tag("style", {}, sheet + one("#plot-style").textContent), tag("rect", { class: "paper", y: -22 * rows, width: "100%", height: "100%" }), ...legend);
     return new XMLSerializer().serializeToString(copy);
   };
-  const actions = { in: () => scale(0.5), out: () => scale(2), whole: reset, csv: () => save(name + ".csv", csv()), svg: () => save(name + ".svg", drawing()) };
+  // The drawing alone, on a page of its size: the browser's dialog has PDF.
+  const pdf = () => {
+    const alone = make("div", { className: "alone", innerHTML: drawing() });
+    document.body.append(alone);
+    addEventListener("afterprint", () => alone.remove(), { once: true });
+    print();
+  };
+  const actions = { in: () => scale(0.5), out: () => scale(2), whole: reset, csv: () => save(name + ".csv", csv()), svg: () => save(name + ".svg", drawing()), pdf };
   for (const button of all("[data-do]", figure)) button.addEventListener("click", () => actions[button.dataset.do]());
 }

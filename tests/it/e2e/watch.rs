@@ -1,14 +1,17 @@
 //! `gearstudy watch`: the page follows what is saved, and a mistake stands over the last good one.
 
+use std::ffi::OsStr;
 use std::fs;
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::TcpStream;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::Duration;
 
 use serde_json::Value;
 
 use crate::desk::Desk;
+use crate::python;
 
 /// A program that watches, ended with the test.
 struct Watching {
@@ -93,6 +96,21 @@ fn the_page_follows_what_is_saved() {
     fs::write(desk.path("other.yaml"), &quick).unwrap();
     fs::rename(desk.path("other.yaml"), desk.path("quick.yaml")).unwrap();
     assert_eq!(watching.after(3), (4, String::new()));
+}
+
+/// The same in a browser, whose page has a script of its own beside the one that follows.
+#[test]
+fn a_browser_shows_what_is_saved_and_what_is_wrong() {
+    if !Path::new("/usr/bin/chromium").exists() {
+        eprintln!(
+            "\nSKIPPED: a_browser_shows_what_is_saved_and_what_is_wrong: no chromium; `make setup` installs it\n"
+        );
+        return;
+    }
+    let desk = Desk::with("quick.yaml");
+    let program = OsStr::new(env!("CARGO_BIN_EXE_gearstudy"));
+    let said = python::run("watch.py", &[program, desk.path(".").as_os_str()]);
+    assert!(said.is_none_or(|said| said.contains(" s at least, ")));
 }
 
 #[test]

@@ -15,7 +15,7 @@ const FORMULA: [char; 10] = ['=', '+', '-', '@', '\t', '\r', '＝', '＋', '－'
 /// For whom the text is.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Dialect {
-    /// Programs: commas, points, lines that end with a line feed.
+    /// Programs: commas and points.
     #[default]
     Plain,
     /// Excel where numbers have a decimal point. It takes a text for UTF-8 only behind a byte order mark.
@@ -65,7 +65,6 @@ pub fn write_cells(
     let mut options = csv::WriterBuilder::new();
     if dialect != Dialect::Plain {
         sink.write_all("\u{feff}".as_bytes())?;
-        options.terminator(csv::Terminator::CRLF);
     }
     if dialect == Dialect::ExcelComma {
         options.delimiter(b';');
@@ -106,7 +105,7 @@ mod tests {
     }
 
     #[test]
-    fn excel_has_its_mark_its_line_ends_and_the_separators_of_its_country() {
+    fn excel_has_its_mark_and_the_separators_of_its_country() {
         let written = |dialect| {
             let row = [Cell::Text("a;b, ε_α".to_owned()), Cell::Float(-1.5e-7), Cell::Integer(3), Cell::Flag(true)];
             let headings = ["design", "te [um]", "count", "is"].into_iter().map(str::to_owned);
@@ -115,9 +114,9 @@ mod tests {
             String::from_utf8(bytes).unwrap()
         };
         assert_eq!(written(Dialect::Plain), "design,te [um],count,is\n\"a;b, ε_α\",-0.00000015,3,true\n");
-        let excel = "\u{feff}design,te [um],count,is\r\n\"a;b, ε_α\",-0.00000015,3,true\r\n";
+        let excel = "\u{feff}design,te [um],count,is\n\"a;b, ε_α\",-0.00000015,3,true\n";
         assert_eq!(written(Dialect::Excel), excel);
-        let comma = "\u{feff}design;te [um];count;is\r\n\"a;b, ε_α\";-0,00000015;3;true\r\n";
+        let comma = "\u{feff}design;te [um];count;is\n\"a;b, ε_α\";-0,00000015;3;true\n";
         assert_eq!(written(Dialect::ExcelComma), comma);
     }
 

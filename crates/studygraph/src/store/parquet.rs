@@ -66,6 +66,7 @@ fn encode(table: &Table) -> Result<Vec<u8>, String> {
     let schema = Arc::new(arrow_schema(table.schema()));
     let level = ZstdLevel::try_new(LEVEL).map_err(failed)?;
     let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
+    // Beside the metadata of the schema, which Arrow alone reads.
     let attrs = KeyValue::new(ATTRS.to_owned(), attrs(table.schema()));
     let properties = properties.set_key_value_metadata(Some(vec![attrs]));
     let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
@@ -148,6 +149,7 @@ fn arrow_schema(schema: &Schema) -> ArrowSchema {
     let mut metadata = HashMap::from([
         ("table".to_owned(), schema.name.clone()),
         ("description".to_owned(), schema.description.clone()),
+        (ATTRS.to_owned(), attrs(schema)),
     ]);
     if schema.on_demand {
         metadata.insert("on_demand".to_owned(), "true".to_owned());

@@ -87,7 +87,9 @@ fn fault(field: &'static Field) -> Option<String> {
 /// Whether a value has no words to choose from, and is no name of a stage.
 fn is_written_freely(shape: &Shape) -> bool {
     match shape {
-        Shape::Quantity { .. } | Shape::AnyQuantity | Shape::Number { .. } | Shape::Integer { .. } | Shape::Text => true,
+        Shape::Quantity { .. } | Shape::AnyQuantity | Shape::Number { .. } | Shape::Integer { .. } | Shape::Text => {
+            true
+        }
         Shape::List(item) | Shape::Map(item) => is_written_freely(item),
         _ => false,
     }

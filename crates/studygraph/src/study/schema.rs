@@ -69,7 +69,11 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
         object["title"] = json!(leaf::title(kind.name));
         object["description"] = json!(kind.summary);
         if let Some(Value::Object(properties)) = object.get_mut("properties") {
-            properties.shift_insert(0, "kind".to_owned(), json!({ "title": "Kind", "description": kind.summary, "const": kind.name }));
+            properties.shift_insert(
+                0,
+                "kind".to_owned(),
+                json!({ "title": "Kind", "description": kind.summary, "const": kind.name }),
+            );
         }
         definitions.insert(format!("kind_{}", kind.name), object);
     }

@@ -36,7 +36,7 @@ pub fn title(name: &str) -> String {
 }
 
 /// What is said of a value that does not look as it must, whichever way.
-fn explained(mut schema: Value, message: String) -> Value {
+fn explained(mut schema: Value, message: &str) -> Value {
     if schema.get("pattern").is_some() {
         schema["patternErrorMessage"] = json!(message);
     }
@@ -62,7 +62,7 @@ pub fn quantity(dimension: Dimension, minimum: f64, maximum: f64, example: Optio
             None => (percent, None),
         };
         let plain = with_example(bounded(minimum, maximum), plain);
-        return json!({ "anyOf": [explained(plain, message.to_owned()), explained(percent, message.to_owned())] });
+        return json!({ "anyOf": [explained(plain, message), explained(percent, message)] });
     }
     // Simple dimensions have their few units; in others units are put together, and only the reader knows them all.
     let units = if [LENGTH, ANGLE, FORCE, TIME].contains(&dimension) {
@@ -77,7 +77,7 @@ pub fn quantity(dimension: Dimension, minimum: f64, maximum: f64, example: Optio
     let such = example.as_ref().map_or_else(String::new, |text| format!(", such as `{text}`"));
     let more = if minimum > 0.0 { ", more than 0" } else { "" };
     let message = format!("{} is a number and a unit{more}{such}", dimension.describe().0);
-    let mut schema = explained(with_example(schema, example.as_ref().map(|text| json!(text))), message);
+    let mut schema = explained(with_example(schema, example.as_ref().map(|text| json!(text))), &message);
     // The number is what is written next, the unit stands.
     if let Some(si) = example.and_then(|text| parse_quantity(&text).ok()).map(|read| read.value) {
         let unit = |unit: &&'static str| {
@@ -103,7 +103,7 @@ fn bounded(minimum: f64, maximum: f64) -> Value {
 /// A plain number.
 pub fn number(minimum: f64, maximum: f64, example: Option<&str>) -> Value {
     let example = example.and_then(|text| text.parse::<serde_json::Number>().ok()).map(Value::Number);
-    with_example(explained(bounded(minimum, maximum), "a plain number is expected, without a unit".to_owned()), example)
+    with_example(explained(bounded(minimum, maximum), "a plain number is expected, without a unit"), example)
 }
 
 pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>) -> Value {
@@ -117,7 +117,7 @@ pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>)
     if multiple != 1 {
         schema["multipleOf"] = json!(multiple);
     }
-    let schema = explained(schema, format!("{} is expected", words::integer(multiple)));
+    let schema = explained(schema, &format!("{} is expected", words::integer(multiple)));
     with_example(schema, example.and_then(|text| text.parse::<i64>().ok()).map(|number| json!(number)))
 }
 
@@ -125,12 +125,12 @@ pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>)
 pub fn any_quantity(example: Option<&str>) -> Value {
     let schema = json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") });
     let message = "a number is expected, with its unit if it has one, such as `4.2 um`";
-    with_example(explained(schema, message.to_owned()), example.map(|text| json!(text)))
+    with_example(explained(schema, message), example.map(|text| json!(text)))
 }
 
 pub fn text(example: Option<&str>) -> Value {
     let schema = json!({ "type": ["string", "number", "boolean"] });
-    with_example(explained(schema, "text is expected, on one line".to_owned()), example.map(|text| json!(text)))
+    with_example(explained(schema, "text is expected, on one line"), example.map(|text| json!(text)))
 }
 
 /// What every name of a study, a stage or a file must look like.
@@ -142,25 +142,25 @@ pub fn reference(kinds: &[&str], example: Option<&str>) -> Value {
     let message = format!("{} is expected; {NAMES}", words::stage_of(kinds));
     // In studies stages are mostly called after their kinds.
     let example = example.or(kinds.first().copied()).unwrap_or("ste");
-    with_example(explained(schema, message), Some(json!(example)))
+    with_example(explained(schema, &message), Some(json!(example)))
 }
 
 /// Names of stages and of studies.
 pub fn name() -> Value {
-    explained(json!({ "pattern": NAME_PATTERN }), NAMES.to_owned())
+    explained(json!({ "pattern": NAME_PATTERN }), NAMES)
 }
 
 /// Names of columns of the user's own.
 pub fn column() -> Value {
     let message = "a column's name has small letters, digits and `_`, and begins with a letter";
-    explained(json!({ "pattern": COLUMN_PATTERN }), message.to_owned())
+    explained(json!({ "pattern": COLUMN_PATTERN }), message)
 }
 
 /// Where a field is, in the whole study.
 pub fn path() -> Value {
     let pattern = r"^[A-Za-z0-9_-]+([.][^.\[\] ]+|\[[0-9]+\])*$";
     let message = "a path is a stage and the way to a field in it, such as `pair.pinion.face_width`";
-    explained(json!({ "pattern": pattern }), message.to_owned())
+    explained(json!({ "pattern": pattern }), message)
 }
 
 /// One value, a list, or evenly spaced ones.
