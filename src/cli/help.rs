@@ -43,7 +43,8 @@ fn names(command: &Command) -> Vec<String> {
 
 /// Writes `gearstudy.1`, `gearstudy-run.1` and so on, with nothing in them that differs from day to day.
 fn pages(root: &Command, folder: &Path) -> Result<(), Ending> {
-    let cannot = |path: &Path, error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", path.display()));
+    let cannot =
+        |path: &Path, error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", path.display()));
     fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
     let mut left = vec![root.clone()];
     let mut count = 0;

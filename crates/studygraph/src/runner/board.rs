@@ -296,6 +296,16 @@ impl<'a> Board<'a> {
         self.last.get(&self.study.nodes[node].name).map(|&index| &self.journal.stages[index])
     }
 
+    /// Seconds that a stage took when it was computed last, as far as the cache still has what came of it.
+    #[must_use]
+    pub fn took(&self, node: usize) -> Option<f64> {
+        let entry = |key| match self.cache.look_up(key) {
+            Lookup::Found(entry) => Some(entry.of_run.seconds),
+            Lookup::Missing | Lookup::Damaged(_) => None,
+        };
+        self.last(node)?.keys.iter().map(|record| entry(record.key)).sum()
+    }
+
     /// Takes a ready stage to Hit, or to Queued (then true).
     fn look_up(&mut self, node: usize) -> bool {
         let name = &self.study.nodes[node].name;

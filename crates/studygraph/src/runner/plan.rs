@@ -41,6 +41,9 @@ pub struct Planned {
     pub work: Work,
     /// What it took when it was computed; 0 when it was not.
     pub seconds: f64,
+    /// Of a stage that is computed again only because more is asked of it: what it took the last time, all of which it
+    /// takes once more. Nothing where that is not known any more.
+    pub again: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,6 +117,9 @@ pub fn of(board: &Board, options: &Options) -> Plan {
             expected: foresight.stages[node].take(),
             left_out: left_out(board, node),
             seconds: progress.seconds(),
+            again: (progress.state == StageState::Queued && progress.why == [Why::Demand])
+                .then(|| board.took(node))
+                .flatten(),
             work: progress.work(board.study.program.counters),
         }
     });

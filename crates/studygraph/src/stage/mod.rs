@@ -48,6 +48,8 @@ pub struct Curves {
     pub table: &'static str,
     /// The column over which they are sampled, in whose order the points are.
     pub along: &'static str,
+    /// What they are curves of.
+    pub quantity: &'static str,
 }
 
 /// Gives the values of a key column of (stage, table, column), where they are known before anything runs.
