@@ -149,12 +149,11 @@ fn a_run_in_json_is_lines_of_events() {
     as_events(&wrong);
     assert_eq!((wrong.len(), wrong[0]["mistakes"].as_array().unwrap().len()), (1, 2), "{out}");
     assert!(error.contains("unknown field `z`"), "{error}");
-    fs::write(desk.path("fails.yaml"), text.replace("where: { torque: 150 N m }", "where: { torque: 155 N m }"))
-        .unwrap();
+    fs::write(desk.path("fails.yaml"), text.replace("fraction: 1.0", "length: 60 mm")).unwrap();
     let failed = lines(&desk.run(&["run", "fails.yaml", "--format", "json"], 3).0);
     as_events(&failed);
     let stage = failed.iter().find(|line| line["state"] == "failed").unwrap();
-    assert!(stage["stage"] == "report" && stage["why"].as_str().unwrap().contains("155"), "{stage}");
+    assert!(stage["stage"] == "designs" && stage["why"].as_str().unwrap().contains("the active flank"), "{stage}");
     assert_eq!(failed.last().unwrap()["code"], 3);
 }
 

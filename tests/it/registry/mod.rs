@@ -94,7 +94,9 @@ fn tables_that_are_declared_to_hold_curves_do() {
                 assert!(schema.column(column).is_some_and(|column| column.kind == Type::Float), "{place}: {column}");
             }
             // Some, not every method gives.
-            let Some(table) = done[&node.name].tables.iter().find(|table| table.name() == curves.table) else { continue };
+            let Some(table) = done[&node.name].tables.iter().find(|table| table.name() == curves.table) else {
+                continue;
+            };
             let raised = table.schema().columns.iter().zip(table.columns()).map(|(column, data)| match data {
                 Data::Float(values) if column.name == curves.quantity => {
                     Data::Float(values.iter().map(|value| value + 1.0).collect())

@@ -169,10 +169,8 @@ fn matched(keys: &[&Shared], groups: &[Groups; 2]) -> Option<MatchedRows> {
         let both = old.len().min(new.len());
         return Some(MatchedRows { matched: (0..both).map(|at| (at, at)).collect(), ..MatchedRows::default() });
     }
-    let firsts: Vec<(Data, Data)> =
-        keys.iter().map(|key| (old.firsts(&key.before), new.firsts(key.after))).collect();
-    let keys: Vec<KeyColumn> =
-        firsts.iter().map(|(old, new)| KeyColumn::new(Cow::Borrowed(old), new)).collect();
+    let firsts: Vec<(Data, Data)> = keys.iter().map(|key| (old.firsts(&key.before), new.firsts(key.after))).collect();
+    let keys: Vec<KeyColumn> = firsts.iter().map(|(old, new)| KeyColumn::new(Cow::Borrowed(old), new)).collect();
     by_keys(old.len(), new.len(), &keys).ok()
 }
 

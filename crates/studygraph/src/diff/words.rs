@@ -3,8 +3,8 @@
 //! Must not know: terminals, HTML, Markdown.
 
 use super::model::{
-    ChangedPart, ColumnDiff, Comparison, CurveColumn, Damage, Difference, Extreme, Flip, Key, Reason, StageDiff, StudyDiff,
-    TableDiff, Value,
+    ChangedPart, ColumnDiff, Comparison, CurveColumn, Damage, Difference, Extreme, Flip, Key, Reason, StageDiff,
+    StudyDiff, TableDiff, Value,
 };
 use declare::number::{significant, unit_symbol, with_unit};
 

@@ -15,7 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::Field;
 use declare::record::Record;
 use declare::seed::Seed;
@@ -86,6 +86,12 @@ pub trait Stage: Send + Sync {
 
     /// The cells of other stages' tables that it names.
     fn cells(&self) -> Vec<CellName> {
+        Vec::new()
+    }
+
+    /// Conditions on rows of other stages' tables that it needs some of, each with its place in the study; the column of the
+    /// cell is none.
+    fn conditions(&self) -> Vec<(CellName, Place)> {
         Vec::new()
     }
 

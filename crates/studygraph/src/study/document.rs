@@ -340,11 +340,7 @@ fn too_deep() -> Diagnostic {
 }
 
 /// Takes a node as the key of the next value: its name, place, and whether it merges (`<<`).
-fn new_key(
-    node: Node,
-    lines: &mut BTreeMap<String, usize>,
-    whole: &str,
-) -> Result<(String, Place, bool), Diagnostic> {
+fn new_key(node: Node, lines: &mut BTreeMap<String, usize>, whole: &str) -> Result<(String, Place, bool), Diagnostic> {
     let Content::Scalar { text, quoted } = node.content else {
         return Err(Diagnostic::new("a name is expected before the colon").at(node.place));
     };

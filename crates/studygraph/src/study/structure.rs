@@ -73,7 +73,8 @@ pub fn second(text: &str, first: usize, place: Place) -> Option<String> {
     }
     let is_bare = |line: &&Line| line.body.ends_with(':') && !line.is_item();
     let between = lines[first + 1..here].iter().zip(&lines[first + 2..=here]);
-    let mut empty = between.filter(|(above, below)| is_bare(above) && above.indent == line.indent && below.indent == line.indent);
+    let mut empty =
+        between.filter(|(above, below)| is_bare(above) && above.indent == line.indent && below.indent == line.indent);
     let (above, _) = empty.next_back()?;
     let name = quote(above.body.trim_end_matches(':'));
     Some(format!(

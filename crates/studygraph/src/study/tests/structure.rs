@@ -84,7 +84,10 @@ fn a_name_that_stands_twice_may_have_another_cause() {
                 follows it: indent it less, or what belongs to it further";
     assert!(refused(text).contains(help), "{}", refused(text));
     let text = "study: t\nstudy: u\n";
-    assert!(refused(text).contains("2:1: `study` stands here a second time\n  help: the first is in line 1; keep one of them"));
+    assert!(
+        refused(text)
+            .contains("2:1: `study` stands here a second time\n  help: the first is in line 1; keep one of them")
+    );
 }
 
 #[test]
