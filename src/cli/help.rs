@@ -33,7 +33,7 @@ pub(super) fn help(words: &[String], man: Option<&Path>) -> Result<(), Ending> {
         };
         command = found;
     }
-    out(&command.render_long_help().to_string());
+    out(&command.render_help().to_string());
     Ok(())
 }
 

@@ -54,7 +54,7 @@ fn bash_completes_what_the_study_on_the_line_has() {
     is(&["plan", "quick.yaml", "--want", "optimum."], &["optimum.evaluations"]);
     has(&["plan", "quick.yaml", "--want", "ste.summary.la"], &["ste.summary.largest_pressure"]);
     is(&["run", "quick.yaml", "--set", "pair.pinion.fa"], &["pair.pinion.face_width="]);
-    is(&["kinds", "optimizer.design.tip_c"], &["optimizer.design.tip_curve"]);
+    is(&["kinds", "optimizer.design.tip_r"], &["optimizer.design.tip_relief"]);
     is(&["help", "shard", "st"], &["status"]);
     is(&["new", "x.yaml", "--template", ""], &["quick", "sweep"]);
     // Before a run, the tables that it gives; afterwards those that are there, their columns and values.

@@ -84,16 +84,19 @@ fn every_declared_field_is_one_that_a_study_can_give() {
 fn tables_that_are_declared_to_hold_curves_do() {
     let study = load(&examples());
     let done = walk(&study);
+    let all = studies();
     let mut seen = Vec::new();
     for node in &study.nodes {
         for curves in node.kind.curves {
             let place = format!("{}.{}", node.kind.name, curves.table);
-            let schema = node.stage.outputs().into_iter().find(|schema| schema.name == curves.table);
+            // Some, not every method gives.
+            let of_kind = all.iter().flat_map(|study| &study.nodes).filter(|other| other.kind.name == node.kind.name);
+            let mut schemas = of_kind.flat_map(|node| node.stage.outputs());
+            let schema = schemas.find(|schema| schema.name == curves.table);
             let schema = schema.unwrap_or_else(|| panic!("{place} is no table"));
             for column in [curves.along, curves.quantity] {
                 assert!(schema.column(column).is_some_and(|column| column.kind == Type::Float), "{place}: {column}");
             }
-            // Some, not every method gives.
             let Some(table) = done[&node.name].tables.iter().find(|table| table.name() == curves.table) else {
                 continue;
             };

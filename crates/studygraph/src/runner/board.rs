@@ -133,7 +133,7 @@ pub struct Board<'a> {
     pub observer: &'a dyn Observer,
     /// Why nothing new is begun.
     pub halted: Option<String>,
-    cache: &'a Cache,
+    pub(super) cache: &'a Cache,
     options: &'a Options,
     pub journal: Journal,
     /// The places of stages in the journal.
@@ -294,16 +294,6 @@ impl<'a> Board<'a> {
     #[must_use]
     pub fn last(&self, node: usize) -> Option<&JournalStage> {
         self.last.get(&self.study.nodes[node].name).map(|&index| &self.journal.stages[index])
-    }
-
-    /// Seconds that a stage took when it was computed last, as far as the cache still has what came of it.
-    #[must_use]
-    pub fn took(&self, node: usize) -> Option<f64> {
-        let entry = |key| match self.cache.look_up(key) {
-            Lookup::Found(entry) => Some(entry.of_run.seconds),
-            Lookup::Missing | Lookup::Damaged(_) => None,
-        };
-        self.last(node)?.keys.iter().map(|record| entry(record.key)).sum()
     }
 
     /// Takes a ready stage to Hit, or to Queued (then true).
