@@ -136,7 +136,10 @@ fn kinds(so_far: &str) -> Vec<Offer> {
     };
     let (name, below) = path.split_once('.').unwrap_or((path, ""));
     let Some(kind) = stage::kind(name) else { return Vec::new() };
-    described::below(kind, below).into_iter().map(|(name, meaning)| Offer::of(format!("{path}.{name}"), meaning)).collect()
+    described::below(kind, below)
+        .into_iter()
+        .map(|(name, meaning)| Offer::of(format!("{path}.{name}"), meaning))
+        .collect()
 }
 
 /// What stands on the line that is completed.

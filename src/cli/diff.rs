@@ -5,18 +5,19 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use super::Ending;
 use super::arguments::{Differences, Places, Shown};
 use super::pages::terminal_width;
 use super::progress::out;
+use super::{Ending, studies};
 use crate::program;
 use crate::stage::kind;
 use declare::error::nearest;
 use studygraph::diff::compare::{Options, compare};
-use studygraph::diff::model::Comparison;
+use studygraph::diff::model::{Comparison, Stale};
 use studygraph::diff::{html, markdown, pretty};
 use studygraph::history::git::Repository;
 use studygraph::history::side::Side;
+use studygraph::runner::standing::{Condition, StageStanding, standing_of};
 use studygraph::store::cache::Cache;
 use studygraph::store::lock::Lock;
 use studygraph::store::results::{Folder, MANIFEST};
@@ -34,7 +35,8 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     // A results folder that is a link, or lies in another repository than the current folder, is found from itself.
     let repository = Repository::around(&places.results);
     let Asked { mut sides, studies } = read_words(asked, places, &repository).map_err(Ending::Usage)?;
-    let after = if sides.len() > 1 { sides.remove(1) } else { working_tree(places)? };
+    let is_ours = sides.len() < 2;
+    let after = if is_ours { working_tree(places)? } else { sides.remove(1) };
     let before = match sides.pop() {
         Some(before) => before,
         None => of_revision("HEAD", places, &repository).map_err(Ending::Usage)?,
@@ -48,7 +50,7 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     let not_kept = |file: &Path| Repository::around(file).is_ok_and(|repository| repository.leaves_out(file));
     let curves = |of: &str, table: &str| {
         let all = kind(of).map_or(&[][..], |kind| kind.curves);
-        all.iter().find(|curves| curves.table == table).map(|curves| curves.along)
+        all.iter().find(|curves| curves.table == table).map(|curves| (curves.along, curves.quantity))
     };
     let options = Options {
         studies: &studies,
@@ -64,13 +66,40 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         let _locks = locks(&[&before, &after]);
         comparison = compare(&before, &after, &options).map_err(Ending::Usage)?;
     }
+    if is_ours {
+        comparison.stale = stale(&comparison, places);
+        let sentence =
+            |stale: &Stale| format!("{}: the results are not those of the study now: {}", stale.study, stale.problem);
+        comparison.remarks.extend(comparison.stale.iter().map(sentence));
+    }
     if !quiet {
         out(&shown(&comparison, asked.format)?);
     }
     if !comparison.problems.is_empty() {
         return Err(Ending::Usage(comparison.problems.join("; ")));
     }
-    if comparison.state.differs() { Err(Ending::Differs(String::new())) } else { Ok(()) }
+    if comparison.state.differs() || !comparison.stale.is_empty() {
+        Err(Ending::Differs(String::new()))
+    } else {
+        Ok(())
+    }
+}
+
+/// What a run would have to renew of those studies that lie in the folder of studies, where what is compared would be
+/// other results.
+fn stale(comparison: &Comparison, places: &Places) -> Vec<Stale> {
+    let of_study = |name: &String| {
+        let study = program::load(&studies::called(name)?).ok().filter(|study| study.name == *name)?;
+        let known = Folder::new(&places.results, name).known().ok()??;
+        let standing = standing_of(&study, Some(&known)).ok()?;
+        let is_stale = |stage: &StageStanding| matches!(stage.state, Condition::Stale(_) | Condition::Missing(_));
+        let problem = standing.problem().filter(|_| standing.stages.iter().any(is_stale))?;
+        Some(Stale {
+            study: name.clone(),
+            problem: format!("{problem}; first: gearstudy run {}", study.path.display()),
+        })
+    };
+    comparison.studies.iter().filter_map(|study| of_study(&study.name)).collect()
 }
 
 /// Keeps runs from publishing; in one order, so that two comparisons never wait for each other.

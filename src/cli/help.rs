@@ -33,7 +33,7 @@ pub(super) fn help(words: &[String], man: Option<&Path>) -> Result<(), Ending> {
         };
         command = found;
     }
-    out(&command.render_long_help().to_string());
+    out(&command.render_help().to_string());
     Ok(())
 }
 
@@ -43,7 +43,8 @@ fn names(command: &Command) -> Vec<String> {
 
 /// Writes `gearstudy.1`, `gearstudy-run.1` and so on, with nothing in them that differs from day to day.
 fn pages(root: &Command, folder: &Path) -> Result<(), Ending> {
-    let cannot = |path: &Path, error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", path.display()));
+    let cannot =
+        |path: &Path, error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", path.display()));
     fs::create_dir_all(folder).map_err(|error| cannot(folder, error))?;
     let mut left = vec![root.clone()];
     let mut count = 0;

@@ -197,9 +197,8 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
 
 /// `run`, here or elsewhere.
 fn run_studies(command: &Command, places: &Places, quiet: bool) -> Result<(), Ending> {
-    let Command::Run {
-        studies, changes, selection, limits, explain, keep_going, jobs, elsewhere, output, ..
-    } = command
+    let Command::Run { studies, changes, selection, limits, explain, keep_going, jobs, elsewhere, output, .. } =
+        command
     else {
         return Ok(());
     };

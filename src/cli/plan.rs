@@ -19,6 +19,9 @@ pub(super) fn plan_text(study: &Study, plan: &Plan) -> String {
         if stage.chunks > 1 && matches!(stage.action, Action::Run(_)) {
             action += &format!(" ({} of {} chunks)", stage.missing, stage.chunks);
         }
+        if let Some(seconds) = stage.again {
+            action += &format!("; all of it is computed again, which took {} last time", duration(seconds));
+        }
         text += format!("  {:width$}  {action}", stage.name).trim_end();
         text += "\n";
         for omission in omission::together(&stage.left_out) {
@@ -102,7 +105,7 @@ pub(super) fn plan_json(study: &Study, plan: &Plan) -> serde_json::Value {
             let left_out: Vec<_> = stage.left_out.iter().map(omission).collect();
             json!({
                 "name": stage.name, "kind": stage.kind, "action": stage.action.phrase(),
-                "chunks": stage.chunks, "missing_chunks": stage.missing, "work": stage.work.named(),
+                "again_seconds": stage.again, "chunks": stage.chunks, "missing_chunks": stage.missing, "work": stage.work.named(),
                 "left_out": left_out, "expected": stage.expected.as_ref().map(expected_json),
             })
         })

@@ -62,9 +62,9 @@ pub(super) fn report(
             let verb = if attention == 1 { "verdict needs" } else { "verdicts need" };
             problems.push(format!("{}: {attention} {verb} attention", study.name));
         }
-        problems.extend(stale.map(|problem| {
-            format!("{}: {problem}; first: gearstudy run {}", study.name, study.path.display())
-        }));
+        problems.extend(
+            stale.map(|problem| format!("{}: {problem}; first: gearstudy run {}", study.name, study.path.display())),
+        );
     }
     if as_json {
         shapes::answer(&Value::Array(values));

@@ -30,6 +30,14 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
     if let Some(found) = all.iter().find(|path| stem(path) == name).or_else(|| all.iter().find(named)) {
         return Ok(found.clone());
     }
+    // Often only the ending is missing.
+    let here = word.with_extension("yaml");
+    if here.is_file() {
+        let here = here.display();
+        return Err(Ending::Usage(format!(
+            "`{name}` is neither a file nor a study in `{FOLDER}`; did you mean `{here}`?"
+        )));
+    }
     let stems: Vec<String> = all.iter().map(stem).collect();
     match nearest(&name, stems.iter().map(String::as_str)) {
         Some(near) => {
@@ -37,6 +45,11 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
         }
         None => Ok(word.to_owned()),
     }
+}
+
+/// The file of this name in the folder `studies`, where it is there.
+pub(super) fn called(name: &str) -> Option<PathBuf> {
+    Some(Path::new(FOLDER).join(name).with_extension("yaml")).filter(|path| path.is_file())
 }
 
 /// The files of the studies that were named, or of all in the folder `studies`.

@@ -29,6 +29,8 @@ pub static FOREIGN: &[Foreign] = &[
     word("m_n", "module"),
     word("mn", "module"),
     word("normal_module", "module"),
+    word("transverse_module", "module"),
+    word("m_t", "module"),
     Foreign { word: "diametral_pitch", field: Some("module"), remark: "25.4 mm over the diametral pitch" },
     word("alpha", "pressure_angle"),
     word("alpha_n", "pressure_angle"),

@@ -16,8 +16,8 @@ pub mod quantity;
 pub mod root_influences;
 
 pub use studygraph::stage::{
-    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved, Stage,
-    Want, omission,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved,
+    Stage, Want, omission,
 };
 
 /// The kind called `name`.

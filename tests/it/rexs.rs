@@ -84,6 +84,9 @@ fn a_pair_comes_out_as_a_valid_study() {
     let desk = Desk::with("quick.yaml");
     fs::write(desk.path("pair.rexs"), file()).unwrap();
     let (text, _) = desk.run(&["import", "pair.rexs"], 0);
+    let (json, _) = desk.run(&["import", "pair.rexs", "--format", "json"], 0);
+    let said: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((said["file"].as_str(), said["study"].as_str()), (Some("pair.rexs"), Some(text.as_str())));
     for line in [
         "# From a file of REXS 1.4.",
         "    module: 3 mm",

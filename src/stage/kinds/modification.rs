@@ -6,7 +6,9 @@
 mod charts;
 
 use crate::stage::designs::{self, Elements, NamedDesign};
-use crate::stage::{Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair};
+use crate::stage::{
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Stage, names, pair,
+};
 use declare::Declared;
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
@@ -24,7 +26,10 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
-    curves: &[Curves { table: charts::PROFILE, along: "roll_angle" }, Curves { table: charts::LEAD, along: "z" }],
+    curves: &[
+        Curves { table: charts::PROFILE, along: "roll_angle", quantity: "depth" },
+        Curves { table: charts::LEAD, along: "z", quantity: "depth" },
+    ],
     example: "
 kind: modification
 pair: geometry

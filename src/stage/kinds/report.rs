@@ -20,7 +20,7 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCoun
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
@@ -122,6 +122,10 @@ impl Stage for Report {
     fn cells(&self) -> Vec<CellName> {
         let operands = self.entries.iter().flat_map(ReportEntry::operands);
         operands.filter_map(operand::Operand::cell).cloned().collect()
+    }
+
+    fn conditions(&self) -> Vec<(CellName, Place)> {
+        self.figures.iter().flat_map(Figure::rows_needed).collect()
     }
 
     fn outputs(&self) -> Vec<Schema> {

@@ -49,7 +49,7 @@ pub const KIND: Kind = Kind {
     version: 1,
     summary: Ste::MEMBER.summary,
     fields: Ste::MEMBER.fields,
-    curves: &[Curves { table: names::curve::TABLE, along: "cycle_position" }],
+    curves: &[Curves { table: names::curve::TABLE, along: "cycle_position", quantity: "transmission_error" }],
     example: "
 kind: ste
 stiffness: stiffness

@@ -8,8 +8,8 @@ use std::time::Instant;
 use crate::stage::common::Teeth;
 use crate::stage::compliance as codec;
 use crate::stage::{
-    Ahead, Context, Curves, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names, pair,
-    root_influences,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names,
+    pair, root_influences,
 };
 use declare::declared::{Declared, Words};
 use declare::error::{Diagnostic, Failure};
@@ -38,9 +38,9 @@ pub const KIND: Kind = Kind {
     summary: Stiffness::MEMBER.summary,
     fields: Stiffness::MEMBER.fields,
     curves: &[
-        Curves { table: "curve", along: "cycle_position" },
-        Curves { table: names::compliance::TABLE, along: names::compliance::ROLL_ANGLE },
-        Curves { table: ROOT_STRESS, along: "roll_angle" },
+        Curves { table: "curve", along: "cycle_position", quantity: "stiffness" },
+        Curves { table: names::compliance::TABLE, along: names::compliance::ROLL_ANGLE, quantity: "bending" },
+        Curves { table: ROOT_STRESS, along: "roll_angle", quantity: "stress" },
     ],
     example: "
 kind: stiffness

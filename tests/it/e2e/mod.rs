@@ -1,10 +1,12 @@
 //! The program as a user runs it: real commands on real studies in an empty folder.
 
 mod bad;
+mod completions;
 mod diff;
 mod disk;
 mod editor;
 mod ended;
+mod json;
 mod limits;
 mod places;
 mod python;

@@ -15,12 +15,14 @@ use declare::units::parse_unit;
 use gearstudy::program;
 use gearstudy::stage::kinds::KINDS;
 use gearstudy::stage::names;
+use studygraph::diff::curves::told;
+use studygraph::diff::table::compare;
 use studygraph::runner::events::Silent;
 use studygraph::runner::execute::execute;
 use studygraph::runner::options::Options;
 use studygraph::store::cache::Cache;
 use studygraph::study::{self, declared, describe};
-use studygraph::table::data::Data;
+use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::Type;
 use walk::{load, walk};
 
@@ -75,6 +77,45 @@ fn every_kind_has_a_name_of_its_own_and_is_documented() {
 #[test]
 fn every_declared_field_is_one_that_a_study_can_give() {
     assert_eq!(declared::faults(KINDS), Vec::<String>::new());
+}
+
+/// A comparison takes them for curves wherever they are given: the points are in the order of the column they are over.
+#[test]
+fn tables_that_are_declared_to_hold_curves_do() {
+    let study = load(&examples());
+    let done = walk(&study);
+    let all = studies();
+    let mut seen = Vec::new();
+    for node in &study.nodes {
+        for curves in node.kind.curves {
+            let place = format!("{}.{}", node.kind.name, curves.table);
+            // Some, not every method gives.
+            let of_kind = all.iter().flat_map(|study| &study.nodes).filter(|other| other.kind.name == node.kind.name);
+            let mut schemas = of_kind.flat_map(|node| node.stage.outputs());
+            let schema = schemas.find(|schema| schema.name == curves.table);
+            let schema = schema.unwrap_or_else(|| panic!("{place} is no table"));
+            for column in [curves.along, curves.quantity] {
+                assert!(schema.column(column).is_some_and(|column| column.kind == Type::Float), "{place}: {column}");
+            }
+            let Some(table) = done[&node.name].tables.iter().find(|table| table.name() == curves.table) else {
+                continue;
+            };
+            let raised = table.schema().columns.iter().zip(table.columns()).map(|(column, data)| match data {
+                Data::Float(values) if column.name == curves.quantity => {
+                    Data::Float(values.iter().map(|value| value + 1.0).collect())
+                }
+                data => data.clone(),
+            });
+            let other = Table::from_columns(table.schema().clone(), raised.collect()).unwrap();
+            let mut diff = compare(&place, table, &other, None, &|_| None);
+            told(&mut diff, (table, &other), (curves.along, curves.quantity), &|_| None);
+            let found = diff.curves.unwrap_or_else(|| panic!("{place} is in another order"));
+            assert_eq!(found.columns[0].name, curves.quantity, "{place}");
+            assert!(found.compared > 0 && found.beyond == found.compared && found.resampled == 0, "{place}: {found:?}");
+            seen.push(place);
+        }
+    }
+    assert!(seen.iter().any(|place| place == "ste.curve") && seen.len() >= 5, "{seen:?}");
 }
 
 /// The studies of this repository and the examples: every kind, in use.

@@ -28,8 +28,9 @@ pub struct Options<'a> {
     pub cache: Option<&'a Cache>,
     /// Whether a study that only the later side has is left out on purpose.
     pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
-    /// The column over which the table of a kind of stage holds sampled curves, where it does.
-    pub curves: Option<&'a dyn Fn(&str, &str) -> Option<&'static str>>,
+    /// Of a table of a kind of stage that holds sampled curves, the column over which they are sampled, and the one that is
+    /// told first.
+    pub curves: Option<&'a dyn Fn(&str, &str) -> Option<(&'static str, &'static str)>>,
     /// Whether a file of a folder of results is one that is not kept there on purpose.
     pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
 }
@@ -54,6 +55,7 @@ pub fn compare(before: &Side, after: &Side, options: &Options<'_>) -> Result<Com
         verdicts: Vec::new(),
         studies: Vec::new(),
         problems: Vec::new(),
+        stale: Vec::new(),
         remarks: Vec::new(),
     };
     let pairs = pairs(before, after, options, &mut comparison)?;
@@ -396,8 +398,8 @@ impl Task<'_> {
         let keys = if of_verdicts { &verdict::KEYS[..] } else { &[] };
         let by_words = keys.iter().map(|key| compared(Some(key))).find(|diff| diff.note.is_empty());
         let mut diff = by_words.unwrap_or_else(|| compared(None));
-        if let Some(along) = self.options.curves.and_then(|curves| curves(&new.kind, name)) {
-            curves::told(&mut diff, &first, &second, along, &tolerances);
+        if let Some(declared) = self.options.curves.and_then(|curves| curves(&new.kind, name)) {
+            curves::told(&mut diff, (&first, &second), declared, &tolerances);
         }
         diff
     }

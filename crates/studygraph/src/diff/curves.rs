@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 use std::cmp::Ordering;
 
-use super::model::{CurveColumn, CurvesDiff, Difference, TableDiff, Vertical};
+use super::model::{CurveColumn, CurvesDiff, Difference, Key, TableDiff, Vertical};
 use super::rows::{KeyColumn, MatchedRows, by_keys};
 use super::table::{Shared, Tolerances, key_of, shared};
 use crate::table::data::{Data, Table};
@@ -17,10 +17,18 @@ const SAME_PLACE: f64 = 1e-12;
 
 /// Says of a table that differs, and that holds curves over the column `along`, how far they are apart. Left as it is where
 /// the tables have no such column, or are not in its order.
-pub fn told(diff: &mut TableDiff, before: &Table, after: &Table, along: &str, tolerances: Tolerances<'_>) {
+/// `quantity` is the column that is told first.
+pub fn told(
+    diff: &mut TableDiff,
+    (before, after): (&Table, &Table),
+    (along, quantity): (&str, &str),
+    tolerances: Tolerances<'_>,
+) {
     if diff.state != Difference::Same
-        && let Some(found) = compared(before, after, along, tolerances)
+        && let Some(mut found) = compared(before, after, along, tolerances)
     {
+        // The sort is stable: the others stay in the order of the table.
+        found.columns.sort_by_key(|column| column.name != quantity);
         judge(diff, found);
     }
 }
@@ -83,7 +91,7 @@ fn compared(before: &Table, after: &Table, along: &str, tolerances: Tolerances<'
     }
     let tolerance = tolerances(place.column).unwrap_or(place.column.tolerance);
     let names = |table: &Table, numbers: &[usize], groups: &Groups| {
-        numbers.iter().map(|&group| key_of(table, groups.starts[group], &|column| named(&keys, column))).collect()
+        numbers.iter().map(|&group| key(&keys, table, groups.starts[group])).collect()
     };
     let mut found = CurvesDiff {
         along: place.column.name.clone(),
@@ -119,10 +127,7 @@ fn compared(before: &Table, after: &Table, along: &str, tolerances: Tolerances<'
             changed: 0,
             beyond: 0,
             largest: None,
-            share: 0.0,
         };
-        let sizes = old_values.iter().chain(new_values.iter()).filter(|value| value.is_finite());
-        let scale = sizes.fold(0.0, |largest: f64, value| largest.max(value.abs()));
         for (state, &(a, b)) in states.iter_mut().zip(&curves.matched) {
             let (a_rows, b_rows) = (groups[0].rows(a), groups[1].rows(b));
             let one = Curve { x: &old[a_rows.clone()], y: &old_values[a_rows] };
@@ -136,25 +141,25 @@ fn compared(before: &Table, after: &Table, along: &str, tolerances: Tolerances<'
                 *state = Difference::Changed;
             }
             if of_column.largest.as_ref().is_none_or(|largest| apart.size() > largest.difference.abs()) {
-                let key = key_of(after, b_rows.start, &|column| named(&keys, column));
+                let key = key(&keys, after, b_rows.start);
                 let Apart { before, after, at, .. } = apart;
                 of_column.largest = Some(Vertical { difference: after - before, before, after, at, key });
-                of_column.share = if apart.size().is_finite() { apart.size() / scale } else { f64::INFINITY };
             }
         }
         if of_column.changed > 0 {
             found.columns.push(of_column);
         }
     }
-    // The sort is stable: of equals in the order of the table.
-    found.columns.sort_by(|a, b| b.share.total_cmp(&a.share));
     found.changed = states.iter().filter(|state| **state != Difference::Same).count();
     found.beyond = states.iter().filter(|state| state.differs()).count();
     Some(found)
 }
 
-fn named(keys: &[&Shared], column: &Column) -> bool {
-    keys.iter().any(|key| key.column.name == column.name)
+/// What tells the curve of a row from the others.
+fn key(keys: &[&Shared], table: &Table, row: usize) -> Key {
+    let mut key = key_of(table, row, &|column| column.key);
+    key.retain(|(name, _)| keys.iter().any(|key| name.split(" [").next() == Some(&key.column.name)));
+    key
 }
 
 /// Which curve is which.
@@ -164,10 +169,8 @@ fn matched(keys: &[&Shared], groups: &[Groups; 2]) -> Option<MatchedRows> {
         let both = old.len().min(new.len());
         return Some(MatchedRows { matched: (0..both).map(|at| (at, at)).collect(), ..MatchedRows::default() });
     }
-    let firsts: Vec<(Data, Data)> =
-        keys.iter().map(|key| (old.firsts(&key.before), new.firsts(key.after))).collect();
-    let keys: Vec<KeyColumn> =
-        firsts.iter().map(|(old, new)| KeyColumn::new(Cow::Borrowed(old), new)).collect();
+    let firsts: Vec<(Data, Data)> = keys.iter().map(|key| (old.firsts(&key.before), new.firsts(key.after))).collect();
+    let keys: Vec<KeyColumn> = firsts.iter().map(|(old, new)| KeyColumn::new(Cow::Borrowed(old), new)).collect();
     by_keys(old.len(), new.len(), &keys).ok()
 }
 

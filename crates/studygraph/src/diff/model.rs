@@ -69,8 +69,18 @@ pub struct Comparison {
     pub studies: Vec<StudyDiff>,
     /// What could not be compared at all, and why.
     pub problems: Vec<String>,
+    /// Studies whose later results are not those of their files and of this program, as far as somebody looked.
+    pub stale: Vec<Stale>,
     /// What was left out on purpose, and why.
     pub remarks: Vec<String>,
+}
+
+/// Results that are not those of the study as it is now.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Stale {
+    pub study: String,
+    /// A sentence.
+    pub problem: String,
 }
 
 /// A file that is not what its manifest says.
@@ -218,7 +228,7 @@ pub struct CurvesDiff {
     pub moved_ends: usize,
     pub added: Vec<Key>,
     pub removed: Vec<Key>,
-    /// Columns in which anything differs, the one first that does by most of its largest value.
+    /// Columns in which anything differs, the quantity that the curves are of first.
     pub columns: Vec<CurveColumn>,
 }
 
@@ -230,8 +240,6 @@ pub struct CurveColumn {
     pub changed: usize,
     pub beyond: usize,
     pub largest: Option<Vertical>,
-    /// The largest distance as a share of the largest value.
-    pub share: f64,
 }
 
 /// Two curves where they are furthest apart; interpolated where one is not sampled.

@@ -1,5 +1,7 @@
 //! Comparisons of tables made for it: what must be found is known beforehand.
 
+mod curves;
+
 use proptest::prelude::*;
 
 use super::model::{Difference, TableDiff, Value};

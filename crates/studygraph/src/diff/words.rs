@@ -3,8 +3,8 @@
 //! Must not know: terminals, HTML, Markdown.
 
 use super::model::{
-    ChangedPart, ColumnDiff, Comparison, Damage, Difference, Extreme, Flip, Key, Reason, StageDiff, StudyDiff,
-    TableDiff, Value,
+    ChangedPart, ColumnDiff, Comparison, CurveColumn, Damage, Difference, Extreme, Flip, Key, Reason, StageDiff,
+    StudyDiff, TableDiff, Value,
 };
 use declare::number::{significant, unit_symbol, with_unit};
 
@@ -298,8 +298,11 @@ pub fn curves(table: &TableDiff) -> Option<String> {
     if let [_, others @ ..] = &found.columns[..]
         && !others.is_empty()
     {
-        let names: Vec<&str> = others.iter().map(|column| column.name.as_str()).collect();
-        parts.push(format!("also {}", names.join(", ")));
+        let apart = |column: &CurveColumn| {
+            let by = column.largest.as_ref().map(|largest| with_unit(&difference(largest.difference), &column.unit));
+            format!("{} {}", column.name, by.unwrap_or_default())
+        };
+        parts.push(format!("also {}", others.iter().map(apart).collect::<Vec<_>>().join(", ")));
     }
     for (number, what) in [(found.resampled, "sampled in other places"), (found.moved_ends, "with other ends")] {
         parts.extend((number > 0).then(|| format!("{number} {what}")));

@@ -133,7 +133,7 @@ pub struct Board<'a> {
     pub observer: &'a dyn Observer,
     /// Why nothing new is begun.
     pub halted: Option<String>,
-    cache: &'a Cache,
+    pub(super) cache: &'a Cache,
     options: &'a Options,
     pub journal: Journal,
     /// The places of stages in the journal.

@@ -10,7 +10,7 @@ use super::key::{Why, phrase};
 use super::options::Options;
 use super::refuse;
 use crate::stage::Omission;
-use crate::store::cache::Cache;
+use crate::store::cache::{Cache, Lookup};
 use crate::study::Study;
 use declare::error::Diagnostic;
 use declare::work::Work;
@@ -41,6 +41,9 @@ pub struct Planned {
     pub work: Work,
     /// What it took when it was computed; 0 when it was not.
     pub seconds: f64,
+    /// Of a stage that is computed again only because more is asked of it: what it took the last time, all of which it
+    /// takes once more. Nothing where that is not known any more.
+    pub again: Option<f64>,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -114,10 +117,22 @@ pub fn of(board: &Board, options: &Options) -> Plan {
             expected: foresight.stages[node].take(),
             left_out: left_out(board, node),
             seconds: progress.seconds(),
+            again: (progress.state == StageState::Queued && progress.why == [Why::Demand])
+                .then(|| took(board, node))
+                .flatten(),
             work: progress.work(board.study.program.counters),
         }
     });
     Plan { stages: stages.collect(), total: foresight.total, refused }
+}
+
+/// Seconds that a stage took when it was computed last, as far as the cache still has what came of it.
+fn took(board: &Board, node: usize) -> Option<f64> {
+    let seconds = |key| match board.cache.look_up(key) {
+        Lookup::Found(entry) => Some(entry.of_run.seconds),
+        Lookup::Missing | Lookup::Damaged(_) => None,
+    };
+    board.last(node)?.keys.iter().map(|record| seconds(record.key)).sum()
 }
 
 /// What a stage itself leaves out, and what nobody asks it for.

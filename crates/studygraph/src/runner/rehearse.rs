@@ -11,9 +11,9 @@ use std::sync::atomic::AtomicBool;
 use super::graph::{Graph, Input};
 use super::work::{demanded, seen};
 use crate::stage::{Ahead, Context, Inputs, RowCount};
-use crate::study::Study;
+use crate::study::{Node, Study};
 use crate::table::data::Table;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::seed::Seed;
 use declare::work::Tally;
 
@@ -63,12 +63,20 @@ pub fn rehearse(study: &Study) -> Result<Vec<Diagnostic>, Diagnostic> {
             }
             Err(Failure::Study(found)) => wrong.push(*found),
             Err(Failure::Failed(message)) => {
-                wrong.push(Diagnostic::new(format!("`{}`: {message}", of_study.name)).at(of_study.place));
+                let place = place_of(of_study, &message);
+                wrong.push(Diagnostic::new(format!("`{}`: {message}", of_study.name)).at(place));
             }
             Err(Failure::Stopped) => {}
         }
     }
     Ok(wrong)
+}
+
+/// The field that a message names, as `slice_coupling: plate`, where the study states it; else the stage.
+fn place_of(of_study: &Node, message: &str) -> Place {
+    let named = message.split('`').skip(1).step_by(2).map(|word| word.split(':').next().unwrap_or(word));
+    let mut stated = named.filter_map(|name| of_study.record.entry(name));
+    stated.next().map(|entry| entry.place).filter(|place| *place != Place::default()).unwrap_or(of_study.place)
 }
 
 /// What a port reads, where all of it is known.

@@ -73,7 +73,7 @@ const fn axis(chunk: usize) -> Field {
 }
 
 const fn kind(name: &'static str, fields: &'static [Field]) -> Kind {
-    Kind { name, version: 1, summary: "", fields, example: "", build }
+    Kind { name, version: 1, summary: "", fields, curves: &[], example: "", build }
 }
 
 static PLAIN: Kind = kind("plain", &[]);
@@ -215,7 +215,6 @@ struct Spec {
     name: &'static str,
     kind: &'static Kind,
     fields: Vec<(&'static str, Value)>,
-    curves: &[],
 }
 
 fn stage(name: &'static str, value: f64) -> Spec {

@@ -16,7 +16,7 @@ use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
 use crate::warning::Warning;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::Field;
 use declare::record::Record;
 use declare::seed::Seed;
@@ -49,6 +49,8 @@ pub struct Curves {
     pub table: &'static str,
     /// The column over which they are sampled, in whose order the points are.
     pub along: &'static str,
+    /// What they are curves of.
+    pub quantity: &'static str,
 }
 
 /// Gives the values of a key column of (stage, table, column), where they are known before anything runs.
@@ -85,6 +87,12 @@ pub trait Stage: Send + Sync {
 
     /// The cells of other stages' tables that it names.
     fn cells(&self) -> Vec<CellName> {
+        Vec::new()
+    }
+
+    /// Conditions on rows of other stages' tables that it needs some of, each with its place in the study; the column of the
+    /// cell is none.
+    fn conditions(&self) -> Vec<(CellName, Place)> {
         Vec::new()
     }
 

@@ -35,6 +35,8 @@ pub fn check(nodes: &[Node]) -> Vec<Diagnostic> {
                 wrong.push(found.at(place_of(&node.record, &cell)));
             }
         }
+        let placed = node.stage.conditions().into_iter();
+        wrong.extend(placed.filter_map(|(rows, place)| Some(missing(&keys, &rows)?.at(place))));
     }
     wrong
 }

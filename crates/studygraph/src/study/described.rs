@@ -109,8 +109,7 @@ fn member(member: &'static Member, families: &mut Families) -> Value {
 fn inside(value: &mut Value, shape: &'static Shape, families: &mut Families) {
     match shape {
         Shape::Choice(words) => {
-            value["words"] =
-                words.iter().map(|word| json!({ "name": word.name, "summary": word.summary })).collect();
+            value["words"] = words.iter().map(|word| json!({ "name": word.name, "summary": word.summary })).collect();
         }
         Shape::List(item) | Shape::Map(item) => inside(value, item, families),
         Shape::Group(inner) => value["fields"] = fields(inner, families),

@@ -244,10 +244,11 @@ impl<'a> Tree<'a> {
         };
         around.nodes += grown.nodes;
         around.levels = around.levels.max(grown.levels + 1);
+        let text = self.text;
         match &mut around.inside {
             Inside::Sequence(items) => items.push(grown.node),
             Inside::Mapping { pairs, lines, key, merged } => match key.take() {
-                None => *key = Some(new_key(grown.node, lines)?),
+                None => *key = Some(new_key(grown.node, lines, text)?),
                 Some((_, place, true)) => merge(grown.node, place, merged)?,
                 Some((name, place, false)) => {
                     // A value that is not there has no place of its own.
@@ -339,7 +340,7 @@ fn too_deep() -> Diagnostic {
 }
 
 /// Takes a node as the key of the next value: its name, place, and whether it merges (`<<`).
-fn new_key(node: Node, lines: &mut BTreeMap<String, usize>) -> Result<(String, Place, bool), Diagnostic> {
+fn new_key(node: Node, lines: &mut BTreeMap<String, usize>, whole: &str) -> Result<(String, Place, bool), Diagnostic> {
     let Content::Scalar { text, quoted } = node.content else {
         return Err(Diagnostic::new("a name is expected before the colon").at(node.place));
     };
@@ -348,9 +349,8 @@ fn new_key(node: Node, lines: &mut BTreeMap<String, usize>) -> Result<(String, P
     }
     if let Some(line) = lines.insert(text.clone(), node.place.line) {
         let message = format!("{} stands here a second time", quote(&text));
-        return Err(Diagnostic::new(message)
-            .at(node.place)
-            .help(format!("the first is in line {line}; keep one of them")));
+        let cause = structure::second(whole, line, node.place).unwrap_or_else(|| "keep one of them".to_owned());
+        return Err(Diagnostic::new(message).at(node.place).help(format!("the first is in line {line}; {cause}")));
     }
     let merges = !quoted && text == "<<";
     Ok((text, node.place, merges))

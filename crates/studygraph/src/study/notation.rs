@@ -7,6 +7,15 @@
 /// Of a comma in a number.
 pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousands";
 
+/// The number that is meant by one with a comma, in quotes; both where the comma may also part thousands.
+pub fn with_point(whole: &str, fraction: &str, rest: &str) -> String {
+    let point = format!("`{whole}.{fraction}{rest}`");
+    if fraction.len() == 3 && !whole.trim_start_matches(['+', '-']).starts_with('0') {
+        return format!("{point}, or `{whole}{fraction}{rest}` if the comma parts thousands");
+    }
+    point
+}
+
 /// What to write instead of a text that is, or begins with, a number in another notation; nothing where it is not.
 pub fn help(text: &str) -> Option<String> {
     let text = text.trim();

@@ -58,6 +58,31 @@ pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
     }
 }
 
+/// Why a name stands in a mapping a second time, where it is more than that: a list goes on without its dash, or a name
+/// above it should have what is below it, but is indented as deep.
+pub fn second(text: &str, first: usize, place: Place) -> Option<String> {
+    let lines = Line::all(text);
+    let at = |number: usize| lines.iter().position(|line| line.number == number);
+    let (first, here) = (at(first)?, at(place.line)?);
+    let (line, opening) = (&lines[here], &lines[first]);
+    if line.is_item() || line.indent + 1 != place.column {
+        return None;
+    }
+    if opening.is_item() && opening.keys_at() == line.indent {
+        return Some(format!("write {} for another item of the list", quote(&format!("- {}", line.body))));
+    }
+    let is_bare = |line: &&Line| line.body.ends_with(':') && !line.is_item();
+    let between = lines[first + 1..here].iter().zip(&lines[first + 2..=here]);
+    let mut empty =
+        between.filter(|(above, below)| is_bare(above) && above.indent == line.indent && below.indent == line.indent);
+    let (above, _) = empty.next_back()?;
+    let name = quote(above.body.trim_end_matches(':'));
+    Some(format!(
+        "{name} in line {} is indented as deep as what follows it: indent it less, or what belongs to it further",
+        above.number
+    ))
+}
+
 /// A line that says something.
 struct Line<'a> {
     number: usize,
@@ -136,7 +161,7 @@ fn value_below_value<'a>(line: &Line, before: &'a [Line<'a>], place: Place) -> O
         return Some(Deeper(Diagnostic::new(message).help(format!("put the text in quotes: `{key}: \"{value}\"`"))));
     }
     let above = before.last()?;
-    if !above.body.contains(':') && !above.is_item() {
+    if !above.body.contains(": ") && !above.body.ends_with(':') && !above.is_item() {
         return Some(Above(without_colon(above), above));
     }
     let (key, _) = above.pair().filter(|_| line.indent > above.keys_at())?;

@@ -45,5 +45,6 @@ fn decimal_comma(before: &KeyValue, rest: &KeyValue) -> Option<Diagnostic> {
     }
     let place = Place { length: before.node.place.length + 1 + fraction.len(), ..before.node.place };
     let message = format!("{} is two values to YAML: {}", quote(&format!("{whole},{}", rest.key)), notation::COMMA);
-    Some(Diagnostic::new(message).at(place).help(format!("write `{whole}.{}`", rest.key)))
+    let unit = rest.key.strip_prefix(fraction).unwrap_or_default();
+    Some(Diagnostic::new(message).at(place).help(format!("write {}", notation::with_point(whole, fraction, unit))))
 }

@@ -8,14 +8,14 @@ use super::stated_figure::{How, Logarithmic, StatedFigure, StatedFigureNames, St
 use crate::stage::quantity::{described, same_dimension};
 use crate::stage::{Ahead, Inputs};
 use declare::declared::{Placed, Words};
-use declare::error::Diagnostic;
-use declare::record::Record;
+use declare::error::{self, Diagnostic};
+use declare::record::{Record, Value};
 use declare::text::is_device;
 use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Column, Type};
-use studygraph::table::select::{rows_where, unknown_column};
+use studygraph::table::select::{CellName, rows_where, unknown_column};
 
 /// A published point or line; lengths along the axes, in SI.
 struct Mark {
@@ -48,6 +48,8 @@ pub struct Figure {
     /// Stage and table.
     reference: Option<(String, String)>,
     conditions: Vec<(String, String)>,
+    /// Where they stand in the study.
+    condition_places: Vec<error::Place>,
     x_label: String,
     y_label: String,
     log: Logarithmic,
@@ -81,6 +83,10 @@ impl Figure {
             }
         }
         let conditions = stated.conditions.iter().flatten();
+        let condition_places = match record.entry(NAMES.conditions).map(|entry| &entry.value) {
+            Some(Value::Map(placed)) => placed.iter().map(|(_, value)| value.place).collect(),
+            _ => Vec::new(),
+        };
         let marks = stated.published.iter().flatten().zip(record.each_inside(NAMES.published));
         let published = marks.map(|(mark, record)| read_mark(mark, record)).collect::<Result<_, _>>()?;
         if stated.kind == How::Drawing && stated.log != Logarithmic::None {
@@ -105,6 +111,7 @@ impl Figure {
             width: stated.width,
             reference,
             conditions: conditions.map(|(column, value)| (column.clone(), text(value))).collect(),
+            condition_places,
             x_label: maybe(&stated.x_label),
             y_label: maybe(&stated.y_label),
             log: stated.log,
@@ -125,6 +132,21 @@ impl Figure {
         tables.chain(
             self.reference.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect())),
         )
+    }
+
+    /// The conditions that some rows of each of its tables must meet, one by one.
+    pub fn rows_needed(&self) -> Vec<(CellName, error::Place)> {
+        let of_table = |(stage, table): &(String, String)| {
+            let conditions = self.conditions.iter().zip(&self.condition_places);
+            let (stage, table) = (stage.clone(), table.clone());
+            let named = move |(condition, place): (&(String, String), &error::Place)| {
+                let conditions = vec![condition.clone()];
+                let (stage, table) = (stage.clone(), table.clone());
+                (CellName { stage, table, conditions, column: String::new() }, *place)
+            };
+            conditions.map(named).collect::<Vec<_>>()
+        };
+        self.tables.iter().flat_map(of_table).collect()
     }
 
     /// How many points it is drawn from, at most: which rows meet its conditions is not known.

@@ -44,6 +44,11 @@ fn structure_is_told_in_the_words_of_whoever_wrote_it() {
             "2:1: a second `:` stands in the value of `title`\n  help: put the text in quotes: `title: \"A study: small of 5 µm\"`",
         ),
         ("title: A small", "title: \"A small", "2:1: a quote is opened and not closed in its line"),
+        (
+            "    module: 3 mm\n    pressure_angle",
+            "    module:3mm\n    pressure_angle",
+            "8:5: a space is missing behind the `:` of `module:3mm`\n  help: write `module: 3mm`",
+        ),
         ("tables: [1, 2]", "tables: [1, 2]]", "3:9: `{` is opened here and closed by `]`"),
     ]);
 }
@@ -66,6 +71,23 @@ fn all_mistakes_that_can_be_told_by_themselves_are_told_at_once_in_the_order_of_
     let error = load(&VALID.replacen("    module: 3 mm\n", &format!("    module: 3 mm\n{many}"), 1)).err().unwrap();
     assert_eq!(error.each().count(), 14);
     assert!(error.to_string().ends_with("\nt.yaml: and 4 more"), "{error}");
+}
+
+/// A list that goes on without its dash, a stage that stands as deep as the fields of the one before.
+#[test]
+fn a_name_that_stands_twice_may_have_another_cause() {
+    let text = "study: t\nstages:\n  one:\n    kind: export\n    figures:\n      - name: a\n        table: x\n        name: b\n";
+    let help = "8:9: `name` stands here a second time\n  help: the first is in line 6; write `- name: b` for another item of the list";
+    assert!(refused(text).contains(help), "{}", refused(text));
+    let text = "study: t\nstages:\n  one:\n    kind: geometry\n    two:\n    kind: export\n";
+    let help = "6:5: `kind` stands here a second time\n  help: the first is in line 4; `two` in line 5 is indented as deep as what \
+                follows it: indent it less, or what belongs to it further";
+    assert!(refused(text).contains(help), "{}", refused(text));
+    let text = "study: t\nstudy: u\n";
+    assert!(
+        refused(text)
+            .contains("2:1: `study` stands here a second time\n  help: the first is in line 1; keep one of them")
+    );
 }
 
 #[test]
@@ -92,6 +114,11 @@ fn words_of_others_lead_to_the_field() {
             "amount: 7.81 um",
             "amount: 0,00781 mm",
             "18:33: `0,00781 mm` is two values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `0.00781 mm`",
+        ),
+        (
+            "amount: 7.81 um",
+            "amount: 7,810 nm",
+            "18:33: `7,810 nm` is two values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `7.810 nm`, or `7810 nm` if the comma parts thousands",
         ),
     ]);
 }
