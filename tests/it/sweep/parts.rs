@@ -48,7 +48,7 @@ pub fn grid(amounts: &str, torques: &str) -> String {
     swept(&fields).replace("positions: 16", "positions: 8")
 }
 
-pub const AMOUNTS: &str = "from: 1 um, to: 12 um, count: 12";
+const AMOUNTS: &str = "from: 1 um, to: 12 um, count: 12";
 pub const TORQUES: &str = "from: 1 N m, to: 1500 N m, count: 1500";
 
 fn cache(folder: &Path) -> Cache {
