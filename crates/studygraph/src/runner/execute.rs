@@ -73,7 +73,7 @@ pub fn run(
         let pieces = |stage: &str, table: &str| {
             let file = format!("{stage}.{table}.parquet");
             let found = outcome.pieces(cache, stage, table)?;
-            let found = found.map(move |piece| go_on(&file).and_then(|()| piece));
+            let found = found.map(move |piece| go_on(&file).and(piece));
             Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
         };
         folder.publish(

@@ -69,8 +69,8 @@ mod tests {
             Column::flag("flag", ""),
         ];
         let row = |at: usize| {
-            let value = if at % 9 == 4 { f64::NAN } else { 1.0 / at as f64 - 1.0 };
-            vec![at.into(), value.into(), 0.5.into(), format!("{at}").into(), (at % 3 == 0).into()]
+            let value = if at.is_multiple_of(9) { f64::NAN } else { 1.0 / at as f64 - 1.0 };
+            vec![at.into(), value.into(), 0.5.into(), format!("{at}").into(), at.is_multiple_of(3).into()]
         };
         let table = Table::from_rows(Schema::new("t", "", columns), (1..=101).map(row).collect()).unwrap();
         for cuts in [vec![], vec![50], vec![0, 1, 7, 7, 100, 101]] {
