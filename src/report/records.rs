@@ -21,6 +21,8 @@ use studygraph::table::data::{Cell, Data, Table};
 /// Bytes of unpacked values on a page. Small tables come first; of one that has no room the page has the first rows.
 const ROOM: usize = 200_000;
 const FIRST_ROWS: usize = 8;
+/// A table of more rows has no room whatever is in it, and may not have any in memory: the page has none of its rows.
+const LONG: usize = ROOM / 2;
 
 /// The tables of a stage.
 #[derive(Serialize)]
@@ -66,7 +68,8 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
     for (group, record) in bundle::published(manifest) {
         let is_bundle = bundle::is_bundle(&record.file);
         let name = format!("{group}.{}", record.table());
-        let table = tables(&name);
+        let is_long = record.rows > LONG;
+        let table = if is_long { None } else { tables(&name) };
         let at = stages.iter().position(|known| known.stage == group).unwrap_or_else(|| {
             stages.push(StageTables {
                 stage: group,
@@ -81,7 +84,7 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
             described(record, &name, rows, is_bundle),
             table.as_ref().map_or_else(Vec::new, |table| columns(record, table, is_bundle)),
         ));
-        stages[at].tables.push(TableView { record, name, rows, is_stored: table.is_some() });
+        stages[at].tables.push(TableView { record, name, rows, is_stored: table.is_some() || is_long });
     }
     let sizes: Vec<usize> =
         entries.iter().map(|(_, columns)| columns.iter().map(|values| values.to_string().len()).sum()).collect();

@@ -1,8 +1,11 @@
 //! `kind: sweep` against the stages it stands for, and what holds for rows, parts and summaries.
 
 mod bits;
+#[cfg(target_os = "linux")]
+mod kills;
 mod messages;
 mod parts;
+mod readers;
 mod summaries;
 
 use crate::registry::walk::{load, walk};

@@ -102,7 +102,16 @@ impl Writer {
 
     /// A whole column at once: as [`Writer::float`] for each value, behind one tag.
     pub fn floats(&mut self, values: &[f64]) -> &mut Self {
-        self.count(values.len()).tagged(b'F', &[]);
+        self.begin_floats(values.len()).more_floats(values)
+    }
+
+    /// A whole column that comes in pieces: so many values follow by [`Writer::more_floats`].
+    pub fn begin_floats(&mut self, count: usize) -> &mut Self {
+        self.count(count).tagged(b'F', &[])
+    }
+
+    /// The next values of a column that was begun.
+    pub fn more_floats(&mut self, values: &[f64]) -> &mut Self {
         for chunk in values.chunks(PENDING / 8) {
             let from = self.pending.len();
             self.pending.resize(from + 8 * chunk.len(), 0);

@@ -40,7 +40,8 @@ const fill = (details, entry, wanted) => {
   const meanings = columns.map(column => make("tr", {}, heading("row", "", make("span", { className: "k" }, make("code", {}, column.name))), make("td", {}, column.unit), make("td", {}, column.meaning)));
   const part = count < entry.rows ? make("p", { className: "place" }, `the first ${count} of ${entry.rows} rows; all of them are in the file`) : "";
   const data = make("table", { className: "data" }, make("thead", {}, make("tr", {}, ...head)), tbody);
-  body.replaceChildren(...count ? [region(`Rows of ${entry.name}`, data), part, make("p", { className: "tools" }, more, csv)] : [],
+  const absent = make("p", { className: "place" }, `${entry.rows} rows, too many for a page; all of them are in the file`);
+  body.replaceChildren(...!count && entry.rows ? [absent] : [], ...count ? [region(`Rows of ${entry.name}`, data), part, make("p", { className: "tools" }, more, csv)] : [],
     make("details", {}, make("summary", {}, "What the columns mean"), region(`Columns of ${entry.name}`, make("table", {},
       make("thead", {}, make("tr", {}, ...["Column", "Unit", "Meaning"].map(name => heading("col", "", name)))), make("tbody", {}, ...meanings)))));
 };

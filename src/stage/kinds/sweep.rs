@@ -9,6 +9,7 @@ mod counting;
 mod effects;
 mod layout;
 mod method;
+mod numbers;
 mod output;
 mod quick;
 mod rows;

@@ -40,7 +40,7 @@ fn counted(outcome: &Outcome) -> [u64; 2] {
 }
 
 /// Some twenty thousand rows of a few parts; only extremes are asked, so that they are quick.
-fn grid(amounts: &str, torques: &str) -> String {
+pub fn grid(amounts: &str, torques: &str) -> String {
     let fields = format!(
         "vary:\n  amount: {{ field: \"designs.designs.long[1].tip_relief.amount\", {amounts} }}\n  \
          torque: {{ field: ste.torque, {torques} }}\noutputs: [peak_to_peak]"
@@ -49,7 +49,7 @@ fn grid(amounts: &str, torques: &str) -> String {
 }
 
 const AMOUNTS: &str = "from: 1 um, to: 12 um, count: 12";
-const TORQUES: &str = "from: 1 N m, to: 1500 N m, count: 1500";
+pub const TORQUES: &str = "from: 1 N m, to: 1500 N m, count: 1500";
 
 fn cache(folder: &Path) -> Cache {
     Cache::open(folder).unwrap()

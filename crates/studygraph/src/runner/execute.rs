@@ -26,6 +26,7 @@ use crate::store::error::StoreError;
 use crate::store::facts::Facts;
 use crate::store::results::{Draw, Folder, Published, Source};
 use crate::study::Study;
+use crate::table::data::Table;
 use declare::error::Diagnostic;
 
 /// Why a run could not even be begun or ended.
@@ -58,20 +59,34 @@ pub fn run(
     let facts =
         || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
     let publish = |outcome: &Outcome| {
+        // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
+        let go_on = |file: &str| {
+            let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);
+            if is_late { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
+        };
         let next = |file: &str| {
             observer.event(&Event::Publishing { file });
-            // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
-            if !outcome.stopped && stop.load(Ordering::Relaxed) {
-                return Err(StoreError::Stopped { path: file.to_owned() });
-            }
-            Ok(())
+            go_on(file)
         };
         let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
         let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
+        let pieces = |stage: &str, table: &str| {
+            let file = format!("{stage}.{table}.parquet");
+            let found = outcome.pieces(cache, stage, table)?;
+            let found = found.map(move |piece| go_on(&file).and(piece));
+            Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
+        };
         folder.publish(
             &outcome.manifest(study),
             facts,
-            Source { bytes: &bytes, table: Some(&table), draw, next: &next, code: study.program.about.code },
+            Source {
+                bytes: &bytes,
+                pieces: Some(&pieces),
+                table: Some(&table),
+                draw,
+                next: &next,
+                code: study.program.about.code,
+            },
         )
     };
     let mut outcome = execute(study, cache, options, observer, stop)?;
@@ -301,6 +316,10 @@ impl Run<'_> {
         let mut stored = Vec::new();
         for name in &names {
             if single && self.fresh(node, 0, name).is_none() {
+                continue;
+            }
+            if !is_read && let Some(described) = self.described(node, &parts, name)? {
+                stored.push(described);
                 continue;
             }
             let table = self.whole(node, &parts, name)?;

@@ -104,7 +104,7 @@ fn before(one: &[Cell], two: &[Cell]) -> bool {
 }
 
 /// As tables sort their rows.
-fn order(one: &[Cell], two: &[Cell]) -> Ordering {
+pub(super) fn order(one: &[Cell], two: &[Cell]) -> Ordering {
     let cells = one.iter().zip(two).map(|(one, two)| match (one, two) {
         (Cell::Float(one), Cell::Float(two)) => one.total_cmp(two),
         (Cell::Integer(one), Cell::Integer(two)) => one.cmp(two),

@@ -8,6 +8,7 @@ use std::sync::Arc;
 use super::board::{Board, StageState};
 use super::fault::Fault;
 use super::key::phrase;
+use super::pieces;
 use super::plan::left_out;
 use crate::stage::Omission;
 use crate::store::bundle;
@@ -61,6 +62,8 @@ pub struct StageOutcome {
     pub tables: Vec<(Arc<Schema>, StoredTable)>,
     parts: Vec<Digest>,
     whole: Option<Digest>,
+    /// Whether it cut itself: its tables come in pieces, in the order of their rows.
+    is_cut: bool,
 }
 
 impl Outcome {
@@ -95,6 +98,7 @@ impl Outcome {
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
                 whole: progress.whole,
+                is_cut: pieces::is_cut(&progress.parts),
             }
         });
         let stages: Vec<StageOutcome> = stages.collect();
@@ -124,7 +128,7 @@ impl Outcome {
     /// When the stage gave no such table, or the cache was damaged since. A damaged entry is forgotten, so the next run
     /// computes it again.
     pub fn table(&self, cache: &Cache, stage: &str, table: &str) -> Result<Table, StoreError> {
-        let parts = self.parts(stage);
+        let parts = pieces::filled_keys(cache, self.parts(stage), table);
         let loaded = parts.iter().map(|&key| forget_damaged(cache, key, cache.table(key, table)));
         let loaded = loaded.collect::<Result<Vec<_>, _>>()?;
         together(&format!("{stage}.{table}"), loaded)
@@ -139,6 +143,22 @@ impl Outcome {
             &[key] => forget_damaged(cache, key, cache.bytes(key, table)),
             _ => parquet::write(&self.table(cache, stage, table)?),
         }
+    }
+
+    /// A table piece by piece, in the order of its rows; none where it does not come in pieces.
+    ///
+    /// # Errors
+    /// Of each piece as [`Outcome::table`].
+    pub fn pieces<'o>(
+        &self,
+        cache: &'o Cache,
+        stage: &str,
+        table: &str,
+    ) -> Option<impl Iterator<Item = Result<Table, StoreError>> + use<'o>> {
+        self.stage(stage).filter(|stage| stage.is_cut)?;
+        let keys = pieces::filled_keys(cache, self.parts(stage), table);
+        let table = table.to_owned();
+        (keys.len() > 1).then(|| keys.into_iter().map(move |key| forget_damaged(cache, key, cache.table(key, &table))))
     }
 
     /// The number of stages that the cache has not taken.
@@ -188,6 +208,16 @@ impl Outcome {
 }
 
 impl StageOutcome {
+    /// Its tables that are too long for the one file of all tables.
+    fn beyond_hdf5(&self) -> impl Iterator<Item = OmissionRecord> {
+        let long = self.tables.iter().filter(|(_, table)| bundle::is_long(table.rows));
+        long.map(|(_, table)| OmissionRecord {
+            what: format!("table `{}` in the HDF5 file", table.name),
+            why: format!("that file is made in memory; all {} rows are in the table's Parquet file", table.rows),
+            saved_seconds: None,
+        })
+    }
+
     fn record(&self, described: &mut impl FnMut(&Arc<Schema>) -> Described) -> StageRecord {
         let status = match self.state {
             StageState::Hit if self.ran == 0 => "hit",
@@ -211,7 +241,7 @@ impl StageOutcome {
             seconds: self.seconds,
             work: self.work.named(),
             warnings: self.warnings.clone(),
-            left_out: self.left_out.iter().map(omission).collect(),
+            left_out: self.left_out.iter().map(omission).chain(self.beyond_hdf5()).collect(),
             tables: self
                 .tables
                 .iter()

@@ -99,8 +99,8 @@ impl Run<'_> {
     /// A table of a stage, all chunks together.
     pub(super) fn whole(&self, node: usize, parts: &[KeyedChunk], name: &str) -> Result<Arc<Table>, Ended> {
         let mut tables = Vec::new();
-        for (index, part) in parts.iter().enumerate() {
-            tables.push(self.of_part(node, index, part.key, name)?);
+        for index in self.filled(node, name) {
+            tables.push(self.of_part(node, index, parts[index].key, name)?);
         }
         if let [table] = &tables[..] {
             return Ok(Arc::clone(table));
@@ -110,7 +110,7 @@ impl Run<'_> {
     }
 
     /// Computes a part again whose header was sound but not the table.
-    fn repair(&self, node: usize, index: usize, name: &str, problem: String) -> Result<Arc<Table>, Ended> {
+    pub(super) fn repair(&self, node: usize, index: usize, name: &str, problem: String) -> Result<Arc<Table>, Ended> {
         let known = self.compute(node, index)?;
         let table = known.tables.iter().find(|table| table.name() == name).cloned();
         let key = self.board().nodes[node].parts[index].key;

@@ -15,6 +15,15 @@ use crate::table::schema::{Column, Schema};
 pub const MANY: usize = 32;
 /// A table of more rows has its own file.
 const MOST_ROWS: usize = 4096;
+/// A table of more rows is not in the HDF5 file, which is made in memory: its Parquet file alone has them.
+pub const LONG: usize = 1 << 18;
+
+/// Whether a table of so many rows is not in the HDF5 file.
+#[must_use]
+pub fn is_long(rows: usize) -> bool {
+    rows > LONG
+}
+
 /// The column that says whose a row is.
 pub const STAGE: &str = "stage";
 

@@ -41,7 +41,7 @@ use super::error::StoreError;
 use super::file::{self, Durability};
 use super::journal::Journal;
 use super::{lock, parquet};
-use crate::table::data::Table;
+use crate::table::data::{Data, Table};
 use declare::digest::Digest;
 
 /// Where the cache is when nobody says otherwise, under the current folder: one for all studies of a project.
@@ -307,6 +307,19 @@ impl Cache {
         }
         let path = self.path(key).display().to_string();
         parquet::read(self.bytes(key, table)?).map_err(|problem| StoreError::Damaged { path, problem })
+    }
+
+    /// One column of a table alone.
+    ///
+    /// # Errors
+    /// As [`Cache::bytes`].
+    pub fn column(&self, key: Digest, table: &str, position: usize) -> Result<Data, StoreError> {
+        let path = self.path(key).display().to_string();
+        let found = match self.packed(key, table)? {
+            Some(table) => table.columns().get(position).cloned().ok_or_else(|| "it has fewer columns".to_owned()),
+            None => parquet::read_column(self.bytes(key, table)?, position),
+        };
+        found.map_err(|problem| StoreError::Damaged { path, problem })
     }
 
     /// Removes an entry that turned out to be damaged, so that the next plan knows.

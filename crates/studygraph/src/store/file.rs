@@ -42,23 +42,35 @@ pub fn write(path: &Path, bytes: &[u8], durability: Durability) -> Result<(), St
     written.map_err(StoreError::io("write", path))
 }
 
-/// Writes a whole synced file piece by piece: `fill` writes, and what it gives is given back.
+/// Writes a whole file piece by piece: `fill` writes, and what it gives is given back.
 ///
 /// # Errors
 /// As [`write`]; what `fill` says.
-pub fn write_with<T>(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, StoreError> {
+pub fn write_by<T>(
+    path: &Path,
+    durability: Durability,
+    fill: impl FnOnce(&mut File) -> Result<T, StoreError>,
+) -> Result<T, StoreError> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let (mut file, partial) = begin(folder).map_err(StoreError::io("write into", folder))?;
     let written = fill(&mut file).and_then(|given| {
-        file.sync_all()?;
-        fs::rename(&partial, path)?;
+        let synced = if durability == Durability::Synced { file.sync_all() } else { Ok(()) };
+        synced.and_then(|()| fs::rename(&partial, path)).map_err(StoreError::io("write", path))?;
         Ok(given)
     });
     if written.is_err() {
         // A leftover that cannot be removed does no harm.
         let _ = fs::remove_file(&partial);
     }
-    written.map_err(StoreError::io("write", path))
+    written
+}
+
+/// The same for a synced file that only the system can refuse.
+///
+/// # Errors
+/// As [`write`]; what `fill` says.
+pub fn write_with<T>(path: &Path, fill: impl FnOnce(&mut File) -> io::Result<T>) -> Result<T, StoreError> {
+    write_by(path, Durability::Synced, |file| fill(file).map_err(StoreError::io("write", path)))
 }
 
 /// A new file under a temporary name that anybody may read once it has its own.

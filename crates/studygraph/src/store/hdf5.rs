@@ -1,5 +1,5 @@
 //! All tables of a study in one HDF5 file, but for those of files, which lie beside it: `/stage/table/column`, one dataset
-//! per column.
+//! per column. A table that is too long for it is a group that says which file has it.
 //!
 //! Attributes of a table: `description`, `columns` (their order). Of a column: `unit`, `description`, `type`, and,
 //! where they are not the usual ones, `key`, `volatile`, `allows_nan`, `on_demand`, `absolute_tolerance`,
@@ -18,6 +18,7 @@ use hdf5_metno::types::VarLenUnicode;
 use hdf5_metno::{Dataset, File, FileBuilder, Group, H5Type, Location};
 
 use super::error::StoreError;
+use super::manifest::TableRecord;
 use super::parquet::flags;
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Schema, Tolerance, Type};
@@ -53,6 +54,22 @@ impl Writer {
         let parent = if self.file.link_exists(stage) { self.file.group(stage) } else { group(&self.file, stage) };
         let group = parent.and_then(|parent| group(&parent, table.name())).map_err(failed)?;
         write_table(&group, table).map_err(failed)
+    }
+
+    /// Says of a table where it is instead: `rows` and `file`, and no columns.
+    ///
+    /// # Errors
+    /// When there is no memory for it.
+    pub fn leave_out(&mut self, stage: &str, record: &TableRecord) -> Result<(), StoreError> {
+        let failed = |error: hdf5_metno::Error| format(record.name.clone(), &error);
+        let parent = if self.file.link_exists(stage) { self.file.group(stage) } else { group(&self.file, stage) };
+        let group = parent.and_then(|parent| group(&parent, record.table())).map_err(failed)?;
+        let rows = record.rows as u64;
+        word(&record.description)
+            .and_then(|text| set(&group, "description", &text))
+            .and_then(|()| set(&group, "rows", &rows))
+            .and_then(|()| set(&group, "file", &word(&record.file)?))
+            .map_err(failed)
     }
 
     /// The bytes of the file.

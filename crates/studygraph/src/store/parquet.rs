@@ -6,6 +6,7 @@
 
 use std::cell::Cell;
 use std::collections::HashMap;
+use std::io::Write;
 use std::ops::Range;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
@@ -15,8 +16,8 @@ use arrow_array::types::{Float64Type, Int64Type};
 use arrow_array::{Array, ArrayRef, BooleanArray, Float64Array, Int64Array, RecordBatch, StringArray};
 use arrow_schema::{DataType, Field, Metadata, Schema as ArrowSchema};
 use bytes::Bytes;
-use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
+use parquet::arrow::{ArrowWriter, ProjectionMask};
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::errors::ParquetError;
 use parquet::file::metadata::KeyValue;
@@ -52,8 +53,8 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
 /// The key of a file's metadata that pandas reads as `attrs`, in JSON.
 const ATTRS: &str = "PANDAS_ATTRS";
 const LEVEL: i32 = 3;
-/// Rows of a group, as the format suggests.
-const ROW_GROUP: usize = 1 << 20;
+/// Rows of a group: so many are held when a table is written in pieces, and read at once by those who read in parallel.
+pub const ROW_GROUP: usize = if cfg!(test) { 1 << 10 } else { 1 << 17 };
 
 /// # Errors
 /// [`StoreError::Format`]; no table known makes it fail.
@@ -62,33 +63,138 @@ pub fn write(table: &Table) -> Result<Vec<u8>, StoreError> {
 }
 
 fn encode(table: &Table) -> Result<Vec<u8>, String> {
-    let failed = |error: ParquetError| error.to_string();
-    let schema = Arc::new(arrow_schema(table.schema()));
-    let level = ZstdLevel::try_new(LEVEL).map_err(failed)?;
-    let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
-    // Beside the metadata of the schema, which Arrow alone reads.
-    let attrs = KeyValue::new(ATTRS.to_owned(), attrs(table.schema()));
-    let properties = properties.set_key_value_metadata(Some(vec![attrs]));
-    let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
     let mut bytes = Vec::new();
-    let mut writer = ArrowWriter::try_new(&mut bytes, Arc::clone(&schema), Some(properties)).map_err(failed)?;
-    // Of a long table no more than a row group is there twice.
+    let mut encoder = Encoder::new(&mut bytes, table.schema())?;
     for first in (0..table.rows()).step_by(ROW_GROUP) {
-        let rows = first..table.rows().min(first + ROW_GROUP);
-        let columns = table.columns().iter().map(|data| array(data, rows.clone())).collect();
-        let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
-        let batch = RecordBatch::try_new_with_options(Arc::clone(&schema), columns, &options)
-            .map_err(|error| error.to_string())?;
-        writer.write(&batch).map_err(failed)?;
+        encoder.group(table.columns(), first..table.rows().min(first + ROW_GROUP))?;
     }
-    writer.close().map_err(failed)?;
+    encoder.close()?;
     Ok(bytes)
+}
+
+/// A file that is written row group by row group.
+struct Encoder<W: Write + Send> {
+    writer: ArrowWriter<W>,
+    schema: Arc<ArrowSchema>,
+}
+
+impl<W: Write + Send> Encoder<W> {
+    fn new(sink: W, schema: &Schema) -> Result<Self, String> {
+        let failed = |error: ParquetError| error.to_string();
+        // Beside the metadata of the schema, which Arrow alone reads.
+        let attrs = KeyValue::new(ATTRS.to_owned(), attrs(schema));
+        let schema = Arc::new(arrow_schema(schema));
+        let level = ZstdLevel::try_new(LEVEL).map_err(failed)?;
+        let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
+        let properties = properties.set_key_value_metadata(Some(vec![attrs]));
+        let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
+        let writer = ArrowWriter::try_new(sink, Arc::clone(&schema), Some(properties)).map_err(failed)?;
+        Ok(Self { writer, schema })
+    }
+
+    /// Where the pages of a group end depends on how its rows are handed over: all of them at once.
+    fn group(&mut self, columns: &[Data], rows: Range<usize>) -> Result<(), String> {
+        let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
+        let columns = columns.iter().map(|data| array(data, rows.clone())).collect();
+        let batch = RecordBatch::try_new_with_options(Arc::clone(&self.schema), columns, &options)
+            .map_err(|error| error.to_string())?;
+        self.writer.write(&batch).map_err(|error| error.to_string())
+    }
+
+    fn close(self) -> Result<(), String> {
+        self.writer.close().map(|_| ()).map_err(|error| error.to_string())
+    }
+}
+
+/// The file of a table that comes in pieces: byte for byte what [`write()`] makes of all of them together, but no more than
+/// a row group is held.
+pub struct Stream<W: Write + Send> {
+    encoder: Encoder<W>,
+    schema: Arc<Schema>,
+    /// The rows of a group that is not full.
+    waiting: Vec<Data>,
+}
+
+impl<W: Write + Send> Stream<W> {
+    /// # Errors
+    /// As [`write()`], and when `sink` takes nothing.
+    pub fn new(sink: W, schema: &Arc<Schema>) -> Result<Self, StoreError> {
+        let encoder = guarded(|| Encoder::new(sink, schema)).map_err(unwritten(schema))?;
+        Ok(Self { encoder, schema: Arc::clone(schema), waiting: empty(schema) })
+    }
+
+    /// The next rows.
+    ///
+    /// # Errors
+    /// As [`Stream::new`]; when it is another table.
+    pub fn add(&mut self, table: &Table) -> Result<(), StoreError> {
+        if table.schema() != &*self.schema {
+            return Err(unwritten(&self.schema)("two parts have different columns".to_owned()));
+        }
+        let mut from = 0;
+        while from < table.rows() {
+            let held = self.waiting.first().map_or(0, Data::len);
+            let to = table.rows().min(from + ROW_GROUP - held);
+            for (waiting, data) in self.waiting.iter_mut().zip(table.columns()) {
+                waiting.append(&mut data.slice(from..to));
+            }
+            from = to;
+            if self.waiting.first().map_or(0, Data::len) == ROW_GROUP {
+                self.flush()?;
+            }
+        }
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), StoreError> {
+        let waiting = std::mem::replace(&mut self.waiting, empty(&self.schema));
+        let rows = waiting.first().map_or(0, Data::len);
+        if rows == 0 {
+            return Ok(());
+        }
+        guarded(|| self.encoder.group(&waiting, 0..rows)).map_err(unwritten(&self.schema))
+    }
+
+    /// # Errors
+    /// As [`Stream::new`].
+    pub fn finish(mut self) -> Result<(), StoreError> {
+        self.flush()?;
+        let Self { encoder, schema, .. } = self;
+        guarded(|| encoder.close()).map_err(unwritten(&schema))
+    }
+}
+
+fn empty(schema: &Schema) -> Vec<Data> {
+    schema.columns.iter().map(|column| Data::empty(column.kind)).collect()
+}
+
+fn unwritten(schema: &Schema) -> impl Fn(String) -> StoreError + '_ {
+    |problem| StoreError::Format { table: schema.name.clone(), problem }
 }
 
 /// # Errors
 /// A sentence, when the bytes are not a table written by [`write()`].
 pub fn read(bytes: Vec<u8>) -> Result<Table, String> {
     guarded(|| decode(bytes))
+}
+
+/// One column of a table alone.
+///
+/// # Errors
+/// As [`read`]; when there is no such column.
+pub fn read_column(bytes: Vec<u8>, position: usize) -> Result<Data, String> {
+    guarded(|| {
+        let builder =
+            ParquetRecordBatchReaderBuilder::try_new(Bytes::from(bytes)).map_err(|error| error.to_string())?;
+        let schema = table_schema(builder.schema())?;
+        let kind = schema.columns.get(position).ok_or("it has fewer columns")?.kind;
+        let mask = ProjectionMask::leaves(builder.parquet_schema(), [position]);
+        let mut found = Data::empty(kind);
+        for batch in builder.with_projection(mask).build().map_err(|error| error.to_string())? {
+            extend(&mut found, batch.map_err(|error| error.to_string())?.column(0))?;
+        }
+        Ok(found)
+    })
 }
 
 fn decode(bytes: Vec<u8>) -> Result<Table, String> {
@@ -287,6 +393,43 @@ pub mod tests {
             assert_identical(&table, &back);
             assert_eq!(table.content_hash(), back.content_hash());
         }
+    }
+
+    /// Tier: second way; wherever a table of several row groups is cut.
+    #[test]
+    fn pieces_give_the_bytes_of_the_whole() {
+        for (rows, cuts) in [
+            (0, vec![]),
+            (9, vec![0, 4, 4]),
+            (ROW_GROUP, vec![1]),
+            (2 * ROW_GROUP + 5, vec![3, ROW_GROUP, ROW_GROUP + 1, 2 * ROW_GROUP + 4]),
+            (2 * ROW_GROUP + 5, vec![2 * ROW_GROUP + 1]),
+        ] {
+            let table = everything(rows);
+            let mut bytes = Vec::new();
+            let mut stream = Stream::new(&mut bytes, table.shared_schema()).unwrap();
+            let borders: Vec<usize> = [0].into_iter().chain(cuts).chain([rows]).collect();
+            for ends in borders.windows(2) {
+                let columns = table.columns().iter().map(|data| data.slice(ends[0]..ends[1])).collect();
+                stream.add(&Table::from_columns(table.shared_schema().clone(), columns).unwrap()).unwrap();
+            }
+            stream.finish().unwrap();
+            assert!(bytes == write(&table).unwrap(), "{rows} rows cut at {borders:?}");
+        }
+        let schema = Arc::new(everything(0).schema().clone());
+        let mut stream = Stream::new(Vec::new(), &schema).unwrap();
+        let other = Table::from_rows(Schema::new("other", "", vec![Column::text("a", "")]), vec![]).unwrap();
+        assert!(stream.add(&other).is_err());
+    }
+
+    #[test]
+    fn a_column_alone_is_that_of_the_table() {
+        let table = everything(70);
+        let bytes = write(&table).unwrap();
+        for (position, data) in table.columns().iter().enumerate() {
+            assert_eq!(format!("{:?}", read_column(bytes.clone(), position).unwrap()), format!("{data:?}"));
+        }
+        assert!(read_column(bytes, table.columns().len()).is_err());
     }
 
     #[test]

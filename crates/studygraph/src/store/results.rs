@@ -8,6 +8,7 @@
 mod bundled;
 mod changes;
 mod known;
+mod pieces;
 mod publish;
 mod remove;
 #[cfg(test)]
@@ -20,7 +21,7 @@ pub use changes::Changes;
 pub use known::{FileState, Known};
 #[cfg(feature = "hdf5")]
 pub use publish::hdf5_bytes;
-pub use publish::{Bytes, Draw, Drawn, Published, Source, Tables};
+pub use publish::{Bytes, Draw, Drawn, Pieces, Published, Source, Tables};
 
 use super::bundle::Opened;
 use super::error::StoreError;

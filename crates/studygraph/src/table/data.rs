@@ -5,8 +5,9 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::content::Content;
 use super::schema::{Column, Schema, Type};
-use declare::digest::{Digest, Writer};
+use declare::digest::Digest;
 
 /// The values of one column.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -92,7 +93,10 @@ impl Data {
     }
 
     /// Moves all values of the other to the end of these.
-    fn append(&mut self, other: &mut Self) {
+    ///
+    /// # Panics
+    /// When they are of another type.
+    pub fn append(&mut self, other: &mut Self) {
         match (self, other) {
             (Self::Float(values), Self::Float(more)) => values.append(more),
             (Self::Integer(values), Self::Integer(more)) => values.append(more),
@@ -389,29 +393,12 @@ impl Table {
     /// The digest of schema and values, without volatile columns.
     #[must_use]
     pub fn content_hash(&self) -> Digest {
-        let mut writer = Writer::new("gearstudy 1 table content");
-        self.schema.write(&mut writer);
-        writer.count(self.rows);
-        for (column, data) in self.schema.columns.iter().zip(&self.columns) {
-            if column.volatile {
-                continue;
-            }
-            match data {
-                Data::Float(values) => {
-                    writer.floats(values);
-                }
-                Data::Integer(values) => values.iter().for_each(|value| {
-                    writer.integer(*value);
-                }),
-                Data::Text(values) => values.iter().for_each(|value| {
-                    writer.text(value);
-                }),
-                Data::Flag(values) => values.iter().for_each(|value| {
-                    writer.flag(*value);
-                }),
-            }
+        let mut content = Content::new(&self.schema, self.rows);
+        for (column, data) in self.schema.columns.iter().zip(&self.columns).filter(|(column, _)| !column.volatile) {
+            content.begin(column);
+            content.add(data);
         }
-        writer.finish()
+        content.finish()
     }
 }
 

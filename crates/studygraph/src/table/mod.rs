@@ -3,6 +3,7 @@
 //! Must not know: files, stages, gears.
 
 pub mod columns;
+pub mod content;
 pub mod data;
 pub mod schema;
 pub mod select;

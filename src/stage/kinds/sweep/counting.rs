@@ -4,8 +4,16 @@
 
 /// Steps between the extremes of an output.
 pub const BINS: usize = 1024;
-/// Strata of a field that has no few values of its own.
-const STRATA: usize = 20;
+/// Strata of a field that has no few values of its own: of few rows fewer, so that two fields' strata share some of them.
+const FEWEST_STRATA: usize = 4;
+const MOST_STRATA: usize = 20;
+/// Rows that a cell of two fields' strata has on average, unless there are too many or too few of them.
+const ROWS_OF_CELL: usize = 4;
+
+/// In how many strata so many rows are looked at.
+pub fn strata(rows: usize) -> usize {
+    (rows / ROWS_OF_CELL).isqrt().clamp(FEWEST_STRATA, MOST_STRATA)
+}
 
 /// Values of a field that are looked at together.
 #[derive(Clone, Debug)]
@@ -13,14 +21,14 @@ pub enum Group {
     /// Each by itself, ascending.
     Each(Vec<f64>),
     /// So many equal strata.
-    Strata { low: f64, high: f64 },
+    Strata { low: f64, high: f64, count: usize },
 }
 
 impl Group {
     pub fn len(&self) -> usize {
         match self {
             Self::Each(values) => values.len(),
-            Self::Strata { .. } => STRATA,
+            Self::Strata { count, .. } => *count,
         }
     }
 
@@ -28,7 +36,7 @@ impl Group {
     pub fn at(&self, value: f64) -> usize {
         match self {
             Self::Each(values) => values.partition_point(|other| other.total_cmp(&value).is_lt()).min(values.len() - 1),
-            Self::Strata { low, high } => bin(value, *low, *high, STRATA),
+            Self::Strata { low, high, count } => bin(value, *low, *high, *count),
         }
     }
 
@@ -36,7 +44,7 @@ impl Group {
     pub fn value(&self, at: usize) -> f64 {
         match self {
             Self::Each(values) => values[at],
-            Self::Strata { low, high } => low + (high - low) * (at as f64 + 0.5) / STRATA as f64,
+            Self::Strata { low, high, count } => low + (high - low) * (at as f64 + 0.5) / *count as f64,
         }
     }
 }
@@ -162,8 +170,9 @@ mod tests {
     fn groups_find_their_values_and_strata() {
         let each = Group::Each(vec![1.0, 2.5, 7.0]);
         assert_eq!([1.0, 2.5, 7.0].map(|value| each.at(value)), [0, 1, 2]);
-        let strata = Group::Strata { low: 0.0, high: 10.0 };
+        let strata = Group::Strata { low: 0.0, high: 10.0, count: 20 };
         assert_eq!([0.0, 0.49, 0.5, 9.99, 10.0].map(|value| strata.at(value)), [0, 0, 1, 19, 19]);
         assert!((strata.value(1) - 0.75).abs() < 1e-15);
+        assert_eq!([0, 32, 64, 100, 400, 1600, 1_000_000].map(super::strata), [4, 4, 4, 5, 10, 20, 20]);
     }
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use super::Sweep;
-use super::counting::{BINS, Group, Moments, bin, quantile, without_numbers};
+use super::counting::{BINS, Group, Moments, bin, quantile, strata, without_numbers};
 use super::rows::REASON;
 use super::tables::{self, BestRow, Bin, EffectRow, InvalidRow, MapCell, Quantile, Share};
 use crate::stage::RowCount;
@@ -308,6 +308,7 @@ pub fn held(sweep: &Sweep) -> u64 {
 }
 
 fn groups(sweep: &Sweep) -> Vec<Group> {
+    let count = strata(sweep.layout.count());
     let of = |column: usize| match (sweep.layout.levels(column), sweep.layout.drawn_between(column)) {
         (Some(levels), _) => {
             let mut values: Vec<f64> = levels.iter().map(|level| level.shown).collect();
@@ -316,10 +317,10 @@ fn groups(sweep: &Sweep) -> Vec<Group> {
             if values.len() <= MOST_VALUES {
                 return Group::Each(values);
             }
-            Group::Strata { low: values[0], high: values[values.len() - 1] }
+            Group::Strata { low: values[0], high: values[values.len() - 1], count }
         }
-        (None, Some([low, high])) => Group::Strata { low, high },
-        (None, None) => Group::Strata { low: 0.0, high: 1.0 },
+        (None, Some([low, high])) => Group::Strata { low, high, count },
+        (None, None) => Group::Strata { low: 0.0, high: 1.0, count },
     };
     (0..sweep.layout.columns.len()).map(of).collect()
 }

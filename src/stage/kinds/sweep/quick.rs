@@ -2,95 +2,34 @@
 //! between them, and nothing that is not asked.
 //!
 //! It is taken where the asked stage is one that loads a pair under a torque, as its fields say, and every asked column is
-//! one of those below. The numbers are those of the stage, to the last bit but for what `asked.rs` of the kernels says of
-//! extremes. Must not know: where rows come from.
+//! one of `numbers.rs`. Rows that differ in their torque alone share the gaps of their design. Must not know: where rows come
+//! from, how a number is read off a curve.
 
 use super::chain::{Chain, Tables, Trouble};
 use super::layout::{Class, Column};
+use super::numbers::{HARMONICS, Numbers};
 use super::output::Output;
 use crate::stage::common::{self, Contact, Slices};
 use crate::stage::designs::{self, Element, NamedDesign};
-use crate::stage::names::summary;
 use crate::stage::{Context, Inputs};
 use declare::declared::Declared;
 use declare::error::{Failure, suggest};
 use declare::record::{PlacedValue, Record, Value};
-use declare::units::{in_unit, showing};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::Template;
 use gearmesh::gear::modification::{self, Design};
-use gearmesh::gear::transmission_error::asked::{Asked, Found};
-use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Names of fields and tables of the stage that loads a pair, and of the one that has the designs.
 const TORQUE: &str = "torque";
 const POSITIONS: &str = "positions";
-const HARMONICS: &str = "harmonics";
 const ACCURACY: &str = "accuracy";
 const DESIGNS: &str = "designs";
-const ORDER: &str = "order";
-const AMPLITUDE: &str = "amplitude";
-
-/// A number of a curve, in SI.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Get {
-    Mean,
-    PeakToPeak,
-    Maximum,
-    Minimum,
-    Variance,
-    ReciprocalVariance,
-    Unloaded,
-    ContactRatio,
-    LoadShare,
-    Pressure,
-    PressurePosition,
-    PressureRoll,
-    PressureZ,
-    PressureHalfWidth,
-    Positions,
-    Slices,
-    ErrorEstimate,
-    Harmonic(usize),
-}
-
-fn getter(output: &Output) -> Option<Get> {
-    let of_summary = output.cell.table == summary::TABLE && output.cell.conditions.is_empty();
-    match output.cell.column.as_str() {
-        AMPLITUDE if output.cell.table == HARMONICS => match &output.cell.conditions[..] {
-            [(key, order)] if key == ORDER => order.parse().ok().filter(|order| *order > 0).map(Get::Harmonic),
-            _ => None,
-        },
-        _ if !of_summary => None,
-        "mean" => Some(Get::Mean),
-        "peak_to_peak" => Some(Get::PeakToPeak),
-        "maximum" => Some(Get::Maximum),
-        "minimum" => Some(Get::Minimum),
-        "variance" => Some(Get::Variance),
-        "reciprocal_variance" => Some(Get::ReciprocalVariance),
-        "unloaded_peak_to_peak" => Some(Get::Unloaded),
-        "loaded_contact_ratio" => Some(Get::ContactRatio),
-        "largest_load_share" => Some(Get::LoadShare),
-        summary::LARGEST_PRESSURE => Some(Get::Pressure),
-        "pressure_position" => Some(Get::PressurePosition),
-        "pressure_roll_angle" => Some(Get::PressureRoll),
-        "pressure_z" => Some(Get::PressureZ),
-        "pressure_half_width" => Some(Get::PressureHalfWidth),
-        "positions" => Some(Get::Positions),
-        "slices" => Some(Get::Slices),
-        "error_estimate" => Some(Get::ErrorEstimate),
-        _ => None,
-    }
-}
-
-type Shown = Box<dyn Fn(f64) -> f64 + Send + Sync>;
 
 /// The short way of a sweep.
 pub struct Quick {
-    gets: Vec<(Get, Shown)>,
+    numbers: Numbers,
     /// The columns of the torque and of the design.
     torque: Option<usize>,
     fixed_torque: f64,
@@ -118,8 +57,15 @@ pub struct Upstream {
 /// What the rows before left behind.
 #[derive(Default)]
 pub struct Before {
-    settings: Option<(Vec<u64>, Settings, usize, MeshCycle)>,
+    sampled: Option<(Vec<u64>, CycleOfRow)>,
     design: Option<(Vec<u64>, Result<Design, String>)>,
+}
+
+/// A pair's cycle as a row has it sampled.
+struct CycleOfRow {
+    settings: Settings,
+    harmonics: usize,
+    cycle: MeshCycle,
 }
 
 impl Quick {
@@ -132,11 +78,9 @@ impl Quick {
             return None;
         }
         let Value::Integer(harmonics) = record.entry(HARMONICS)?.value else { return None };
-        let get = |output: &Output| Some((getter(output)?, Box::new(showing(&output.column.unit)) as Shown));
-        let gets = outputs.iter().map(get).collect::<Option<Vec<_>>>()?;
+        let numbers = Numbers::new(outputs)?;
         let varies_harmonics = columns.iter().any(|column| is_at(column, last, record, HARMONICS));
-        let beyond = |get: &Get| matches!(get, Get::Harmonic(order) if i64::try_from(*order).map_or(true, |order| order > harmonics));
-        if varies_harmonics || gets.iter().any(|(get, _)| beyond(get)) {
+        if varies_harmonics || i64::try_from(numbers.highest_order()).map_or(true, |order| order > harmonics) {
             return None;
         }
         let torque = columns.iter().position(|column| column.class == Class::Torque);
@@ -147,7 +91,7 @@ impl Quick {
             }
             None => DesignSource::Tables,
         };
-        Some(Self { gets, torque, fixed_torque: torques[0], source, last })
+        Some(Self { numbers, torque, fixed_torque: torques[0], source, last })
     }
 
     /// The link whose record has the designs: it need not be run.
@@ -195,24 +139,51 @@ impl Quick {
         Ok(Upstream { pair, base, design })
     }
 
-    /// The asked numbers of a row, as their columns show them.
-    ///
-    /// # Errors
-    /// Why there are none.
-    pub fn row(
+    /// The asked numbers of rows that differ in their torque alone, as their columns show them, or why there are none.
+    pub fn rows<'r>(
         &self,
         (chain, columns): (&Chain, &[Column]),
         upstream: &Upstream,
         before: &mut Before,
+        rows: impl Iterator<Item = &'r [f64]>,
+        found: &mut Vec<Result<Vec<f64>, String>>,
+    ) {
+        let mut rows = rows.peekable();
+        let Some(first) = rows.peek() else { return };
+        let (sampled, design) = match self.ready((chain, columns), upstream, before, first) {
+            Ok(ready) => ready,
+            Err(message) => return found.extend(rows.map(|_| Err(message.clone()))),
+        };
+        // Gaps do not ask for the torque.
+        let mut loaded: Option<LoadCase> = None;
+        for row in rows {
+            let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
+            let loading = match &loaded {
+                Some(other) => other.with_torque(torque),
+                None => LoadCase::new(&sampled.cycle, design, torque),
+            };
+            let again =
+                |settings: Settings| LoadCase::new(&sampled.cycle.sampled(settings), design, torque).peak_to_peak();
+            let numbers = self.numbers.of(&loading, (sampled.settings, sampled.harmonics), again);
+            found.push(numbers.map_err(|message| format!("{}: {message}", chain.links[self.last].kind.name)));
+            loaded = Some(loading);
+        }
+    }
+
+    /// The cycle and the design of a row, found or as the row before had them.
+    fn ready<'b>(
+        &self,
+        (chain, columns): (&Chain, &[Column]),
+        upstream: &'b Upstream,
+        before: &'b mut Before,
         row: &[f64],
-        found: &mut Vec<f64>,
-    ) -> Result<(), String> {
+    ) -> Result<(&'b CycleOfRow, &'b Design), String> {
         let bits = |class: Class| -> Vec<u64> {
             let own = columns.iter().zip(row).filter(|(column, _)| column.class == class);
             own.map(|(_, value)| value.to_bits()).collect()
         };
         let key = bits(Class::Sampling);
-        if before.settings.as_ref().is_none_or(|(old, ..)| *old != key) {
+        if before.sampled.as_ref().is_none_or(|(old, ..)| *old != key) {
             let record = chain.record(self.last, columns, row);
             let settings = sampling(&record);
             let Value::Integer(harmonics) =
@@ -221,130 +192,29 @@ impl Quick {
                 return Err("the number of harmonics is not known".to_owned());
             };
             common::check_slices(settings, &record).map_err(|wrong| wrong.message)?;
-            let cycle = upstream.base.sampled(settings);
-            before.settings = Some((key, settings, usize::try_from(harmonics).unwrap_or(0), cycle));
+            let (cycle, harmonics) = (upstream.base.sampled(settings), usize::try_from(harmonics).unwrap_or(0));
+            before.sampled = Some((key, CycleOfRow { settings, harmonics, cycle }));
         }
-        let Some((_, settings, harmonics, cycle)) = &before.settings else { return Err(String::new()) };
-        let design = match (&upstream.design, &self.source) {
-            (Some(design), _) => design,
-            (None, DesignSource::Tables) => return Err("there is no design".to_owned()),
-            (None, DesignSource::Record { link, template }) => {
-                let key = bits(Class::Design);
-                if before.design.as_ref().is_none_or(|(old, _)| *old != key) {
-                    let built = match template {
-                        Some((template, variables)) => {
-                            let values: Vec<f64> = variables.iter().map(|column| row[*column]).collect();
-                            template.design(&upstream.pair, &values).map_err(|wrong| wrong.message)
-                        }
-                        None => by_record(&chain.record(*link, columns, row), &upstream.pair),
-                    };
-                    before.design =
-                        Some((key, built.map_err(|message| format!("{}: {message}", chain.links[*link].kind.name))));
-                }
-                match &before.design {
-                    Some((_, Ok(design))) => design,
-                    Some((_, Err(message))) => return Err(message.clone()),
-                    None => return Err(String::new()),
-                }
-            }
-        };
-        let torque = self.torque.map_or(self.fixed_torque, |column| row[column]);
-        let said = |message| format!("{}: {message}", chain.links[self.last].kind.name);
-        self.of_curve(cycle, design, torque, (*settings, *harmonics), found).map_err(said)
-    }
-
-    fn of_curve(
-        &self,
-        cycle: &MeshCycle,
-        design: &Design,
-        torque: f64,
-        (settings, harmonics): (Settings, usize),
-        found: &mut Vec<f64>,
-    ) -> Result<(), String> {
-        let loading = LoadCase::new(cycle, design, torque);
-        let asks = |wanted: &[Get]| self.gets.iter().any(|(get, _)| wanted.contains(get));
-        let pressure =
-            [Get::Pressure, Get::PressurePosition, Get::PressureRoll, Get::PressureZ, Get::PressureHalfWidth];
-        let pressure = asks(&pressure);
-        let shares = asks(&[Get::ContactRatio, Get::LoadShare]);
-        let (curve, of_pairs) = if shares {
-            let wanted = Wanted { harmonics, pressure, root_stress: false };
-            let summary = loading.summary(wanted);
-            let of_pairs = [summary.loaded_contact_ratio, summary.largest_load_share];
-            (of_summary(summary), of_pairs)
-        } else {
-            let orders = self.gets.iter().map(|(get, _)| if let Get::Harmonic(order) = get { *order } else { 0 });
-            let asked = Asked {
-                integrals: asks(&[Get::Mean, Get::Variance, Get::ReciprocalVariance]),
-                harmonics: orders.max().unwrap_or(0),
-                spans_for: harmonics,
-                pressure,
-                unloaded: asks(&[Get::Unloaded]),
-            };
-            (loading.asked(asked), [f64::NAN; 2])
-        };
-        if !loading.holds(curve.largest.value) {
-            let (found, maximum) = (in_unit(curve.largest.value, "mm"), in_unit(loading.largest_approach(), "mm"));
-            return Err(format!(
-                "the gears approach by {found:.6} mm, but `corner_contact: exact` holds up to {maximum:.6} mm only"
-            ));
-        }
-        let peak_to_peak = curve.largest.value - curve.smallest.value;
-        for (get, shown) in &self.gets {
-            let of_pressure = |get: fn(&gearmesh::gear::transmission_error::pressure::LargestPressure) -> f64| {
-                curve.pressure.as_ref().map_or(f64::NAN, get)
-            };
-            let value = match get {
-                Get::Mean => curve.mean,
-                Get::PeakToPeak => peak_to_peak,
-                Get::Maximum => curve.largest.value,
-                Get::Minimum => curve.smallest.value,
-                Get::Variance => curve.variance,
-                Get::ReciprocalVariance => {
-                    if curve.variance > 0.0 {
-                        1.0 / curve.variance
-                    } else {
-                        f64::NAN
+        if let DesignSource::Record { link, template } = &self.source {
+            let key = bits(Class::Design);
+            if before.design.as_ref().is_none_or(|(old, _)| *old != key) {
+                let built = match template {
+                    Some((template, variables)) => {
+                        let values: Vec<f64> = variables.iter().map(|column| row[*column]).collect();
+                        template.design(&upstream.pair, &values).map_err(|wrong| wrong.message)
                     }
-                }
-                Get::Unloaded => curve.unloaded_peak_to_peak,
-                Get::ContactRatio => of_pairs[0],
-                Get::LoadShare => of_pairs[1],
-                Get::Pressure => of_pressure(|largest| largest.extremum.value),
-                Get::PressurePosition => of_pressure(|largest| largest.extremum.position),
-                Get::PressureRoll => of_pressure(|largest| largest.roll_angle),
-                Get::PressureZ => of_pressure(|largest| largest.across.unwrap_or(f64::NAN)),
-                Get::PressureHalfWidth => of_pressure(|largest| largest.contact.half_width),
-                Get::Positions => settings.positions as f64,
-                Get::Slices => settings.slices as f64,
-                Get::ErrorEstimate => {
-                    let sliced = loading.uses_slices();
-                    let mut sampled = Sampled::new(sliced, Against::Coarser, |settings| {
-                        LoadCase::new(&cycle.sampled(settings), design, torque).peak_to_peak()
-                    });
-                    sampled.know(settings, peak_to_peak);
-                    sampled.error(settings)
-                }
-                Get::Harmonic(order) => curve.harmonics[order - 1],
-            };
-            if value.is_infinite() {
-                return Err("a number is beyond what the model holds".to_owned());
+                    None => by_record(&chain.record(*link, columns, row), &upstream.pair),
+                };
+                let built = built.map_err(|message| format!("{}: {message}", chain.links[*link].kind.name));
+                before.design = Some((key, built));
             }
-            found.push(shown(value));
         }
-        Ok(())
-    }
-}
-
-fn of_summary(summary: Summary) -> Found {
-    Found {
-        largest: summary.largest,
-        smallest: summary.smallest,
-        mean: summary.mean,
-        variance: summary.variance,
-        harmonics: summary.harmonics,
-        pressure: summary.largest_pressure,
-        unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
+        let Some((_, sampled)) = &before.sampled else { return Err(String::new()) };
+        match (&upstream.design, &before.design) {
+            (Some(design), _) | (None, Some((_, Ok(design)))) => Ok((sampled, design)),
+            (None, Some((_, Err(message)))) => Err(message.clone()),
+            (None, None) => Err("there is no design".to_owned()),
+        }
     }
 }
 

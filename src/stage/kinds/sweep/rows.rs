@@ -113,19 +113,29 @@ fn compute(
         context.check_stop()?;
         let mut before = Before::default();
         let mut all = Vec::with_capacity(block.len());
-        for row in *block {
-            all.push(match &found[*group] {
-                Err(reason) => Err(reason.clone()),
-                Ok((tables, upstream)) => {
-                    let row = rows.si(*row);
-                    match one(sweep, row, (tables, upstream.as_ref()), &mut before, (context, inputs)) {
+        match &found[*group] {
+            Err(reason) => {
+                all.extend(block.iter().map(|_| Err(reason.clone())));
+                block.iter().for_each(|_| steps.done());
+            }
+            Ok((_, Some(upstream))) => {
+                let Some(quick) = &sweep.quick else { return Ok(all) };
+                let chain = (&sweep.chain, sweep.layout.columns.as_slice());
+                for alike in block.chunk_by(|one, two| differ_in_torque_alone(sweep, rows.si(*one), rows.si(*two))) {
+                    quick.rows(chain, upstream, &mut before, alike.iter().map(|row| rows.si(*row)), &mut all);
+                    alike.iter().for_each(|_| steps.done());
+                }
+            }
+            Ok((tables, None)) => {
+                for row in *block {
+                    all.push(match one(sweep, rows.si(*row), tables, (context, inputs)) {
                         Ok(values) => Ok(values),
                         Err(Trouble::Invalid(reason)) => Err(reason),
                         Err(Trouble::Failed(failure)) => return Err(failure),
-                    }
+                    });
+                    steps.done();
                 }
-            });
-            steps.done();
+            }
         }
         Ok(all)
     };
@@ -164,20 +174,19 @@ fn found_upstream(
     Ok((tables, upstream))
 }
 
-/// The numbers of a row.
+fn differ_in_torque_alone(sweep: &Sweep, one: &[f64], two: &[f64]) -> bool {
+    let columns = sweep.layout.columns.iter().zip(one.iter().zip(two));
+    columns.filter(|(column, _)| column.class != Class::Torque).all(|(_, (one, two))| one.to_bits() == two.to_bits())
+}
+
+/// The numbers of a row, from table to table.
 fn one(
     sweep: &Sweep,
     row: &[f64],
-    (tables, upstream): (&Tables, Option<&Upstream>),
-    before: &mut Before,
+    tables: &Tables,
     (context, inputs): (&Context, &Inputs),
 ) -> Result<Vec<f64>, Trouble> {
     let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
-    let mut values = Vec::with_capacity(sweep.outputs.len());
-    if let (Some(quick), Some(upstream)) = (&sweep.quick, upstream) {
-        quick.row((chain, columns), upstream, before, row, &mut values).map_err(Trouble::Invalid)?;
-        return Ok(values);
-    }
     let mut tables = tables.clone();
     for link in 0..chain.links.len() {
         if tables[link].is_none() {
@@ -185,12 +194,10 @@ fn one(
         }
     }
     let last = tables.pop().flatten().unwrap_or_default();
-    for output in &sweep.outputs {
-        let value =
-            output.take(&last, sweep.design.as_deref()).map_err(|problem| Trouble::Failed(Failure::new(problem)))?;
-        values.push(value);
-    }
-    Ok(values)
+    let value = |output: &super::output::Output| {
+        output.take(&last, sweep.design.as_deref()).map_err(|problem| Trouble::Failed(Failure::new(problem)))
+    };
+    sweep.outputs.iter().map(value).collect()
 }
 
 /// Fills in what tables of earlier parts know; both are in the order of their keys.

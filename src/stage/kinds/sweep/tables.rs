@@ -60,7 +60,7 @@ pub fn effects<'a>() -> Columns<EffectRow<'a>> {
     let description = "Main effects: each output over each value of each varied field, whatever the others are. Numbers are \
                        in the units of their columns in the table `rows`.";
     let value =
-        "Its value; of a field that is drawn, or has very many values, the middle of one of twenty equal strata.";
+        "Its value; of a field that is drawn, or has very many values, the middle of one of up to twenty equal strata.";
     let columns = Columns::new("effects", description)
         .text("field", "Column of the varied field.", |row: &EffectRow<'a>| row.field)
         .key()

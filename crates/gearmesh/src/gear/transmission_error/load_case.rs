@@ -230,6 +230,18 @@ impl<'a> LoadCase<'a> {
         Self { positions, ..self.clone() }
     }
 
+    /// The same design under another torque, as [`LoadCase::new`] gives it: gaps need not be found again, but with corner
+    /// contact, where the load decides how far out they are looked at.
+    #[must_use]
+    pub fn with_torque(&self, torque: f64) -> Self {
+        let is_known = self.force > 0.0 && torque > 0.0 && matches!(self.touching, Touching::LineOfAction);
+        if !is_known {
+            return Self::new(self.cycle, self.design, torque);
+        }
+        let force = torque / self.cycle.pair.pinion.base_radius;
+        Self { force, line_load: Known::new(force / self.cycle.face_width), ..self.clone() }
+    }
+
     /// The same design when nothing is transmitted.
     #[must_use]
     pub fn without_load(&self) -> Self {

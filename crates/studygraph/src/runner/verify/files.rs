@@ -9,9 +9,9 @@ use std::path::Path;
 use super::{Agreement, VerifiedFile, VerifyError, archived};
 use crate::store::archive::open::Archive;
 use crate::store::archive::{self, ArchiveError};
-#[cfg(feature = "hdf5")]
-use crate::store::bundle::published;
 use crate::store::bundle::{Opened, is_bundle};
+#[cfg(feature = "hdf5")]
+use crate::store::bundle::{is_long, published};
 #[cfg(feature = "hdf5")]
 use crate::store::hdf5;
 use crate::store::index::{self, INDEX, Index};
@@ -147,7 +147,8 @@ impl<R: Read + Seek> Files<'_, R> {
         let Some(archived) = self.bytes.get(&name) else { return Ok(None) };
         let failed = |problem: String| self.archive.damaged(&name, &problem);
         let mut tables = Vec::new();
-        for (group, record) in published(self.manifest).filter(|(_, record)| record.files.is_empty()) {
+        let is_there = |record: &TableRecord| record.files.is_empty() && !is_long(record.rows);
+        for (group, record) in published(self.manifest).filter(|(_, record)| is_there(record)) {
             let table = if is_bundle(&record.file) { self.whole(&record.file)? } else { self.table(record)? };
             tables.push((group, record, table));
         }

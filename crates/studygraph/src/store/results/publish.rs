@@ -29,6 +29,10 @@ use crate::table::data::Table;
 pub type Bytes<'a> = &'a dyn Fn(&str, &str) -> Result<Vec<u8>, StoreError>;
 /// Gives the table of (stage, table).
 pub type TableOf<'a> = &'a dyn Fn(&str, &str) -> Result<Table, StoreError>;
+/// The pieces of a table, in the order of its rows.
+pub type Pieces<'a> = Box<dyn Iterator<Item = Result<Table, StoreError>> + 'a>;
+/// Gives the table of (stage, table) in pieces, where it comes so.
+pub type PiecesOf<'a> = &'a dyn Fn(&str, &str) -> Option<Pieces<'a>>;
 /// Gives a published table by its name, `stage.table`; of many stages as one, `_kind.table`.
 pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
 /// Draws page and figures of a manifest and its tables.
@@ -40,6 +44,8 @@ pub type Next<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
 #[derive(Clone, Copy)]
 pub struct Source<'a> {
     pub bytes: Bytes<'a>,
+    /// Asked first: tables that need not fit into memory.
+    pub pieces: Option<PiecesOf<'a>>,
     /// Gives a table of a bundle; where there is nothing, it is read from its Parquet file.
     pub table: Option<TableOf<'a>>,
     pub draw: Option<Draw<'a>>,
@@ -52,7 +58,7 @@ impl<'a> Source<'a> {
     /// Tables without a page, all in one go.
     #[must_use]
     pub fn of(bytes: Bytes<'a>) -> Self {
-        Self { bytes, table: None, draw: None, next: &|_| Ok(()), code: "" }
+        Self { bytes, pieces: None, table: None, draw: None, next: &|_| Ok(()), code: "" }
     }
 }
 
@@ -188,10 +194,13 @@ impl Folder {
             } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
-                let bytes = match self.kept_by_bundle(old, table) {
-                    Some(kept) => parquet::write(&kept)?,
-                    None => (source.bytes)(stage, name)?,
-                };
+                let kept = self.kept_by_bundle(old, table);
+                let pieces = source.pieces.filter(|_| kept.is_none()).and_then(|pieces| pieces(stage, name));
+                if let Some(pieces) = pieces {
+                    listed.add(self.put_pieces(&table.file, pieces)?, table.varies());
+                    continue;
+                }
+                let bytes = kept.map_or_else(|| (source.bytes)(stage, name), |kept| parquet::write(&kept))?;
                 self.put(&mut listed, &table.file, &bytes, table.varies())?;
             } else {
                 let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
@@ -280,10 +289,7 @@ impl Folder {
     fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
         let path = self.path().join(file);
         file::write(&path, bytes, Durability::Lazy)?;
-        let seen = index::written(&path, file, bytes)?;
-        let (bytes, digest) = (Some(seen.bytes).filter(|_| !varies), Some(seen.digest.clone()).filter(|_| !varies));
-        listed.files.push(FileRecord { file: file.to_owned(), bytes, digest, varies });
-        listed.seen.push(seen);
+        listed.add(index::written(&path, file, bytes)?, varies);
         Ok(())
     }
 
@@ -385,6 +391,13 @@ impl Folder {
 }
 
 impl Listed {
+    /// Lists a file that was written.
+    fn add(&mut self, seen: Seen, varies: bool) {
+        let (bytes, digest) = (Some(seen.bytes).filter(|_| !varies), Some(seen.digest.clone()).filter(|_| !varies));
+        self.files.push(FileRecord { file: seen.file.clone(), bytes, digest, varies });
+        self.seen.push(seen);
+    }
+
     /// Lists a file that nobody writes now, as [`Known::kept`].
     fn keep(&mut self, old: Option<&Known>, file: &str, values: Option<bool>) {
         let Some((record, seen)) = old.and_then(|old| old.kept(file, values)) else { return };
@@ -404,7 +417,7 @@ fn worse(fault: &mut Option<StoreError>, other: StoreError) {
     }
 }
 
-/// The HDF5 file of all tables, but for those of files, which lie beside it already.
+/// The HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
 ///
 /// # Errors
 /// When a table cannot be had, or holds what HDF5 cannot.
@@ -417,6 +430,10 @@ pub fn hdf5_bytes(
 ) -> Result<Vec<u8>, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
+        if bundle::is_long(record.rows) {
+            writer.leave_out(group, record)?;
+            continue;
+        }
         let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)? };
         writer.add(group, &table)?;
     }

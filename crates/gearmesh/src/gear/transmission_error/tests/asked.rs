@@ -2,6 +2,7 @@
 
 use super::super::asked::{Asked, Found};
 use super::*;
+use crate::gear::contact::CornerContact;
 use crate::gear::transmission_error::curve::Summary;
 
 const ALL: Asked = Asked { integrals: true, harmonics: 3, spans_for: 8, pressure: true, unloaded: true };
@@ -29,6 +30,30 @@ fn of_summary(summary: &Summary) -> Found {
         harmonics: summary.harmonics[..3].to_vec(),
         pressure: summary.largest_pressure,
         unloaded_peak_to_peak: summary.unloaded_peak_to_peak,
+    }
+}
+
+/// Tier: second method, to the last bit: another torque on gaps that were found for one, and gaps of its own.
+#[test]
+fn another_torque_leaves_the_gaps_as_they_are() {
+    let pair = pair();
+    for compliance in [constant(&pair, STIFFNESS), varying(), coupled()] {
+        for corner_contact in [CornerContact::None, CornerContact::Exact] {
+            let settings = Settings { positions: 8, corner_contact, ..Settings::default() };
+            let cycle = MeshCycle::new(&pair, &compliance, settings).unwrap();
+            for design in [Design::default(), ga_design(&pair, 8e-6, 4e-3, 5e-6)] {
+                for first in [0.0, 700.0] {
+                    let known = LoadCase::new(&cycle, &design, torque(first));
+                    for force in [0.0, 300.0, 1867.0] {
+                        let (shared, own) =
+                            (known.with_torque(torque(force)), LoadCase::new(&cycle, &design, torque(force)));
+                        let case = format!("{corner_contact:?}, {first}, then {force}");
+                        assert_eq!(bits(&shared.asked(ALL)), bits(&own.asked(ALL)), "{case}");
+                        assert_eq!(shared.largest_approach().to_bits(), own.largest_approach().to_bits(), "{case}");
+                    }
+                }
+            }
+        }
     }
 }
 
