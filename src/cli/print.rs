@@ -5,7 +5,7 @@ use serde_json::{Map, Value, json};
 
 use super::arguments::Format;
 use studygraph::diff::markdown::escaped;
-use studygraph::store::csv::{heading, write_cells};
+use studygraph::store::csv::{Dialect, heading, write_cells};
 use studygraph::table::data::{Cell, Table};
 use studygraph::table::schema::Type;
 use studygraph::table::select::{parse_conditions, rows_where, unknown_column, why_none};
@@ -76,7 +76,9 @@ impl Grid<'_> {
     pub fn text(&self, format: Format) -> Result<String, String> {
         match format {
             Format::Pretty => Ok(self.pretty()),
-            Format::Csv => self.csv(),
+            Format::Csv => self.csv(Dialect::Plain),
+            Format::Excel => self.csv(Dialect::Excel),
+            Format::ExcelComma => self.csv(Dialect::ExcelComma),
             Format::Json => Ok(self.json()),
             Format::Markdown => Ok(self.markdown()),
         }
@@ -139,11 +141,12 @@ impl Grid<'_> {
         (0..self.columns.len()).take_while(fits).count().max(1).min(self.columns.len())
     }
 
-    fn csv(&self) -> Result<String, String> {
+    fn csv(&self, dialect: Dialect) -> Result<String, String> {
         let mut bytes = Vec::new();
         let broken = |error: &dyn std::fmt::Display| format!("the table could not be written as CSV: {error}");
         let headings = self.columns.iter().map(|column| column.shown.clone());
-        write_cells(headings, (0..self.rows).map(|row| self.row(row)), &mut bytes).map_err(|error| broken(&error))?;
+        let rows = (0..self.rows).map(|row| self.row(row));
+        write_cells(headings, rows, dialect, &mut bytes).map_err(|error| broken(&error))?;
         String::from_utf8(bytes).map_err(|error| broken(&error))
     }
 

@@ -43,7 +43,7 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
         match asked.format {
             Format::Pretty => out(&list(&mut tables).map_err(Ending::Usage)?),
             Format::Json => json::answer(&listed(&mut tables).map_err(Ending::Usage)?),
-            Format::Csv | Format::Markdown => {
+            Format::Csv | Format::Excel | Format::ExcelComma | Format::Markdown => {
                 return Err(Ending::Usage("the list of tables is shown as `pretty` or as `json`".to_owned()));
             }
         }

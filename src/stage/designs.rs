@@ -105,6 +105,7 @@ struct ParameterRow<'a> {
     element: usize,
     family: &'static str,
     parameter: Flat,
+    unit: &'static str,
 }
 
 fn parameters<'a>() -> Columns<ParameterRow<'a>> {
@@ -118,6 +119,7 @@ fn parameters<'a>() -> Columns<ParameterRow<'a>> {
         .key()
         .float(names::elements::VALUE, "", "Value in SI; NaN where the parameter is a word.", |row| row.parameter.1)
         .but(Column::allows_nan)
+        .text(names::elements::UNIT, "Unit of the value; empty for plain numbers and words.", |row| row.unit)
         .text(names::elements::WORD, "The word, where the parameter is one.", |row| row.parameter.2.clone())
 }
 
@@ -127,11 +129,11 @@ pub fn schemas() -> [Schema; 2] {
     [listed().schema(), parameters().schema()]
 }
 
-/// The two tables of a list of designs.
+/// The two tables of a list of designs; `families` says what the parameters are.
 ///
 /// # Errors
 /// When two designs have one name, or a parameter has a value that no row holds.
-pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
+pub fn write(designs: &[NamedDesign], families: &[Member]) -> Result<[Table; 2], TableError> {
     let mut rows = Vec::new();
     for NamedDesign { name: design, elements } in designs {
         for (element, Element { family, record }) in (1..).zip(elements) {
@@ -141,11 +143,28 @@ pub fn write(designs: &[NamedDesign]) -> Result<[Table; 2], TableError> {
                 column: "value".to_owned(),
                 problem: format!("design `{design}`, {family}: {problem}"),
             })?;
-            rows.extend(flat.into_iter().map(|parameter| ParameterRow { design, element, family, parameter }));
+            let fields = families.iter().find(|member| member.name == *family).map_or(&[][..], |member| member.fields);
+            rows.extend(flat.into_iter().map(|parameter| {
+                let unit = unit_of(fields, &parameter.0);
+                ParameterRow { design, element, family, parameter, unit }
+            }));
         }
     }
     let designs: Vec<DesignRow> = (1..).zip(designs).collect();
     Ok([listed().table(&designs)?, parameters().table(&rows)?])
+}
+
+/// The unit of SI that a parameter has, by its name as in the table.
+fn unit_of(fields: &[Field], parameter: &str) -> &'static str {
+    let (name, below) = parameter.split_once('.').unwrap_or((parameter, ""));
+    let (name, is_item) = name.split_once('[').map_or((name, false), |(name, _)| (name, true));
+    let shape = fields.iter().find(|field| field.name == name).map(|field| &field.shape);
+    match shape {
+        Some(Shape::Quantity { dimension, .. }) => dimension.si(),
+        Some(Shape::List(Shape::Quantity { dimension, .. })) if is_item => dimension.si(),
+        Some(Shape::Group(inner) | Shape::List(Shape::Group(inner))) => unit_of(inner, below),
+        _ => "",
+    }
 }
 
 /// How many rows of the table of elements a modification takes, ranges among its parameters included.
@@ -338,8 +357,9 @@ mod tests {
             NamedDesign { name: "z".into(), elements: vec![element(&with_amount), element(&with_preset)] },
             NamedDesign { name: "a".into(), elements: vec![] },
         ];
-        let [names, rows] = write(&designs).unwrap();
         let families = [Member { name: "relief", summary: "", fields: FIELDS }];
+        let [names, rows] = write(&designs, &families).unwrap();
+        assert_eq!(rows.texts("unit"), ["m", "", "", ""], "amount, gear; gear, preset.factor");
         assert_eq!(read(&names, &rows, &families).unwrap(), designs);
         assert!(read(&names, &rows, &[]).is_err());
     }
@@ -375,15 +395,19 @@ mod tests {
             design("many", vec![("depths", depths(12)), ("points", points)]),
             design("none", vec![("depths", depths(0))]),
         ];
-        let [names, rows] = write(&designs).unwrap();
-        assert_eq!(rows.rows(), designs.iter().map(|design| rows_of(&design.elements[0])).sum::<usize>());
         let families = [Member { name: "curve", summary: "", fields: LISTS }];
+        let [names, rows] = write(&designs, &families).unwrap();
+        assert_eq!(rows.rows(), designs.iter().map(|design| rows_of(&design.elements[0])).sum::<usize>());
+        // Each depth is a length; how many there are is none.
+        let lengths = rows.texts("parameter").iter().zip(rows.texts("unit")).filter(|(_, unit)| *unit == "m");
+        assert!(lengths.clone().all(|(name, _)| name.starts_with("depths[")) && lengths.count() == 12);
         assert_eq!(read(&names, &rows, &families).unwrap(), designs);
     }
 
     #[test]
     fn what_no_row_holds_is_an_error_and_not_dropped() {
-        let refused = write(&[design("a", vec![("amount", entry(Value::Range(0.0, 1.0)))])]).unwrap_err().to_string();
+        let refused =
+            write(&[design("a", vec![("amount", entry(Value::Range(0.0, 1.0)))])], &[]).unwrap_err().to_string();
         let said = "design `a`, curve: no row of a table holds the value of `amount`";
         assert!(refused.contains(said), "{refused}");
     }

@@ -1,10 +1,11 @@
-//! What is said of transmission errors that the law of contact is in doubt about: once for all that is computed together, of the
-//! worst design.
+//! What is said of transmission errors that the law of contact is in doubt about: once for all of a stage, of the worst design
+//! and torque.
 //!
 //! Must not know: how large a doubt is, whose designs they are.
 
 use declare::units::in_unit;
 use gearmesh::gear::transmission_error::doubt::{Cause, Doubt};
+use studygraph::warning::Cases;
 
 /// A design under a torque, and what its number may be off by.
 #[derive(Clone, Debug)]
@@ -26,7 +27,7 @@ impl Doubted<'_> {
     }
 
     fn says(&self) -> String {
-        let Doubt { size, widest: [half, limit], cause, .. } = self.doubt;
+        let Doubt { size, position, widest: [half, limit], cause, .. } = self.doubt;
         let millimetres = |length: f64| in_unit(length, "mm");
         let reason = match cause {
             Cause::BaseCircle(side) => format!(
@@ -52,31 +53,33 @@ impl Doubted<'_> {
         } else {
             String::new()
         };
-        let range = if self.peak_to_peak > 0.0 {
-            format!(" and {:.2} % of the peak-to-peak", 100.0 * size / self.peak_to_peak)
-        } else {
-            String::new()
-        };
         format!(
-            "design `{}` at {} N m: {reason}{beyond}; the transmission error may be off by {:.3} um, {:.2} % of the approach{range}",
+            "design `{}` at {} N m: {reason}{beyond}; the transmission error may be off by {:.3} um, {:.2} % of the \
+             approach{}, {:.3} mm into the mesh cycle",
             self.design,
             self.torque,
             in_unit(size, "um"),
             100.0 * self.share(),
+            self.of_peak_to_peak(" and"),
+            millimetres(position),
         )
     }
-}
 
-/// What is to be said of all of them; nothing where no doubt matters.
-#[must_use]
-pub fn sentence<'a>(all: impl IntoIterator<Item = Doubted<'a>>) -> Option<String> {
-    let mattering: Vec<Doubted> = all.into_iter().filter(|doubted| doubted.doubt.matters()).collect();
-    // Of equal ones the first, so that the order of the tasks says which.
-    let worst = mattering.iter().reduce(|worst, next| if next.share() > worst.share() { next } else { worst })?;
-    let others = match mattering.len() - 1 {
-        0 => String::new(),
-        1 => "; one other design and torque is in doubt, less so".to_owned(),
-        count => format!("; {count} other designs and torques are in doubt, less so"),
-    };
-    Some(worst.says() + &others)
+    fn of_peak_to_peak(&self, before: &str) -> String {
+        if self.peak_to_peak > 0.0 {
+            format!("{before} {:.2} % of the peak-to-peak", 100.0 * self.doubt.size / self.peak_to_peak)
+        } else {
+            String::new()
+        }
+    }
+
+    /// What is said of it among all of a stage; nothing where the doubt does not matter.
+    #[must_use]
+    pub fn told(&self) -> Option<Cases> {
+        let Self { design, torque, doubt, .. } = self;
+        let size = in_unit(doubt.size, "um");
+        let most = format!("{size:.3} um{} with `{design}` at {torque} N m", self.of_peak_to_peak(","));
+        let case = Cases::one("law of contact", design, (*torque, "N m"), (self.share(), self.says()));
+        doubt.matters().then(|| case.with_most(size, most))
+    }
 }

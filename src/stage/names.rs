@@ -79,6 +79,7 @@ tables! {
         FAMILY = "family",
         PARAMETER = "parameter",
         VALUE = "value",
+        UNIT = "unit",
         WORD = "word",
     }
     root_influences of "stiffness": "root_influences" {

@@ -9,6 +9,7 @@ mod bad;
 mod calculix;
 mod desk;
 mod determinism;
+mod documented;
 mod e2e;
 mod estimates;
 mod export;

@@ -18,6 +18,18 @@ fn interpreter() -> Option<PathBuf> {
 
 /// Runs a script, which must end well; what it prints.
 pub fn run(script: &str, arguments: &[&OsStr]) -> Option<String> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let file = root.join("tests/python").join(script);
+    let all: Vec<&OsStr> = std::iter::once(file.as_os_str()).chain(arguments.iter().copied()).collect();
+    started(script, &all, root)
+}
+
+/// Runs a few lines in a folder.
+pub fn run_lines(name: &str, lines: &str, folder: &Path) -> Option<String> {
+    started(name, &[OsStr::new("-c"), OsStr::new(lines)], folder)
+}
+
+fn started(script: &str, arguments: &[&OsStr], folder: &Path) -> Option<String> {
     let Some(python) = interpreter() else {
         // Past the capture of a test that passes: nobody shall take this for a check that was made.
         let line =
@@ -25,11 +37,9 @@ pub fn run(script: &str, arguments: &[&OsStr]) -> Option<String> {
         std::io::stderr().write_all(line.as_bytes()).unwrap();
         return None;
     };
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let output = Command::new(&python)
-        .arg(root.join("tests/python").join(script))
         .args(arguments)
-        .current_dir(root)
+        .current_dir(folder)
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .output()
         .unwrap_or_else(|error| panic!("{}: {error}", python.display()));

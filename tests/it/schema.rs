@@ -1,7 +1,10 @@
 //! The schema that editors read, `schemas/study.schema.json`, is the one the program prints.
 
 use std::fs;
+use std::io::Write;
 use std::path::Path;
+
+use serde_json::Value;
 
 use crate::python;
 use gearstudy::stage::kinds::KINDS;
@@ -19,4 +22,118 @@ fn the_schema_in_the_repository_is_up_to_date() {
 #[test]
 fn another_validator_accepts_the_studies_and_refuses_mistakes() {
     python::run("schema.py", &[]);
+}
+
+/// What an editor has of a schema: walked as JSON, by the names that an editor looks for.
+struct Walk {
+    faults: Vec<String>,
+    fields: usize,
+    patterns: usize,
+}
+
+impl Walk {
+    fn all(root: &Value) -> Self {
+        let mut walk = Self { faults: Vec::new(), fields: 0, patterns: 0 };
+        walk.schema(root, "");
+        walk
+    }
+
+    fn check(&mut self, holds: bool, place: &str, what: &str) {
+        if !holds {
+            self.faults.push(format!("{place}: {what}"));
+        }
+    }
+
+    fn schema(&mut self, schema: &Value, place: &str) {
+        let Some(object) = schema.as_object() else { return };
+        let text = |name: &str| schema[name].as_str().unwrap_or_default();
+        if object.contains_key("pattern") {
+            self.patterns += 1;
+            let message = text("patternErrorMessage");
+            self.check(message.len() > 20 && !message.contains('^'), place, "a pattern without words");
+        }
+        for (name, inner) in object {
+            match (name.as_str(), inner) {
+                ("properties", Value::Object(fields)) => {
+                    for (field, inner) in fields {
+                        self.field(inner, &format!("{place}/{field}"));
+                    }
+                }
+                ("$defs", Value::Object(definitions)) => {
+                    for (name, inner) in definitions {
+                        self.schema(inner, &format!("{place}/{name}"));
+                    }
+                }
+                ("anyOf" | "oneOf" | "allOf", Value::Array(ways)) => {
+                    ways.iter().for_each(|way| self.schema(way, place));
+                }
+                // A condition tells kinds apart; what it leads to is a definition.
+                ("items" | "additionalProperties" | "propertyNames", inner) => self.schema(inner, place),
+                _ => {}
+            }
+        }
+    }
+
+    fn field(&mut self, field: &Value, place: &str) {
+        self.fields += 1;
+        let text = |name: &str| field[name].as_str().unwrap_or_default();
+        let title = text("title");
+        self.check(title.starts_with(char::is_uppercase) && !title.contains('_'), place, "no title");
+        self.check(text("description").len() > 3, place, "no description");
+        self.check(offers(field), place, "nothing is offered: neither words, examples nor a default");
+        self.schema(field, place);
+    }
+}
+
+/// Whether there is something to take: what is known to an editor of the value, or of the values below.
+fn offers(schema: &Value) -> bool {
+    let has = |name: &str| schema.get(name).is_some();
+    let below = |name: &str| schema[name].as_array().into_iter().flatten().any(offers);
+    has("default")
+        || has("examples")
+        || has("const")
+        || has("$ref")
+        || schema["type"] == "boolean"
+        || is_mapping(&schema["type"])
+        || below("anyOf")
+        || below("oneOf")
+        || offers_items(schema)
+}
+
+/// Fields are offered there.
+fn is_mapping(kind: &Value) -> bool {
+    kind == "object" || kind.as_array().is_some_and(|kinds| kinds.iter().any(|kind| kind == "object"))
+}
+
+fn offers_items(schema: &Value) -> bool {
+    schema.get("items").is_some_and(offers)
+}
+
+#[test]
+fn an_editor_finds_a_title_words_for_patterns_and_something_to_take_in_every_field() {
+    let schema = studygraph::study::schema::schema(KINDS);
+    let walk = Walk::all(&schema);
+    assert_eq!(walk.faults, Vec::<String>::new());
+    assert!(walk.fields > 200 && walk.patterns > 100, "{} fields, {} patterns", walk.fields, walk.patterns);
+    // It does find what is not there.
+    let mut poorer = schema;
+    let pinion = &mut poorer["$defs"]["kind_geometry"]["properties"]["module"];
+    for name in ["title", "examples", "patternErrorMessage"] {
+        assert!(pinion.as_object_mut().unwrap().remove(name).is_some(), "{name}");
+    }
+    assert_eq!(Walk::all(&poorer).faults.len(), 3);
+}
+
+/// The server that most editors have for YAML: what it says with the schema, and what it offers.
+#[test]
+fn the_yaml_language_server_finds_mistakes_and_speaks_in_words() {
+    let server = Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join(".venv/node/node_modules/yaml-language-server/bin/yaml-language-server");
+    if !server.exists() {
+        let line =
+            "\nSKIPPED: yaml_language_server.py: no yaml-language-server; `make setup` installs it where npm is\n";
+        std::io::stderr().write_all(line.as_bytes()).unwrap();
+        return;
+    }
+    python::run("yaml_language_server.py", &[server.as_os_str()]);
 }

@@ -60,6 +60,8 @@ with h5py.File(results / f"{manifest['study']}.h5", "r") as file:
         group = file[stage][table_name]
         metadata = {key.decode(): value.decode() for key, value in arrow.schema.metadata.items()}
         assert metadata["table"] == table_name and metadata["description"] == schema["description"], name
+        attrs = json.loads(metadata["PANDAS_ATTRS"])
+        assert attrs == {"table": table_name, "units": {one["name"]: one["unit"] for one in columns if one["unit"]}}, name
         assert group.attrs["description"] == schema["description"], name
         names = [column["name"] for column in columns]
         assert arrow.column_names == names and list(group.attrs["columns"]) == names, name

@@ -2,7 +2,9 @@
 
 import copy
 import json
+import math
 import pathlib
+import re
 
 import jsonschema
 import yaml
@@ -44,3 +46,78 @@ mistakes = {
 for name, change in mistakes.items():
     assert not validator.is_valid(spoilt(change)), f"accepted: {name}"
 print(f"{len(studies)} studies, {len(mistakes)} mistakes")
+
+# Examples and defaults of every field, by the field's own schema; and of the size that studies have.
+UNITS = {
+    "m": 1, "cm": 1e-2, "mm": 1e-3, "um": 1e-6, "nm": 1e-9, "deg": math.pi / 180, "rad": 1, "mrad": 1e-3, "N": 1, "kN": 1e3,
+    "N m": 1, "N mm": 1e-3, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "N/(mm um)": 1e9, "s": 1, "%": 1e-2, "": 1,
+}
+TREE = "https://json-schema.org/draft/2020-12/schema"
+
+
+def size(text):
+    """A number with a unit, by itself; None for what is no number."""
+    found = re.fullmatch(r"([+-]?[0-9.]+(?:[eE][+-]?[0-9]+)?) *(.*)", str(text))
+    return float(found[1]) * UNITS[found[2]] if found and found[2] in UNITS else None
+
+
+def has_unit(text):
+    return " " in str(text) and "%" not in str(text)
+
+
+def schemas(one):
+    """All schemas inside one, without following references."""
+    if isinstance(one, dict):
+        yield one
+    for inner in one.values() if isinstance(one, dict) else one if isinstance(one, list) else []:
+        yield from schemas(inner)
+
+
+def fields(one):
+    for inner in schemas(one):
+        if isinstance(inner.get("properties"), dict):
+            yield from inner["properties"].items()
+
+
+def on_its_own(inner):
+    return jsonschema.Draft202012Validator({"$schema": TREE, "$defs": schema["$defs"], **inner})
+
+
+offered = 0
+sizes = {}
+for name, field in [*fields({"properties": schema["properties"]}), *fields(schema["$defs"])]:
+    for inner in [inner for inner in schemas(field) if inner is field or "properties" not in inner]:
+        for example in [*inner.get("examples", []), *([inner["default"]] if "default" in inner else [])]:
+            assert on_its_own(inner).is_valid(example), f"{name}: {example!r} is refused by its own field"
+            offered += 1
+        if "default" not in field:
+            for example in inner.get("examples", []):
+                if value := size(example):
+                    sizes.setdefault((name, has_unit(example)), set()).add(abs(value))
+
+said = {}
+
+
+def written(node, name=None):
+    if isinstance(node, dict):
+        for key, inner in node.items():
+            written(inner, name if key in ("from", "to") else key)
+    elif isinstance(node, list):
+        for inner in node:
+            written(inner, name)
+    elif not isinstance(node, bool) and (value := size(node)):
+        said.setdefault((name, has_unit(node)), []).append(abs(value))
+
+
+for path in studies:
+    written(yaml.safe_load(path.read_text())["stages"])
+sized = 0
+# Without fields whose numbers mean another thing in each place.
+ELSEWHERE = {"x", "y", "value", "values", "with", "any"}
+for name in sorted(name for name in sizes.keys() & said.keys() if name[0] not in ELSEWHERE):
+    examples = sizes[name]
+    far = min(abs(math.log10(example / value)) for example in examples for value in said[name])
+    assert far < math.log10(5), f"{name}: {examples} is not of the size that studies say, {min(said[name])} to {max(said[name])}"
+    sized += 1
+assert offered > 300 and sized > 25, (offered, sized)
+print(f"{offered} examples and defaults, {sized} of them beside those of studies")

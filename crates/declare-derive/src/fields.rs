@@ -175,6 +175,9 @@ pub fn declaration(field: &Field, marks: &Marks, ident: &Ident) -> Result<Declar
         (None, Some(_)) => declared = quote!(#declared.optional()),
         (None, None) => {}
     }
+    if let Some(text) = &marks.example {
+        declared = quote!(#declared.example(#text));
+    }
     if marks.range {
         declared = quote!(#declared.range());
     }

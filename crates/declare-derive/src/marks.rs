@@ -12,6 +12,8 @@ pub struct Marks {
     maximum: Option<Expr>,
     pub dimension: Option<Expr>,
     pub default: Option<LitStr>,
+    /// What a study might say.
+    pub example: Option<LitStr>,
     pub axis: Option<Expr>,
     pub multiple: Option<Expr>,
     /// Of which kinds the stage is that is named.
@@ -38,6 +40,7 @@ impl Marks {
                     "maximum" => marks.maximum = Some(meta.value()?.parse()?),
                     "dimension" => marks.dimension = Some(meta.value()?.parse()?),
                     "default" => marks.default = Some(meta.value()?.parse()?),
+                    "example" => marks.example = Some(meta.value()?.parse()?),
                     "axis" => marks.axis = Some(meta.value()?.parse()?),
                     "multiple" => marks.multiple = Some(meta.value()?.parse()?),
                     "kinds" => {
@@ -54,8 +57,8 @@ impl Marks {
                     "flatten" => marks.flatten = true,
                     _ => {
                         return Err(meta.error(
-                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `axis`, `range`, \
-                             `chooses`, `kinds`, `overrides`, `varies`, `name` or `flatten`",
+                            "it is `minimum`, `maximum`, `multiple`, `dimension`, `default`, `example`, `axis`, \
+                             `range`, `chooses`, `kinds`, `overrides`, `varies`, `name` or `flatten`",
                         ));
                     }
                 }

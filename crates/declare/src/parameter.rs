@@ -96,6 +96,8 @@ pub struct Field {
     pub chooses: bool,
     /// One sentence with the symbol and the unit.
     pub summary: &'static str,
+    /// What a study might say, of the size that is usual; where there is a default, that is one.
+    pub example: Option<&'static str>,
 }
 
 /// How many fields are in several tables together.
@@ -130,7 +132,7 @@ pub const fn joined<const N: usize>(tables: &[&[Field]]) -> [Field; N] {
 impl Field {
     #[must_use]
     pub const fn new(name: &'static str, shape: Shape, summary: &'static str) -> Self {
-        Self { name, shape, presence: Presence::Required, span: Span::Single, chooses: false, summary }
+        Self { name, shape, presence: Presence::Required, span: Span::Single, chooses: false, summary, example: None }
     }
 
     /// A quantity inside `minimum..=maximum` (SI).
@@ -189,6 +191,13 @@ impl Field {
     #[must_use]
     pub const fn default(mut self, text: &'static str) -> Self {
         self.presence = Presence::Default(text);
+        self
+    }
+
+    /// What a study might say, written as in one.
+    #[must_use]
+    pub const fn example(mut self, text: &'static str) -> Self {
+        self.example = Some(text);
         self
     }
 

@@ -46,6 +46,14 @@ impl Dimension {
         )
     }
 
+    /// The unit in which a value is what it is in SI; empty for a plain number.
+    #[must_use]
+    pub fn si(self) -> &'static str {
+        let is_it =
+            |unit: &&str| in_unit(1.0, unit) == 1.0 && parse_unit(unit).is_ok_and(|unit| unit.dimension == self);
+        self.describe().1.iter().copied().chain(symbols()).find(is_it).unwrap_or_default()
+    }
+
     /// The name of the dimension and units a user may write, for messages.
     #[must_use]
     pub fn describe(self) -> (&'static str, &'static [&'static str]) {

@@ -13,3 +13,4 @@ pub mod stage;
 pub mod store;
 pub mod study;
 pub mod table;
+pub mod warning;

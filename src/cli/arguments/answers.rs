@@ -33,6 +33,10 @@ pub enum Telling {
 pub enum Format {
     Pretty,
     Csv,
+    /// CSV that Excel opens by a double click: in UTF-8 with its mark, where numbers have a decimal point
+    Excel,
+    /// The same where numbers have a decimal comma: cells parted by semicolons
+    ExcelComma,
     Json,
     Markdown,
 }

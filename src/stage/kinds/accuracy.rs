@@ -18,6 +18,7 @@ use declare::units::RATIO;
 use quantity::Quantity;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
+use studygraph::warning::Warning;
 use trial::{Plan, Trial};
 use variant::Variant;
 
@@ -45,6 +46,7 @@ struct Stated {
     #[declared(kinds = [])]
     pub of: String,
     /// Columns of its tables, `table.column` or `table[key=value, …].column`; of several rows the worst one counts.
+    #[declared(example = "summary.peak_to_peak")]
     pub quantities: Vec<Placed<String>>,
     /// The settings that count as converged.
     #[declared(overrides = Stated::NAMES.of)]
@@ -53,6 +55,7 @@ struct Stated {
     #[declared(overrides = Stated::NAMES.of)]
     pub ladders: Vec<(String, Vec<record::Variant>)>,
     /// A column of its tables that counts its work; of several rows the sum counts.
+    #[declared(example = "summary.evaluations")]
     pub evaluations: Option<Placed<String>>,
     /// How often each run of a ladder is repeated; the median time counts.
     #[declared(minimum = 1, maximum = 1000, default = "3")]
@@ -194,7 +197,7 @@ impl Stage for Accuracy {
             let (reached, share) = (done as f64 / total, runs((index, variant)) as f64 / total);
             let progress = |part: f64| (context.progress)((reached + share * part).min(1.0));
             // What a coarse setting warns of is in the ladder's own columns.
-            let warn: &(dyn Fn(String) + Sync) = if index == 0 { context.warn } else { &|_| () };
+            let warn: &(dyn Fn(Warning) + Sync) = if index == 0 { context.warn } else { &|_| () };
             let inner = Context { demand: &demand, progress: &progress, warn, ..*context };
             let asked = (self.quantities.as_slice(), self.evaluations.as_ref());
             trials.push(trial::run(variant, plan(index), asked, &inner, &inputs)?);

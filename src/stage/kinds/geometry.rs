@@ -55,7 +55,7 @@ gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
 #[derive(Debug, Declared)]
 struct Stated {
     /// Module m.
-    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH)]
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, example = "3 mm")]
     pub module: f64,
     /// Pressure angle α of the basic rack.
     #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, default = "20 deg")]
@@ -71,7 +71,7 @@ struct Stated {
     /// The mating gear; without it the pinion is a gear alone, to be drawn.
     pub gear: Option<StatedGear>,
     /// Centre distance a_w; zero backlash when it is not given.
-    #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH)]
+    #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH, example = "90 mm")]
     pub centre_distance: Option<f64>,
     /// The full profiles, as the tables `outline`, `junctions`, `validity` and `mesh_drawing` have them.
     #[declared(default = "{}")]
@@ -82,22 +82,22 @@ struct Stated {
 #[derive(Debug, Declared)]
 struct StatedGear {
     /// Number of teeth z.
-    #[declared(minimum = 4, maximum = 10_000)]
+    #[declared(minimum = 4, maximum = 10_000, example = "24")]
     pub teeth: u32,
     /// Face width b.
-    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH)]
+    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, example = "20 mm")]
     pub face_width: f64,
     /// Radius of the bore, where the body is clamped.
-    #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH)]
+    #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
     pub bore_radius: f64,
     /// Profile shift coefficient x.
     #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
     pub profile_shift: f64,
     /// Tip radius r_a, when it is not m(z/2 + h_aP* + x).
-    #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH)]
+    #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH, example = "39 mm")]
     pub tip_radius: Option<f64>,
     /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
-    #[declared(minimum = -1.0, maximum = 1.0)]
+    #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
     pub tip_shortening: Option<f64>,
     /// Root of this gear's teeth in its outline, when it is not the common one.
     pub root: Option<Box<dyn Root>>,
@@ -122,7 +122,7 @@ struct StatedOutline {
     #[declared(minimum = 8, maximum = 100_000, default = "200")]
     pub points: usize,
     /// How far a chord may lie from its curve; adds points.
-    #[declared(minimum = 1e-10, maximum = 1e-2, dimension = LENGTH)]
+    #[declared(minimum = 1e-10, maximum = 1e-2, dimension = LENGTH, example = "1 um")]
     pub chord_error: Option<f64>,
     /// How many teeth the table `outline` has.
     #[declared(default = "one")]
@@ -339,7 +339,7 @@ impl Stage for Geometry {
         };
         for (drawn, mating) in mated.iter().filter_map(|(drawn, mate)| Some((drawn, mate.as_ref()?.1))) {
             for text in valid::warnings(drawn, &mating) {
-                (context.warn)(text);
+                (context.warn)(text.into());
             }
         }
         for schema in schemas {

@@ -14,7 +14,7 @@ use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::modification::Design;
+use gearmesh::gear::modification::{self, Design};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
@@ -194,7 +194,7 @@ impl Stage for Modification {
             }
         }
         let failed = |error: TableError| Failure::new(error.to_string());
-        let mut tables = Vec::from(designs::write(&self.designs).map_err(failed)?);
+        let mut tables = Vec::from(designs::write(&self.designs, modification::members()).map_err(failed)?);
         tables.push(resolved().table(&rows).map_err(failed)?);
         if context.demand.table(PARAMETERS) {
             tables.push(parameters().table(&parameter_rows(&rows)).map_err(failed)?);

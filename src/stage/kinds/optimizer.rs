@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
-use crate::stage::doubts::{self, Doubted};
+use crate::stage::doubts::Doubted;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names};
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
@@ -17,8 +17,8 @@ use declare::record::{Record, Value};
 use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::modification::Design;
 use gearmesh::gear::modification::template::{Template, Variable};
+use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
@@ -27,6 +27,7 @@ use gearmesh::optimize::{self, Method};
 use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
+use studygraph::warning::Warning;
 
 const EVALUATIONS: &str = "evaluations";
 
@@ -75,7 +76,7 @@ struct Stated {
     #[declared(flatten)]
     pub slices: Slices,
     /// Wanted relative accuracy of the objective at the design that is found; sets positions and slices.
-    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     #[declared(flatten)]
     pub contact: Contact,
@@ -85,7 +86,7 @@ struct Stated {
 #[derive(Debug, Declared)]
 struct Loads {
     /// Torque on the pinion, one or several.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX)]
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX, example = "100 N m")]
     pub torque: Vec<f64>,
     /// What counts when there are several.
     #[declared(default = "worst")]
@@ -344,14 +345,19 @@ impl Optimizer {
         elements
     }
 
-    /// What the law of contact may be off by at the design that was found.
-    fn doubt(&self, design: &Design, cycle: &MeshCycle) -> Option<String> {
-        let doubted = self.stated.at.torque.iter().filter_map(|&torque| {
+    /// Says what the law of contact may be off by at the design that was found.
+    fn warn(&self, context: &Context, design: &Design, cycle: &MeshCycle) {
+        for &torque in &self.stated.at.torque {
             let loading = LoadCase::new(cycle, design, torque);
-            let doubt = loading.contact_doubt()?;
-            Some(Doubted { design: &self.stated.name, torque, doubt, peak_to_peak: loading.peak_to_peak() })
-        });
-        doubts::sentence(doubted)
+            let doubted = loading.contact_doubt().map(|doubt| {
+                let peak_to_peak = loading.peak_to_peak();
+                Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }
+            });
+            doubted
+                .and_then(|doubted| doubted.told())
+                .into_iter()
+                .for_each(|case| (context.warn)(Warning::Cases(case)));
+        }
     }
 
     fn tables(
@@ -373,15 +379,13 @@ impl Optimizer {
             .map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak())
             .fold(0.0, f64::max);
         let row = BestRow { name: &self.stated.name, found, best, peak_to_peak };
-        if let Some(sentence) = self.doubt(&design, cycle) {
-            (context.warn)(sentence);
-        }
+        self.warn(context, &design, cycle);
         let design = NamedDesign { name: self.stated.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
             self.history().table_of(&(1..).zip(search.history().iter().copied())).map_err(failed)?,
         ];
-        tables.extend(designs::write(&[design]).map_err(failed)?);
+        tables.extend(designs::write(&[design], modification::members()).map_err(failed)?);
         Ok(tables)
     }
 }
@@ -429,13 +433,13 @@ impl Stage for Optimizer {
             let next = sampling::finer(settings, self.settings_for(&base, &pair, &best.point, accuracy));
             if round == ROUNDS || next == settings {
                 let reached = found.error;
-                (context.warn)(format!("the objective is accurate to {reached:.1e}, not to {accuracy:.1e}"));
+                (context.warn)(format!("the objective is accurate to {reached:.1e}, not to {accuracy:.1e}").into());
                 break found;
             }
             (settings, round) = (next, round + 1);
         };
         if let Some(doubt) = found.search.doubt() {
-            (context.warn)(doubt.to_owned());
+            (context.warn)(doubt.to_owned().into());
         }
         let mut tables = self.tables(context, &found, &pair, &base.sampled(found.settings))?;
         if context.demand.table(EVALUATIONS) {

@@ -247,14 +247,17 @@ impl Stage for RootOptimizer {
             Ok(told)
         })?;
         if let Some(doubt) = search.doubt() {
-            (context.warn)(doubt.to_owned());
+            (context.warn)(doubt.to_owned().into());
         }
         let best = search.best().ok_or_else(|| Failure::new("none of the roots that were tried can be built"))?;
         if best.violation > 0.0 {
-            (context.warn)(format!(
-                "no root that was tried keeps the constraints; the one given breaks them by {:.3e} modules in all",
-                best.violation
-            ));
+            (context.warn)(
+                format!(
+                    "no root that was tried keeps the constraints; the one given breaks them by {:.3e} modules in all",
+                    best.violation
+                )
+                .into(),
+            );
         }
         let mut tables = self
             .tables(problem.as_ref(), best, reason, &tried, pair.side(self.side()))

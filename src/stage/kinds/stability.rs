@@ -98,49 +98,49 @@ enum Coupling {
 #[derive(Debug, Declared)]
 struct Values {
     /// Torque on the pinion.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX)]
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX, example = "50 N m")]
     pub torque: Option<Vec<f64>>,
     /// E of both gears.
-    #[declared(minimum = 1.0, maximum = 1e15, dimension = STRESS, axis = usize::MAX)]
+    #[declared(minimum = 1.0, maximum = 1e15, dimension = STRESS, axis = usize::MAX, example = "206 GPa")]
     pub youngs_modulus: Option<Vec<f64>>,
     /// E of the pinion over E of the gear.
-    #[declared(minimum = 1e-12, maximum = 1e12, axis = usize::MAX)]
+    #[declared(minimum = 1e-12, maximum = 1e12, axis = usize::MAX, example = "1")]
     pub stiffness_ratio: Option<Vec<f64>>,
     /// Module, all lengths with it.
-    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, axis = usize::MAX)]
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, axis = usize::MAX, example = "3 mm")]
     pub module: Option<Vec<f64>>,
     /// Teeth of the pinion.
-    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX)]
+    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX, example = "24")]
     pub pinion_teeth: Option<Vec<f64>>,
     /// Teeth of the gear.
-    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX)]
+    #[declared(minimum = 4.0, maximum = 10_000.0, axis = usize::MAX, example = "36")]
     pub gear_teeth: Option<Vec<f64>>,
     /// Profile shift coefficient of the pinion.
-    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX)]
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2")]
     pub pinion_shift: Option<Vec<f64>>,
     /// Profile shift coefficient of the gear.
-    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX)]
+    #[declared(minimum = -2.0, maximum = 3.0, axis = usize::MAX, example = "0.2")]
     pub gear_shift: Option<Vec<f64>>,
     /// Pressure angle of the basic rack.
-    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, axis = usize::MAX)]
+    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, axis = usize::MAX, example = "20 deg")]
     pub pressure_angle: Option<Vec<f64>>,
     /// Face width of both gears.
-    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, axis = usize::MAX)]
+    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, axis = usize::MAX, example = "20 mm")]
     pub face_width: Option<Vec<f64>>,
     /// Depth of the tip relief.
-    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX)]
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX, example = "12 um")]
     pub relief: Option<Vec<f64>>,
     /// Roll length of the tip relief.
-    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, axis = usize::MAX)]
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = LENGTH, axis = usize::MAX, example = "4 mm")]
     pub relief_length: Option<Vec<f64>>,
     /// Lead crowning.
-    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX)]
+    #[declared(minimum = 0.0, maximum = 5e-3, dimension = LENGTH, axis = usize::MAX, example = "4 um")]
     pub crowning: Option<Vec<f64>>,
     /// Bore radius over root radius of both gears.
-    #[declared(minimum = 1e-3, maximum = 1.0, axis = usize::MAX)]
+    #[declared(minimum = 1e-3, maximum = 1.0, axis = usize::MAX, example = "0.5")]
     pub bore: Option<Vec<f64>>,
     /// Contact ratio, by the addendum of the rack.
-    #[declared(minimum = 0.5, maximum = 4.0, axis = usize::MAX)]
+    #[declared(minimum = 0.5, maximum = 4.0, axis = usize::MAX, example = "1.6")]
     pub contact_ratio: Option<Vec<f64>>,
 }
 

@@ -17,7 +17,7 @@ use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
 use self::tables::{Found, Keyed, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::common::{Contact, Slices};
-use crate::stage::doubts::{self, Doubted};
+use crate::stage::doubts::Doubted;
 use crate::stage::names::{self, summary};
 use crate::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
@@ -42,6 +42,7 @@ use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
 use studygraph::stage::steps::Steps;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
+use studygraph::warning::{Cases, Warning};
 
 pub const KIND: Kind = Kind {
     name: "ste",
@@ -68,10 +69,10 @@ struct Ste {
     #[declared(kinds = ["modification", "optimizer"])]
     pub designs: Vec<Placed<String>>,
     /// Torque on the pinion.
-    #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1)]
+    #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1, example = "100 N m")]
     pub torque: Vec<f64>,
     /// Wanted relative accuracy of the peak-to-peak; sets positions and slices.
-    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     #[declared(minimum = 8, maximum = 100_000, default = "64")]
@@ -191,32 +192,37 @@ impl Ste {
     fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
         for (name, torque, answer) in answers {
             let (largest, reached) = (answer.summary.largest.value, answer.error);
+            let tell = |about: &str, size: f64, what: String| {
+                let sentence = format!("design `{name}` at {torque} N m: {what}");
+                (context.warn)(Warning::Cases(Cases::one(about, name, (*torque, "N m"), (size, sentence))));
+            };
             if largest > LARGE_APPROACH * module {
-                (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the \
-                     module of {:.6} mm; teeth that bend so far are no longer linear, and the numbers are those of a linear \
-                     model",
-                    largest * 1e3,
-                    module * 1e3,
-                ));
+                tell(
+                    "approach",
+                    largest,
+                    format!(
+                        "the gears approach by {:.6} mm, more than {LARGE_APPROACH} of the module of {:.6} mm; teeth that bend \
+                         so far are no longer linear, and the numbers are those of a linear model",
+                        largest * 1e3,
+                        module * 1e3,
+                    ),
+                );
             }
+            let accurate = format!("the peak-to-peak is accurate to {reached:.1e}");
             match self.accuracy {
-                Some(accuracy) if reached > accuracy => (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e}, not to {accuracy:.1e}"
-                )),
-                None if reached > POOR => (context.warn)(format!(
-                    "design `{name}` at {torque} N m: the peak-to-peak is accurate to {reached:.1e} only; take more \
-                     `slices` or `positions`, or ask for an `accuracy`"
-                )),
+                Some(accuracy) if reached > accuracy => {
+                    tell("accuracy", reached, format!("{accurate}, not to {accuracy:.1e}"));
+                }
+                None if reached > POOR => {
+                    let help = "take more `slices` or `positions`, or ask for an `accuracy`";
+                    tell("accuracy", reached, format!("{accurate} only; {help}"));
+                }
                 _ => (),
             }
-        }
-        let doubted = answers.iter().filter_map(|(design, torque, answer)| {
             let peak_to_peak = answer.summary.peak_to_peak;
-            answer.doubt.map(|doubt| Doubted { design, torque: *torque, doubt, peak_to_peak })
-        });
-        if let Some(sentence) = doubts::sentence(doubted) {
-            (context.warn)(sentence);
+            let doubted = answer.doubt.map(|doubt| Doubted { design: name, torque: *torque, doubt, peak_to_peak });
+            let told = doubted.and_then(|doubted| doubted.told());
+            told.into_iter().for_each(|case| (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`"))));
         }
     }
 }
@@ -228,10 +234,8 @@ fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {
             return f64::NAN;
         }
         nominal_root_stress(pair, side, 1.0).unwrap_or_else(|why| {
-            (context.warn)(format!(
-                "`{column}` is left empty: ISO 6336-3 does not hold for the {}: {why}",
-                side.name()
-            ));
+            let who = side.name();
+            (context.warn)(format!("`{column}` is left empty: ISO 6336-3 does not hold for the {who}: {why}").into());
             f64::NAN
         })
     };

@@ -65,11 +65,11 @@ struct Stiffness {
     #[declared(default = "body")]
     pub coupling: Coupling,
     /// Torque on the pinion for the mesh stiffness, which all but the linear contact depend on.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE)]
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, example = "100 N m")]
     pub torque: Option<f64>,
     /// Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that meet
     /// it.
-    #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO)]
+    #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
     /// Positions per base pitch; the ends of contact come on top.
     #[declared(minimum = 8, maximum = 100_000, default = "64")]
@@ -321,14 +321,14 @@ impl Stage for Stiffness {
         let seconds = began.elapsed().as_secs_f64();
         context.work.add(&work);
         for warning in warnings {
-            (context.warn)(warning);
+            (context.warn)(warning.into());
         }
         if let Some(accuracy) = self.accuracy.filter(|accuracy| error_estimate > *accuracy) {
             (context.warn)(format!(
                 "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
                  {accuracy:.1e}",
                 self.teeth.method.name()
-            ));
+            ).into());
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];

@@ -71,13 +71,16 @@ struct Stated {
     #[declared(varies = Stated::NAMES.of)]
     pub vary: Varied,
     /// Which rows are taken: a formula over the names of `vary` that is true there.
-    #[declared(name = "where")]
+    #[declared(name = "where", example = "relief < 20")]
     pub filter: Option<Placed<String>>,
     /// Columns of the stage's tables: `column` of its summary, `table.column` or `table[key=value, …].column`.
+    #[declared(example = "peak_to_peak")]
     pub outputs: Vec<Placed<String>>,
     /// The design that is meant, where the stage is given several.
+    #[declared(example = "long")]
     pub design: Option<Placed<String>>,
     /// Which of the outputs is to be small: for the table of the best rows; the first one when it is not said.
+    #[declared(example = "peak_to_peak")]
     pub minimize: Option<Placed<String>>,
     /// How many rows the table of the best has.
     #[declared(minimum = 1, maximum = 10_000, default = "20")]
@@ -323,7 +326,7 @@ impl Sweep {
         }
         let mut tables = vec![Table::from_rows(self.schema.clone(), Vec::new()).map_err(failed)?];
         if let Some(sentence) = tally.warning() {
-            (context.warn)(sentence);
+            (context.warn)(sentence.into());
         }
         tables.extend(tally.tables().map_err(failed)?);
         Ok(tables)

@@ -163,6 +163,12 @@ fn an_editor_is_offered_what_can_stand_there() {
     assert!(offered.contains(&"tip_relief".to_owned()), "{offered:?}");
     let offered = editor.offered(&marked("amount: 12 um, fraction: 1.0, curve: linear", "amount: 12 um, |"));
     assert!(offered.contains(&"length".to_owned()) && !offered.contains(&"gear".to_owned()), "{offered:?}");
+    // Quantities of the size of the field, with other units; behind a number its units.
+    assert_eq!(editor.offered(&marked("face_width: 20 mm", "face_width: |")), ["20 mm", "20000 um", "0.02 m"]);
+    assert_eq!(editor.offered(&marked("amount: 12 um", "amount: |"))[0], "12 um");
+    assert_eq!(editor.offered(&marked("amount: 12 um", "amount: 12.5 |")), ["mm", "um", "m"]);
+    assert_eq!(editor.offered(&marked("amount: 12 um", "amount: 12.5 u|")), ["mm", "um", "m"]);
+    assert_eq!(editor.offered(&marked("teeth: 24", "teeth: |")), ["24"]);
     // In a text that is no YAML there is nothing to offer, and nothing goes wrong.
     assert!(editor.offered("study: a\nstages: [{\n  |").is_empty());
 }
@@ -183,6 +189,7 @@ fn an_editor_is_told_what_stands_there_and_where_it_is_declared() {
         "{torque}"
     );
     assert!(hover("teeth: 24", "teeth: 2|4").contains("between 4 and 10000"));
+    assert!(hover("bore_radius: 18", "bore_|radius: 18").contains("for example `18 mm`"));
     assert!(hover("kind: ste", "kind: s|te").starts_with("ste: Static transmission error"));
     assert!(hover("- tip_relief", "- tip_|relief").starts_with("tip_relief: "));
     assert!(hover("method: energy", "method: en|ergy").starts_with("energy: "));

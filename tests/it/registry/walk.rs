@@ -13,6 +13,7 @@ use gearstudy::stage::{Context, Demand, Inputs, Stage};
 use studygraph::stage::estimate::{Ahead, Certainty, RowCount};
 use studygraph::study::Study;
 use studygraph::table::data::Table;
+use studygraph::warning;
 
 /// All tables of a stage, in its own order, and what it warned of.
 pub struct Ran {
@@ -128,8 +129,6 @@ fn run(seed: u64, name: &str, stage: &dyn Stage, inputs: &Inputs, demand: &Deman
     let given: Vec<_> = tables.iter().map(|table| table.schema().clone()).collect();
     assert_eq!(given, wanted, "`{name}` gives other tables than it was asked for");
     foreseen(name, stage, demand, inputs, &tables);
-    let mut warnings = warnings.into_inner().unwrap();
-    warnings.sort();
-    warnings.dedup();
+    let warnings = warning::sentences(warnings.into_inner().unwrap());
     Ran { tables, warnings }
 }

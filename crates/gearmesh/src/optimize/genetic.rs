@@ -51,7 +51,7 @@ pub struct Genetic {
     #[declared(minimum = 0, maximum = 100_000, default = "0")]
     pub elite: usize,
     /// ends after this many generations without improvement
-    #[declared(minimum = 1, maximum = 1_000_000)]
+    #[declared(minimum = 1, maximum = 1_000_000, example = "20")]
     pub converged_after: Option<usize>,
     /// share of the best value below which a gain is not an improvement
     #[declared(minimum = 0.0, maximum = 1.0, default = "0")]

@@ -22,6 +22,7 @@ use crate::store::entry::{CacheEntry, OfRun, StoredTable};
 use crate::store::journal::{Failed, Journal, JournalStage};
 use crate::study::Study;
 use crate::table::data::Table;
+use crate::warning;
 use declare::digest::Digest;
 use declare::error::Diagnostic;
 use declare::work::{Counter, Work};
@@ -249,6 +250,12 @@ impl<'a> Board<'a> {
             Step::Finish(tables) => {
                 progress.tables = tables;
                 progress.known.iter_mut().for_each(|known| known.tables.clear());
+                // Sentences by themselves were told as they came.
+                let cases =
+                    progress.of_runs().flat_map(|run| run.warnings.iter().filter(|one| one.is_of_cases()).cloned());
+                for message in &warning::sentences(cases) {
+                    self.observer.event(&Event::Warned { stage, message });
+                }
                 Event::Finished { stage, seconds: progress.seconds() }
             }
             Step::Fail(fault) => {
@@ -437,6 +444,12 @@ impl Progress {
     /// The work that was counted, of all parts that are known.
     pub fn work(&self, counters: &[&'static Counter]) -> Work {
         self.of_runs().fold(Work::NONE, |work, of_run| work.and(&Work::from_named(&of_run.work, counters)))
+    }
+
+    /// What its parts say of their results.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        warning::sentences(self.of_runs().flat_map(|run| run.warnings.iter().cloned()))
     }
 
     /// What is told of the parts that are known.

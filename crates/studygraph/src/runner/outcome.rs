@@ -70,9 +70,6 @@ impl Outcome {
         let stages = board.graph.order.iter().map(|&node| {
             let (progress, of_study) = (&board.nodes[node], &board.study.nodes[node]);
             let fault = progress.fault.as_ref().map(|(_, fault)| fault.clone());
-            let mut warnings: Vec<String> = progress.of_runs().flat_map(|run| run.warnings.iter().cloned()).collect();
-            warnings.sort();
-            warnings.dedup();
             let schema = |name: &str| board.graph.demanded[node].iter().find(|schema| schema.name == name).cloned();
             let tables = progress.tables.iter().filter_map(|table| Some((schema(&table.name)?, table.clone())));
             StageOutcome {
@@ -91,7 +88,7 @@ impl Outcome {
                 ran: progress.ran,
                 seconds: progress.seconds(),
                 work: progress.work(board.study.program.counters),
-                warnings,
+                warnings: progress.warnings(),
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
                 config: settings::shown(of_study.kind.fields, &of_study.record),

@@ -68,6 +68,7 @@ const fn axis(chunk: usize) -> Field {
         span: Span::Axis { chunk },
         chooses: false,
         summary: "",
+        example: Some("3"),
     }
 }
 
@@ -166,7 +167,7 @@ impl Stage for Probe {
             "counted" => value += f64::from(u32::try_from(count(self.record.text("counter"))).unwrap()),
             "seeded" => value += f64::from(context.seed.generator(0).next_u32()),
             "ignores_seed" => value += f64::from(context.seed.generator(1).next_u32()),
-            "warn" => (context.warn)("outside its range".to_owned()),
+            "warn" => (context.warn)("outside its range".to_owned().into()),
             "slow" => std::thread::sleep(Duration::from_millis(20)),
             "alone" => {
                 for _ in 0..10 {

@@ -23,6 +23,7 @@ use crate::store::entry::{OfRun, part};
 use crate::store::error::StoreError;
 use crate::table::data::Table;
 use crate::table::schema::{Column, Schema};
+use crate::warning::{self, Warning};
 use declare::digest::Digest;
 use declare::error::Failure;
 use declare::record::Record;
@@ -184,7 +185,10 @@ impl Run<'_> {
                 self.progressed(node, index, if share > NEARLY { NEARLY } else { share });
             },
             warn: &|message| {
-                self.observer.event(&Event::Warned { stage: name, message: &message });
+                // Cases are told when all are known.
+                if let Warning::Alone(message) = &message {
+                    self.observer.event(&Event::Warned { stage: name, message });
+                }
                 warnings.lock().unwrap_or_else(PoisonError::into_inner).push(message);
             },
             work: &work,
@@ -212,9 +216,7 @@ impl Run<'_> {
         self.progressed(node, index, 1.0);
         let tables = demanded(&outputs, &demand, tables)?;
         // Warnings of parallel loops come in any order.
-        let mut warnings = warnings.into_inner().unwrap_or_else(PoisonError::into_inner);
-        warnings.sort();
-        warnings.dedup();
+        let warnings = warning::gathered(warnings.into_inner().unwrap_or_else(PoisonError::into_inner));
         let of_run = OfRun { seconds, work: work.total().named(), warnings };
         let entry = self.cache.put(part.key, &tables.iter().collect::<Vec<_>>(), of_run)?;
         // Of a stage that cuts itself there may be more rows than memory holds.

@@ -15,6 +15,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
+use crate::warning::Warning;
 use declare::error::{Diagnostic, Failure, Place};
 use declare::parameter::Field;
 use declare::record::Record;
@@ -240,7 +241,7 @@ pub struct Context<'a> {
     /// Called with the share of the work that is done, 0 to 1.
     pub progress: &'a (dyn Fn(f64) + Sync),
     /// Called with something the user should know about the result (a formula outside its range, say).
-    pub warn: &'a (dyn Fn(String) + Sync),
+    pub warn: &'a (dyn Fn(Warning) + Sync),
     /// Where the work that is done is counted.
     pub work: &'a Tally,
 }

@@ -22,6 +22,7 @@ use super::error::StoreError;
 use super::parquet;
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Schema};
+use crate::warning::Warning;
 use declare::digest::{Digest, Writer};
 
 const MAGIC: &[u8; 18] = b"gearstudy entry 1\n";
@@ -47,7 +48,7 @@ pub struct OfRun {
     /// Work that was counted, by name; none in entries of earlier versions.
     #[serde(default)]
     pub work: BTreeMap<String, u64>,
-    pub warnings: Vec<String>,
+    pub warnings: Vec<Warning>,
 }
 
 /// One table of an entry.

@@ -1,7 +1,7 @@
 //! Tables as Parquet: one file holds the rows and everything the schema says about them.
 //!
 //! Unit, description, key, tolerance and flags are metadata of the fields, name and description of the table metadata
-//! of the schema, so pandas, Polars and DuckDB see them; reading back gives the identical table. The same table gives
+//! of the schema; units are also what pandas, Polars and DuckDB find them as (`PANDAS_ATTRS`). Reading back gives the identical table. The same table gives
 //! the same bytes: no time, no host, one row-group size, metadata in sorted order. Must not know: where files lie.
 
 use std::cell::Cell;
@@ -19,7 +19,9 @@ use parquet::arrow::ArrowWriter;
 use parquet::arrow::arrow_reader::ParquetRecordBatchReaderBuilder;
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::errors::ParquetError;
+use parquet::file::metadata::KeyValue;
 use parquet::file::properties::WriterProperties;
+use serde_json::{Map, Value, json};
 
 use super::error::StoreError;
 use crate::table::data::{Data, Table};
@@ -47,6 +49,8 @@ fn guarded<T>(work: impl FnOnce() -> Result<T, String>) -> Result<T, String> {
     })
 }
 
+/// The key of a file's metadata that pandas reads as `attrs`, in JSON.
+const ATTRS: &str = "PANDAS_ATTRS";
 const LEVEL: i32 = 3;
 /// Rows of a group, as the format suggests.
 const ROW_GROUP: usize = 1 << 20;
@@ -62,6 +66,8 @@ fn encode(table: &Table) -> Result<Vec<u8>, String> {
     let schema = Arc::new(arrow_schema(table.schema()));
     let level = ZstdLevel::try_new(LEVEL).map_err(failed)?;
     let properties = WriterProperties::builder().set_compression(Compression::ZSTD(level));
+    let attrs = KeyValue::new(ATTRS.to_owned(), attrs(table.schema()));
+    let properties = properties.set_key_value_metadata(Some(vec![attrs]));
     let properties = properties.set_max_row_group_row_count(Some(ROW_GROUP)).build();
     let mut bytes = Vec::new();
     let mut writer = ArrowWriter::try_new(&mut bytes, Arc::clone(&schema), Some(properties)).map_err(failed)?;
@@ -128,6 +134,13 @@ fn extend(data: &mut Data, array: &ArrayRef) -> Result<(), String> {
         }
     }
     Ok(())
+}
+
+/// The units of the columns that have one, for readers that pass over the metadata of fields.
+fn attrs(schema: &Schema) -> String {
+    let with_unit = schema.columns.iter().filter(|column| !column.unit.is_empty());
+    let units: Map<String, Value> = with_unit.map(|column| (column.name.clone(), json!(column.unit))).collect();
+    json!({ "table": schema.name, "units": units }).to_string()
 }
 
 fn arrow_schema(schema: &Schema) -> ArrowSchema {

@@ -27,15 +27,17 @@ pub const NAME_PATTERN: &str = "^[a-z0-9][a-z0-9_-]{0,63}$";
 static NUMBERS: Shape = Shape::Integer { minimum: 0, maximum: 9999, multiple: 1 };
 
 static SOURCE: &[Field] = &[
-    Field::new("paper", Shape::Text, "The paper, by the name under which the project keeps it."),
+    Field::new("paper", Shape::Text, "The paper, by the name under which the project keeps it.").example("mei2016"),
     Field::new("tables", Shape::List(&NUMBERS), "Numbers of the tables that are reproduced.").default("[]"),
     Field::new("figures", Shape::List(&NUMBERS), "Numbers of the figures that are reproduced.").default("[]"),
 ];
 
 /// The keys of a study besides `stages`.
 pub static KEYS: &[Field] = &[
-    Field::new("study", Shape::Text, "The study's name: the folder of its results."),
-    Field::new("title", Shape::Text, "One line that says what is studied.").optional(),
+    Field::new("study", Shape::Text, "The study's name: the folder of its results.").example("my-study"),
+    Field::new("title", Shape::Text, "One line that says what is studied.")
+        .optional()
+        .example("Tip relief for a torque range"),
     Field::group("source", SOURCE, "What the study reproduces.").optional(),
     Field::integer("seed", 0, i64::MAX, "Where all random numbers start.").default("0"),
     Field::new(
@@ -43,7 +45,8 @@ pub static KEYS: &[Field] = &[
         Shape::Map(&Shape::AnyQuantity),
         "By how much `gearstudy diff` lets columns differ: relative as a number, absolute with a unit.",
     )
-    .optional(),
+    .optional()
+    .example("0.01 um"),
 ];
 
 /// The key of a study under which paths are given other values.

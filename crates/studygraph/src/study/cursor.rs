@@ -11,6 +11,7 @@ use crate::program::Program;
 use crate::stage::Kind;
 use declare::error::Place;
 use declare::parameter::{Field, Member, Presence, Shape};
+use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
 
 /// What is known of a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -117,8 +118,37 @@ fn of(here: &Here, root: &Node, program: &Program) -> Vec<Offer> {
         Here::Stage(_) => Vec::new(),
         Here::Kind(_) => program.kinds.iter().map(|kind| offer(kind.name, kind.summary, kind.name)).collect(),
         Here::Member(members, _) => of_members(members),
-        Here::Value(_, shape, _) => of_shape(shape, root, program),
+        Here::Value(field, shape, node) => of_value(field, shape, node, root, program),
     }
+}
+
+fn of_value(field: &Field, shape: &'static Shape, node: &Node, root: &Node, program: &Program) -> Vec<Offer> {
+    match shape {
+        Shape::List(item) => of_value(field, item, node, root, program),
+        Shape::Quantity { dimension, .. } => of_quantity(field, *dimension, node),
+        Shape::Number { .. } | Shape::Integer { .. } | Shape::AnyQuantity | Shape::Text => {
+            words::example_of(field).into_iter().map(|text| offer(text, "for example", text)).collect()
+        }
+        _ => of_shape(shape, root, program),
+    }
+}
+
+/// The units of a number that stands there, or an example in each unit.
+fn of_quantity(field: &Field, dimension: Dimension, node: &Node) -> Vec<Offer> {
+    let units = dimension.describe().1;
+    let written = match &node.content {
+        Content::Scalar { text, .. } => text.trim_end_matches(WORD).trim_end(),
+        _ => "",
+    };
+    if written.parse::<f64>().is_ok() {
+        return units.iter().map(|unit| offer(unit, &format!("{written} {unit}"), unit)).collect();
+    }
+    let Some(example) = words::example_of(field) else { return Vec::new() };
+    let Ok(read) = parse_quantity(example) else { return Vec::new() };
+    let own = split_quantity(example).1;
+    let others = units.iter().filter(|unit| **unit != own && dimension != RATIO);
+    let others = others.map(|unit| format!("{} {unit}", words::number(in_unit(read.value, unit))));
+    std::iter::once(example.to_owned()).chain(others).map(|text| offer(&text, "for example", &text)).collect()
 }
 
 fn of_shape(shape: &'static Shape, root: &Node, program: &Program) -> Vec<Offer> {
@@ -135,10 +165,6 @@ fn of_shape(shape: &'static Shape, root: &Node, program: &Program) -> Vec<Offer>
         Shape::Flag => ["true", "false"].into_iter().map(|word| offer(word, "", word)).collect(),
         Shape::Member(members) => of_members(members()),
         Shape::List(item) => of_shape(item, root, program),
-        Shape::Quantity { dimension, minimum, maximum } => {
-            let example = words::example(*dimension, *minimum, *maximum);
-            example.into_iter().map(|text| offer(&text, "for example", &text)).collect()
-        }
         _ => Vec::new(),
     }
 }

@@ -3,13 +3,11 @@
 //! Must not know: which kinds there are.
 
 use super::decode::Decoder;
-use super::document::nothing;
+use super::document::{Node, nothing, parse};
 use super::overrides::Stages;
-use super::words::example;
 use crate::stage::Kind;
 use declare::error::Place;
 use declare::parameter::{Field, Presence, Shape};
-use declare::units::RATIO;
 
 /// Every field that no study could give, or whose default cannot be read, a sentence each.
 #[must_use]
@@ -58,19 +56,41 @@ fn fault(field: &'static Field) -> Option<String> {
     if field.summary.len() < 4 {
         return Some("it says nothing of itself".to_owned());
     }
-    if let Shape::Quantity { dimension, minimum, maximum } = field.shape {
-        if minimum >= maximum {
-            return Some(format!("{minimum} is not below {maximum}"));
-        }
-        if dimension != RATIO && example(dimension, minimum, maximum).is_none() {
-            return Some("it has no example".to_owned());
-        }
+    if let Shape::Quantity { minimum, maximum, .. } = field.shape
+        && minimum >= maximum
+    {
+        return Some(format!("{minimum} is not below {maximum}"));
     }
+    let (fields, place) = (std::slice::from_ref(field), Place::default());
+    let read = |node: &Node, what: &str| {
+        let read = Decoder::new("", Stages::default()).record(node, fields, &[], what, place);
+        read.err().map(|error| format!("{what}: {}", error.message))
+    };
     if matches!(field.presence, Presence::Default(_)) {
-        let fields = std::slice::from_ref(field);
-        let place = Place::default();
-        let read = Decoder::new("", Stages::default()).record(&nothing(place), fields, &[], "the default", place);
-        return read.err().map(|error| error.message);
+        if let Some(fault) = read(&nothing(place), "the default") {
+            return Some(fault);
+        }
+    } else if field.example.is_none() && is_written_freely(&field.shape) {
+        return Some("it has neither a default nor an example".to_owned());
     }
-    None
+    let example = field.example?;
+    let given = match field.shape {
+        Shape::Map(_) => format!("{}:\n  any: {example}", field.name),
+        _ => format!("{}: {example}", field.name),
+    };
+    match parse(&given) {
+        Ok(Some(node)) => read(&node, "the example"),
+        _ => Some("its example is no YAML".to_owned()),
+    }
+}
+
+/// Whether a value has no words to choose from, and is no name of a stage.
+fn is_written_freely(shape: &Shape) -> bool {
+    match shape {
+        Shape::Quantity { .. } | Shape::AnyQuantity | Shape::Number { .. } | Shape::Integer { .. } | Shape::Text => {
+            true
+        }
+        Shape::List(item) | Shape::Map(item) => is_written_freely(item),
+        _ => false,
+    }
 }

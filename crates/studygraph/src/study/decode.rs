@@ -135,7 +135,7 @@ impl<'a> Decoder<'a> {
             (Some(pair), _) => self.value(&pair.node, &field.shape, field, field.name, pair.place).map(Some),
             (None, Presence::Optional) => Ok(None),
             (None, Presence::Required) => {
-                let expected = words::expected(&field.shape);
+                let expected = words::expected(&field.shape, words::example_of(field));
                 let message = format!("{} has no {}; {expected} is expected", owner.label, quote(field.name));
                 Err(Diagnostic::new(message).at(owner.place).help(field.summary))
             }
@@ -157,18 +157,20 @@ impl<'a> Decoder<'a> {
         name: &str,
         key: Place,
     ) -> Result<PlacedValue, Diagnostic> {
+        let example = words::example_of(field);
         if node.is_null() {
             let help = if matches!(shape, Shape::List(_)) { "write `[]` for an empty list" } else { field.summary };
-            let message = format!("{} has no value; {} is expected", quote(name), words::expected(shape));
+            let message = format!("{} has no value; {} is expected", quote(name), words::expected(shape, example));
             return Err(Diagnostic::new(message).at(node.place).help(help));
         }
         let value = match shape {
             Shape::Quantity { dimension, minimum, maximum } => {
-                let measure = Measure { name, dimension: Some(*dimension), minimum: *minimum, maximum: *maximum };
+                let (dimension, minimum, maximum) = (Some(*dimension), *minimum, *maximum);
+                let measure = Measure { name, dimension, minimum, maximum, example };
                 measure.value(node, field.span, self.ranges())?
             }
             Shape::Number { minimum, maximum } => {
-                let measure = Measure { name, dimension: None, minimum: *minimum, maximum: *maximum };
+                let measure = Measure { name, dimension: None, minimum: *minimum, maximum: *maximum, example };
                 measure.value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
@@ -325,7 +327,7 @@ fn not_fields(node: &Node, fields: &[Field], others: &[&str], label: &str) -> Di
 }
 
 fn not_a(name: &str, node: &Node, shape: &Shape) -> Diagnostic {
-    let message = format!("{} is {}; {} is expected", quote(name), node.describe(), words::expected(shape));
+    let message = format!("{} is {}; {} is expected", quote(name), node.describe(), words::expected(shape, None));
     Diagnostic::new(message).at(node.place)
 }
 

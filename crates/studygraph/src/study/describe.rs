@@ -122,7 +122,8 @@ fn heading(field: &Field) -> String {
 /// A field by itself, without what is below it.
 #[must_use]
 pub fn field(field: &Field) -> String {
-    format!("{}\n{}", heading(field), field.summary)
+    let example = field.example.map_or_else(String::new, |example| format!("\nfor example `{example}`"));
+    format!("{}\n{}{example}", heading(field), field.summary)
 }
 
 /// What is named below a field: choices, fields, members.

@@ -23,6 +23,8 @@ pub struct Measure<'a> {
     pub dimension: Option<Dimension>,
     pub minimum: f64,
     pub maximum: f64,
+    /// What a study might say, for messages.
+    pub example: Option<&'static str>,
 }
 
 impl Measure<'_> {
@@ -82,7 +84,8 @@ impl Measure<'_> {
                 return Err(Diagnostic::new(message).help(format!("write `{plain}`")));
             }
             Some(dimension) if dimension != RATIO && !read.has_unit => {
-                let example = words::example_like(split_quantity(text).0, dimension, self.minimum, self.maximum);
+                let number = split_quantity(text).0;
+                let example = words::example_like(number, dimension, self.minimum, self.maximum, self.example);
                 let example = example.map_or(String::new(), |example| format!(", for example `{example}`"));
                 let message = format!("{shown} has no unit; {} is expected{example}", dimension.describe().0);
                 return Err(Diagnostic::new(message));
@@ -149,7 +152,7 @@ impl Measure<'_> {
     }
 
     fn expected(&self) -> String {
-        words::measure(self.dimension, self.minimum, self.maximum)
+        words::measure(self.dimension, self.minimum, self.maximum, self.example)
     }
 
     /// `[a, b, …]` in any order, without repeats.

@@ -3,16 +3,15 @@
 //! What JSON can say is said: names, required fields, words, numbers, the look of a quantity. The order follows the
 //! declarations, so the same program always gives the same text. Must not know: any kind by name.
 
+mod leaf;
+
 use serde_json::{Map, Value, json};
 
-use super::assemble::{KEYS, NAME_PATTERN, SET};
+use super::assemble::{KEYS, SET};
 use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
 use declare::parameter::{Field, Member, Presence, Shape, Span};
-use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, parse_unit, symbols};
-
-const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
 
 /// The schema of studies made of stages of these kinds.
 #[must_use]
@@ -23,25 +22,28 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
     properties.insert(
         "stages".to_owned(),
         json!({
+            "title": "Stages",
             "description": "The stages by name; each reads the tables of others.",
             "type": "object",
             "minProperties": 1,
-            "propertyNames": { "pattern": NAME_PATTERN },
+            "propertyNames": leaf::name(),
             "additionalProperties": { "$ref": "#/$defs/stage" },
         }),
     );
     properties.insert(
         SET.to_owned(),
         json!({
+            "title": "Set",
             "description": "Other values for fields, by their paths: `pair.pinion.face_width`.",
             "type": "object",
             "minProperties": 1,
-            "propertyNames": { "pattern": r"^[A-Za-z0-9_-]+([.][^.\[\] ]+|\[[0-9]+\])*$" },
+            "propertyNames": leaf::path(),
+            "examples": [{ "pair.pinion.face_width": "22 mm" }],
         }),
     );
     if let Some(Value::Object(study)) = properties.get_mut("study") {
         study.insert("type".to_owned(), json!("string"));
-        study.insert("pattern".to_owned(), json!(NAME_PATTERN));
+        study.extend(leaf::name().as_object().cloned().unwrap_or_default());
     }
     let conditions: Vec<_> = kinds
         .iter()
@@ -58,15 +60,20 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
         json!({
             "type": "object",
             "required": ["kind"],
-            "properties": { "kind": { "description": "What the stage computes.", "oneOf": names } },
+            "properties": { "kind": { "title": "Kind", "description": "What the stage computes.", "oneOf": names } },
             "allOf": conditions,
         }),
     );
     for kind in kinds {
         let mut object = families.object(kind.fields, false);
+        object["title"] = json!(leaf::title(kind.name));
         object["description"] = json!(kind.summary);
         if let Some(Value::Object(properties)) = object.get_mut("properties") {
-            properties.shift_insert(0, "kind".to_owned(), json!({ "const": kind.name }));
+            properties.shift_insert(
+                0,
+                "kind".to_owned(),
+                json!({ "title": "Kind", "description": kind.summary, "const": kind.name }),
+            );
         }
         definitions.insert(format!("kind_{}", kind.name), object);
     }
@@ -130,6 +137,7 @@ impl Families {
 
     fn field(&mut self, field: &'static Field, chooses: bool) -> Value {
         let mut described = Map::new();
+        described.insert("title".to_owned(), json!(leaf::title(field.name)));
         described.insert("description".to_owned(), json!(description(field)));
         let shape = self.shape(&field.shape, field, chooses || field.chooses);
         if let Value::Object(shape) = shape {
@@ -146,33 +154,22 @@ impl Families {
     }
 
     fn shape(&mut self, shape: &'static Shape, field: &Field, chooses: bool) -> Value {
+        let example = words::example_of(field);
         match shape {
             Shape::Quantity { dimension, minimum, maximum } => {
-                spread(&quantity(*dimension, *minimum, *maximum), field, chooses)
+                spread(&leaf::quantity(*dimension, *minimum, *maximum, example), field, chooses)
             }
-            Shape::Number { minimum, maximum } => spread(&bounded("number", *minimum, *maximum), field, chooses),
-            Shape::AnyQuantity => json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") }),
-            Shape::Integer { minimum, maximum, multiple } => {
-                let mut integer = json!({ "type": "integer" });
-                if *minimum != i64::MIN {
-                    integer["minimum"] = json!(minimum);
-                }
-                if *maximum != i64::MAX {
-                    integer["maximum"] = json!(maximum);
-                }
-                if *multiple != 1 {
-                    integer["multipleOf"] = json!(multiple);
-                }
-                integer
-            }
+            Shape::Number { minimum, maximum } => spread(&leaf::number(*minimum, *maximum, example), field, chooses),
+            Shape::AnyQuantity => leaf::any_quantity(example),
+            Shape::Integer { minimum, maximum, multiple } => leaf::integer(*minimum, *maximum, *multiple, example),
             Shape::Flag => json!({ "type": "boolean" }),
-            Shape::Text => json!({ "type": ["string", "number", "boolean"] }),
+            Shape::Text => leaf::text(example),
             Shape::Choice(choices) => {
                 let choices =
                     choices.iter().map(|choice| json!({ "const": choice.name, "description": choice.summary }));
                 json!({ "oneOf": choices.collect::<Vec<_>>() })
             }
-            Shape::Reference(_) => json!({ "type": "string", "pattern": NAME_PATTERN }),
+            Shape::Reference(kinds) => leaf::reference(kinds, example),
             Shape::List(item) => {
                 let item = self.shape(item, field, chooses);
                 json!({ "anyOf": [{ "type": "array", "items": item }, item] })
@@ -209,6 +206,7 @@ impl Families {
             if required(member.fields).is_empty() {
                 object["type"] = json!(["object", "null"]);
             }
+            object["title"] = json!(leaf::title(member.name));
             object["description"] = json!(member.summary);
             properties.insert(member.name.to_owned(), object);
         }
@@ -226,22 +224,32 @@ impl Families {
 
 /// Columns and what is varied; which units there are depends on the field.
 fn varied() -> Value {
-    let number = json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") });
+    let number = leaf::any_quantity(Some("20 mm"));
+    let mut properties = json!({
+        "field": {
+            "title": "Field",
+            "type": "string",
+            "description": "Path of the field: stage.field, such as `pair.pinion.face_width`.",
+            "examples": ["pair.pinion.face_width"],
+        },
+        "values": {
+            "title": "Values",
+            "description": "The values, one or several.",
+            "anyOf": [number, { "type": "array", "minItems": 1, "items": number }],
+        },
+    });
+    if let (Value::Object(properties), Value::Object(ends)) = (&mut properties, leaf::ends(&number)) {
+        properties.extend(ends);
+    }
     json!({
         "type": "object",
         "minProperties": 1,
-        "propertyNames": { "pattern": super::varied::COLUMN_PATTERN },
+        "propertyNames": leaf::column(),
         "additionalProperties": {
             "type": "object",
             "required": ["field"],
             "additionalProperties": false,
-            "properties": {
-                "field": { "type": "string", "description": "Path of the field: stage.field, such as `pair.pinion.face_width`." },
-                "values": { "anyOf": [number, { "type": "array", "minItems": 1, "items": number }] },
-                "from": number,
-                "to": number,
-                "count": { "type": "integer", "minimum": 2 },
-            },
+            "properties": properties,
         },
     })
 }
@@ -261,51 +269,12 @@ fn description(field: &Field) -> String {
 /// One value, and the other ways in which a field's span lets it be given.
 fn spread(single: &Value, field: &Field, chooses: bool) -> Value {
     match field.span {
-        Span::Axis { .. } => json!({ "anyOf": [
-            single,
-            { "type": "array", "minItems": 1, "items": single },
-            {
-                "type": "object",
-                "required": ["from", "to", "count"],
-                "additionalProperties": false,
-                "properties": { "from": single, "to": single, "count": { "type": "integer", "minimum": 2 } },
-            },
-        ] }),
+        Span::Axis { .. } => leaf::axis(single),
         Span::Range if chooses => {
             json!({ "anyOf": [single, { "type": "array", "minItems": 2, "maxItems": 2, "items": single }] })
         }
         Span::Single | Span::Range => single.clone(),
     }
-}
-
-fn bounded(kind: &str, minimum: f64, maximum: f64) -> Value {
-    let mut schema = json!({ "type": kind });
-    if minimum.is_finite() {
-        schema["minimum"] = json!(minimum);
-    }
-    if maximum.is_finite() {
-        schema["maximum"] = json!(maximum);
-    }
-    schema
-}
-
-fn quantity(dimension: Dimension, minimum: f64, maximum: f64) -> Value {
-    if dimension == RATIO {
-        let percent = json!({ "type": "string", "pattern": format!("^{NUMBER} *%$") });
-        return json!({ "anyOf": [bounded("number", minimum, maximum), percent] });
-    }
-    // Simple dimensions have their few units; in others units are put together, and only the reader knows them all.
-    let units = if [LENGTH, ANGLE, FORCE, TIME].contains(&dimension) {
-        let fits = |symbol: &&str| parse_unit(symbol).is_ok_and(|unit| unit.dimension == dimension);
-        symbols().filter(fits).collect::<Vec<_>>().join("|")
-    } else {
-        "[A-Za-zµμ1].*".to_owned()
-    };
-    let mut schema = json!({ "type": "string", "pattern": format!("^{NUMBER} *({units})$") });
-    if let Some(example) = words::example(dimension, minimum, maximum) {
-        schema["examples"] = json!([example]);
-    }
-    schema
 }
 
 /// A tree as JSON, as far as YAML itself would tell numbers from words.

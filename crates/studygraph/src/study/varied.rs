@@ -163,7 +163,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         Shape::Number { .. } => (None, None),
         Shape::Integer { multiple, .. } => (None, Some(*multiple)),
         other => {
-            let message = format!("only numbers are varied, and {} takes {}", quote(text), expected(other));
+            let message = format!("only numbers are varied, and {} takes {}", quote(text), expected(other, None));
             return Err(Diagnostic::new(message).at(written.node.place));
         }
     };
@@ -222,15 +222,16 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
 
 /// What the shape says of a number.
 fn measure<'a>(name: &'a str, shape: &Shape) -> Measure<'a> {
+    let example = None;
     match *shape {
         Shape::Quantity { dimension, minimum, maximum } => {
-            Measure { name, dimension: Some(dimension), minimum, maximum }
+            Measure { name, dimension: Some(dimension), minimum, maximum, example }
         }
-        Shape::Number { minimum, maximum } => Measure { name, dimension: None, minimum, maximum },
+        Shape::Number { minimum, maximum } => Measure { name, dimension: None, minimum, maximum, example },
         Shape::Integer { minimum, maximum, .. } => {
-            Measure { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64 }
+            Measure { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64, example }
         }
-        _ => Measure { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY },
+        _ => Measure { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, example },
     }
 }
 

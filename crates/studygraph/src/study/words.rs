@@ -2,7 +2,7 @@
 //!
 //! Values come in SI and are shown in the unit in which they are shortest. Must not know: YAML, stages.
 
-use declare::parameter::{Field, Shape};
+use declare::parameter::{Field, Presence, Shape};
 use declare::units::{Dimension, RATIO, in_unit, parse_unit, split_quantity};
 
 /// Characters of a user's text that a message repeats.
@@ -99,6 +99,15 @@ pub fn integer(multiple: i64) -> String {
     }
 }
 
+/// What a study might say in a field, as text: its example, or its default.
+pub fn example_of(field: &Field) -> Option<&'static str> {
+    match field.presence {
+        _ if field.example.is_some() => field.example,
+        Presence::Default(text) if !text.starts_with(['[', '{']) => Some(text),
+        _ => None,
+    }
+}
+
 /// A quantity that would be accepted.
 pub fn example(dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
     let (_, units) = dimension.describe();
@@ -108,10 +117,18 @@ pub fn example(dimension: Dimension, minimum: f64, maximum: f64) -> Option<Strin
     })
 }
 
-/// The user's own number with the first unit that makes it acceptable, or any acceptable quantity.
-pub fn example_like(amount: &str, dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
-    let own = dimension.describe().1.iter().find_map(|unit| with_unit(amount, unit, dimension, minimum, maximum));
-    own.or_else(|| example(dimension, minimum, maximum))
+/// The user's own number with the unit of `such`, else the first that makes it acceptable, or any acceptable quantity.
+pub fn example_like(
+    amount: &str,
+    dimension: Dimension,
+    minimum: f64,
+    maximum: f64,
+    such: Option<&str>,
+) -> Option<String> {
+    let usual = such.map(|such| split_quantity(such).1).filter(|unit| !unit.is_empty());
+    let mut units = usual.into_iter().chain(dimension.describe().1.iter().copied());
+    let own = units.find_map(|unit| with_unit(amount, unit, dimension, minimum, maximum));
+    own.or_else(|| such.map(str::to_owned)).or_else(|| example(dimension, minimum, maximum))
 }
 
 fn with_unit(amount: &str, unit: &str, dimension: Dimension, minimum: f64, maximum: f64) -> Option<String> {
@@ -148,24 +165,24 @@ pub fn unit_readings(text: &str, readings: &[String; 2], wanted: Option<Dimensio
 }
 
 /// What a number must be: `` a length (for example `3 mm`) ``; no dimension means a plain number.
-pub fn measure(dimension: Option<Dimension>, minimum: f64, maximum: f64) -> String {
+pub fn measure(dimension: Option<Dimension>, minimum: f64, maximum: f64, such: Option<&str>) -> String {
     match dimension {
         None => "a plain number".to_owned(),
         Some(RATIO) => "a ratio (a plain number or one with `%`)".to_owned(),
         Some(dimension) => {
-            let example = example(dimension, minimum, maximum);
+            let example = such.map(str::to_owned).or_else(|| example(dimension, minimum, maximum));
             let example = example.map_or(String::new(), |text| format!(" (for example `{text}`)"));
             format!("{}{example}", dimension.describe().0)
         }
     }
 }
 
-/// What a shape holds, as the subject of "is expected".
-pub fn expected(shape: &Shape) -> String {
+/// What a shape holds, as the subject of "is expected"; `such` is an example.
+pub fn expected(shape: &Shape, such: Option<&str>) -> String {
     match shape {
-        Shape::Quantity { dimension, minimum, maximum } => measure(Some(*dimension), *minimum, *maximum),
+        Shape::Quantity { dimension, minimum, maximum } => measure(Some(*dimension), *minimum, *maximum, such),
         Shape::AnyQuantity => "a number, with its unit if it has one,".to_owned(),
-        Shape::Number { minimum, maximum } => measure(None, *minimum, *maximum),
+        Shape::Number { minimum, maximum } => measure(None, *minimum, *maximum, None),
         Shape::Integer { multiple, .. } => integer(*multiple),
         Shape::Flag => "`true` or `false`".to_owned(),
         Shape::Text => "text".to_owned(),
@@ -211,9 +228,10 @@ mod tests {
 
     #[test]
     fn an_example_is_acceptable_and_keeps_the_users_number_when_it_can() {
-        assert_eq!(example_like("3", LENGTH, 1e-4, 0.1).as_deref(), Some("3 mm"));
-        assert_eq!(example_like("206", STRESS, 1e9, 1e12).as_deref(), Some("206 GPa"));
-        assert_eq!(example_like("-5", FORCE, 0.0, 1e6).as_deref(), Some("3 N"));
+        assert_eq!(example_like("3", LENGTH, 1e-4, 0.1, None).as_deref(), Some("3 mm"));
+        assert_eq!(example_like("3", LENGTH, 0.0, 5e-3, Some("12 um")).as_deref(), Some("3 um"));
+        assert_eq!(example_like("206", STRESS, 1e9, 1e12, None).as_deref(), Some("206 GPa"));
+        assert_eq!(example_like("-5", FORCE, 0.0, 1e6, None).as_deref(), Some("3 N"));
         assert_eq!(example(LENGTH, 1e-7, 1e-6).as_deref(), Some("1 um"));
     }
 

@@ -18,16 +18,22 @@ use studygraph::table::schema::Column;
 #[derive(Debug, Declared)]
 pub struct Compared {
     /// what it is, in words
+    #[declared(example = "Energy method against finite elements")]
     pub label: Option<String>,
     /// the cells that are compared, `stage.table[key=value, …].column`
+    #[declared(example = "ste.summary[design=long].peak_to_peak")]
     pub cell: Placed<String>,
     /// the cells that they are compared with, in rows of the same keys
+    #[declared(example = "ste_fine.summary[design=long].peak_to_peak")]
     pub against: Placed<String>,
     /// how far apart counts as equal: `1 %` of `against`, or a quantity; without it the difference is only said
+    #[declared(example = "1 %")]
     pub tolerance: Option<Placed<String>>,
     /// why they differ
+    #[declared(example = "bodies are rigid here")]
     pub because: Option<String>,
     /// a remark that claims no difference
+    #[declared(example = "the same mesh")]
     pub note: Option<String>,
 }
 

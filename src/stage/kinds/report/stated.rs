@@ -14,19 +14,25 @@ use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
 #[derive(Debug, Declared)]
 pub struct Published {
     /// what it is, in words
+    #[declared(example = "Largest transmission error")]
     pub label: Option<String>,
     /// where the paper says it: a table, an equation, a page
-    #[declared(name = "where")]
+    #[declared(name = "where", example = "Table 3")]
     pub location: Option<String>,
     /// the computed cell, `stage.table[key=value, …].column`
+    #[declared(example = "ste.summary[design=long, torque=100 N m].peak_to_peak")]
     pub cell: Option<Placed<String>>,
     /// or arithmetic over the names in `with`: + - * / ^ sqrt abs min max
+    #[declared(example = "a / b - 1")]
     pub formula: Option<Placed<String>>,
     /// or a comparison that the paper says is true, in every row of its cells
+    #[declared(example = "a < b")]
     pub claim: Option<Placed<String>>,
     /// what the names in a formula or claim stand for: cells or quantities
+    #[declared(example = "stiffness.summary.mean")]
     pub with: Option<Vec<(String, Placed<String>)>>,
     /// the published value as printed, with its unit
+    #[declared(example = "4.2 um")]
     pub value: Option<Placed<String>>,
     /// how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity
     #[declared(default = "digits")]
@@ -34,10 +40,12 @@ pub struct Published {
     /// where the computed value stands today, so that it cannot drift unseen
     pub expected: Option<Expected>,
     /// why they differ
+    #[declared(example = "the paper rounds its stiffness")]
     pub because: Option<String>,
     /// arithmetic that proves the reason
     pub proof: Option<StatedProof>,
     /// a remark that claims no difference
+    #[declared(example = "read off the figure")]
     pub note: Option<String>,
 }
 
@@ -45,6 +53,7 @@ pub struct Published {
 #[derive(Debug, Declared)]
 pub struct Expected {
     /// the value the study stands by, with its unit; for a claim the number of rows
+    #[declared(example = "4.18 um")]
     pub value: Placed<String>,
     /// how far apart counts as equal: `digits` (half a unit in the last printed place), `1 %`, or a quantity
     #[declared(default = "digits")]
@@ -55,8 +64,10 @@ pub struct Expected {
 #[derive(Debug, Declared)]
 pub struct StatedProof {
     /// a comparison that must hold; `published` and `computed` are known in it
+    #[declared(example = "computed < published")]
     pub claim: Placed<String>,
     /// what its other names stand for: cells or quantities
+    #[declared(example = "stiffness.summary.mean")]
     pub with: Option<Vec<(String, Placed<String>)>>,
 }
 

@@ -11,36 +11,49 @@ use declare::{Declared, Words};
 #[derive(Debug, Declared)]
 pub struct StatedFigure {
     /// name of the file in `figures/`: letters, digits, - and _
+    #[declared(example = "peak_to_peak")]
     pub name: String,
     /// what is shown
+    #[declared(example = "Peak-to-peak over torque")]
     pub title: String,
     /// how it is drawn
     #[declared(default = "line")]
     pub kind: How,
     /// `stage.table`; several are drawn together, told apart by stage
+    #[declared(example = "ste.summary")]
     pub table: Vec<Placed<String>>,
     /// column of the x axis
+    #[declared(example = "torque")]
     pub x: String,
     /// column of the y axis; several need one unit
+    #[declared(example = "peak_to_peak")]
     pub y: Vec<String>,
     /// column that a map shows as colours
+    #[declared(example = "pressure")]
     pub value: Option<String>,
     /// column whose values are drawn apart, one line each
+    #[declared(example = "design")]
     pub series: Option<String>,
     /// column at whose changes a line is interrupted (a jump stays a jump)
+    #[declared(example = "pairs")]
     pub segments: Option<String>,
     /// column of the length that x stands for: a chart says how many times as long depths are drawn
+    #[declared(example = "path_position")]
     pub length: Option<String>,
     /// only the rows with these values, column: value
-    #[declared(name = "where")]
+    #[declared(name = "where", example = "long")]
     pub conditions: Option<Vec<(String, String)>>,
     /// `stage.table` of one row: y is drawn as its relative distance from the same column there, |y/reference − 1|
+    #[declared(example = "converged.summary")]
     pub reference: Option<Placed<String>>,
     /// name of the x axis; otherwise that of the column
+    #[declared(example = "Torque")]
     pub x_label: Option<String>,
     /// name of the y axis; otherwise that of the column
+    #[declared(example = "Peak-to-peak")]
     pub y_label: Option<String>,
     /// what values of `series`, columns and stages are called, value: name; series are drawn in this order
+    #[declared(example = "With tip relief")]
     pub labels: Option<Vec<(String, String)>>,
     /// how large its file is
     #[declared(default = "page")]
@@ -51,6 +64,7 @@ pub struct StatedFigure {
     /// what the paper says, drawn for comparison
     pub published: Option<Vec<StatedMark>>,
     /// what to see in it
+    #[declared(example = "The optimum moves with torque.")]
     pub note: Option<String>,
 }
 
@@ -58,8 +72,10 @@ pub struct StatedFigure {
 #[derive(Debug, Declared)]
 pub struct StatedMark {
     /// place on the x axis, with its unit; without it a line across the figure
+    #[declared(example = "100 N m")]
     pub x: Option<Placed<String>>,
     /// place on the y axis, with its unit; without it an upright line
+    #[declared(example = "4.2 um")]
     pub y: Option<Placed<String>>,
     /// name in the legend; the name of a series takes that series' colour
     #[declared(default = "published")]

@@ -8,9 +8,10 @@ use crate::stage::{Context, Demand};
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::face_map::Cell;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
-use gearmesh::gear::transmission_error::pressure::{LargestPressure, LineContact};
+use gearmesh::gear::transmission_error::pressure::{Cornered, LargestPressure, LineContact};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
+use studygraph::warning::{Cases, Warning};
 
 /// The table of path and face.
 pub const TABLE: &str = "pressure";
@@ -163,22 +164,9 @@ pub fn map<'a>() -> Columns<CellRow<'a>> {
         .on_demand()
 }
 
-/// So many curves are named one by one.
-const NAMED: usize = 6;
-
-/// Says of which designs under which torques a sharp corner is in contact, and of the one where it has the largest share of the
-/// load, how large that is and where.
+/// Says of which designs under which torques a sharp corner is in contact: how much of the load it has and where, and whether
+/// it is the largest pressure.
 pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
-    let curves = || answers.iter().filter_map(|row| Some((row, row.2.cornered.as_ref()?)));
-    let Some(((design, torque, _), most)) = curves().max_by(|one, other| one.1.share.total_cmp(&other.1.share)) else {
-        return;
-    };
-    let named: Vec<String> =
-        curves().take(NAMED).map(|((design, torque, _), _)| format!("`{design}` at {torque} N m")).collect();
-    let more = match curves().count() - named.len() {
-        0 => String::new(),
-        more => format!(" and {more} more curves"),
-    };
     let what = if cycle.knows_corners() {
         "the contact reaches the sharp corner of a tip, where the pressure is infinite; the pressures there are those of a \
          contact that just reaches it"
@@ -186,18 +174,18 @@ pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
         "the sharp corner of a tip touches, where the pressure is infinite; this law of contact does not know it, and the \
          pressures there are those of the flank beside it"
     };
-    let is_largest = |row: &Keyed| row.2.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner);
-    let largest = match curves().filter(|(row, _)| is_largest(row)).count() {
-        0 => String::new(),
-        count => format!("; it is the largest pressure of {count} of these curves"),
-    };
-    let stretches: Vec<String> =
-        most.stretches.iter().map(|[from, to]| format!("{:.3} to {:.3} mm", from * 1e3, to * 1e3)).collect();
-    (context.warn)(format!(
-        "design {}{more}: {what}{largest}. Of the load it has up to {:.1} %, with `{design}` at {torque} N m on {} of the mesh \
-         cycle; `corner_load_share` tells of every curve",
-        named.join(", "),
-        100.0 * most.share,
-        stretches.join(" and "),
-    ));
+    for (design, torque, answer) in answers {
+        let Some(Cornered { share, stretches }) = &answer.cornered else { continue };
+        let is_largest = answer.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner);
+        let largest = if is_largest { ", the largest of the curve among them" } else { "" };
+        let stretches: Vec<String> =
+            stretches.iter().map(|[from, to]| format!("{:.3} to {:.3} mm", from * 1e3, to * 1e3)).collect();
+        let sentence = format!(
+            "design `{design}` at {torque} N m: {what}{largest}. It has up to {:.1} % of the load, on {} of the mesh cycle",
+            100.0 * share,
+            stretches.join(" and "),
+        );
+        let case = Cases::one("sharp corner", design, (*torque, "N m"), (*share, sentence));
+        (context.warn)(Warning::Cases(case.with_each("`summary.corner_load_share`")));
+    }
 }

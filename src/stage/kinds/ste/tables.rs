@@ -7,6 +7,7 @@ use super::{Answer, pressures};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
+use gearmesh::gear::transmission_error::doubt::Doubt;
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -49,13 +50,23 @@ pub fn summary<'a>() -> Columns<Keyed<'a>> {
         .float("largest_load_share", "", "Largest share of the load on one pair.", |row| {
             row.2.summary.largest_load_share
         });
-    GEARS
-        .into_iter()
-        .fold(pressures::of_summary(columns), of_root)
+    of_doubt(GEARS.into_iter().fold(pressures::of_summary(columns), of_root))
         .integer("positions", "Positions per base pitch that were used.", |row| row.2.settings.positions)
         .integer("slices", slices, |row| row.2.settings.slices)
         .float("error_estimate", "", error, |row| row.2.error)
         .but(|column| column.tolerance(1e-9, 0.0))
+}
+
+/// What the law of contact may be off by, and where most.
+fn of_doubt(columns: Columns<Keyed<'_>>) -> Columns<Keyed<'_>> {
+    let size = "What the law of contact may be off by in the transmission error; NaN where it knows no width.";
+    let position = "Distance from where a pair starts contact, where that is most.";
+    let of = |get: fn(&Doubt) -> f64| move |row: &Keyed| row.2.doubt.as_ref().map_or(f64::NAN, get);
+    columns
+        .float("contact_doubt", "um", size, of(|doubt| doubt.size))
+        .but(|column| column.on_demand().allows_nan().tolerance(1e-9, 1e-6))
+        .float("contact_doubt_position", "mm", position, of(|doubt| doubt.position))
+        .but(|column| column.on_demand().allows_nan().tolerance(1e-6, 1e-9))
 }
 
 /// What the summary has of a gear's root.

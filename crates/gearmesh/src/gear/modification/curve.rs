@@ -16,7 +16,7 @@ pub enum Curve {
     /// t^n, n given as `exponent`
     Power {
         /// n of the curve `power`: 1 is linear, 2 has no kink at the start.
-        #[declared(minimum = 0.5, maximum = 10.0, range)]
+        #[declared(minimum = 0.5, maximum = 10.0, range, example = "2")]
         exponent: f64,
     },
 }

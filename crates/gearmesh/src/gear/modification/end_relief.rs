@@ -30,11 +30,11 @@ pub enum FaceEnd {
 #[declared(name = "end_relief")]
 pub struct EndRelief {
     /// C_βI, C_βII: depth at the end of the gear's own face.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range, example = "5 um")]
     pub amount: f64,
     /// L_CβI, L_CβII: how far from the end of the face the relief starts; at most the face width for one end, half of it
     /// for both; a relief of no length removes nothing.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 10.0, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 10.0, range, example = "2 mm")]
     pub length: f64,
     /// Which end of the face is relieved; two of them with different values are two entries.
     #[declared(default = "both")]

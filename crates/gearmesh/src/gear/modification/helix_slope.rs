@@ -15,7 +15,7 @@ use declare::units::LENGTH;
 #[declared(name = "helix_slope")]
 pub struct HelixSlope {
     /// C_Hβ over the face width: positive takes material off at z = +b/2, negative at z = −b/2; the other end keeps it.
-    #[declared(dimension = LENGTH, minimum = -MOST_AMOUNT, maximum = MOST_AMOUNT, range)]
+    #[declared(dimension = LENGTH, minimum = -MOST_AMOUNT, maximum = MOST_AMOUNT, range, example = "6 um")]
     pub amount: f64,
 }
 

@@ -15,7 +15,7 @@ use declare::units::LENGTH;
 #[declared(name = "lead_crowning")]
 pub struct LeadCrowning {
     /// C_β: depth at both ends of the gear's own face.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range, example = "4 um")]
     pub amount: f64,
 }
 

@@ -17,7 +17,7 @@ use declare::units::LENGTH;
 #[declared(name = "profile_crowning")]
 pub struct ProfileCrowning {
     /// C_α: depth at both ends of the active flank.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range, example = "3 um")]
     pub amount: f64,
 }
 

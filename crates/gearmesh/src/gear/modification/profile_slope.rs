@@ -17,7 +17,7 @@ use declare::units::LENGTH;
 #[declared(name = "profile_slope")]
 pub struct ProfileSlope {
     /// C_Hα: positive takes material off at the tip, negative at the root end; the other end keeps it.
-    #[declared(dimension = LENGTH, minimum = -MOST_AMOUNT, maximum = MOST_AMOUNT, range)]
+    #[declared(dimension = LENGTH, minimum = -MOST_AMOUNT, maximum = MOST_AMOUNT, range, example = "5 um")]
     pub amount: f64,
 }
 

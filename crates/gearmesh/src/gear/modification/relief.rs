@@ -16,7 +16,7 @@ use declare::{Alternatives, Declared, Words};
 #[derive(Clone, Debug, PartialEq, Alternatives)]
 pub enum Amount {
     /// Depth at the end of the relief, normal to the flank.
-    #[declared(name = "amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
+    #[declared(name = "amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range, example = "12 um")]
     Depth(f64),
     /// Instead of `amount`: Δ_max = K_A F_t / (b ε_α c_γ).
     #[declared(name = "iso_amount")]
@@ -30,16 +30,16 @@ pub struct IsoAmount {
     #[declared(minimum = 0.1, maximum = 10.0, default = "1")]
     pub application_factor: f64,
     /// F_t: nominal tangential load.
-    #[declared(dimension = FORCE, minimum = 0.0, maximum = 1e9)]
+    #[declared(dimension = FORCE, minimum = 0.0, maximum = 1e9, example = "3 kN")]
     pub tangential_load: f64,
     /// b; the narrower gear's when left out.
-    #[declared(dimension = LENGTH, minimum = 1e-4, maximum = 10.0)]
+    #[declared(dimension = LENGTH, minimum = 1e-4, maximum = 10.0, example = "20 mm")]
     pub face_width: Option<f64>,
     /// ε_α; the pair's when left out.
-    #[declared(minimum = 1.0, maximum = 6.0)]
+    #[declared(minimum = 1.0, maximum = 6.0, example = "1.6")]
     pub contact_ratio: Option<f64>,
     /// c_γ: mesh stiffness per face width.
-    #[declared(dimension = SPECIFIC_STIFFNESS, minimum = 1e6, maximum = 1e13)]
+    #[declared(dimension = SPECIFIC_STIFFNESS, minimum = 1e6, maximum = 1e13, example = "20 N/(mm um)")]
     pub mesh_stiffness: f64,
 }
 
@@ -47,16 +47,16 @@ pub struct IsoAmount {
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum Start {
     /// L: roll length of the relief along the line of action; a relief of no length removes nothing.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, range)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, range, example = "4 mm")]
     Length(f64),
     /// Instead of `length`: length over p_b(ε_α − 1); 1 is long relief, 0.5 short relief.
-    #[declared(dimension = RATIO, minimum = 0.0, maximum = 10.0, range)]
+    #[declared(dimension = RATIO, minimum = 0.0, maximum = 10.0, range, example = "0.5")]
     Fraction(f64),
     /// Instead of `length`: roll angle where the relief starts.
-    #[declared(name = "start_roll_angle", dimension = ANGLE, minimum = 0.0, maximum = 10.0, range)]
+    #[declared(name = "start_roll_angle", dimension = ANGLE, minimum = 0.0, maximum = 10.0, range, example = "25 deg")]
     RollAngle(f64),
     /// Instead of `length`: diameter at which the relief starts.
-    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range)]
+    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range, example = "75 mm")]
     Diameter(f64),
 }
 

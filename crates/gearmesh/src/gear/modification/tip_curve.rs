@@ -17,10 +17,10 @@ use declare::{Alternatives, Declared, Words};
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum TipPoint {
     /// How far A is moved from the corner inwards along the tip circle, as a share of the tip thickness s_a.
-    #[declared(name = "tip_share", minimum = 0.0, maximum = 0.5, range)]
+    #[declared(name = "tip_share", minimum = 0.0, maximum = 0.5, range, example = "0.06")]
     Share(f64),
     /// Instead of `tip_share`: the same as a length along the tip circle.
-    #[declared(name = "tip_amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range)]
+    #[declared(name = "tip_amount", dimension = LENGTH, minimum = 0.0, maximum = MOST_AMOUNT, range, example = "12 um")]
     Amount(f64),
 }
 
@@ -28,10 +28,10 @@ pub enum TipPoint {
 #[derive(Clone, Copy, Debug, PartialEq, Alternatives)]
 pub enum FlankPoint {
     /// How far B is from the tip, as a share of the arc length of the whole involute, from the form circle to the tip.
-    #[declared(name = "length_share", minimum = 0.0, maximum = 1.0, range)]
+    #[declared(name = "length_share", minimum = 0.0, maximum = 1.0, range, example = "0.15")]
     Share(f64),
     /// Instead of `length_share`: diameter at which B lies.
-    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range)]
+    #[declared(name = "start_diameter", dimension = LENGTH, minimum = 1e-4, maximum = 100.0, range, example = "75 mm")]
     Diameter(f64),
 }
 

@@ -20,6 +20,10 @@ const NEAR: f64 = 1e-9;
 const STEEPEST: f64 = 1e3;
 /// A gap that no pair closes \[m\].
 const FAR: f64 = 1e3;
+/// What complementarity keeps where nothing large is subtracted.
+const PROMISED: f64 = 1e-12;
+/// What copies of gaps keep of the largest gap on each.
+const COPY: f64 = 1e-14;
 /// A few sums and products.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 
@@ -210,9 +214,8 @@ impl Pairs<'_> {
         let crown = case.crown();
         let width = built.cycle.face_width;
         let balance = &state.balance;
-        // Of a path position, over which a relief grows.
-        let rounding = f64::EPSILON * built.pair.tangent_length;
-        let ramps = 2.0 * case.relief / case.relief_length.max(f64::MIN_POSITIVE);
+        // The solver takes copies of the gaps, which are as near as this to the largest gap on each.
+        let copied = COPY * 2.0 * case.relief;
         let mut worst = (0.0_f64, ROUNDING);
         for j in 0..self.count {
             if self.gaps[j] > 0.5 * FAR {
@@ -236,8 +239,10 @@ impl Pairs<'_> {
                 ((share * (w - crown * share * share / 3.0) / own - balance.loads[j]).abs(), share / own)
             };
             let taken = balance.approach + self.largest_gap + others.abs();
-            let moved = stiffness * rounding * ramps / force;
-            let limit = ROUNDING + (ROUNDING + TABLE) * (1.0 + stiffness * taken / force) + moved;
+            let by_copies = stiffness * copied / force;
+            let by_differences = ROUNDING + (ROUNDING + TABLE) * (1.0 + stiffness * taken / force);
+            // Copies are no reason to promise less than is promised of every pair.
+            let limit = (by_differences + by_copies).min(by_differences.max(PROMISED));
             if value / force * worst.1 >= worst.0 * limit {
                 worst = (value / force, limit);
             }
@@ -280,3 +285,6 @@ impl Pairs<'_> {
         if minimum > 0.0 { maximum / minimum } else { f64::INFINITY }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -41,6 +41,11 @@ fn gear(teeth: u32, face_width: f64) -> Specification {
     }
 }
 
+/// Gears of so many teeth.
+pub(super) fn of_teeth([pinion, wheel]: [u32; 2]) -> [Specification; 2] {
+    [gear(pinion, 20e-3), gear(wheel, 18e-3)]
+}
+
 /// The pair 19/48 of the golden values.
 pub(super) fn base() -> Case {
     Case {

@@ -61,6 +61,8 @@ pub enum Cause {
 pub struct Doubt {
     /// Of the transmission error, the largest of the positions that were looked at \[m\].
     pub size: f64,
+    /// Where that is: cycle position \[m\].
+    pub position: f64,
     /// The part of it that the shape of the flanks has.
     pub by_shape: f64,
     /// How far the gears approach there beyond their smallest gap \[m\].
@@ -165,6 +167,7 @@ impl LoadCase<'_> {
         let limit = self.cycle.tips(self.cycle.pair.start_of_contact).map_or(f64::INFINITY, |tips| tips.widest);
         Some(Doubt {
             size: by_width + by_shape,
+            position,
             by_shape,
             approach: state.balance.approach,
             widest: [missed.iter().map(|(_, missed)| missed.half_width).fold(0.0, f64::max), limit],

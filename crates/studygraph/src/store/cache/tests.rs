@@ -20,7 +20,7 @@ fn filled(root: &Path) -> Cache {
     schema.name = "empty".to_owned();
     let second = Table::from_rows(schema, vec![]).unwrap();
     let work = [("contact_solves".to_owned(), 7)].into();
-    let of_run = OfRun { seconds: 1.5, work, warnings: vec!["warned".to_owned()] };
+    let of_run = OfRun { seconds: 1.5, work, warnings: vec!["warned".to_owned().into()] };
     cache.put(key("a"), &[&everything(20), &second], of_run).unwrap();
     cache
 }
@@ -32,7 +32,10 @@ fn what_was_put_is_found() {
     let cache = filled(&root);
     let Lookup::Found(entry) = cache.look_up(key("a")) else { panic!() };
     let of_run = entry.of_run;
-    assert_eq!((of_run.seconds, of_run.work["contact_solves"], of_run.warnings[0].as_str()), (1.5, 7, "warned"));
+    assert_eq!(
+        (of_run.seconds, of_run.work["contact_solves"], &of_run.warnings[0]),
+        (1.5, 7, &"warned".to_owned().into())
+    );
     assert_eq!(entry.tables[0].content, everything(20).content_hash());
     assert_identical(&cache.table(key("a"), "curve").unwrap(), &everything(20));
     assert_eq!(cache.table(key("a"), "empty").unwrap().rows(), 0);

@@ -199,7 +199,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "plain: []",
         "plain: [tip_relief]",
-        "16:15: `tip_relief` has no `amount`; a length (for example `1 mm`) is expected\n  help: Relief C_a.",
+        "16:15: `tip_relief` has no `amount`; a length (for example `12 um`) is expected\n  help: Relief C_a.",
     ),
     (
         "plain: []",
@@ -242,7 +242,7 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "amount: [0 um, 8 um]",
         "amount: { from: 0 um, to: 8 um }",
-        "25:31: `amount` takes one value, not a mapping\n  help: a length (for example `1 mm`) is expected",
+        "25:31: `amount` takes one value, not a mapping\n  help: a length (for example `12 um`) is expected",
     ),
     (
         "{ from: 25 N m, to: 100 N m, count: 16 }",

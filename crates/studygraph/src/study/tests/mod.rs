@@ -26,21 +26,21 @@ use declare::units::{ANGLE, LENGTH, RATIO, STRESS, TORQUE};
 
 static RACK: &[Field] = &[
     Field::number("addendum", 0.1, 2.0, "Addendum h_aP, times the module.").default("1.0"),
-    Field::number("shift", -1.0, f64::INFINITY, "Profile shift x.").optional(),
+    Field::number("shift", -1.0, f64::INFINITY, "Profile shift x.").optional().example("0.2"),
 ];
 
 static BODY: &[Field] = &[
-    Field::integer("teeth", 5, 1000, "Number of teeth z."),
-    Field::quantity("face_width", LENGTH, 1e-5, 1.0, "Face width b."),
+    Field::integer("teeth", 5, 1000, "Number of teeth z.").example("24"),
+    Field::quantity("face_width", LENGTH, 1e-5, 1.0, "Face width b.").example("20 mm"),
 ];
 
 static GEOMETRY: &[Field] = &[
-    Field::quantity("module", LENGTH, 1e-5, 0.1, "Module m."),
+    Field::quantity("module", LENGTH, 1e-5, 0.1, "Module m.").example("3 mm"),
     Field::quantity("pressure_angle", ANGLE, 0.1, 0.8, "Pressure angle α.").default("20 deg"),
     Field::group("rack", RACK, "The basic rack.").default("{}"),
     Field::quantity("youngs_modulus", STRESS, 1e8, 1e12, "Young's modulus E.").default("206 GPa"),
     Field::group("pinion", BODY, "The driving gear."),
-    Field::quantity("overlap", RATIO, 0.0, 1.0, "An overlap.").optional(),
+    Field::quantity("overlap", RATIO, 0.0, 1.0, "An overlap.").optional().example("5 %"),
     Field::new("ground", Shape::Flag, "Whether the flanks are ground.").default("false"),
     Field::choice(
         "side",
@@ -48,13 +48,13 @@ static GEOMETRY: &[Field] = &[
         "The flank.",
     )
     .default("right"),
-    Field::new("note", Shape::Text, "Anything.").optional(),
-    Field::integer("bolts", 4, 12, "Bolts, in pairs.").multiple_of(2).optional(),
+    Field::new("note", Shape::Text, "Anything.").optional().example("as cut"),
+    Field::integer("bolts", 4, 12, "Bolts, in pairs.").multiple_of(2).optional().example("6"),
 ];
 
 static RELIEF: &[Field] = &[
-    Field::quantity("amount", LENGTH, 0.0, 1e-3, "Relief C_a.").range(),
-    Field::quantity("length", LENGTH, 0.0, 0.1, "Relief length L_Ca.").range().optional(),
+    Field::quantity("amount", LENGTH, 0.0, 1e-3, "Relief C_a.").range().example("12 um"),
+    Field::quantity("length", LENGTH, 0.0, 0.1, "Relief length L_Ca.").range().optional().example("4 mm"),
 ];
 static FAMILIES: &[Member] = &[
     Member { name: "tip_relief", summary: "Relief of the tip.", fields: RELIEF },
@@ -80,7 +80,7 @@ static PLACES: Shape = Shape::Reference(&["modification", "optimizer"]);
 static STE: &[Field] = &[
     Field::reference("pair", &["geometry"], "The gears."),
     Field::new("designs", Shape::List(&PLACES), "What is run."),
-    Field::quantity("torque", TORQUE, 0.0, 1e7, "Torque T.").axis(8),
+    Field::quantity("torque", TORQUE, 0.0, 1e7, "Torque T.").axis(8).example("100 N m"),
     Field::number("factor", 0.0, 10.0, "A factor.").axis(8).default("1"),
     Field::reference("before", &["ste"], "Another one.").optional(),
 ];
@@ -88,7 +88,7 @@ static STE: &[Field] = &[
 static CELL: Shape = Shape::Text;
 static REPORT: &[Field] = &[
     Field::new("cells", Shape::List(&CELL), "Cells, as `stage.table.column`.").default("[]"),
-    Field::new("value", Shape::AnyQuantity, "A published value.").optional(),
+    Field::new("value", Shape::AnyQuantity, "A published value.").optional().example("4.2 um"),
     Field::reference("around", &["modification", "report"], "Read through it.").optional(),
 ];
 

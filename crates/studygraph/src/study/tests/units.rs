@@ -21,24 +21,24 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "overlap: 12.5 %",
         "youngs_modulus: 206 *GPa*",
-        "11:21: `*GPa*` in `206 *GPa*` cannot be read as a unit: nothing stands before `*`; a stress (for example `3 GPa`) is expected\n  help: write `206 GPa`",
+        "11:21: `*GPa*` in `206 *GPa*` cannot be read as a unit: nothing stands before `*`; a stress (for example `206 GPa`) is expected\n  help: write `206 GPa`",
     ),
     // Only one reading is a stress.
     (
         "overlap: 12.5 %",
         "youngs_modulus: 0.206 kN/mm um",
-        "11:21: `kN/mm um` in `0.206 kN/mm um` can be read in two ways; a stress (for example `3 GPa`) is expected\n  help: write `0.206 kN/(mm um)`",
+        "11:21: `kN/mm um` in `0.206 kN/mm um` can be read in two ways; a stress (for example `206 GPa`) is expected\n  help: write `0.206 kN/(mm um)`",
     ),
     (
         "overlap: 12.5 %",
         "youngs_modulus: 206 N um/mm^2 s",
-        "11:21: `N um/mm^2 s` in `206 N um/mm^2 s` can be read in two ways; a stress (for example `3 GPa`) is expected\n  help: write the unit as `N um/(mm^2 s)` or `N um s/mm^2`",
+        "11:21: `N um/mm^2 s` in `206 N um/mm^2 s` can be read in two ways; a stress (for example `206 GPa`) is expected\n  help: write the unit as `N um/(mm^2 s)` or `N um s/mm^2`",
     ),
     // The place is that of the point of the axis.
     (
         "torque: { from: 25 N m, to: 100 N m, count: 16 }",
         "torque: [25 N m, 50 N**m]",
-        "30:22: `N**m` in `50 N**m` cannot be read as a unit: nothing stands between `*` and `*`; a torque (for example `3 N m`) is expected\n  help: write `50 N m`",
+        "30:22: `N**m` in `50 N**m` cannot be read as a unit: nothing stands between `*` and `*`; a torque (for example `100 N m`) is expected\n  help: write `50 N m`",
     ),
     (
         "module: 3 mm",

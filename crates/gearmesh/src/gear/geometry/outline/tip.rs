@@ -34,7 +34,7 @@ pub struct Land {}
 #[declared(name = "chamfer")]
 pub struct Chamfer {
     /// How far it begins below the tip circle.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, example = "0.3 mm")]
     pub size: f64,
 }
 
@@ -43,7 +43,7 @@ pub struct Chamfer {
 #[declared(name = "rounding")]
 pub struct Rounding {
     /// Radius of the arc.
-    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0)]
+    #[declared(dimension = LENGTH, minimum = 0.0, maximum = 1.0, example = "0.2 mm")]
     pub radius: f64,
 }
 

@@ -6,12 +6,16 @@
 //! the tip, and crowning (its closed form). Inputs are the kernels' own `f64`, taken as exact. Must not know: the kernels.
 
 mod flanks;
+#[cfg(test)]
+mod gaps;
 mod mesh;
 mod rules;
 mod tooth;
 
 use crate::numeric::double_double::Double;
 use flanks::TipRelief;
+#[cfg(test)]
+pub(super) use gaps::exact_gap;
 use mesh::Mesh;
 pub use rules::Rule;
 use tooth::Tooth;

@@ -29,7 +29,7 @@ fn many(root: &Path) -> Cache {
 }
 
 fn put(cache: &Cache, index: usize) {
-    let of_run = OfRun { seconds: 0.5, warnings: vec![index.to_string()], ..OfRun::default() };
+    let of_run = OfRun { seconds: 0.5, warnings: vec![index.to_string().into()], ..OfRun::default() };
     cache.put(name(index), &[&table(index)], of_run).unwrap();
 }
 
@@ -43,7 +43,7 @@ fn packs(root: &Path) -> Vec<PathBuf> {
 fn found(cache: &Cache) -> usize {
     let whole = |index: &usize| {
         let Lookup::Found(entry) = cache.look_up(name(*index)) else { return false };
-        assert_eq!((entry.key, &entry.of_run.warnings), (name(*index), &vec![index.to_string()]));
+        assert_eq!((entry.key, &entry.of_run.warnings), (name(*index), &vec![index.to_string().into()]));
         let Ok(back) = cache.table(name(*index), "curve") else { return false };
         assert_identical(&back, &table(*index));
         assert_eq!(entry.tables[0].content, back.content_hash());

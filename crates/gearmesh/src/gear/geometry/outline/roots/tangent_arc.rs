@@ -19,7 +19,7 @@ pub struct TangentArc {
     #[declared(default = "base_circle")]
     pub size: Size,
     /// Radius of the arc.
-    #[declared(minimum = 0.0, maximum = 100.0, dimension = LENGTH)]
+    #[declared(minimum = 0.0, maximum = 100.0, dimension = LENGTH, example = "0.9 mm")]
     pub radius: Option<f64>,
 }
 

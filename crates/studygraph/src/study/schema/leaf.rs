@@ -1,0 +1,192 @@
+//! What the schema says of a single value: how it looks, what an editor says where it does not, what it offers.
+//!
+//! `title` and `examples` are of the standard. `errorMessage`, `patternErrorMessage` and `defaultSnippets` are those that the
+//! YAML language server reads; other readers pass over them. Must not know: how fields are put together.
+
+use serde_json::{Value, json};
+
+use crate::study::assemble::NAME_PATTERN;
+use crate::study::varied::COLUMN_PATTERN;
+use crate::study::words;
+use declare::units::{ANGLE, Dimension, FORCE, LENGTH, RATIO, TIME, in_unit, parse_quantity, parse_unit, symbols};
+
+const NUMBER: &str = r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
+/// The same where a minus would be outside every range.
+const POSITIVE: &str = r"\+?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?";
+
+/// A name as a heading: `Young's modulus` of `youngs_modulus`.
+pub fn title(name: &str) -> String {
+    let word = |word: &str| match word {
+        "youngs" => "Young's".to_owned(),
+        "poisson" => "Poisson's".to_owned(),
+        "iso" => "ISO".to_owned(),
+        "iso6336" => "ISO 6336".to_owned(),
+        "weber" => "Weber".to_owned(),
+        "banaschek" => "Banaschek".to_owned(),
+        "nelder" => "Nelder".to_owned(),
+        "mead" => "Mead".to_owned(),
+        "powell" => "Powell".to_owned(),
+        "latin" => "Latin".to_owned(),
+        "sobol" => "Sobol".to_owned(),
+        other => other.to_owned(),
+    };
+    let words = name.split('_').map(word).collect::<Vec<_>>().join(" ");
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().collect::<String>() + letters.as_str())
+}
+
+/// What is said of a value that does not look as it must, whichever way.
+fn explained(mut schema: Value, message: String) -> Value {
+    if schema.get("pattern").is_some() {
+        schema["patternErrorMessage"] = json!(message);
+    }
+    schema["errorMessage"] = json!(message);
+    schema
+}
+
+fn with_example(mut schema: Value, example: Option<Value>) -> Value {
+    if let Some(example) = example {
+        schema["examples"] = json!([example]);
+    }
+    schema
+}
+
+/// A number with a unit; a plain one or one in percent where it is a ratio.
+pub fn quantity(dimension: Dimension, minimum: f64, maximum: f64, example: Option<&str>) -> Value {
+    if dimension == RATIO {
+        let message = "a ratio is a plain number or one with `%`, such as `0.05` or `5 %`";
+        let percent = json!({ "type": "string", "pattern": format!("^{NUMBER} *%$") });
+        let (percent, plain) = match example.map(|text| (text, text.parse::<serde_json::Number>())) {
+            Some((_, Ok(plain))) => (percent, Some(Value::Number(plain))),
+            Some((text, Err(_))) => (with_example(percent, Some(json!(text))), None),
+            None => (percent, None),
+        };
+        let plain = with_example(bounded(minimum, maximum), plain);
+        return json!({ "anyOf": [explained(plain, message.to_owned()), explained(percent, message.to_owned())] });
+    }
+    // Simple dimensions have their few units; in others units are put together, and only the reader knows them all.
+    let units = if [LENGTH, ANGLE, FORCE, TIME].contains(&dimension) {
+        let fits = |symbol: &&str| parse_unit(symbol).is_ok_and(|unit| unit.dimension == dimension);
+        symbols().filter(fits).collect::<Vec<_>>().join("|")
+    } else {
+        "[A-Za-zµμ1].*".to_owned()
+    };
+    let example = example.map(str::to_owned).or_else(|| words::example(dimension, minimum, maximum));
+    let number = if minimum > 0.0 { POSITIVE } else { NUMBER };
+    let schema = json!({ "type": "string", "pattern": format!("^{number} *({units})$") });
+    let such = example.as_ref().map_or_else(String::new, |text| format!(", such as `{text}`"));
+    let more = if minimum > 0.0 { ", more than 0" } else { "" };
+    let message = format!("{} is a number and a unit{more}{such}", dimension.describe().0);
+    let mut schema = explained(with_example(schema, example.as_ref().map(|text| json!(text))), message);
+    // The number is what is written next, the unit stands.
+    if let Some(si) = example.and_then(|text| parse_quantity(&text).ok()).map(|read| read.value) {
+        let unit = |unit: &&'static str| {
+            let number = words::number(in_unit(si, unit));
+            json!({ "label": format!("… {unit}"), "body": format!("${{1:{number}}} {unit}") })
+        };
+        schema["defaultSnippets"] = dimension.describe().1.iter().map(unit).collect();
+    }
+    schema
+}
+
+fn bounded(minimum: f64, maximum: f64) -> Value {
+    let mut schema = json!({ "type": "number" });
+    if minimum.is_finite() {
+        schema["minimum"] = json!(minimum);
+    }
+    if maximum.is_finite() {
+        schema["maximum"] = json!(maximum);
+    }
+    schema
+}
+
+/// A plain number.
+pub fn number(minimum: f64, maximum: f64, example: Option<&str>) -> Value {
+    let example = example.and_then(|text| text.parse::<serde_json::Number>().ok()).map(Value::Number);
+    with_example(explained(bounded(minimum, maximum), "a plain number is expected, without a unit".to_owned()), example)
+}
+
+pub fn integer(minimum: i64, maximum: i64, multiple: i64, example: Option<&str>) -> Value {
+    let mut schema = json!({ "type": "integer" });
+    if minimum != i64::MIN {
+        schema["minimum"] = json!(minimum);
+    }
+    if maximum != i64::MAX {
+        schema["maximum"] = json!(maximum);
+    }
+    if multiple != 1 {
+        schema["multipleOf"] = json!(multiple);
+    }
+    let schema = explained(schema, format!("{} is expected", words::integer(multiple)));
+    with_example(schema, example.and_then(|text| text.parse::<i64>().ok()).map(|number| json!(number)))
+}
+
+/// A number with any unit, or none.
+pub fn any_quantity(example: Option<&str>) -> Value {
+    let schema = json!({ "type": ["number", "string"], "pattern": format!("^{NUMBER}") });
+    let message = "a number is expected, with its unit if it has one, such as `4.2 um`";
+    with_example(explained(schema, message.to_owned()), example.map(|text| json!(text)))
+}
+
+pub fn text(example: Option<&str>) -> Value {
+    let schema = json!({ "type": ["string", "number", "boolean"] });
+    with_example(explained(schema, "text is expected, on one line".to_owned()), example.map(|text| json!(text)))
+}
+
+/// What every name of a study, a stage or a file must look like.
+const NAMES: &str = "a name has small letters, digits, `-` and `_`, and begins with a letter or a digit";
+
+/// The name of a stage of one of these kinds.
+pub fn reference(kinds: &[&str], example: Option<&str>) -> Value {
+    let schema = json!({ "type": "string", "pattern": NAME_PATTERN });
+    let message = format!("{} is expected; {NAMES}", words::stage_of(kinds));
+    // In studies stages are mostly called after their kinds.
+    let example = example.or(kinds.first().copied()).unwrap_or("ste");
+    with_example(explained(schema, message), Some(json!(example)))
+}
+
+/// Names of stages and of studies.
+pub fn name() -> Value {
+    explained(json!({ "pattern": NAME_PATTERN }), NAMES.to_owned())
+}
+
+/// Names of columns of the user's own.
+pub fn column() -> Value {
+    let message = "a column's name has small letters, digits and `_`, and begins with a letter";
+    explained(json!({ "pattern": COLUMN_PATTERN }), message.to_owned())
+}
+
+/// Where a field is, in the whole study.
+pub fn path() -> Value {
+    let pattern = r"^[A-Za-z0-9_-]+([.][^.\[\] ]+|\[[0-9]+\])*$";
+    let message = "a path is a stage and the way to a field in it, such as `pair.pinion.face_width`";
+    explained(json!({ "pattern": pattern }), message.to_owned())
+}
+
+/// One value, a list, or evenly spaced ones.
+pub fn axis(single: &Value) -> Value {
+    json!({ "anyOf": [
+        single,
+        { "type": "array", "minItems": 1, "items": single },
+        {
+            "type": "object",
+            "required": ["from", "to", "count"],
+            "additionalProperties": false,
+            "properties": ends(single),
+        },
+    ] })
+}
+
+/// The fields of evenly spaced values.
+pub fn ends(single: &Value) -> Value {
+    let named = |name: &str, description: &str, mut schema: Value| {
+        schema["title"] = json!(title(name));
+        schema["description"] = json!(description);
+        schema
+    };
+    json!({
+        "from": named("from", "The first value.", single.clone()),
+        "to": named("to", "The last value, which is one of them.", single.clone()),
+        "count": named("count", "How many values there are, with both ends.", integer(2, i64::MAX, 1, Some("5"))),
+    })
+}
