@@ -22,3 +22,4 @@ pub mod piecewise;
 pub mod quadratic;
 pub mod quadrature;
 pub mod surface;
+pub mod together;

@@ -68,16 +68,16 @@ impl Panels {
 }
 
 /// Σ c_k T_k(t) in powers of t.
-fn powers(chebyshev: &[f64]) -> [f64; TERMS] {
-    let mut sum = [0.0; TERMS];
-    let (mut current, mut next) = ([0.0; TERMS], [0.0; TERMS]);
+pub(super) fn powers<const N: usize>(chebyshev: &[f64]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    let (mut current, mut next) = ([0.0; N], [0.0; N]);
     (current[0], next[1]) = (1.0, 1.0);
     for coefficient in chebyshev {
         for (slot, power) in sum.iter_mut().zip(&current) {
             *slot += coefficient * power;
         }
-        let mut after = [0.0; TERMS];
-        for k in 0..TERMS {
+        let mut after = [0.0; N];
+        for k in 0..N {
             after[k] = if k > 0 { 2.0 * next[k - 1] } else { 0.0 } - current[k];
         }
         (current, next) = (next, after);

@@ -2,10 +2,11 @@
 //!
 //! Stiffness in N/m over the common face width. Must not know: where in the mesh cycle the position is.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
 use super::face::Face;
 use super::flattening::InSeries;
+use super::plain::PlainLaw;
 use crate::numeric::by_loads::{Yielded, Yielding};
 use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
 use crate::numeric::logarithm::Known;
@@ -61,9 +62,15 @@ impl Springs for LinearPairs<'_> {
 
 /// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
-pub struct LogarithmicPairs<'p, 'a> {
-    /// Contact and teeth of each pair, per width.
-    pub slices: &'p [Option<InSeries<'a>>; MOST_SPRINGS],
+pub struct LogarithmicPairs<'p, 'a, F> {
+    /// Contact and teeth of each pair, per width, as far as that is known at once.
+    pub plain: [PlainLaw; MOST_SPRINGS],
+    /// β of all pairs \[1/Pa\].
+    pub rate: f64,
+    /// The whole of it, once it was needed.
+    pub whole: &'p [OnceCell<InSeries<'a>>; MOST_SPRINGS],
+    /// Where that comes from.
+    pub series: F,
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.
@@ -72,10 +79,10 @@ pub struct LogarithmicPairs<'p, 'a> {
     pub logs: [Cell<Known>; MOST_SPRINGS],
 }
 
-impl<'a> LogarithmicPairs<'_, 'a> {
+impl<'a, F: Fn(usize) -> InSeries<'a>> LogarithmicPairs<'_, 'a, F> {
     #[inline]
     fn slice(&self, pair: usize) -> &InSeries<'a> {
-        self.slices[pair].as_ref().expect("every pair within reach has a slice")
+        self.whole[pair].get_or_init(|| (self.series)(pair))
     }
 
     /// The penetration at which a pair alone carries `total` or more, whatever the shape of the face: by the convexity
@@ -84,22 +91,34 @@ impl<'a> LogarithmicPairs<'_, 'a> {
     pub fn above(&self, pair: usize, total: f64) -> f64 {
         self.slice(pair).penetration(total / self.width) + self.faces.of(pair).mean
     }
+
+    /// Next to a tip, or beyond what the law is made for.
+    #[cold]
+    fn beyond_plain(&self, pair: usize, known: Known) -> ([f64; 3], bool) {
+        self.slice(pair).rates_at(known.number, known.log)
+    }
 }
 
-impl Yielding for LogarithmicPairs<'_, '_> {
+impl<'a, F: Fn(usize) -> InSeries<'a>> Yielding for LogarithmicPairs<'_, 'a, F> {
     /// On a flat face.
     #[inline]
     fn penetration(&self, pair: usize, load: f64) -> Yielded {
         let known = self.logs[pair].get().next(load / self.width);
         self.logs[pair].set(known);
-        let ([penetration, slope, bend], is_rough) = self.slice(pair).rates_at(known.number, known.log);
+        let plain = &self.plain[pair];
+        let ([penetration, slope, bend], is_rough) = if plain.holds(known.number) {
+            (plain.rates_at(self.rate, known.number, known.log), false)
+        } else {
+            self.beyond_plain(pair, known)
+        };
         Yielded { penetration, rate: slope / self.width, bend: bend / (self.width * self.width), is_rough }
     }
 }
 
-impl Springs for LogarithmicPairs<'_, '_> {
+impl<'a, F: Fn(usize) -> InSeries<'a>> Springs for LogarithmicPairs<'_, 'a, F> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slice(pair).load(depth));
+        let slice = self.slice(pair);
+        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| slice.load(depth));
         (self.width * load, self.width * slope)
     }
 }
@@ -121,8 +140,10 @@ mod tests {
             let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
             let face = Face::new(&crowned, 18e-3, &rule);
             let logs = std::array::from_fn(|_| Cell::new(Known::new(1.0)));
-            let slices = std::array::from_fn(|_| Some(law.clone()));
-            let pairs = LogarithmicPairs { slices: &slices, width: 18e-3, faces: Faces::Same(&face), logs };
+            let whole = [const { OnceCell::new() }; MOST_SPRINGS];
+            let (plain, rate, series) = ([PlainLaw::NONE; MOST_SPRINGS], law.law.rate, |_| law.clone());
+            let pairs =
+                LogarithmicPairs { plain, rate, whole: &whole, series, width: 18e-3, faces: Faces::Same(&face), logs };
             for load in [1.0, 300.0, 2e3, 1e5] {
                 let carried = pairs.response(0, pairs.above(0, load)).0;
                 assert!(carried >= load * (1.0 - 1e-12), "{carried} N of {load} N with a crown of {crown} m");

@@ -211,6 +211,14 @@ impl Far {
     }
 }
 
+impl Far {
+    /// What they add to the compliance of both teeth, and to that per load, up to which load per width.
+    #[must_use]
+    pub const fn parts(&self) -> ([f64; 2], f64) {
+        ([self.compliance, self.rest], self.last)
+    }
+}
+
 /// The tips of a law, prepared for many loads.
 #[derive(Clone, Debug)]
 pub(super) struct NearTips<'a> {

@@ -2,7 +2,7 @@
 //!
 //! Must not know: which positions are computed, what is done with the values.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 use std::sync::Arc;
 
 use super::count::Count;
@@ -13,6 +13,7 @@ use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
+use crate::gear::contact::plain::PlainLaw;
 use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
 use crate::numeric::by_loads;
@@ -341,9 +342,13 @@ impl<'a> LoadCase<'a> {
     fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
-            elasticity @ Elasticity::Logarithmic { .. } if self.force > 0.0 => {
+            elasticity @ Elasticity::Logarithmic { rates: [rate, _], .. } if self.force > 0.0 => {
+                let (Known { number, log }, plain) = (self.line_load, elasticity.plain(s));
+                if plain.holds(number) {
+                    return 2.0 * (plain.rates_at(*rate, number, log)[0] + self.flanks.mean(s));
+                }
                 let law = law.insert(elasticity.series(s, None));
-                law.at_known_load(self.line_load.number, self.line_load.log).0
+                law.at_known_load(number, log).0
             }
             Elasticity::Logarithmic { .. } => 0.0,
         };
@@ -383,16 +388,21 @@ impl<'a> LoadCase<'a> {
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
-            Elasticity::Logarithmic { .. } => {
-                let mut slices = [const { None }; MOST_SPRINGS];
-                slices[reach.nearest()] = nearest.cloned();
-                for (slot, s) in slices.iter_mut().zip(reach.positions()) {
-                    slot.get_or_insert_with(|| self.cycle.elasticity.series(*s, None));
+            elasticity @ Elasticity::Logarithmic { rates: [rate, _], .. } => {
+                let mut plain = [PlainLaw::NONE; MOST_SPRINGS];
+                for (plain, s) in plain.iter_mut().zip(reach.positions()) {
+                    *plain = elasticity.plain(*s);
                 }
+                let whole = [const { OnceCell::new() }; MOST_SPRINGS];
+                if let Some(nearest) = nearest {
+                    whole[reach.nearest()].get_or_init(|| nearest.clone());
+                }
+                let series = |pair: usize| elasticity.series(reach.positions()[pair], None);
                 // As if all carried alike.
                 let even = self.line_load.over(reach.springs().len());
                 let logs = std::array::from_fn(|_| Cell::new(even));
-                let pairs = LogarithmicPairs { slices: &slices, width: self.cycle.face_width, faces, logs };
+                let (rate, width) = (*rate, self.cycle.face_width);
+                let pairs = LogarithmicPairs { plain, rate, whole: &whole, series, width, faces, logs };
                 if faces.are_flat() {
                     let coupling = self.coupling_of(reach);
                     let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
