@@ -111,7 +111,8 @@ impl<'a, F: Fn(usize) -> InSeries<'a>> Yielding for LogarithmicPairs<'_, 'a, F> 
         } else {
             self.beyond_plain(pair, known)
         };
-        Yielded { penetration, rate: slope / self.width, bend: bend / (self.width * self.width), is_rough }
+        let per_width = 1.0 / self.width;
+        Yielded { penetration, rate: slope * per_width, bend: bend * (per_width * per_width), is_rough }
     }
 }
 

@@ -371,13 +371,19 @@ impl<'a> LoadCase<'a> {
             return (balance, Some(peaks));
         }
         if self.flanks.is_surface {
-            let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
-            return (self.balance_behind(reach, nearest, Faces::Each(&faces)), None);
+            return (self.balance_of_surfaces(reach, nearest), None);
         }
         (self.balance_behind(reach, nearest, Faces::Same(&self.flanks.face)), None)
     }
 
+    #[cold]
+    fn balance_of_surfaces(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> Balance {
+        let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
+        self.balance_behind(reach, nearest, Faces::Each(&faces))
+    }
+
     /// Where slices do not hold each other.
+    #[inline]
     fn balance_behind(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>, faces: Faces) -> Balance {
         match &self.cycle.elasticity {
             Elasticity::Linear(graded) => {
@@ -427,10 +433,14 @@ impl<'a> LoadCase<'a> {
     /// What the pairs' loads do to each other; none where nothing couples them.
     #[inline]
     fn coupling_of(&self, reach: &WithinReach) -> Option<Coupling> {
-        let (springs, positions) = (reach.springs(), reach.positions());
-        if matches!(self.regime, Regime::Pairs) || springs.len() < 2 {
+        if matches!(self.regime, Regime::Pairs) || reach.springs().len() < 2 {
             return None;
         }
+        Some(self.coupling_between(reach))
+    }
+
+    fn coupling_between(&self, reach: &WithinReach) -> Coupling {
+        let (springs, positions) = (reach.springs(), reach.positions());
         let mut coupling: Coupling = [PerSpring::default(); MOST_SPRINGS];
         for (ahead, &spring) in springs.iter().enumerate() {
             for behind in 0..ahead {
@@ -438,6 +448,6 @@ impl<'a> LoadCase<'a> {
                 (coupling[behind][ahead], coupling[ahead][behind]) = (value, value);
             }
         }
-        Some(coupling)
+        coupling
     }
 }
