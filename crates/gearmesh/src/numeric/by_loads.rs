@@ -47,6 +47,11 @@ impl Yielded {
 pub trait Yielding {
     /// At a load > 0.
     fn penetration(&self, spring: usize, load: f64) -> Yielded;
+
+    /// About the same, from which to start: it only shortens the way.
+    fn about(&self, spring: usize, load: f64) -> Yielded {
+        self.penetration(spring, load)
+    }
 }
 
 type Each = [Yielded; MOST_SPRINGS];
@@ -68,7 +73,7 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
     let even = total / count as f64;
     let (mut each, mut stiffness) = ([Yielded::NONE; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
     for (spring, stiffness) in stiffness[..count].iter_mut().enumerate() {
-        each[spring] = springs.penetration(spring, even);
+        each[spring] = springs.about(spring, even);
         *stiffness = even / each[spring].penetration;
     }
     found.approach = linear_approach(&stiffness, gaps, total);
@@ -134,7 +139,7 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
 fn among_two(springs: &impl Yielding, gaps: [f64; 2], coupling: Option<&Coupling>, total: f64) -> Option<Balance> {
     // Which are loaded: as if each were linear, as stiff as under half of the load.
     let half = 0.5 * total;
-    let each = [springs.penetration(0, half), springs.penetration(1, half)];
+    let each = [springs.about(0, half), springs.about(1, half)];
     let stiffness = [half / each[0].penetration, half / each[1].penetration];
     let (near, far) = if gaps[1] < gaps[0] { (1, 0) } else { (0, 1) };
     let mut approach = (total + stiffness[near] * gaps[near]) / stiffness[near];

@@ -56,9 +56,9 @@ impl Panels {
     pub fn value(&self, x: f64) -> f64 {
         let place = (x - self.lower) * self.per_length;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped to the panels
-        let panel = place.clamp(0.0, self.last) as usize;
-        let t = 2.0 * (place - panel as f64) - 1.0;
-        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = self.coefficients[panel];
+        let panel = place.clamp(0.0, self.last) as u32;
+        let t = 2.0 * (place - f64::from(panel)) - 1.0;
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = &self.coefficients[panel as usize];
         // Estrin's order: short chains of dependent operations.
         let (t2, t4) = (t * t, (t * t) * (t * t));
         let low = (c0 + c1 * t) + (c2 + c3 * t) * t2;

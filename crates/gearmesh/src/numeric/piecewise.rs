@@ -63,6 +63,7 @@ struct Piece {
 
 /// Equal parts of the range, each of which knows where to look.
 const BINS: usize = 64;
+const LAST_BIN: u32 = 63;
 
 /// What follows the function on a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -175,7 +176,7 @@ impl Piecewise {
             return self.pieces.get(self.pieces.partition_point(|piece| piece.upper < x));
         };
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last bin
-        let bin = (((x - self.lower) * per_bin) as usize).min(BINS - 1);
+        let bin = (((x - self.lower) * per_bin) as u32).min(LAST_BIN) as usize;
         self.pieces[usize::from(first[bin])..].iter().find(|piece| x <= piece.upper)
     }
 

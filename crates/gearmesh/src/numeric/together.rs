@@ -13,6 +13,7 @@ const FIRST: usize = 8;
 const HALVINGS: u32 = 8;
 /// Equal parts of the range, each of which knows the panel that it begins on.
 const BINS: usize = 256;
+const LAST_BIN: u32 = 255;
 /// Where polynomials are compared with the functions: between nodes, near both ends and near the middle.
 const PROBES: [f64; 5] = [-0.965, -0.61, 0.13, 0.61, 0.965];
 
@@ -72,8 +73,8 @@ impl<const N: usize> Together<N> {
             return nothing;
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // inside the range
-        let bin = ((x - self.lower) * self.per_bin) as usize;
-        let first = self.bins[bin.min(BINS - 1)];
+        let bin = ((x - self.lower) * self.per_bin) as u32;
+        let first = self.bins[bin.min(LAST_BIN) as usize];
         let Some(panel) = self.panels[first..].iter().find(|panel| x <= panel.upper) else { return nothing };
         let t = (x - panel.middle) * panel.per_half;
         let (t2, t4) = (t * t, (t * t) * (t * t));

@@ -122,6 +122,11 @@ impl Elasticity {
         matches!(self, Self::Logarithmic { ends: Some(_), .. })
     }
 
+    /// β \[1/Pa\] and its logarithm, of laws that have them.
+    pub(super) fn rates(&self) -> [f64; 2] {
+        if let Self::Logarithmic { rates, .. } = self { *rates } else { [0.0; 2] }
+    }
+
     /// As far as the law of a pair is known beforehand, from A to E.
     #[inline]
     pub(super) fn plain(&self, s: f64) -> PlainLaw {
@@ -304,7 +309,7 @@ impl MeshCycle {
     /// The path position s of spring `spring` at the cycle position τ.
     #[must_use]
     pub fn path_position(&self, position: f64, spring: usize) -> f64 {
-        let pitches = spring as f64 - self.newest() as f64;
+        let pitches = (spring.cast_signed() - self.newest().cast_signed()) as f64;
         self.pair.start_of_contact + position + self.pair.base_pitch * pitches
     }
 

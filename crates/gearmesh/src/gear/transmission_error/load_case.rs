@@ -342,10 +342,10 @@ impl<'a> LoadCase<'a> {
     fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
-            elasticity @ Elasticity::Logarithmic { rates: [rate, _], .. } if self.force > 0.0 => {
+            elasticity @ Elasticity::Logarithmic { .. } if self.force > 0.0 => {
                 let (Known { number, log }, plain) = (self.line_load, elasticity.plain(s));
                 if plain.holds(number) {
-                    return 2.0 * (plain.rates_at(*rate, number, log)[0] + self.flanks.mean(s));
+                    return 2.0 * (plain.rates_at(elasticity.rates()[0], number, log)[0] + self.flanks.mean(s));
                 }
                 let law = law.insert(elasticity.series(s, None));
                 law.at_known_load(number, log).0
@@ -394,32 +394,45 @@ impl<'a> LoadCase<'a> {
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
-            elasticity @ Elasticity::Logarithmic { rates: [rate, _], .. } => {
-                let mut plain = [PlainLaw::NONE; MOST_SPRINGS];
-                for (plain, s) in plain.iter_mut().zip(reach.positions()) {
-                    *plain = elasticity.plain(*s);
-                }
-                let whole = [const { OnceCell::new() }; MOST_SPRINGS];
-                if let Some(nearest) = nearest {
-                    whole[reach.nearest()].get_or_init(|| nearest.clone());
-                }
-                let series = |pair: usize| elasticity.series(reach.positions()[pair], None);
-                // As if all carried alike.
-                let even = self.line_load.over(reach.springs().len());
-                let logs = std::array::from_fn(|_| Cell::new(even));
-                let (rate, width) = (*rate, self.cycle.face_width);
-                let pairs = LogarithmicPairs { plain, rate, whole: &whole, series, width, faces, logs };
-                if faces.are_flat() {
-                    let coupling = self.coupling_of(reach);
-                    let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
-                    if let Some(found) = found {
-                        return found;
-                    }
-                }
-                let above = pairs.above(reach.nearest(), self.force);
-                self.balance_of_pairs(reach, &pairs, above)
+            Elasticity::Logarithmic { .. } if reach.springs().len() <= 2 => {
+                self.balance_of_logarithms::<2>(reach, nearest, faces)
+            }
+            Elasticity::Logarithmic { .. } => self.balance_of_logarithms::<MOST_SPRINGS>(reach, nearest, faces),
+        }
+    }
+
+    /// Of as many pairs at the most.
+    #[inline]
+    fn balance_of_logarithms<const N: usize>(
+        &self,
+        reach: &WithinReach,
+        nearest: Option<&InSeries<'a>>,
+        faces: Faces,
+    ) -> Balance {
+        let elasticity = &self.cycle.elasticity;
+        let mut plain = [PlainLaw::NONE; N];
+        for (plain, s) in plain.iter_mut().zip(reach.positions()) {
+            *plain = elasticity.plain(*s);
+        }
+        let whole = [const { OnceCell::new() }; N];
+        if let Some(nearest) = nearest {
+            whole[reach.nearest()].get_or_init(|| nearest.clone());
+        }
+        let series = |pair: usize| elasticity.series(reach.positions()[pair], None);
+        // As if all carried alike.
+        let even = self.line_load.over(reach.springs().len());
+        let logs = std::array::from_fn(|_| Cell::new(even));
+        let (rates, width) = (elasticity.rates(), self.cycle.face_width);
+        let pairs = LogarithmicPairs { plain, rates, whole: &whole, series, width, faces, logs };
+        if faces.are_flat() {
+            let coupling = self.coupling_of(reach);
+            let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
+            if let Some(found) = found {
+                return found;
             }
         }
+        let above = pairs.above(reach.nearest(), self.force);
+        self.balance_of_pairs(reach, &pairs, above)
     }
 
     fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
