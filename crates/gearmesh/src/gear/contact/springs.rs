@@ -4,7 +4,7 @@
 
 use std::cell::{Cell, OnceCell};
 
-use super::face::Face;
+use super::face::{Face, Piece};
 use super::flattening::InSeries;
 use super::plain::PlainLaw;
 use crate::numeric::by_loads::{Yielded, Yielding};
@@ -27,6 +27,13 @@ impl<'a> Faces<'a> {
             Self::Same(face) => face,
             Self::Each(faces) => &faces[pair],
         }
+    }
+
+    /// The stretch that stands for the faces of all pairs, if one does.
+    #[must_use]
+    #[inline]
+    pub fn one_piece(self) -> Option<&'a Piece> {
+        if let Self::Same(face) = self { face.one_piece() } else { None }
     }
 
     /// Whether the flanks run parallel across the face.
@@ -56,6 +63,22 @@ impl Springs for LinearPairs<'_> {
     #[inline]
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
         let (passed, share) = self.faces.of(pair).passed(penetration);
+        (self.stiffness[pair] * passed, self.stiffness[pair] * share)
+    }
+}
+
+/// Pairs with the linear contact law whose face is of one stretch.
+pub struct LinearPairsOnOne<'a> {
+    /// Stiffness of each pair as if the face were flat \[N/m\].
+    pub stiffness: PerSpring,
+    /// The stretch.
+    pub piece: &'a Piece,
+}
+
+impl Springs for LinearPairsOnOne<'_> {
+    #[inline]
+    fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
+        let (passed, share) = self.piece.passed(penetration);
         (self.stiffness[pair] * passed, self.stiffness[pair] * share)
     }
 }

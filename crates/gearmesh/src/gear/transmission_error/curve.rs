@@ -240,6 +240,7 @@ impl LoadCase<'_> {
         std::array::from_fn(|node| self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], wanted))
     }
 
+    #[inline]
     fn point(&self, position: f64, pairs: usize, state: &Equilibrium, wanted: Wanted) -> Point {
         let cycle = self.cycle;
         let path_position = cycle.path_position(position, cycle.newest());

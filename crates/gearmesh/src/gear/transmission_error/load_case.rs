@@ -14,7 +14,7 @@ use crate::gear::contact::CornerContact;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::plain::PlainLaw;
-use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
+use crate::gear::contact::springs::{Faces, LinearPairs, LinearPairsOnOne, LogarithmicPairs};
 use crate::gear::modification::Design;
 use crate::numeric::by_loads;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
@@ -392,6 +392,10 @@ impl<'a> LoadCase<'a> {
                     *slot = graded.value(*s);
                 }
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
+                if let (Some(piece), Regime::Pairs) = (faces.one_piece(), &self.regime) {
+                    let pairs = LinearPairsOnOne { stiffness, piece };
+                    return complementarity::balance(&pairs, reach.gaps(), self.force, above);
+                }
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } if reach.springs().len() <= 2 => {
