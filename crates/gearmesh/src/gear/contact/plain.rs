@@ -79,7 +79,7 @@ mod tests {
         let series = law.in_series(5e-11);
         let plain = PlainLaw { total: 5e-11 + law.constant, rest: 0.0, last: law.last() };
         let bent = PlainLaw { rest: 1e-3 * plain.total / 1e6, last: 1e7, ..plain };
-        for exponent in -20..=28 {
+        for exponent in -20..28 {
             let load = libm::pow(10.0, f64::from(exponent) * 0.25);
             let log = libm::log(load);
             let ([penetration, slope], [w, rate, bend]) =
