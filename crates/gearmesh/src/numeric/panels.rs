@@ -53,6 +53,7 @@ impl Panels {
 
     /// The value at `x`; outside the interval the outermost polynomial goes on.
     #[must_use]
+    #[inline]
     pub fn value(&self, x: f64) -> f64 {
         let place = (x - self.lower) * self.per_length;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped to the panels
