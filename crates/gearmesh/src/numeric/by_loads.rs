@@ -47,6 +47,11 @@ impl Yielded {
 pub trait Yielding {
     /// At a load > 0.
     fn penetration(&self, spring: usize, load: f64) -> Yielded;
+
+    /// About the same, from which to start: it only shortens the way.
+    fn about(&self, spring: usize, load: f64) -> Yielded {
+        self.penetration(spring, load)
+    }
 }
 
 type Each = [Yielded; MOST_SPRINGS];
@@ -61,11 +66,14 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
         (found.approach, found.loads[0], found.penetration[0]) = (penetration + gap, total, penetration);
         return Some(Balance { slope: 1.0 / rate, ..found });
     }
+    if let [one, two] = *gaps {
+        return among_two(springs, [one, two], coupling, total);
+    }
     // Which are loaded: as if each were linear, as stiff as under its part of the load.
     let even = total / count as f64;
     let (mut each, mut stiffness) = ([Yielded::NONE; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
     for (spring, stiffness) in stiffness[..count].iter_mut().enumerate() {
-        each[spring] = springs.penetration(spring, even);
+        each[spring] = springs.about(spring, even);
         *stiffness = even / each[spring].penetration;
     }
     found.approach = linear_approach(&stiffness, gaps, total);
@@ -82,6 +90,9 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
         }
     }
     let loaded = &loaded[..size];
+    if let [one] = *loaded {
+        return alone(springs, one, gaps, coupling, total);
+    }
     if let [one, two] = *loaded {
         // Loads that add up to the total, and about what is known there.
         let half = 0.5 * total;
@@ -122,6 +133,54 @@ pub fn balance(springs: &impl Yielding, gaps: &[f64], coupling: Option<&Coupling
         }
     }
     None
+}
+
+/// The equilibrium of two springs.
+fn among_two(springs: &impl Yielding, gaps: [f64; 2], coupling: Option<&Coupling>, total: f64) -> Option<Balance> {
+    // Which are loaded: as if each were linear, as stiff as under half of the load.
+    let half = 0.5 * total;
+    let each = [springs.about(0, half), springs.about(1, half)];
+    let stiffness = [half / each[0].penetration, half / each[1].penetration];
+    let (near, far) = if gaps[1] < gaps[0] { (1, 0) } else { (0, 1) };
+    let mut approach = (total + stiffness[near] * gaps[near]) / stiffness[near];
+    if approach > gaps[far] {
+        let moment = stiffness[0] * gaps[0] + stiffness[1] * gaps[1];
+        approach = (total + moment) / (stiffness[0] + stiffness[1]);
+    }
+    let loads = [stiffness[0] * (approach - gaps[0]), stiffness[1] * (approach - gaps[1])];
+    if loads[0].abs().min(loads[1].abs()) < BRINK * total {
+        return None;
+    }
+    if loads[far] < 0.0 {
+        return alone(springs, near, &gaps, coupling, total);
+    }
+    let c = coupling.map_or(0.0, |coupling| coupling[0][1]);
+    let mut found = Balance::EMPTY;
+    Two { springs: [0, 1], each, loads: [half; 2] }.balance(
+        springs,
+        [gaps[0], gaps[1], c],
+        total,
+        loads,
+        &mut found,
+    )?;
+    found.penetration[0] = found.approach - gaps[0] - c * found.loads[1];
+    found.penetration[1] = found.approach - gaps[1] - c * found.loads[0];
+    Some(found)
+}
+
+/// One spring has all of the load.
+#[inline]
+fn alone(
+    springs: &impl Yielding,
+    spring: usize,
+    gaps: &[f64],
+    coupling: Option<&Coupling>,
+    total: f64,
+) -> Option<Balance> {
+    let Yielded { penetration, rate, .. } = springs.penetration(spring, total);
+    let mut found = Balance { approach: penetration + gaps[spring], slope: 1.0 / rate, ..Balance::EMPTY };
+    found.loads[spring] = total;
+    opened(found, gaps, coupling)
 }
 
 /// With the penetrations that follow from loads and approach, if what carries nothing is well open.
@@ -181,7 +240,8 @@ impl Two {
                 (found.loads[self.springs[0]], found.loads[self.springs[1]]) = (loads[0], loads[1]);
                 return Some(());
             }
-            self.each = [0, 1].map(|side| springs.penetration(self.springs[side], loads[side]));
+            self.each =
+                [springs.penetration(self.springs[0], loads[0]), springs.penetration(self.springs[1], loads[1])];
             self.loads = loads;
         }
         None

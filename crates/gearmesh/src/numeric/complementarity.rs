@@ -103,37 +103,54 @@ pub fn unloaded(gaps: &[f64]) -> Balance {
 
 /// Equilibrium without coupling. `total` > 0, the smallest gap is 0, and at `above` the springs carry `total` or more.
 pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> Balance {
-    let mut found = Balance { approach: above, ..Balance::EMPTY };
-    let mut rises = [0.0; MOST_SPRINGS];
-    let (loads, rises) = (&mut found.loads[..gaps.len()], &mut rises[..gaps.len()]);
-    let mut excess = 0.0;
+    // Mostly there are one or two, which are quicker when that is known.
+    match *gaps {
+        [gap] => balance_of(springs, [gap], total, above),
+        [one, two] => balance_of(springs, [one, two], total, above),
+        _ => {
+            // What is added to as many as there may be is never loaded.
+            let mut all = [f64::INFINITY; MOST_SPRINGS];
+            all[..gaps.len()].copy_from_slice(gaps);
+            let mut found = balance_of(springs, all, total, above);
+            found.penetration[gaps.len()..].fill(0.0);
+            found
+        }
+    }
+}
+
+#[inline]
+fn balance_of<const N: usize>(springs: &impl Springs, gaps: [f64; N], total: f64, above: f64) -> Balance {
+    let mut approach = above;
+    let (mut loads, mut rises) = ([0.0; N], [0.0; N]);
+    let (mut excess, mut slope) = (0.0, 0.0);
     for _ in 0..200 {
-        let (mut sum, mut slope) = (0.0, 0.0);
-        for (spring, gap) in gaps.iter().enumerate() {
-            let penetration = found.approach - gap;
+        let mut sum = 0.0;
+        slope = 0.0;
+        for spring in 0..N {
+            let penetration = approach - gaps[spring];
             let (load, rise) = if penetration > 0.0 { springs.response(spring, penetration) } else { (0.0, 0.0) };
             (loads[spring], rises[spring]) = (load, rise);
             sum += load;
             slope += rise;
         }
-        found.slope = slope;
         excess = sum - total;
         let step = -excess / slope;
-        let next = found.approach + step;
+        let next = approach + step;
         // A spring that the last step would lift off has to be left out by a whole step.
-        let lifts = || loads.iter().zip(rises.iter()).any(|(load, rise)| load + rise * step < 0.0);
+        let lifts = || (0..N).any(|spring| loads[spring] + rises[spring] * step < 0.0);
         let settled = excess.abs() <= ROUNDING * total || (excess.abs() <= NEARLY * total && !lifts());
         if settled || !(next > 0.0 && next.is_finite()) {
             break;
         }
-        found.approach = next;
+        approach = next;
     }
     // The last step is so short that it needs no new responses.
-    let step = if found.slope > 0.0 { -excess / found.slope } else { 0.0 };
-    found.approach += step;
-    for (spring, gap) in gaps.iter().enumerate() {
-        found.penetration[spring] = found.approach - gap;
-        loads[spring] = (loads[spring] + rises[spring] * step).max(0.0);
+    let step = if slope > 0.0 { -excess / slope } else { 0.0 };
+    approach += step;
+    let mut found = Balance { approach, slope, ..Balance::EMPTY };
+    for spring in 0..N {
+        found.penetration[spring] = approach - gaps[spring];
+        found.loads[spring] = (loads[spring] + rises[spring] * step).max(0.0);
     }
     found
 }

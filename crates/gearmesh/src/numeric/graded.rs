@@ -37,7 +37,16 @@ impl Graded {
 
     /// The value at `x`; outside all stretches the outermost one goes on, as far as its roots allow.
     #[must_use]
+    #[inline]
     pub fn value(&self, x: f64) -> f64 {
+        // Of most functions there is one stretch, without roots.
+        match &self.0[..] {
+            [Stretch { roots: [false, false], panels, .. }] => panels.value(x),
+            _ => self.value_of_many(x),
+        }
+    }
+
+    fn value_of_many(&self, x: f64) -> f64 {
         let last = self.0.len() - 1;
         let stretch = &self.0[self.0[..last].iter().position(|stretch| x <= stretch.upper).unwrap_or(last)];
         let Stretch { upper, lower, roots, panels } = stretch;

@@ -2,6 +2,7 @@
 //!
 //! Must not know: gears, files, units of anything.
 
+pub mod bundle;
 pub mod by_loads;
 pub mod chebyshev;
 pub mod complementarity;
@@ -22,3 +23,4 @@ pub mod piecewise;
 pub mod quadratic;
 pub mod quadrature;
 pub mod surface;
+pub mod together;

@@ -53,12 +53,13 @@ impl Panels {
 
     /// The value at `x`; outside the interval the outermost polynomial goes on.
     #[must_use]
+    #[inline]
     pub fn value(&self, x: f64) -> f64 {
         let place = (x - self.lower) * self.per_length;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // clamped to the panels
-        let panel = place.clamp(0.0, self.last) as usize;
-        let t = 2.0 * (place - panel as f64) - 1.0;
-        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = self.coefficients[panel];
+        let panel = place.clamp(0.0, self.last) as u32;
+        let t = 2.0 * (place - f64::from(panel)) - 1.0;
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9] = &self.coefficients[panel as usize];
         // Estrin's order: short chains of dependent operations.
         let (t2, t4) = (t * t, (t * t) * (t * t));
         let low = (c0 + c1 * t) + (c2 + c3 * t) * t2;
@@ -68,16 +69,16 @@ impl Panels {
 }
 
 /// Σ c_k T_k(t) in powers of t.
-fn powers(chebyshev: &[f64]) -> [f64; TERMS] {
-    let mut sum = [0.0; TERMS];
-    let (mut current, mut next) = ([0.0; TERMS], [0.0; TERMS]);
+pub(super) fn powers<const N: usize>(chebyshev: &[f64]) -> [f64; N] {
+    let mut sum = [0.0; N];
+    let (mut current, mut next) = ([0.0; N], [0.0; N]);
     (current[0], next[1]) = (1.0, 1.0);
     for coefficient in chebyshev {
         for (slot, power) in sum.iter_mut().zip(&current) {
             *slot += coefficient * power;
         }
-        let mut after = [0.0; TERMS];
-        for k in 0..TERMS {
+        let mut after = [0.0; N];
+        for k in 0..N {
             after[k] = if k > 0 { 2.0 * next[k - 1] } else { 0.0 } - current[k];
         }
         (current, next) = (next, after);

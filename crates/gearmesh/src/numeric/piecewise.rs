@@ -40,6 +40,15 @@ pub struct Tolerance {
 pub struct Piecewise {
     lower: f64,
     pieces: Vec<Piece>,
+    index: Option<Index>,
+}
+
+/// Where to look for the piece of a place.
+#[derive(Clone, Debug)]
+struct Index {
+    per_bin: f64,
+    /// For each of equal parts of the range a piece that does not lie behind its beginning.
+    first: [u8; BINS],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +60,10 @@ struct Piece {
     /// Of Chebyshev's polynomials of the distance from the middle, in halves of the piece.
     coefficients: [f64; TERMS],
 }
+
+/// Equal parts of the range, each of which knows where to look.
+const BINS: usize = 64;
+const LAST_BIN: u32 = 63;
 
 /// What follows the function on a piece.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -108,7 +121,7 @@ impl Piecewise {
     /// A copy from `lower` on, to which stretches are added.
     #[must_use]
     pub fn from(lower: f64) -> Self {
-        Self { lower, pieces: Vec::new() }
+        Self { lower, pieces: Vec::new(), index: None }
     }
 
     /// Adds the stretch up to `upper`, on which `function` is smooth. `quick` is what it is believed to be there, at less
@@ -122,6 +135,7 @@ impl Piecewise {
         function: impl Fn(f64) -> f64,
     ) {
         let lower = self.upper();
+        self.index = None;
         if upper > lower && !self.follow(rule, [lower, upper], tolerance, quick, &function) {
             self.halve(rule, [lower, upper], tolerance, HALVINGS, &function);
         }
@@ -133,6 +147,37 @@ impl Piecewise {
             let (follows, coefficients) = (Follows::Nothing, [0.0; TERMS]);
             self.pieces.push(Piece { upper, middle: upper, per_half: 0.0, follows, coefficients });
         }
+    }
+
+    /// The same, prepared for many values. No more stretches are added.
+    #[must_use]
+    pub fn indexed(mut self) -> Self {
+        let width = (self.upper() - self.lower) / BINS as f64;
+        if width > 0.0 && self.pieces.len() < usize::from(u8::MAX) {
+            let mut first = [0; BINS];
+            let mut piece: u8 = 0;
+            for (bin, first) in first.iter_mut().enumerate() {
+                // One bin earlier than it seems, for rounding.
+                let begin = self.lower + width * (bin as f64 - 1.0);
+                while self.pieces[usize::from(piece)].upper < begin {
+                    piece += 1;
+                }
+                *first = piece;
+            }
+            self.index = Some(Index { per_bin: 1.0 / width, first });
+        }
+        self
+    }
+
+    /// The piece of a place that is not below the lower end.
+    #[inline]
+    fn piece(&self, x: f64) -> Option<&Piece> {
+        let Some(Index { per_bin, first }) = &self.index else {
+            return self.pieces.get(self.pieces.partition_point(|piece| piece.upper < x));
+        };
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last bin
+        let bin = (((x - self.lower) * per_bin) as u32).min(LAST_BIN) as usize;
+        self.pieces[usize::from(first[bin])..].iter().find(|piece| x <= piece.upper)
     }
 
     /// How many polynomials there are, stretches without a copy among them.
@@ -216,7 +261,7 @@ impl Piecewise {
         if x < self.lower {
             return None;
         }
-        let piece = self.pieces.get(self.pieces.partition_point(|piece| piece.upper < x))?;
+        let piece = self.piece(x)?;
         let place = || (x - piece.middle) * piece.per_half;
         match piece.follows {
             Follows::Nothing => None,
@@ -274,6 +319,14 @@ mod tests {
         }
         assert!([-1.0 - 1e-12, 1.0 + 1e-12].into_iter().all(|outside| copy.value(outside).is_none()));
         assert!(copy.pieces.len() > 2, "the second piece was halved");
+        let indexed = copy.clone().indexed();
+        for index in -5000..=5000 {
+            let x = 2e-4 * f64::from(index) * (1.0 + 1e-3 * f64::from(index % 7));
+            assert_eq!(indexed.value(x).map(f64::to_bits), copy.value(x).map(f64::to_bits), "{x}");
+        }
+        for piece in &copy.pieces {
+            assert_eq!(indexed.value(piece.upper).map(f64::to_bits), copy.value(piece.upper).map(f64::to_bits));
+        }
     }
 
     /// What is not smooth has a copy all around the place where it is not.

@@ -32,7 +32,7 @@ enum DeviationForm {
 
 /// A stretch on which h rises from its lower end: h = base + slope ζ + bend ζ².
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Piece {
+pub struct Piece {
     base: f64,
     slope: f64,
     bend: f64,
@@ -190,6 +190,16 @@ impl<'a> Face<'a> {
         levels
     }
 
+    /// The stretch that stands for all of the face, if one does: of a crowned one.
+    #[must_use]
+    #[inline]
+    pub fn one_piece(&self) -> Option<&Piece> {
+        match &self.shape {
+            DeviationForm::Quadratic(pieces) if pieces.len() == 1 => pieces.first(),
+            _ => None,
+        }
+    }
+
     /// Φ(w) and dΦ/dw, the share of the face in contact, for w > 0.
     #[must_use]
     #[inline]
@@ -304,8 +314,10 @@ impl Piece {
         if depth >= self.rise { 0.0 } else { 1.0 / (self.slope + 2.0 * self.bend * reach) }
     }
 
+    /// What [`Face::passed`] has of it.
+    #[must_use]
     #[inline]
-    fn passed(&self, penetration: f64) -> (f64, f64) {
+    pub fn passed(&self, penetration: f64) -> (f64, f64) {
         let depth = penetration - self.base;
         if depth <= 0.0 {
             return (0.0, 0.0);

@@ -112,7 +112,8 @@ impl Logarithmic {
     }
 
     /// The load per width above which the approach is constant.
-    fn last(&self) -> f64 {
+    #[must_use]
+    pub fn last(&self) -> f64 {
         libm::exp(self.constant / self.rate - 1.0)
     }
 

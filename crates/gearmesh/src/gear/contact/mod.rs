@@ -6,6 +6,7 @@ pub mod face;
 pub mod flattening;
 pub mod gap;
 pub mod patch;
+pub mod plain;
 pub mod rounding;
 pub mod separation;
 pub mod slices;

@@ -2,12 +2,13 @@
 //!
 //! Stiffness in N/m over the common face width. Must not know: where in the mesh cycle the position is.
 
-use std::cell::Cell;
+use std::cell::{Cell, OnceCell};
 
-use super::face::Face;
+use super::face::{Face, Piece};
 use super::flattening::InSeries;
+use super::plain::PlainLaw;
 use crate::numeric::by_loads::{Yielded, Yielding};
-use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs};
+use crate::numeric::complementarity::{PerSpring, Springs};
 use crate::numeric::logarithm::Known;
 
 /// The deviations across the common face.
@@ -26,6 +27,13 @@ impl<'a> Faces<'a> {
             Self::Same(face) => face,
             Self::Each(faces) => &faces[pair],
         }
+    }
+
+    /// The stretch that stands for the faces of all pairs, if one does.
+    #[must_use]
+    #[inline]
+    pub fn one_piece(self) -> Option<&'a Piece> {
+        if let Self::Same(face) = self { face.one_piece() } else { None }
     }
 
     /// Whether the flanks run parallel across the face.
@@ -59,47 +67,101 @@ impl Springs for LinearPairs<'_> {
     }
 }
 
+/// Pairs with the linear contact law whose face is of one stretch.
+pub struct LinearPairsOnOne<'a> {
+    /// Stiffness of each pair as if the face were flat \[N/m\].
+    pub stiffness: PerSpring,
+    /// The stretch.
+    pub piece: &'a Piece,
+}
+
+impl Springs for LinearPairsOnOne<'_> {
+    #[inline]
+    fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
+        let (passed, share) = self.piece.passed(penetration);
+        (self.stiffness[pair] * passed, self.stiffness[pair] * share)
+    }
+}
+
 /// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
-pub struct LogarithmicPairs<'p, 'a> {
-    /// Contact and teeth of each pair, per width.
-    pub slices: &'p [Option<InSeries<'a>>; MOST_SPRINGS],
+pub struct LogarithmicPairs<'p, 'a, F, const N: usize> {
+    /// Contact and teeth of each pair, per width, as far as that is known at once.
+    pub plain: [PlainLaw; N],
+    /// β of all pairs \[1/Pa\], and its logarithm.
+    pub rates: [f64; 2],
+    /// The whole of it, once it was needed.
+    pub whole: &'p [OnceCell<InSeries<'a>>; N],
+    /// Where that comes from.
+    pub series: F,
     /// Common face width b \[m\].
     pub width: f64,
     /// The deviation across the common face.
     pub faces: Faces<'p>,
     /// Loads per width that each pair had last, or may have, and their logarithms.
-    pub logs: [Cell<Known>; MOST_SPRINGS],
+    pub logs: [Cell<Known>; N],
 }
 
-impl<'a> LogarithmicPairs<'_, 'a> {
+impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, F, N> {
     #[inline]
     fn slice(&self, pair: usize) -> &InSeries<'a> {
-        self.slices[pair].as_ref().expect("every pair within reach has a slice")
+        self.whole[pair].get_or_init(|| (self.series)(pair))
     }
 
     /// The penetration at which a pair alone carries `total` or more, whatever the shape of the face: by the convexity
     /// of the response, that of a flat face plus the mean deviation.
     #[must_use]
     pub fn above(&self, pair: usize, total: f64) -> f64 {
-        self.slice(pair).penetration(total / self.width) + self.faces.of(pair).mean
+        let (load, plain) = (total / self.width, &self.plain[pair]);
+        let penetration = if plain.holds(load) && load > 0.0 {
+            plain.rates_at(self.rates[0], load, libm::log(load))[0]
+        } else {
+            self.slice(pair).penetration(load)
+        };
+        penetration + self.faces.of(pair).mean
+    }
+
+    /// Of whole pairs.
+    #[inline]
+    fn yielded(&self, [penetration, slope, bend]: [f64; 3], is_rough: bool) -> Yielded {
+        let per_width = 1.0 / self.width;
+        Yielded { penetration, rate: slope * per_width, bend: bend * (per_width * per_width), is_rough }
+    }
+
+    /// Next to a tip, or beyond what the law is made for.
+    #[cold]
+    fn beyond_plain(&self, pair: usize, known: Known) -> ([f64; 3], bool) {
+        self.slice(pair).rates_at(known.number, known.log)
     }
 }
 
-impl Yielding for LogarithmicPairs<'_, '_> {
+impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Yielding for LogarithmicPairs<'_, 'a, F, N> {
     /// On a flat face.
     #[inline]
     fn penetration(&self, pair: usize, load: f64) -> Yielded {
         let known = self.logs[pair].get().next(load / self.width);
         self.logs[pair].set(known);
-        let ([penetration, slope, bend], is_rough) = self.slice(pair).rates_at(known.number, known.log);
-        Yielded { penetration, rate: slope / self.width, bend: bend / (self.width * self.width), is_rough }
+        let plain = &self.plain[pair];
+        let (rates, is_rough) = if plain.holds(known.number) {
+            (plain.rates_at(self.rates[0], known.number, known.log), false)
+        } else {
+            self.beyond_plain(pair, known)
+        };
+        self.yielded(rates, is_rough)
+    }
+
+    #[inline]
+    fn about(&self, pair: usize, load: f64) -> Yielded {
+        let known = self.logs[pair].get().next(load / self.width);
+        let about = self.plain[pair].about(self.rates[0], known.number, known.log);
+        about.map_or_else(|| self.penetration(pair, load), |rates| self.yielded(rates, true))
     }
 }
 
-impl Springs for LogarithmicPairs<'_, '_> {
+impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Springs for LogarithmicPairs<'_, 'a, F, N> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (load, slope) = self.faces.of(pair).summed(penetration, |depth| self.slice(pair).load(depth));
+        let one = |depth: f64| self.plain[pair].load(self.rates, depth).unwrap_or_else(|| self.slice(pair).load(depth));
+        let (load, slope) = self.faces.of(pair).summed(penetration, one);
         (self.width * load, self.width * slope)
     }
 }
@@ -112,21 +174,44 @@ mod tests {
     use crate::numeric::lobatto::Rule;
     use declare::record::Value::Quantity;
 
-    /// Tier: invariant; what is said to be above is: the pair carries the load there, with a face that is flat or not.
+    /// Tier: invariant; what is said to be above is: the pair carries the load there, with a face that is flat or not, whether
+    /// its law is known at once or not, which makes no difference.
     #[test]
     fn a_pair_carries_the_load_at_the_penetration_above() {
         let rule = Rule::new(17);
         let law = Logarithmic::weber(&STEELS, 7e-3, [2.5e-3, 3e-3]).in_series(4e-11);
+        let known = PlainLaw { total: 4e-11 + law.law.constant, rest: 0.0, last: law.law.last() };
         for crown in [0.0, 2e-6, 30e-6] {
             let crowned = design(&pair(), &[("lead_crowning", "gear", &[("amount", Quantity(crown))])]).unwrap();
             let face = Face::new(&crowned, 18e-3, &rule);
-            let logs = std::array::from_fn(|_| Cell::new(Known::new(1.0)));
-            let slices = std::array::from_fn(|_| Some(law.clone()));
-            let pairs = LogarithmicPairs { slices: &slices, width: 18e-3, faces: Faces::Same(&face), logs };
+            let rates = [law.law.rate, law.law.log_rate];
+            let logs = || [Cell::new(Known::new(1.0))];
+            let (whole, faces) = ([const { OnceCell::new() }; 1], Faces::Same(&face));
+            let series = |_: usize| law.clone();
+            let of = |plain, whole| LogarithmicPairs {
+                plain: [plain],
+                rates,
+                whole,
+                series,
+                width: 18e-3,
+                faces,
+                logs: logs(),
+            };
+            let none = [const { OnceCell::new() }; 1];
+            let (slow, quick) = (of(PlainLaw::NONE, &whole), of(known, &none));
             for load in [1.0, 300.0, 2e3, 1e5] {
-                let carried = pairs.response(0, pairs.above(0, load)).0;
-                assert!(carried >= load * (1.0 - 1e-12), "{carried} N of {load} N with a crown of {crown} m");
+                let (above, at_once) = (slow.above(0, load), quick.above(0, load));
+                assert!((at_once / above - 1.0).abs() < 1e-14, "{above} {at_once}");
+                let carried = [slow.response(0, above), quick.response(0, above)];
+                assert!(carried[0].0 >= load * (1.0 - 1e-12), "{carried:?} N of {load} N with a crown of {crown} m");
+                assert!(
+                    (carried[1].0 / carried[0].0 - 1.0).abs() < 1e-12
+                        && (carried[1].1 / carried[0].1 - 1.0).abs() < 1e-11
+                );
+                let [one, other] = [slow.penetration(0, load), quick.penetration(0, load)];
+                assert!((one.penetration / other.penetration - 1.0).abs() < 1e-14 && quick.about(0, load).is_rough);
             }
         }
+        assert!(PlainLaw::NONE.last < 0.0);
     }
 }

@@ -9,8 +9,7 @@ use std::fmt::Debug;
 
 use super::flattening::InSeries;
 use super::rounding::Rounding;
-use super::wedge::Spread;
-use super::wedge::Wedge;
+use super::wedge::{Rates, Spread, Wedge};
 
 /// Newton's method stops here, in ln p: the error that is left is of second order in it.
 const CLOSE: f64 = 1e-8;
@@ -36,25 +35,16 @@ impl Shape {
         }
     }
 
-    /// The same of another ratio B/k₀, for an inclined load beyond the corner.
-    fn more_of(&self, place: f64, ratio: f64) -> [f64; 2] {
-        let [mut more, mut by_place] = self.more(place);
-        if let Self::Corner(wedge) = self
-            && place < 0.0
-        {
-            let change = ratio - wedge.ratio();
-            let [by_ratio, slope] = wedge.by_ratio(place);
-            (more, by_place) = (more + change * by_ratio, by_place + change * slope);
-        }
-        [more, by_place]
-    }
-
-    /// What the turn of the other flank's normal along the contact adds, as [`Wedge::turned`] has it.
-    fn turned(&self, place: f64) -> [[f64; 2]; 2] {
-        match self {
-            Self::Corner(wedge) => wedge.turned(place),
-            Self::Rounding(rounding) => rounding.turned(place),
-        }
+    /// The same where ln|λ| is known, of another ratio B/k₀ for an inclined load beyond the corner; and what the turn of the
+    /// other flank's normal along the contact adds, as [`Wedge::turned`] has it.
+    fn rates(&self, place: f64, log: f64, ratio: f64) -> ([f64; 2], [[f64; 2]; 2]) {
+        let wedge = match self {
+            Self::Corner(wedge) => wedge,
+            Self::Rounding(rounding) => return (rounding.more(place), rounding.turned(place)),
+        };
+        let Rates { more: [more, slope], by_ratio: [by_ratio, by_ratio_slope], turned } = wedge.rates(place, log);
+        let change = if place < 0.0 { ratio - wedge.ratio() } else { 0.0 };
+        ([more + change * by_ratio, slope + change * by_ratio_slope], turned)
     }
 
     /// How a contact there spreads, against that of half planes.
@@ -131,18 +121,17 @@ impl Corner<'_> {
         curvature * place / self.distance * ((tooth - rate * (log - log_place)) * g - rate * h)
     }
 
-    /// What the turn of the load along the contact adds to w/p, where half the width is so much, and its slope over ln p.
-    fn turned(&self, width: f64, unit: f64) -> [f64; 2] {
+    /// What the turn of the load along the contact adds to w/p, and its slope over ln p, where half the width is so much, with
+    /// the logarithm of it over the unit, and the corner does that.
+    fn turned(&self, width: f64, log_width: f64, [[g, h], [by_place, h_by_place]]: [[f64; 2]; 2]) -> [f64; 2] {
         let Turned { tooth, rate, curvature } = self.turned;
         if curvature == 0.0 {
             return [0.0; 2];
         }
-        let place = self.distance / width;
-        let [[g, h], [by_place, h_by_place]] = self.shape.turned(place);
-        let (share, here) = (width * curvature, tooth - rate * libm::log(width / unit));
+        let (share, here) = (width * curvature, tooth - rate * log_width);
         let added = share * (here * g - rate * h);
         // Half the width grows as √p, and λ falls as it grows.
-        let moved = place * (here * by_place - rate * h_by_place);
+        let moved = self.distance / width * (here * by_place - rate * h_by_place);
         [added, 0.5 * (added - share * (rate * g + moved))]
     }
 }
@@ -211,12 +200,37 @@ impl Far {
     }
 }
 
+impl Far {
+    /// What they add to the compliance of both teeth, and to that per load, up to which load per width.
+    #[must_use]
+    pub const fn parts(&self) -> ([f64; 2], f64) {
+        ([self.compliance, self.rest], self.last)
+    }
+}
+
+/// Tips, and logarithms that no load changes: of half the width over the unit, without the root of the load, and of how far
+/// the corners are or how far beyond.
+#[derive(Clone, Debug)]
+struct Known<'a> {
+    tips: Tips<'a>,
+    half_width: f64,
+    distances: [f64; 2],
+}
+
+impl<'a> Known<'a> {
+    fn of(tips: Tips<'a>) -> Self {
+        let of_unit = |length: f64| libm::log(length / tips.unit);
+        let distances = tips.corners.map(|corner| of_unit(corner.distance.abs()));
+        Self { half_width: of_unit(tips.half_width), distances, tips }
+    }
+}
+
 /// The tips of a law, prepared for many loads.
 #[derive(Clone, Debug)]
 pub(super) struct NearTips<'a> {
     /// Who knows them, and where; they are needed only where one is near.
     at: Option<(&'a dyn Ended, f64)>,
-    tips: OnceCell<Box<Tips<'a>>>,
+    tips: OnceCell<Box<Known<'a>>>,
     /// C, with what roundings add.
     compliance: f64,
     far: Far,
@@ -226,7 +240,7 @@ impl<'a> NearTips<'a> {
     /// At the rate β, with the compliance C of both teeth.
     pub(super) fn new(tips: Tips<'a>, rate: f64, compliance: f64) -> Self {
         let far = Far::of(&tips, rate);
-        Self { at: None, tips: OnceCell::from(Box::new(tips)), compliance: compliance + far.softened, far }
+        Self { at: None, tips: OnceCell::from(Box::new(Known::of(tips))), compliance: compliance + far.softened, far }
     }
 
     /// The same of the tips at a place.
@@ -240,23 +254,23 @@ impl<'a> NearTips<'a> {
         self.far.compliance
     }
 
-    fn tips(&self) -> &Tips<'a> {
+    fn tips(&self) -> &Known<'a> {
         self.tips.get_or_init(|| {
             let (ends, s) = self.at.expect("tips are given, or where they are");
-            Box::new(ends.tips(s))
+            Box::new(Known::of(ends.tips(s)))
         })
     }
 
-    /// w/p at a load per width, and its slope over ln p.
-    fn whole(&self, series: &InSeries, load: f64) -> [f64; 2] {
-        let (rate, log, tips) = (series.law.rate, libm::log(load), self.tips());
-        let width = tips.half_width * load.sqrt();
-        let log_width = libm::log(width / tips.unit);
+    /// w/p at a load per width with the logarithm `log`, and its slope over ln p.
+    fn whole(&self, series: &InSeries, load: f64, log: f64) -> [f64; 2] {
+        let (rate, Known { tips, half_width, distances }) = (series.law.rate, self.tips());
+        let (width, log_width) = (tips.half_width * load.sqrt(), half_width + 0.5 * log);
         let start = [self.compliance + series.law.constant - rate * log, -rate];
-        tips.corners.iter().fold(start, |[sum, slope], corner| {
+        tips.corners.iter().zip(distances).fold(start, |[sum, slope], (corner, log_distance)| {
             let place = corner.distance / width;
-            let [more, by_place] = corner.shape.more_of(place, 0.5 * corner.rate / rate);
-            let [turned, by_log] = held(corner.turned(width, tips.unit), 0.5 * rate);
+            let ([more, by_place], turned) =
+                corner.shape.rates(place, log_distance - log_width, 0.5 * corner.rate / rate);
+            let [turned, by_log] = held(corner.turned(width, log_width, turned), 0.5 * rate);
             let added = 2.0 * rate * more - corner.rate * log_width + turned;
             [sum + added, slope - rate * by_place * place - 0.5 * corner.rate + by_log]
         })
@@ -272,8 +286,9 @@ impl<'a> NearTips<'a> {
             let total = series.compliance + series.law.constant - rate * log + rest;
             return ([load * total, total - rate + rest, (2.0 * rest - rate) / load], false);
         }
-        let held = load.min(self.far.largest);
-        let [total, slope] = self.whole(series, held);
+        let (held, log) =
+            if load > self.far.largest { (self.far.largest, libm::log(self.far.largest)) } else { (load, log) };
+        let [total, slope] = self.whole(series, held, log);
         ([held * total + (load - held) * (total + slope), total + slope, -rate / load], true)
     }
 
@@ -295,11 +310,12 @@ impl<'a> NearTips<'a> {
         let mut load = load.min(largest);
         let wanted = libm::log(penetration);
         for _ in 0..STEPS {
-            let [total, slope] = self.whole(series, load);
-            let step = (wanted - libm::log(load * total)) / (1.0 + slope / total);
+            let log = libm::log(load);
+            let [total, slope] = self.whole(series, load, log);
+            let step = (wanted - log - libm::log(total)) / (1.0 + slope / total);
             let next = load * libm::exp(step);
             if next >= largest {
-                let [total, slope] = self.whole(series, largest);
+                let [total, slope] = self.whole(series, largest, libm::log(largest));
                 let beyond = penetration - largest * total;
                 if beyond >= 0.0 {
                     return (largest + beyond / (total + slope), 1.0 / (total + slope));
@@ -310,7 +326,7 @@ impl<'a> NearTips<'a> {
                 break;
             }
         }
-        let [total, slope] = self.whole(series, load);
+        let [total, slope] = self.whole(series, load, libm::log(load));
         (penetration / total, 1.0 / (total + slope))
     }
 }

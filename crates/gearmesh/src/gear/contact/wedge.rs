@@ -24,6 +24,7 @@ pub use spread::Spread;
 use std::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 use self::spread::Spreads;
+use crate::numeric::bundle::Bundle;
 use crate::numeric::chebyshev::{Series, nodes};
 use crate::numeric::crossing::crossing;
 use crate::numeric::elimination::solve;
@@ -36,6 +37,8 @@ const POINTS: usize = 2 * TERMS;
 const FAR: f64 = 10.0;
 /// λ down to where there is one; beyond, the contact is so narrow that only its logarithm changes.
 const BEYOND: f64 = -30.0;
+/// ln of its size.
+const LN_BEYOND: f64 = 3.401_197_381_662_155_4;
 /// Where the tables are joined besides the corner and the place where the contact reaches it.
 const JOINTS: [f64; 2] = [-2.0, 2.0];
 /// Nodes of a table.
@@ -92,8 +95,19 @@ pub struct Wedge {
     spreads: Spreads,
 }
 
-/// A stretch of λ: [`Wedge::more`], what it grows by per B/k₀, and [`Wedge::turned`], each with its slope.
-type Table = [(Series, Series); 4];
+/// A stretch of λ: values in the order of [`Rates`].
+type Table = Bundle<8, NODES>;
+
+/// What a wedge does at a place.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rates {
+    /// [`Wedge::more`], and its slope.
+    pub more: [f64; 2],
+    /// What that grows by per B/k₀, and the slope of it.
+    pub by_ratio: [f64; 2],
+    /// [`Wedge::turned`], and the slopes of it.
+    pub turned: [[f64; 2]; 2],
+}
 
 impl Wedge {
     /// `ratio`: B/k₀, 0 or more, below 1.
@@ -136,8 +150,10 @@ impl Wedge {
             tabulated(ranges[table], &places[table], &found.collect::<Vec<_>>())
         });
         let spreads = Spreads::new(&ranges, &contacts, &reached);
-        let [first, last] = [(4, FAR), (0, logs[1])]
-            .map(|(table, at): (usize, f64)| std::array::from_fn(|k| tables[table][k].0.value(at)));
+        let [first, last] = [(4, FAR), (0, logs[1])].map(|(table, at): (usize, f64)| {
+            let [more, _, by_ratio, _, g, h, _, _] = tables[table].values(at);
+            [more, by_ratio, g, h]
+        });
         let rest = (first[0] + ratio * libm::log(FAR)) * FAR * FAR;
         let mut wedge = Self { ratio, tables, rest, last, first, second: [0.0; 3], spreads };
         let [[g, h], _] = wedge.turned(2.0 * FAR);
@@ -151,17 +167,9 @@ impl Wedge {
         self.ratio
     }
 
-    /// Where it is looked up: the table, its variable, and the rate of that.
-    fn place(&self, place: f64) -> (&Table, f64, f64) {
-        if place < JOINTS[0] {
-            return (&self.tables[0], libm::log(-place), 1.0 / place);
-        }
-        (&self.tables[self.table(place)], place, 1.0)
-    }
-
     /// Which table λ is in, from the end of the first one to [`FAR`].
     fn table(&self, place: f64) -> usize {
-        1 + self.tables[1..4].iter().position(|table| place <= table[0].0.upper()).unwrap_or(3)
+        1 + self.tables[1..4].iter().position(|table| place <= table.upper()).unwrap_or(3)
     }
 
     /// How a contact with its top at λ spreads.
@@ -171,30 +179,56 @@ impl Wedge {
         self.spreads.at(table, place)
     }
 
+    /// All that it does at λ, of which `log` is ln|λ|.
+    #[must_use]
+    pub fn rates(&self, place: f64, log: f64) -> Rates {
+        // What turns falls as 1/λ.
+        let far = |[g, h]: [f64; 2]| [[g, h], [-g / place, -h / place]];
+        if place > FAR {
+            let square = self.rest / (place * place);
+            let [values, slopes] = far([self.first[2], self.first[3]].map(|value| value * FAR / place));
+            let beyond = log - std::f64::consts::LN_10;
+            return Rates {
+                more: [square - self.ratio * log, -(2.0 * square + self.ratio) / place],
+                by_ratio: [-log, -1.0 / place],
+                turned: [
+                    [values[0], values[1] + beyond * values[0]],
+                    [slopes[0], slopes[1] + beyond * slopes[0] + values[0] / place],
+                ],
+            };
+        }
+        if place < BEYOND {
+            let (slope, beyond) = (1.0 + self.ratio, log - LN_BEYOND);
+            return Rates {
+                more: [self.last[0] + slope * beyond, slope / place],
+                by_ratio: [self.last[1] + beyond, 1.0 / place],
+                turned: far([self.last[2], self.last[3]].map(|value| value * BEYOND / place)),
+            };
+        }
+        let (table, at, rate) = if place < JOINTS[0] { (0, log, 1.0 / place) } else { (self.table(place), place, 1.0) };
+        let [more, slope, by_ratio, by_ratio_slope, g, h, g_slope, h_slope] = self.tables[table].values(at);
+        Rates {
+            more: [more, slope * rate],
+            by_ratio: [by_ratio, by_ratio_slope * rate],
+            turned: [[g, h], [g_slope * rate, h_slope * rate]],
+        }
+    }
+
+    fn rates_at(&self, place: f64) -> Rates {
+        self.rates(place, libm::log(place.abs()))
+    }
+
     /// (Ψ − k₀ λ² where λ < 0)/k₀ − ln 2 − ½, and its slope over λ. Continuous; towards −B/k₀ ln λ far inside, and by
     /// (1 + B/k₀) ln|λ| larger and larger beyond the corner.
     #[must_use]
     pub fn more(&self, place: f64) -> [f64; 2] {
-        if place > FAR {
-            let square = self.rest / (place * place);
-            return [square - self.ratio * libm::log(place), -(2.0 * square + self.ratio) / place];
-        }
-        if place < BEYOND {
-            let slope = 1.0 + self.ratio;
-            return [self.last[0] + slope * libm::log(place / BEYOND), slope / place];
-        }
-        let (table, at, rate) = self.place(place);
-        [table[0].0.value(at), table[0].1.value(at) * rate]
+        self.rates_at(place).more
     }
 
     /// How much [`Wedge::more`] grows per B/k₀ at λ < 0, and the slope of that over λ.
     #[must_use]
     pub fn by_ratio(&self, place: f64) -> [f64; 2] {
-        if place < BEYOND {
-            return [self.last[1] + libm::log(place / BEYOND), 1.0 / place];
-        }
-        let (table, at, rate) = self.place(place);
-        [table[1].0.value(at), table[1].1.value(at) * rate]
+        self.rates_at(place).by_ratio
     }
 
     /// What the normal of the other flank adds to the approach as it turns along the contact, [g, h], and their slopes over
@@ -202,20 +236,7 @@ impl Wedge {
     /// that counts.
     #[must_use]
     pub fn turned(&self, place: f64) -> [[f64; 2]; 2] {
-        let far = |[g, h]: [f64; 2]| [[g, h], [-g / place, -h / place]];
-        if place > FAR {
-            let [values, slopes] = far([self.first[2], self.first[3]].map(|value| value * FAR / place));
-            let log = libm::log(place / FAR);
-            return [
-                [values[0], values[1] + log * values[0]],
-                [slopes[0], slopes[1] + log * slopes[0] + values[0] / place],
-            ];
-        }
-        if place < BEYOND {
-            return far([self.last[2], self.last[3]].map(|value| value * BEYOND / place));
-        }
-        let (table, at, rate) = self.place(place);
-        [[2, 3].map(|k| table[k].0.value(at)), [2, 3].map(|k| table[k].1.value(at) * rate)]
+        self.rates_at(place).turned
     }
 
     /// g and h at twice the λ from which on they fall as 1/λ, and the logarithm of that λ.
@@ -254,12 +275,14 @@ fn tabulated([lower, upper]: [f64; 2], places: &[[f64; 2]], found: &[[f64; 4]]) 
         let slope = values.derivative();
         (values, slope)
     };
-    [
+    let values = [
         with_slope(series(&|k| found[k][0])),
         with_slope(series(&|k| 0.25 * rates[0][k] - found[k][1] - 0.25)),
         with_slope(series(&|k| 2.5 * found[k][2] - 0.5 * rates[1][k])),
         with_slope(series(&|k| 2.5 * found[k][3] - 0.5 * rates[2][k] + 0.5 * found[k][2])),
-    ]
+    ];
+    let [(more, slope), (by_ratio, by_ratio_slope), (g, g_slope), (h, h_slope)] = &values;
+    Bundle::of([more, slope, by_ratio, by_ratio_slope, g, h, g_slope, h_slope])
 }
 
 /// A contact from `start` to 1 by what its pressures do to it: −∫ [ln|x − y| + B/k₀ ln((x + y)/2)] at places x, for each

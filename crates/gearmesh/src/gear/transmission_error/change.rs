@@ -28,7 +28,16 @@ impl LoadCase<'_> {
         let springs = self.cycle.springs(span.pairs);
         let loaded = |node: usize, pair: usize| states[node].balance.penetration[pair] > 0.0;
         let changes = |pair: usize| nodes[1..].iter().any(|node| loaded(*node, pair) != loaded(nodes[0], pair));
-        if self.levels.is_empty() && !(0..springs).any(changes) {
+        // Most spans have neither, which shows at a glance.
+        let passes = |pair: usize| {
+            let within = |[least, most]: [f64; 2], node: &usize| {
+                let penetration = states[*node].balance.penetration[pair];
+                [least.min(penetration), most.max(penetration)]
+            };
+            let [least, most] = nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], within);
+            self.levels.iter().any(|level| (least - level > 0.0) != (most - level > 0.0))
+        };
+        if !(0..springs).any(|pair| changes(pair) || (!self.levels.is_empty() && passes(pair))) {
             return None;
         }
         for ends in nodes.windows(2) {

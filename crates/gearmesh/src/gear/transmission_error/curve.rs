@@ -106,7 +106,7 @@ impl LoadCase<'_> {
     /// The curve at the positions of the spans only, without those that only integrals need.
     #[must_use]
     pub fn curve(&self, wanted: Wanted) -> Vec<Point> {
-        let mut points = self.no_points(wanted);
+        let mut points = self.no_points(wanted, 8.0);
         self.for_values().walk(self.span_length(wanted.harmonics), |span, states| {
             self.extend(&mut points, span, states, wanted);
         });
@@ -132,7 +132,7 @@ impl LoadCase<'_> {
     pub fn curve_and_summary(&self, wanted: Wanted) -> (Vec<Point>, Summary) {
         let cycle = self.cycle;
         let rows = &cycle.rows;
-        let mut points = self.no_points(wanted);
+        let mut points = self.no_points(wanted, if self.refines { 24.0 } else { 8.0 });
         let (mut error, mut pressure, mut roots) =
             (Trace::default(), Trace::default(), [Trace::default(), Trace::default()]);
         let (mut loaded, mut share) = (0.0, 0.0_f64);
@@ -229,9 +229,9 @@ impl LoadCase<'_> {
         harmonics::mean_and_variance(self.cycle.period(), &trace.nodes(&self.cycle.rows)).1
     }
 
-    /// Room for the curve: spans at zone ends, relief starts and first touches are added.
-    fn no_points(&self, wanted: Wanted) -> Vec<Point> {
-        let spans = self.cycle.period() / self.span_length(wanted.harmonics) + 8.0;
+    /// Room for the curve: `more` spans are added at zone ends, relief starts and first touches, or cut for integrals.
+    fn no_points(&self, wanted: Wanted, more: f64) -> Vec<Point> {
+        let spans = self.cycle.period() / self.span_length(wanted.harmonics) + more;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // far below 2^53
         Vec::with_capacity(spans as usize * NODES)
     }
@@ -240,6 +240,7 @@ impl LoadCase<'_> {
         std::array::from_fn(|node| self.point(span.position(&self.cycle.rows, node), span.pairs, &states[node], wanted))
     }
 
+    #[inline]
     fn point(&self, position: f64, pairs: usize, state: &Equilibrium, wanted: Wanted) -> Point {
         let cycle = self.cycle;
         let path_position = cycle.path_position(position, cycle.newest());

@@ -17,6 +17,7 @@ use super::root_stress::Roots;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
+use crate::gear::contact::plain::PlainLaw;
 use crate::gear::contact::tip::{Ended, Tips};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::{GearPair, Side};
@@ -25,6 +26,7 @@ use crate::numeric::complementarity::MOST_SPRINGS;
 use crate::numeric::graded::Graded;
 use crate::numeric::lobatto::Rule;
 use crate::numeric::piecewise;
+use crate::numeric::together::{Found, Together};
 use declare::error::Failure;
 use declare::work::Work;
 
@@ -34,6 +36,9 @@ const SHORTEST_ZONE: f64 = 1e-9;
 /// A position nearer than this share of the base pitch to where the number of pairs changes belongs behind it, whatever
 /// rounding made of it.
 const BORDER: f64 = 1e-12;
+
+/// Relative accuracies of what the law of a pair adds up to while tips are far, and of what far tips add to it per load.
+const PLAIN: [f64; 2] = [3e-14, 1e-12];
 
 /// Pairs in corner contact: one before A and one after E.
 const CORNERS: usize = 2;
@@ -108,8 +113,8 @@ pub(super) enum Elasticity {
     /// Stiffness of a pair \[N/m\].
     Linear(Graded),
     /// Compliance of both teeth without the contact, times the common face width, and α; β \[1/Pa\] and ln β; where contact is
-    /// resolved, the teeth's tips.
-    Logarithmic { compliance: Graded, constant: Graded, rates: [f64; 2], ends: Option<Box<Ends>> },
+    /// resolved, the teeth's tips; and from A to E, as far as tips are not near, what all of it adds up to.
+    Logarithmic { compliance: Graded, constant: Graded, rates: [f64; 2], ends: Option<Box<Ends>>, plain: Together<2> },
 }
 
 impl Elasticity {
@@ -117,9 +122,22 @@ impl Elasticity {
         matches!(self, Self::Logarithmic { ends: Some(_), .. })
     }
 
+    /// β \[1/Pa\] and its logarithm, of laws that have them.
+    pub(super) fn rates(&self) -> [f64; 2] {
+        if let Self::Logarithmic { rates, .. } = self { *rates } else { [0.0; 2] }
+    }
+
+    /// As far as the law of a pair is known beforehand, from A to E.
+    #[inline]
+    pub(super) fn plain(&self, s: f64) -> PlainLaw {
+        let Self::Logarithmic { plain, .. } = self else { return PlainLaw::NONE };
+        let Found { values: [total, rest], bound } = plain.at(s);
+        bound.map_or(PlainLaw::NONE, |last| PlainLaw { total, rest, last })
+    }
+
     /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.
     pub(super) fn series(&self, s: f64, own: Option<f64>) -> InSeries<'_> {
-        let Self::Logarithmic { compliance, constant, rates: [rate, log_rate], ends } = self else {
+        let Self::Logarithmic { compliance, constant, rates: [rate, log_rate], ends, .. } = self else {
             return InSeries::NONE;
         };
         let law = Logarithmic { constant: constant.value(s), rate: *rate, log_rate: *log_rate };
@@ -183,11 +201,19 @@ impl MeshCycle {
                 let resolved = contact == ContactLaw::Resolved;
                 let new = if resolved { Logarithmic::half_planes } else { Logarithmic::weber };
                 let Logarithmic { rate, log_rate, .. } = law(new, pair.start_of_contact);
+                let ends = resolved.then(|| Box::new(Ends::new(pair, compliance, &path)));
+                let plain = |s: f64| {
+                    let law = law(new, s);
+                    let ([added, rest], last) =
+                        ends.as_ref().map_or(([0.0; 2], law.last()), |ends| ends.far(s, rate).parts());
+                    ([teeth(s) * face_width + law.constant + added, rest], last)
+                };
                 Elasticity::Logarithmic {
                     compliance: fit(&|s| teeth(s) * face_width),
                     constant: fit(&|s| law(new, s).constant),
                     rates: [rate, log_rate],
-                    ends: resolved.then(|| Box::new(Ends::new(pair, compliance, &path))),
+                    plain: Together::fit(path.inside(), PLAIN, plain),
+                    ends,
                 }
             }
         };
@@ -283,7 +309,7 @@ impl MeshCycle {
     /// The path position s of spring `spring` at the cycle position τ.
     #[must_use]
     pub fn path_position(&self, position: f64, spring: usize) -> f64 {
-        let pitches = spring as f64 - self.newest() as f64;
+        let pitches = (spring.cast_signed() - self.newest().cast_signed()) as f64;
         self.pair.start_of_contact + position + self.pair.base_pitch * pitches
     }
 

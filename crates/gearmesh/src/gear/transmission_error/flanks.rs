@@ -199,7 +199,11 @@ impl<'a> FaceSection<'a> {
 
     #[inline]
     fn gap(&self, s: f64) -> Option<f64> {
-        self.gaps.as_ref().map_or(Some(0.0), |gaps| self.copies.value(s).or_else(|| gaps.at(s)))
+        let Some(gaps) = &self.gaps else { return Some(0.0) };
+        match self.copies.value(s) {
+            Some(gap) => Some(gap),
+            None => gaps.at(s),
+        }
     }
 
     /// With what the leads take off.

@@ -2,7 +2,6 @@
 //!
 //! Must not know: which positions are computed, what is done with the values.
 
-use std::cell::Cell;
 use std::sync::Arc;
 
 use super::count::Count;
@@ -11,12 +10,9 @@ use super::flanks::Flanks;
 use super::sliced::Sliced;
 use super::within_reach::WithinReach;
 use crate::gear::contact::CornerContact;
-use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
-use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::gear::modification::Design;
-use crate::numeric::by_loads;
-use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
+use crate::numeric::complementarity::{Balance, MOST_SPRINGS, PerSpring};
 use crate::numeric::logarithm::Known;
 
 /// Places closer than this share of the base pitch are one.
@@ -30,10 +26,10 @@ pub struct LoadCase<'a> {
     /// F = T / r_b1 \[N\].
     pub force: f64,
     /// F over the face width \[N/m\], and its logarithm.
-    line_load: Known,
+    pub(super) line_load: Known,
     pub(super) design: &'a Design,
     pub(super) flanks: Arc<Flanks<'a>>,
-    regime: Regime<'a>,
+    pub(super) regime: Regime<'a>,
     touching: Touching,
     /// Cycle positions at which a profile is not smooth, ascending.
     pub(super) breaks: Arc<[f64]>,
@@ -48,7 +44,7 @@ pub struct LoadCase<'a> {
 
 /// What holds what when the load spreads; each costs more than the one before.
 #[derive(Clone)]
-enum Regime<'a> {
+pub(super) enum Regime<'a> {
     /// Nothing is transmitted: the nearest pair just touches.
     Unloaded,
     /// Each pair holds itself.
@@ -350,96 +346,19 @@ impl<'a> LoadCase<'a> {
     /// approaches bend down with the load, and U ≤ F w(F) of any one pair alone.
     ///
     /// Leaves the law of that pair, if it took it.
-    fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
+    pub(super) fn alone(&self, s: f64, law: &mut Option<InSeries<'a>>) -> f64 {
         let alone = match &self.cycle.elasticity {
             Elasticity::Linear(stiffness) => self.force / stiffness.value(s),
             elasticity @ Elasticity::Logarithmic { .. } if self.force > 0.0 => {
+                let (Known { number, log }, plain) = (self.line_load, elasticity.plain(s));
+                if plain.holds(number) {
+                    return 2.0 * (plain.rates_at(elasticity.rates()[0], number, log)[0] + self.flanks.mean(s));
+                }
                 let law = law.insert(elasticity.series(s, None));
-                law.at_known_load(self.line_load.number, self.line_load.log).0
+                law.at_known_load(number, log).0
             }
             Elasticity::Logarithmic { .. } => 0.0,
         };
         2.0 * (alone + self.flanks.mean(s))
-    }
-
-    /// Equilibrium of the pairs within reach, of the nearest of which the law may be known, and, where slices hold each other,
-    /// the largest load per width of each.
-    #[inline]
-    fn balance(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>) -> (Balance, Option<PerSpring>) {
-        let slices = match &self.regime {
-            Regime::Unloaded => return (complementarity::unloaded(reach.gaps()), None),
-            Regime::Pairs | Regime::CoupledPairs => None,
-            Regime::CoupledSlices(slices) => Some(slices),
-        };
-        self.count.solve();
-        if let Some(slices) = slices {
-            let above = self.alone(reach.nearest_position(), &mut None);
-            let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
-            return (balance, Some(peaks));
-        }
-        if self.flanks.is_surface {
-            let faces: Vec<Face> = reach.positions().iter().map(|&s| self.flanks.face_at(s)).collect();
-            return (self.balance_behind(reach, nearest, Faces::Each(&faces)), None);
-        }
-        (self.balance_behind(reach, nearest, Faces::Same(&self.flanks.face)), None)
-    }
-
-    /// Where slices do not hold each other.
-    fn balance_behind(&self, reach: &WithinReach, nearest: Option<&InSeries<'a>>, faces: Faces) -> Balance {
-        match &self.cycle.elasticity {
-            Elasticity::Linear(graded) => {
-                let mut stiffness = [0.0; MOST_SPRINGS];
-                for (slot, s) in stiffness.iter_mut().zip(reach.positions()) {
-                    *slot = graded.value(*s);
-                }
-                let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
-                self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
-            }
-            Elasticity::Logarithmic { .. } => {
-                let mut slices = [const { None }; MOST_SPRINGS];
-                slices[reach.nearest()] = nearest.cloned();
-                for (slot, s) in slices.iter_mut().zip(reach.positions()) {
-                    slot.get_or_insert_with(|| self.cycle.elasticity.series(*s, None));
-                }
-                // As if all carried alike.
-                let even = self.line_load.over(reach.springs().len());
-                let logs = std::array::from_fn(|_| Cell::new(even));
-                let pairs = LogarithmicPairs { slices: &slices, width: self.cycle.face_width, faces, logs };
-                if faces.are_flat() {
-                    let coupling = self.coupling_of(reach);
-                    let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
-                    if let Some(found) = found {
-                        return found;
-                    }
-                }
-                let above = pairs.above(reach.nearest(), self.force);
-                self.balance_of_pairs(reach, &pairs, above)
-            }
-        }
-    }
-
-    fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
-        let gaps = reach.gaps();
-        match self.coupling_of(reach) {
-            None => complementarity::balance(responses, gaps, self.force, above),
-            Some(coupling) => complementarity::balance_coupled(responses, gaps, &coupling, self.force, above),
-        }
-    }
-
-    /// What the pairs' loads do to each other; none where nothing couples them.
-    #[inline]
-    fn coupling_of(&self, reach: &WithinReach) -> Option<Coupling> {
-        let (springs, positions) = (reach.springs(), reach.positions());
-        if matches!(self.regime, Regime::Pairs) || springs.len() < 2 {
-            return None;
-        }
-        let mut coupling: Coupling = [PerSpring::default(); MOST_SPRINGS];
-        for (ahead, &spring) in springs.iter().enumerate() {
-            for behind in 0..ahead {
-                let value = self.cycle.coupling(positions[behind], spring - springs[behind]);
-                (coupling[behind][ahead], coupling[ahead][behind]) = (value, value);
-            }
-        }
-        Some(coupling)
     }
 }

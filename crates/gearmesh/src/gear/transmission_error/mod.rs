@@ -20,6 +20,7 @@ mod path;
 pub mod pressure;
 pub mod root_stress;
 pub mod sampling;
+mod sharing;
 mod sliced;
 pub mod stiffness;
 #[cfg(test)]

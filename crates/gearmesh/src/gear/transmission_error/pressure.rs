@@ -152,13 +152,20 @@ impl LoadCase<'_> {
 
     /// What these contacts come to.
     pub(super) fn pressed(&self, position: f64, pairs: usize, state: &Equilibrium) -> Pressed {
-        let contacts = self.contacts(position, pairs, state);
-        let loads = state.balance.loads;
-        let whole: f64 = loads.iter().sum();
-        contacts.iter().zip(loads).fold(Pressed::default(), |found, (contact, load)| Pressed {
-            largest: found.largest.max(contact.pressure),
-            corner_share: if contact.at_corner { found.corner_share.max(load / whole) } else { found.corner_share },
-        })
+        self.count.pressure();
+        let loads = &state.balance.loads;
+        let mut found = Pressed::default();
+        for (spring, load) in loads.iter().enumerate().take(self.cycle.springs(pairs)) {
+            if *load > 0.0 {
+                let line_load = self.line_load(position, state, spring);
+                let contact = self.cycle.contact(self.cycle.path_position(position, spring), line_load);
+                found.largest = found.largest.max(contact.pressure);
+                if contact.at_corner {
+                    found.corner_share = found.corner_share.max(load / loads.iter().sum::<f64>());
+                }
+            }
+        }
+        found
     }
 
     /// The largest over the cycle, from the values along it.

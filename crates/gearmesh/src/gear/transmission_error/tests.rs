@@ -7,6 +7,7 @@ mod broken_tips;
 mod corner;
 mod doubt;
 mod extremes;
+mod plain;
 mod pressure;
 mod root_stress;
 mod sampling;

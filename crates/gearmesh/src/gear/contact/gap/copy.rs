@@ -44,7 +44,7 @@ impl Gaps<'_> {
             copy.push(rule, ends[1] - after, tolerance, quick, gap);
             copy.skip(ends[1]);
         }
-        copy
+        copy.indexed()
     }
 
     /// The gap where the flanks touch at a known spot, if that saves a search.

@@ -198,8 +198,7 @@ fn another_wedge_is_a_linear_change() {
 fn the_tables_join() {
     for ratio in [0.0, 0.05, 0.29, 0.8] {
         let wedge = Wedge::new(ratio);
-        let joints: Vec<f64> =
-            wedge.tables[1..].iter().flat_map(|table| [table[0].0.lower(), table[0].0.upper()]).collect();
+        let joints: Vec<f64> = wedge.tables[1..].iter().flat_map(|table| [table.lower(), table.upper()]).collect();
         for joint in joints.into_iter().chain([BEYOND]) {
             let [below, above] = [-1e-9, 1e-9].map(|step| wedge.more(joint + step));
             assert!((below[0] - above[0]).abs() < 1e-5, "{ratio}: values at {joint}: {below:?} {above:?}");

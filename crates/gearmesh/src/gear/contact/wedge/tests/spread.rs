@@ -125,7 +125,7 @@ fn the_kernel_of_the_wedge_itself_gives_nearly_the_same() {
 fn spreads_join() {
     for ratio in [0.0, 0.05, 0.29, 0.8] {
         let wedge = Wedge::new(ratio);
-        let joints = wedge.tables[1..].iter().flat_map(|table| [table[0].0.lower(), table[0].0.upper()]);
+        let joints = wedge.tables[1..].iter().flat_map(|table| [table.lower(), table.upper()]);
         for joint in joints.chain([BEYOND]) {
             let [below, above] = [-1e-9, 1e-9].map(|step| wedge.spread(joint + step));
             assert!(
