@@ -69,7 +69,7 @@ pub fn run(
         let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
         let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
         folder.publish(
-            &outcome.manifest(study),
+            outcome.manifest(study),
             facts,
             Source { bytes: &bytes, table: Some(&table), draw, next: &next, code: study.program.about.code },
         )

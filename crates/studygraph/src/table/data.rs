@@ -92,7 +92,10 @@ impl Data {
     }
 
     /// Moves all values of the other to the end of these.
-    fn append(&mut self, other: &mut Self) {
+    ///
+    /// # Panics
+    /// When they are of another type.
+    pub(crate) fn append(&mut self, other: &mut Self) {
         match (self, other) {
             (Self::Float(values), Self::Float(more)) => values.append(more),
             (Self::Integer(values), Self::Integer(more)) => values.append(more),
