@@ -8,6 +8,7 @@ use super::order::Order;
 use super::plot::Kind;
 use super::spec::Spec;
 use declare::number::{significant, with_unit};
+use studygraph::store::bundle::MANY;
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
 
@@ -17,8 +18,10 @@ pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result
     let mut drawn = Vec::new();
     // Results first, what they come from after them.
     for kind in ["ste", "stiffness", "optimizer", "modification", "geometry"] {
-        for stage in manifest.stages.iter().filter(|stage| stage.kind == kind) {
-            for spec in specs(stage, manifest, tables) {
+        let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == kind).collect();
+        // Nobody looks at thousands of figures.
+        for stage in stages.iter().filter(|_| stages.len() <= MANY) {
+            for spec in specs(stage, stages.len() > 1, tables) {
                 let mut figure = figure(&spec, order, tables)?;
                 // Two designs may differ in nothing that the name of a file can have.
                 let is_taken = |name: &str| drawn.iter().any(|other: &Figure| other.name.eq_ignore_ascii_case(name));
@@ -34,10 +37,9 @@ pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result
     Ok(drawn)
 }
 
-fn specs(stage: &StageRecord, manifest: &Manifest, tables: Tables<'_>) -> Vec<Spec> {
+/// `several`: with several stages of a kind a title says which it is.
+fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
     let name = &stage.name;
-    // With several stages of a kind a title says which it is.
-    let several = manifest.stages.iter().filter(|other| other.kind == stage.kind).count() > 1;
     let draw = |what: &str, title: &str, kind: Kind, table: &str, x: &str, y: &str| {
         let title = if several { format!("{title} ({name})") } else { title.to_owned() };
         Spec::new(&format!("{name}_{what}"), &title, kind, &format!("{name}.{table}"), x, y)

@@ -16,7 +16,7 @@ use super::figure::Tables;
 use declare::number::unit_symbol;
 use studygraph::store::bundle;
 use studygraph::store::manifest::{ColumnRecord, Manifest, StageRecord, TableRecord};
-use studygraph::table::data::{Cell, Data, Table};
+use studygraph::table::data::{Data, Table};
 
 /// Bytes of unpacked values on a page. Small tables come first; of one that has no room the page has the first rows.
 const ROOM: usize = 200_000;
@@ -62,7 +62,7 @@ pub struct Records<'a> {
 /// When it cannot be compressed, which is a mistake of this program.
 pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records<'a>, ReportError> {
     let failed = |error: std::io::Error| ReportError::Page(error.to_string());
-    let mut entries: Vec<(Value, Vec<Value>)> = Vec::new();
+    let mut entries: Vec<(Value, (usize, Vec<Value>))> = Vec::new();
     let mut stages: Vec<StageTables> = manifest.stages.iter().map(StageTables::of).collect();
     // Those of many stages of a kind stand behind those of single stages, as one.
     for (group, record) in bundle::published(manifest) {
@@ -80,27 +80,31 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
             stages.len() - 1
         });
         let rows = table.as_ref().filter(|_| is_bundle).map_or(record.rows, Table::rows);
-        entries.push((
-            described(record, &name, rows, is_bundle),
-            table.as_ref().map_or_else(Vec::new, |table| columns(record, table, is_bundle)),
-        ));
-        stages[at].tables.push(TableView { record, name, rows, is_stored: table.is_some() || is_long });
+        let is_stored = table.is_some() || is_long;
+        let shown = table.map_or((0, Vec::new()), |table| {
+            let own = shown(record, &table, is_bundle);
+            // What has no room at all need not be written to know it.
+            let size = own.iter().map(|data| length(*data, table.rows())).sum();
+            let rows = if size > ROOM { table.rows().min(FIRST_ROWS) } else { table.rows() };
+            (size, own.into_iter().map(|data| values(data, rows)).collect())
+        });
+        entries.push((described(record, &name, rows, is_bundle), shown));
+        stages[at].tables.push(TableView { record, name, rows, is_stored });
     }
-    let sizes: Vec<usize> =
-        entries.iter().map(|(_, columns)| columns.iter().map(|values| values.to_string().len()).sum()).collect();
+    let sizes: Vec<usize> = entries.iter().map(|(_, (size, _))| *size).collect();
     let mut by_size: Vec<usize> = (0..entries.len()).collect();
     by_size.sort_by_key(|&entry| sizes[entry]);
     let mut room = ROOM;
     for entry in by_size {
         let fits = sizes[entry] <= room;
         room = if fits { room - sizes[entry] } else { 0 };
-        for values in entries[entry].1.iter_mut().filter(|_| !fits).filter_map(Value::as_array_mut) {
+        for values in entries[entry].1.1.iter_mut().filter(|_| !fits).filter_map(Value::as_array_mut) {
             values.truncate(FIRST_ROWS);
         }
     }
     let all: Vec<Value> = entries
         .into_iter()
-        .map(|(mut entry, values)| {
+        .map(|(mut entry, (_, values))| {
             entry["values"] = Value::Array(values);
             entry
         })
@@ -127,20 +131,35 @@ fn described(record: &TableRecord, name: &str, rows: usize, is_bundle: bool) -> 
     json!({ "name": name, "rows": rows, "columns": columns })
 }
 
-/// By the record's columns, and only what it says.
-fn columns(record: &TableRecord, table: &Table, is_bundle: bool) -> Vec<Value> {
-    let value = |data: &Data, row: usize| match data.cell(row) {
-        // JSON has no NaN: null says "not applicable here".
-        Cell::Float(value) => serde_json::Number::from_f64(value).map_or(Value::Null, Value::Number),
-        Cell::Integer(value) => json!(value),
-        Cell::Text(value) => json!(value),
-        Cell::Flag(value) => json!(value),
-    };
-    let all = |data: Option<&Data>| match data {
-        Some(data) => Value::Array((0..table.rows()).map(|row| value(data, row)).collect()),
-        None => Value::Array(vec![Value::Null; table.rows()]),
-    };
-    let stage = is_bundle.then(|| all(table.column(bundle::STAGE)));
-    let own = record.columns.iter().map(|column| all(table.column(&column.name).filter(|_| !column.volatile)));
+/// By the record's columns, and only what it says; none where it says nothing.
+fn shown<'t>(record: &TableRecord, table: &'t Table, is_bundle: bool) -> Vec<Option<&'t Data>> {
+    let stage = is_bundle.then(|| table.column(bundle::STAGE));
+    let own = record.columns.iter().map(|column| table.column(&column.name).filter(|_| !column.volatile));
     stage.into_iter().chain(own).collect()
+}
+
+fn value(data: &Data, row: usize) -> Value {
+    match data {
+        // JSON has no NaN: null says "not applicable here".
+        Data::Float(values) => serde_json::Number::from_f64(values[row]).map_or(Value::Null, Value::Number),
+        Data::Integer(values) => json!(values[row]),
+        Data::Text(values) => json!(values[row]),
+        Data::Flag(values) => json!(values[row]),
+    }
+}
+
+fn values(data: Option<&Data>, rows: usize) -> Value {
+    Value::Array((0..rows).map(|row| data.map_or(Value::Null, |data| value(data, row))).collect())
+}
+
+/// Bytes of so many values as JSON; where they are more than there is room, only that they are.
+fn length(data: Option<&Data>, rows: usize) -> usize {
+    let mut length = "[]".len() + rows.saturating_sub(1);
+    for row in 0..rows {
+        length += data.map_or("null".len(), |data| value(data, row).to_string().len());
+        if length > ROOM {
+            break;
+        }
+    }
+    length
 }

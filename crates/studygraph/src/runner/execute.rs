@@ -77,7 +77,7 @@ pub fn run(
             Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
         };
         folder.publish(
-            &outcome.manifest(study),
+            outcome.manifest(study),
             facts,
             Source {
                 bytes: &bytes,

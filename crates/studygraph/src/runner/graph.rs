@@ -13,6 +13,7 @@ use petgraph::visit::DfsPostOrder;
 use super::key;
 use super::options::Wanted;
 use crate::stage::{Ahead, Demand, Omission, Port, Stage, Want};
+use crate::store::bundle::MANY;
 use crate::study::{Node, Study};
 use crate::table::schema::Schema;
 use declare::digest::Digest;
@@ -220,7 +221,11 @@ fn demand(
     }
     let pictures = study.program.pictures;
     if study.nodes.iter().all(|node| node.kind.name != pictures.reader) {
-        for (index, node) in study.nodes.iter().enumerate() {
+        let mut stages: HashMap<&str, usize> = HashMap::new();
+        study.nodes.iter().for_each(|node| *stages.entry(node.kind.name).or_default() += 1);
+        // Nobody looks at thousands of figures; drawing them took forty times what all else did.
+        let drawn = study.nodes.iter().enumerate().filter(|(_, node)| stages[node.kind.name] <= MANY);
+        for (index, node) in drawn {
             let shown = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name).map(|(_, table)| *table);
             // One gear alone has no mesh to draw; and what nobody asked for must not make a run long.
             let is_there = |table: &str| outputs[index].iter().any(|schema| schema.name == table);

@@ -57,7 +57,7 @@ pub struct StageOutcome {
     pub left_out: Vec<Omission>,
     pub keys: Vec<KeyRecord>,
     /// As the manifest keeps it.
-    pub config: serde_json::Value,
+    pub config: Arc<serde_json::Value>,
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
     pub tables: Vec<(Arc<Schema>, StoredTable)>,
     parts: Vec<Digest>,
@@ -94,7 +94,7 @@ impl Outcome {
                 warnings: progress.warnings(|_| true),
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
-                config: settings::shown(of_study.kind.fields, &of_study.record),
+                config: settings::shown(of_study.kind.fields, &of_study.record).into(),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
                 whole: progress.whole,
@@ -235,7 +235,7 @@ impl StageOutcome {
             kind: self.kind.to_owned(),
             version: self.version,
             keys: self.keys.clone(),
-            config: self.config.clone(),
+            config: Arc::clone(&self.config),
             status: status.to_owned(),
             why: self.why.clone(),
             seconds: self.seconds,

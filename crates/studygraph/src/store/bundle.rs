@@ -5,6 +5,7 @@
 //! called as a bundle is: names do not begin with `_`. Must not know: where files lie.
 
 use std::collections::HashMap;
+use std::ops::Range;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use super::manifest::{Manifest, TableRecord, own_file};
@@ -90,20 +91,64 @@ fn fits(table: &TableRecord) -> bool {
     keyed && table.files.is_empty() && table.rows <= MOST_ROWS
 }
 
-/// The tables of stages as one; all have one schema.
+/// The rows of one stage, or of several that follow each other in a bundle that is there already.
+pub enum Rows<'a> {
+    Own(&'a str, Table),
+    Of(Range<usize>),
+}
+
+/// The tables of stages as one, in the order of their names; all have one schema. `earlier` is the bundle that some rows are
+/// taken from.
 ///
 /// # Errors
-/// As [`Table::concatenated`].
-pub fn together(mut parts: Vec<(&str, Table)>) -> Result<Table, TableError> {
-    parts.sort_by_key(|(stage, _)| *stage);
-    let Some((_, first)) = parts.first() else { return Table::from_rows(Schema::new("", "", Vec::new()), Vec::new()) };
-    let column = Column::text(STAGE, "Name of the stage.").key();
-    let columns = [column].into_iter().chain(first.schema().columns.iter().cloned()).collect();
-    let schema = Schema { columns, ..first.schema().clone() };
-    let names = parts.iter().flat_map(|(stage, table)| std::iter::repeat_n((*stage).to_owned(), table.rows()));
-    let names = Data::Text(names.collect());
-    let all = Table::chained(parts.into_iter().map(|(_, table)| table).collect())?;
-    Table::from_columns(schema, [names].into_iter().chain(all).collect())
+/// When a part has other columns; as [`Table::from_columns`].
+pub fn together(earlier: Option<&Table>, parts: &[Rows]) -> Result<Table, TableError> {
+    let of_own = parts.iter().find_map(|part| if let Rows::Own(_, table) = part { Some(table.schema()) } else { None });
+    let schema = match (earlier, of_own) {
+        (Some(earlier), _) => Arc::clone(earlier.shared_schema()),
+        (None, Some(own)) => {
+            let column = Column::text(STAGE, "Name of the stage.").key();
+            let columns = [column].into_iter().chain(own.columns.iter().cloned()).collect();
+            Arc::new(Schema { columns, ..own.clone() })
+        }
+        (None, None) => return Table::from_rows(Schema::new("", "", Vec::new()), Vec::new()),
+    };
+    let rows = |part: &Rows| match part {
+        Rows::Own(_, table) => table.rows(),
+        Rows::Of(rows) => rows.len(),
+    };
+    let count = parts.iter().map(rows).sum();
+    let mut columns: Vec<Data> = schema.columns.iter().map(|column| Data::with_room(column.kind, count)).collect();
+    for part in parts {
+        match (part, earlier) {
+            (Rows::Of(rows), Some(earlier)) => {
+                for (all, data) in columns.iter_mut().zip(earlier.columns()) {
+                    all.append(&mut data.slice(rows.clone()));
+                }
+            }
+            (Rows::Own(stage, table), _) if table.schema().columns == schema.columns[1..] => {
+                columns[0].append(&mut Data::Text(vec![(*stage).to_owned(); table.rows()]));
+                for (all, data) in columns[1..].iter_mut().zip(table.columns()) {
+                    all.append(&mut data.clone());
+                }
+            }
+            _ => {
+                let (table, column) = (schema.name.clone(), String::new());
+                return Err(TableError::Column { table, column, problem: "two parts have different columns".to_owned() });
+            }
+        }
+    }
+    Table::from_columns(schema, columns)
+}
+
+/// The rows of a stage in a bundle.
+#[must_use]
+pub fn rows_of(bundle: &Table, stage: &str) -> Option<Range<usize>> {
+    let (Some(Data::Text(names)), Some(0)) = (bundle.column(STAGE), bundle.schema().position(STAGE)) else {
+        return None;
+    };
+    let start = names.partition_point(|name| name.as_str() < stage);
+    Some(start..start + names[start..].partition_point(|name| name == stage))
 }
 
 /// The table of one stage; empty where no row has its name.
@@ -111,11 +156,7 @@ pub fn together(mut parts: Vec<(&str, Table)>) -> Result<Table, TableError> {
 /// # Errors
 /// When it is no bundle.
 pub fn part(bundle: &Table, stage: &str) -> Result<Table, String> {
-    let (Some(Data::Text(names)), Some(0)) = (bundle.column(STAGE), bundle.schema().position(STAGE)) else {
-        return Err("it has no column `stage` before the others".to_owned());
-    };
-    let start = names.partition_point(|name| name.as_str() < stage);
-    let rows = start..start + names[start..].partition_point(|name| name == stage);
+    let rows = rows_of(bundle, stage).ok_or("it has no column `stage` before the others")?;
     let schema = Schema { columns: bundle.schema().columns[1..].to_vec(), ..bundle.schema().clone() };
     let columns = bundle.columns()[1..].iter().map(|data| data.slice(rows.clone())).collect();
     Table::from_columns(schema, columns).map_err(|error| error.to_string())
@@ -181,7 +222,11 @@ mod tests {
     fn the_parts_of_a_bundle_are_what_went_into_it() {
         let names: Vec<String> = (0..40).map(|index| format!("m{index}")).collect();
         let own = |index: usize| everything(index % 4);
-        let bundle = together(names.iter().enumerate().map(|(index, name)| (&**name, own(index))).collect()).unwrap();
+        let mut ordered: Vec<(&str, Table)> =
+            names.iter().enumerate().map(|(index, name)| (&**name, own(index))).collect();
+        ordered.sort_by_key(|(name, _)| *name);
+        let parts: Vec<Rows> = ordered.iter().map(|(name, table)| Rows::Own(name, table.clone())).collect();
+        let bundle = together(None, &parts).unwrap();
         assert_eq!(bundle.rows(), 60);
         let bytes = crate::store::parquet::write(&bundle).unwrap();
         let bundle = crate::store::parquet::read(bytes).unwrap();
@@ -190,8 +235,14 @@ mod tests {
         }
         assert_eq!(part(&bundle, "absent").unwrap().rows(), 0);
         assert!(part(&everything(3), "m1").unwrap_err().contains("stage"));
-        // Whatever order they come in.
-        let reversed = names.iter().enumerate().rev().map(|(index, name)| (&**name, own(index))).collect();
-        assert_identical(&together(reversed).unwrap(), &bundle);
+        // All rows but those of one stage from the bundle that is there, and in its place another table.
+        let at = rows_of(&bundle, "m11").unwrap();
+        let mixed = [Rows::Of(0..at.start), Rows::Own("m11", everything(2)), Rows::Of(at.end..bundle.rows())];
+        let mixed = together(Some(&bundle), &mixed).unwrap();
+        for (index, name) in names.iter().enumerate() {
+            let expected = if name == "m11" { everything(2) } else { own(index) };
+            assert_identical(&part(&mixed, name).unwrap(), &expected);
+        }
+        assert!(together(Some(&everything(3)), &[Rows::Own("m1", everything(1))]).is_err());
     }
 }

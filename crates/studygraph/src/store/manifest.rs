@@ -4,6 +4,7 @@
 
 mod wire;
 
+use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
@@ -16,6 +17,18 @@ use declare::digest::Digest;
 
 /// The format that is written; all up to it are read.
 pub const FORMAT: u32 = 2;
+
+impl<'a> From<&'a Manifest> for Cow<'a, Manifest> {
+    fn from(manifest: &'a Manifest) -> Self {
+        Self::Borrowed(manifest)
+    }
+}
+
+impl From<Manifest> for Cow<'_, Manifest> {
+    fn from(manifest: Manifest) -> Self {
+        Self::Owned(manifest)
+    }
+}
 
 /// The record of one run of one study.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -111,7 +124,8 @@ pub struct StageRecord {
     pub keys: Vec<KeyRecord>,
     /// The fields after defaults as a reader would write them, so that two runs can say *from what to what*. No part of
     /// any key; null in manifests of earlier versions.
-    pub config: serde_json::Value,
+    #[serde(serialize_with = "shared::serialize")]
+    pub config: Arc<serde_json::Value>,
     /// `hit`, `ran`, `failed`, `skipped`.
     pub status: String,
     /// Why it ran.
@@ -229,6 +243,11 @@ impl Manifest {
             known.extend(stage.tables.iter().map(|table| ((stage.kind.as_str(), table.table()), table)));
         }
         let mut shared: HashMap<*const ColumnRecord, Arc<[ColumnRecord]>> = HashMap::new();
+        for (stage, same) in self.stages.iter_mut().zip(&other.stages) {
+            if stage.config == same.config {
+                stage.config = Arc::clone(&same.config);
+            }
+        }
         for stage in &mut self.stages {
             for table in &mut stage.tables {
                 let columns = shared.entry(table.columns.as_ptr()).or_insert_with(|| {
@@ -251,6 +270,12 @@ impl Manifest {
             .serialize(&mut serde_json::Serializer::with_formatter(&mut text, wire::Lines::default()))?;
         text.push(b'\n');
         Ok(text)
+    }
+
+    /// The text of a manifest with another list of files; none where it was not written as this program does.
+    #[must_use]
+    pub fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+        wire::with_other_files(text, files)
     }
 
     /// Whether this program can read its format.

@@ -1,8 +1,10 @@
 //! Keys do not change by accident.
 
 use super::*;
+use crate::runner::graph::Graph;
 use crate::runner::key::{Parts, code};
 use crate::stage::Demand;
+use crate::store::bundle::MANY;
 use declare::digest::Digest;
 use declare::seed::Seed;
 
@@ -76,4 +78,26 @@ fn every_part_is_in_the_key_and_has_a_name() {
     let mut moved = record.clone();
     moved.fields[0].1.place = Place { line: 9, column: 9, offset: 99, length: 9 };
     assert_eq!(parts(&moved, &demand).record(Some(&[25.0])), last[0]);
+}
+
+static DRAWN: Program = Program {
+    pictures: Pictures { reader: "report", tables: &[("plain", "detail")] },
+    kinds: &[],
+    foreign: &[],
+    code_of: |_| String::from("code"),
+    counters: &[],
+    about: ABOUT,
+};
+
+/// What is drawn although nobody asked for it takes no more where there are thousands of stages: of 5,000 it took minutes.
+#[test]
+fn tables_are_added_for_figures_of_a_few_stages_alone() {
+    let names: Vec<&'static str> = (0..=MANY).map(|index| &*Box::leak(format!("m{index}").into_boxed_str())).collect();
+    let bench = Bench { program: &DRAWN, ..Bench::new() };
+    let drawn = |count: usize| {
+        let specs: Vec<Spec> = names[..count].iter().map(|name| stage(name, 1.0)).collect();
+        let graph = Graph::new(&bench.study(&specs), &[]).unwrap();
+        graph.demands.iter().filter(|demand| demand.table("detail")).count()
+    };
+    assert_eq!([1, MANY, MANY + 1].map(drawn), [1, MANY, 0]);
 }

@@ -174,6 +174,22 @@ pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<
     }
 }
 
+/// Where the list of files begins, which is the last: no text in a manifest has a line of its own.
+const FILES: &[u8] = b"\n \"files\": ";
+
+/// As [`Manifest::with_other_files`]: what stands before the list is copied and not read.
+pub(super) fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+    let at = text.windows(FILES.len()).rposition(|window| window == FILES)? + FILES.len();
+    if !text.ends_with(b"\n}\n") || !text.starts_with(b"{\n \"format\": ") {
+        return None;
+    }
+    let mut new = text[..at].to_vec();
+    let lines = Lines { depth: 1, has_value: false };
+    files.serialize(&mut serde_json::Serializer::with_formatter(&mut new, lines)).ok()?;
+    new.extend_from_slice(b"\n}\n");
+    Some(new)
+}
+
 /// Names for schemas: that of kind and table, with a number where that is taken.
 #[derive(Default)]
 struct Named {
@@ -234,7 +250,7 @@ impl<'a> Stage<'a> {
             kind: Cow::Borrowed(&stage.kind),
             version: stage.version,
             keys: keys(&stage.keys),
-            config: Cow::Borrowed(&stage.config),
+            config: Cow::Borrowed(&*stage.config),
             status: Cow::Borrowed(&stage.status),
             why: Cow::Borrowed(&stage.why),
             seconds: stage.seconds,
@@ -343,7 +359,7 @@ impl Stage<'_> {
             name: self.name.into_owned(),
             kind: self.kind.into_owned(),
             version: self.version,
-            config: self.config.into_owned(),
+            config: Arc::new(self.config.into_owned()),
             status: self.status.into_owned(),
             why: self.why.into_owned(),
             seconds: self.seconds,

@@ -5,32 +5,32 @@
 use std::collections::HashMap;
 
 use super::{FileState, Folder, Known, Source, split};
-use crate::store::bundle::{self, is_bundle};
+use crate::store::bundle::{self, Rows, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::manifest::TableRecord;
-use crate::store::parquet;
+use crate::store::{file, index, parquet};
 use crate::table::data::Table;
 
 impl Folder {
-    /// The file of a bundle. What its file, or a table's own, has already is taken from there.
+    /// The file of a bundle. What its file, or a table's own, has already is taken from there: of a bundle whose bytes are
+    /// those that were written, its rows are what the manifest says.
     pub(super) fn bundle(
         &self,
         old: Option<&Known>,
         members: &[&TableRecord],
         source: Source<'_>,
     ) -> Result<Vec<u8>, StoreError> {
+        let file = members.first().map_or("", |record| record.file.as_str());
         let earlier: HashMap<&str, &TableRecord> = old
             .iter()
             .flat_map(|old| &old.manifest.stages)
             .flat_map(|stage| &stage.tables)
             .map(|table| (&*table.name, table))
             .collect();
-        let table = |record: &&'_ TableRecord| {
+        let whole = old.and_then(|old| self.as_written(old, file));
+        let table = |record: &TableRecord, kept: Option<&TableRecord>| {
             let (stage, name) = split(&record.name);
-            let kept = earlier.get(&*record.name).filter(|kept| {
-                (&kept.content, &kept.columns) == (&record.content, &record.columns)
-                    && old.is_some_and(|old| old.state(&kept.file) == FileState::Intact)
-            });
+            let kept = kept.filter(|kept| old.is_some_and(|old| old.state(&kept.file) == FileState::Intact));
             // What is not what it should be is made again.
             let kept = kept.and_then(|kept| self.table(kept).ok());
             match (kept, source.table) {
@@ -40,13 +40,31 @@ impl Folder {
                     .map_err(|problem| StoreError::Format { table: record.name.clone(), problem }),
             }
         };
-        let parts = members.iter().map(|record| Ok((record.stage(), table(record)?)));
-        let parts = parts.collect::<Result<Vec<_>, StoreError>>()?;
-        let whole = bundle::together(parts).map_err(|error| {
-            let table = members.first().map_or_else(String::new, |record| record.file.clone());
-            StoreError::Format { table, problem: error.to_string() }
-        })?;
-        parquet::write(&whole)
+        let mut ordered = members.to_vec();
+        ordered.sort_by_key(|record| record.stage());
+        let mut parts: Vec<Rows> = Vec::new();
+        for record in ordered {
+            let kept = earlier.get(&*record.name).copied();
+            let kept = kept.filter(|kept| (&kept.content, &kept.columns) == (&record.content, &record.columns));
+            let rows = kept.filter(|kept| kept.file == file).zip(whole.as_ref());
+            let rows = rows.and_then(|(_, whole)| bundle::rows_of(whole, record.stage()));
+            match (rows.filter(|rows| rows.len() == record.rows), parts.last_mut()) {
+                (Some(rows), Some(Rows::Of(before))) if before.end == rows.start => before.end = rows.end,
+                (Some(rows), _) => parts.push(Rows::Of(rows)),
+                (None, _) => parts.push(Rows::Own(record.stage(), table(record, kept)?)),
+            }
+        }
+        let whole = whole.filter(|_| parts.iter().any(|part| matches!(part, Rows::Of(_))));
+        let all = bundle::together(whole.as_ref(), &parts)
+            .map_err(|error| StoreError::Format { table: file.to_owned(), problem: error.to_string() })?;
+        parquet::write(&all)
+    }
+
+    /// What a file holds whose bytes are those that were written, whatever its stamp says.
+    fn as_written(&self, old: &Known, file: &str) -> Option<Table> {
+        let (_, digest) = old.expected(file).filter(|_| old.state(file) == FileState::Intact)?;
+        let bytes = file::read(&self.path().join(file), file::MOST_TABLE).ok()?;
+        if index::digest(&bytes) == digest { parquet::read(bytes).ok() } else { None }
     }
 
     /// A table that had its rows in a bundle and has a file of its own now, of a stage that was not asked for.

@@ -8,7 +8,8 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use rayon::prelude::*;
 
-use super::{Folder, here};
+use super::{Folder, MANIFEST, here};
+use crate::store::file;
 use crate::store::index::{self, Index, Seen};
 use crate::store::manifest::{FileRecord, Manifest, StageRecord, TableRecord};
 
@@ -68,6 +69,13 @@ impl Known {
         };
         let tables = manifest.stages.iter().enumerate().flat_map(of_stage).collect();
         Self { manifest, folder, digest, index, records, noted, tables, belongs, moment, states, looked, values }
+    }
+
+    /// Whether manifest and index are still the ones that were read.
+    pub(super) fn is_still_so(&self) -> bool {
+        let digest = file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).map(|text| index::digest(&text));
+        let index = Index::read(self.folder.path()).map(|(index, _)| index).unwrap_or_default();
+        digest.is_ok_and(|digest| digest == self.digest) && index == self.index
     }
 
     /// A file as it was last looked at.

@@ -6,6 +6,7 @@
 //! last success; its status says so. Files that a manifest never listed are not touched. Must not know: the cache, stages,
 //! how anything is drawn.
 
+use std::borrow::Cow;
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fs;
@@ -97,45 +98,57 @@ impl Folder {
     ///
     /// # Errors
     /// When a table cannot be had or a file not be written, or when the source says so; what was there before stays valid.
-    pub fn publish(
+    pub fn publish<'m>(
         &self,
-        manifest: &Manifest,
+        manifest: impl Into<Cow<'m, Manifest>>,
         facts: impl FnOnce() -> Facts,
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
+        let manifest: Cow<'m, Manifest> = manifest.into();
         let draws = source.draw.is_some();
         let nothing = |old: Known| {
             let seen = if old.is_outdated() { Vec::new() } else { old.index().files.clone() };
             Published { manifest: old.manifest, changes: Changes::default(), undrawn: None, seen }
         };
+        let mut before = None;
         if let Some(mut old) = self.known().ok().flatten() {
-            old.manifest.share(manifest);
-            let new = with_earlier_tables(Some(&old), manifest);
-            if compare(Some(&old), &new, draws, self) == Changes::default() {
+            old.manifest.share(&manifest);
+            let new = with_earlier_tables(Some(&old), &manifest);
+            let changes = compare(Some(&old), &new, draws, self);
+            if changes == Changes::default() {
                 if old.is_outdated() {
                     self.refresh(&old);
                 }
                 return Ok(nothing(old));
             }
+            let new = if let Cow::Owned(new) = new { Some(new) } else { None };
+            before = Some((old, new, changes));
         }
         fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
         let _lock = self.lock()?;
-        // Another run may have published while this one waited. A damaged manifest is written anew; one that cannot be
-        // read at the moment lists files that nobody would know of afterwards.
+        // Another run may have published while this one waited; mostly none has, and what was found still holds.
+        if let Some((old, new, changes)) = before.filter(|(old, _, _)| old.is_still_so()) {
+            return self.write(Some(&old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
+        }
+        // A damaged manifest is written anew; one that cannot be read at the moment lists files that nobody would know of
+        // afterwards.
         let old = match self.known() {
             Err(StoreError::Io { action, path, source }) if source.kind() != ErrorKind::InvalidData => {
                 return Err(StoreError::Io { action, path, source });
             }
             known => known.ok().flatten().map(|mut known| {
-                known.manifest.share(manifest);
+                known.manifest.share(&manifest);
                 known
             }),
         };
-        let new = with_earlier_tables(old.as_ref(), manifest);
+        let new = with_earlier_tables(old.as_ref(), &manifest);
         let changes = compare(old.as_ref(), &new, draws, self);
         match old {
             Some(old) if changes == Changes::default() => Ok(nothing(old)),
-            old => self.write(old.as_ref(), new.into_owned(), changes, Some(facts), source),
+            old => {
+                let new = if let Cow::Owned(new) = new { Some(new) } else { None };
+                self.write(old.as_ref(), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
+            }
         }
     }
 
@@ -176,7 +189,7 @@ impl Folder {
     ) -> Result<Published, StoreError> {
         file::sweep(self.path());
         if let Some(old) = old {
-            self.strike(&old.manifest, &changes)?;
+            self.strike(old, &changes)?;
         }
         let mut listed = Listed::default();
         let (tables, files): (HashSet<&String>, HashSet<&String>) =
@@ -273,17 +286,23 @@ impl Folder {
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
     /// for the old one.
-    fn strike(&self, old: &Manifest, changes: &Changes) -> Result<(), StoreError> {
+    fn strike(&self, old: &Known, changes: &Changes) -> Result<(), StoreError> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
         };
-        let files: Vec<FileRecord> = old.files.iter().filter(|record| !replaced(&record.file)).cloned().collect();
-        if files.len() == old.files.len() {
+        let earlier = &old.manifest.files;
+        let files: Vec<FileRecord> = earlier.iter().filter(|record| !replaced(&record.file)).cloned().collect();
+        if files.len() == earlier.len() {
             return Ok(());
         }
-        let text = old.text_with(&files).map_err(unwritten)?;
-        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
+        let path = self.path().join(MANIFEST);
+        let text = file::read(&path, file::MOST_MANIFEST).ok().filter(|text| index::digest(text) == old.digest);
+        let text = match text.and_then(|text| Manifest::with_other_files(&text, &files)) {
+            Some(text) => text,
+            None => old.manifest.text_with(&files).map_err(unwritten)?,
+        };
+        file::write(&path, &text, Durability::Synced)
     }
 
     fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {

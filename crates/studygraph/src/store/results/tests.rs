@@ -30,7 +30,7 @@ fn manifest(tables: &[(&str, Table)]) -> Manifest {
         kind: name.to_owned(),
         version: 1,
         keys: vec![],
-        config: serde_json::Value::Null,
+        config: serde_json::Value::Null.into(),
         status: "ran".to_owned(),
         why: "never ran".to_owned(),
         seconds: 0.1,
