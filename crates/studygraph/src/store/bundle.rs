@@ -134,7 +134,11 @@ pub fn together(earlier: Option<&Table>, parts: &[Rows]) -> Result<Table, TableE
             }
             _ => {
                 let (table, column) = (schema.name.clone(), String::new());
-                return Err(TableError::Column { table, column, problem: "two parts have different columns".to_owned() });
+                return Err(TableError::Column {
+                    table,
+                    column,
+                    problem: "two parts have different columns".to_owned(),
+                });
             }
         }
     }

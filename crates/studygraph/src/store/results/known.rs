@@ -73,7 +73,8 @@ impl Known {
 
     /// Whether manifest and index are still the ones that were read.
     pub(super) fn is_still_so(&self) -> bool {
-        let digest = file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).map(|text| index::digest(&text));
+        let digest =
+            file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).map(|text| index::digest(&text));
         let index = Index::read(self.folder.path()).map(|(index, _)| index).unwrap_or_default();
         digest.is_ok_and(|digest| digest == self.digest) && index == self.index
     }
