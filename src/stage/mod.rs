@@ -15,6 +15,7 @@ pub mod names;
 pub mod pair;
 pub mod quantity;
 pub mod root_influences;
+pub mod rows;
 
 pub use studygraph::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved,

@@ -116,7 +116,11 @@ mod tests {
             let found = values().sum::<f64>() / f64::from(count);
             let variance = values().map(|value| (value - found) * (value - found)).sum::<f64>() / f64::from(count);
             assert!((found - mean).abs() < 2e-5 * deviation, "{distribution:?}: {found} {mean}");
-            assert!((variance.sqrt() / deviation - 1.0).abs() < 2e-4, "{distribution:?}: {} {deviation}", variance.sqrt());
+            assert!(
+                (variance.sqrt() / deviation - 1.0).abs() < 2e-4,
+                "{distribution:?}: {} {deviation}",
+                variance.sqrt()
+            );
         }
     }
 
@@ -127,7 +131,10 @@ mod tests {
             let values: Vec<f64> = (0..=1000).map(|at| distribution.quantile(f64::from(at) / 1000.0)).collect();
             assert!(values.windows(2).all(|pair| pair[0] < pair[1]), "{distribution:?}");
             for (end, value) in [(low, values[0]), (high, values[1000])] {
-                assert!((value - end).abs() <= 1e-12 * end.abs() || value.to_bits() == end.to_bits(), "{distribution:?}");
+                assert!(
+                    (value - end).abs() <= 1e-12 * end.abs() || value.to_bits() == end.to_bits(),
+                    "{distribution:?}"
+                );
             }
         }
         let normal = Distribution::Normal { mean: 0.0, deviation: 1.0, low: -1.0, high: f64::INFINITY };

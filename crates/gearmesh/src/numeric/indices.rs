@@ -75,9 +75,10 @@ impl Sums {
 pub fn indices<'a>(pairs: impl Iterator<Item = Pair<'a>> + Clone, fields: usize) -> (Vec<Indices>, usize) {
     let holds = |pair: &Pair| pair.both.iter().chain(pair.replaced).all(|value| value.is_finite());
     // About the mean, f(B) varies least, and with it the first order.
-    let (sum, count) = pairs.clone().filter(holds).fold((0.0, 0_usize), |(sum, count), pair| {
-        (sum + pair.both[0] + pair.both[1], count + 1)
-    });
+    let (sum, count) = pairs
+        .clone()
+        .filter(holds)
+        .fold((0.0, 0_usize), |(sum, count), pair| (sum + pair.both[0] + pair.both[1], count + 1));
     let origin = sum / (2 * count.max(1)) as f64;
     let mut replicates = vec![Sums::default(); REPLICATES];
     for (number, pair) in pairs.enumerate().filter(|(_, pair)| holds(pair)) {

@@ -100,7 +100,8 @@ fn within(estimate: Estimate, exact: f64, what: &str) {
 #[test]
 fn the_error_of_a_mean_falls_as_is_promised() {
     let sizes = [256, 1024, 4096, 16_384];
-    for (draw, orders, what) in [(sobol as fn(usize, usize) -> Vec<f64>, -1.8..=-1.2, "sobol"), (random, -0.62..=-0.38, "random")]
+    for (draw, orders, what) in
+        [(sobol as fn(usize, usize) -> Vec<f64>, -1.8..=-1.2, "sobol"), (random, -0.62..=-0.38, "random")]
     {
         let means: Vec<Estimate> = sizes.iter().map(|size| sample(ishigami, 3, *size, &draw).mean()).collect();
         means.iter().for_each(|mean| within(*mean, 3.5, what));
