@@ -227,6 +227,17 @@ impl Prepared {
     }
 }
 
+/// Rows of a part, on average; from [`MOST_PARTS`] parts on twice as many, four times as many and so on.
+const ROWS: usize = 1 << 13;
+const MOST_ROWS: usize = 1 << 16;
+const MOST_PARTS: usize = 128;
+
+/// Rows that a part holds on average, of so many in all.
+pub fn rows_of_part(count: usize) -> usize {
+    let times = count.div_ceil(ROWS).div_ceil(MOST_PARTS).max(1).next_power_of_two();
+    ROWS.saturating_mul(times).min(MOST_ROWS)
+}
+
 /// Seconds of a row that goes from table to table.
 const SECONDS_OF_TABLES: f64 = 2e-3;
 

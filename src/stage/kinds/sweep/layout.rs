@@ -7,8 +7,8 @@ use super::draw::{Draw, Span};
 use super::method::Method;
 use crate::stage::formula::{Formula, Names, Outcome};
 use crate::stage::quantity::Number;
-use crate::stage::rows::Column;
 use crate::stage::rows::values::{Level, RowSet, level};
+use crate::stage::rows::{Column, rows_of_part};
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::record::varied::{Axis, Values};
@@ -18,10 +18,6 @@ use gearmesh::optimize::sobol::MOST_VARIABLES;
 use std::ops::Range;
 use studygraph::stage::parts;
 
-/// Rows of a part, on average; from [`MOST_PARTS`] parts on twice as many, four times as many and so on.
-const ROWS: usize = 1 << 13;
-const MOST_ROWS: usize = 1 << 16;
-const MOST_PARTS: usize = 128;
 /// More rows than that are refused: a slip is likelier.
 const MOST_IN_ALL: usize = 1_000_000_000;
 
@@ -138,7 +134,7 @@ impl Layout {
     }
 
     fn cut(&self) -> Vec<Range<usize>> {
-        let each = (target(self.count()) / self.of_unit()).max(1);
+        let each = (rows_of_part(self.count()) / self.of_unit()).max(1);
         if self.is_drawn() {
             let units = self.units();
             return (0..units.div_ceil(each)).map(|part| part * each..units.min((part + 1) * each)).collect();
@@ -249,12 +245,6 @@ impl Layout {
     }
 }
 
-/// Rows that a part holds on average, of so many in all.
-fn target(count: usize) -> usize {
-    let times = count.div_ceil(ROWS).div_ceil(MOST_PARTS).max(1).next_power_of_two();
-    ROWS.saturating_mul(times).min(MOST_ROWS)
-}
-
 fn write(levels: &[Level], writer: &mut Writer) {
     for level in levels {
         writer.float(level.shown);
@@ -317,7 +307,7 @@ fn grid(columns: &[Column]) -> Result<Rows, Diagnostic> {
     }
     let count = all.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
     let count = count.filter(|count| *count <= MOST_IN_ALL).ok_or_else(too_many)?;
-    let target = target(count);
+    let target = rows_of_part(count);
     let (mut split, mut inner) = (all.len(), 1);
     while split > 0 && inner * all[split - 1].len() <= target {
         split -= 1;
