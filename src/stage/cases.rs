@@ -91,6 +91,11 @@ impl Deviations {
         (0..FIELDS).filter(|field| self.fields()[*field].is_some()).collect()
     }
 
+    /// The values of a field; none where it is not stated.
+    pub fn values(&self, field: usize) -> &[f64] {
+        self.fields()[field].map_or(&[], Vec::as_slice)
+    }
+
     /// All combinations of their values, the last field fastest; where nothing is stated the one that nothing is off.
     pub fn combinations(&self) -> Vec<Deviation> {
         let none = Deviation { of_fields: [0.0; FIELDS], bearing_span: self.bearing_span };

@@ -7,12 +7,33 @@ use super::normal;
 /// How a number is distributed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Distribution {
-    /// All values from `low` to `high` alike; `low` < `high`.
-    Uniform { low: f64, high: f64 },
-    /// Rising in a straight line from `low` to `mode`, falling to `high`; `low` ≤ `mode` ≤ `high`, `low` < `high`.
-    Triangular { low: f64, mode: f64, high: f64 },
-    /// Normal with this mean and standard deviation > 0, cut off at `low` < `high`, which may be infinite.
-    Normal { mean: f64, deviation: f64, low: f64, high: f64 },
+    /// All values alike.
+    Uniform {
+        /// The smallest.
+        low: f64,
+        /// The largest, above it.
+        high: f64,
+    },
+    /// Rising in a straight line to a mode, and falling.
+    Triangular {
+        /// The smallest.
+        low: f64,
+        /// The most frequent, from `low` to `high`.
+        mode: f64,
+        /// The largest, above `low`.
+        high: f64,
+    },
+    /// Normal, and cut off.
+    Normal {
+        /// Before it is cut off.
+        mean: f64,
+        /// Standard deviation before it is cut off, above 0.
+        deviation: f64,
+        /// The smallest, or −∞.
+        low: f64,
+        /// The largest, or ∞; above `low`.
+        high: f64,
+    },
 }
 
 impl Distribution {

@@ -18,7 +18,9 @@ pub struct Pair<'a> {
 /// First order and total of one field.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Indices {
+    /// Share of the variance that the field explains by itself.
     pub first: Estimate,
+    /// The same together with all others.
     pub total: Estimate,
 }
 

@@ -11,11 +11,14 @@ pub const REPLICATES: usize = 8;
 /// A number and its standard error; both NaN where there is none.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
+    /// The number itself.
     pub value: f64,
+    /// Its standard error.
     pub error: f64,
 }
 
 impl Estimate {
+    /// Of nothing.
     pub const NONE: Self = Self { value: f64::NAN, error: f64::NAN };
 
     /// That of all, and those of the replicates; those that have none do not count.
@@ -116,10 +119,12 @@ pub fn quantile(values: &[f64], share: f64) -> f64 {
 /// How many of all keep to something, with the standard error.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
+    /// Of all.
     pub share: Estimate,
-    /// Between which values it lies with 95 %: Wilson's interval (J. Am. Stat. Assoc. 22 (1927) 209), which says something
+    /// Above which value it lies with 97.5 %, by Wilson's interval (J. Am. Stat. Assoc. 22 (1927) 209), which says something
     /// where all keep to it, or none. It takes points as independent; those of nets are better than that.
     pub low: f64,
+    /// Below which value it lies with 97.5 %.
     pub high: f64,
 }
 
