@@ -43,7 +43,10 @@ fn wrong_scatters_say_where_and_what_is_near() {
         (of(&["slope: { field: ste.helix_slope, iso1328: 7 }"], ""), "has no tolerance in ISO 1328-1"),
         (of(&["teeth: { field: pair.pinion.teeth, within: ± 2 }"], ""), "takes whole numbers"),
         (of(&["teeth: { field: pair.pinion.teeth, from: 17, to: 20 }"], ""), "takes whole numbers"),
-        (of(&["amuont: { field: \"designs.designs.long[1].tip_relief.amuont\", within: ± 2 um }"], ""), "did you mean `amount`?"),
+        (
+            of(&["amuont: { field: \"designs.designs.long[1].tip_relief.amuont\", within: ± 2 um }"], ""),
+            "did you mean `amount`?",
+        ),
         (of(&[AMOUNT], "samples: 1"), "between 16 and"),
         (of(&[AMOUNT], "samples: 2000000000"), "between 16 and"),
         (of(&[AMOUNT], "indices: 3"), "with fewer than 16"),
@@ -54,10 +57,7 @@ fn wrong_scatters_say_where_and_what_is_near() {
         (correlated("{ between: [amount], is: 0.5 }"), "names two columns"),
         (correlated("{ between: [amount, amount], is: 0.5 }"), "is one column"),
         (correlated("{ between: [amount, tilt], is: 1.5 }"), "between -1 and 1"),
-        (
-            correlated("{ between: [amount, tilt], is: 0.5 }, { between: [tilt, amount], is: -0.5 }"),
-            "stated twice",
-        ),
+        (correlated("{ between: [amount, tilt], is: 0.5 }, { between: [tilt, amount], is: -0.5 }"), "stated twice"),
         (
             of(
                 &[AMOUNT, TILT, third],
@@ -70,7 +70,10 @@ fn wrong_scatters_say_where_and_what_is_near() {
             "has several values of `torque`",
         ),
         (
-            message(&scattered(&[AMOUNT], "outputs: [mean]").replace("torque: 50 N m", "torque: 50 N m, bearing_span: 90 mm")),
+            message(
+                &scattered(&[AMOUNT], "outputs: [mean]")
+                    .replace("torque: 50 N m", "torque: 50 N m, bearing_span: 90 mm"),
+            ),
             "`bearing_span` goes with",
         ),
     ] {

@@ -26,8 +26,7 @@ fn numbers_are_those_of_the_rows() {
         let squares: f64 = values.iter().map(|value| (value - mean) * (value - mean)).sum();
         assert!((statistics.floats("standard_deviation")[at] / (squares / 199.0).sqrt() - 1.0).abs() < 1e-9);
         // Replicates come in turn.
-        let means: Vec<f64> =
-            (0..8).map(|first| values.iter().skip(first).step_by(8).sum::<f64>() / 25.0).collect();
+        let means: Vec<f64> = (0..8).map(|first| values.iter().skip(first).step_by(8).sum::<f64>() / 25.0).collect();
         let spread: f64 = means.iter().map(|own| (own - mean) * (own - mean)).sum();
         assert!((statistics.floats("mean_error")[at] / (spread / 56.0).sqrt() - 1.0).abs() < 1e-9);
     }
@@ -48,7 +47,8 @@ fn numbers_are_those_of_the_rows() {
         yields.integers("kept")[at]
     };
     let holds = |sample: usize, torque: f64| at_torque(torque, "peak_to_peak")[sample] <= 1.6;
-    let count = |keeps: &dyn Fn(usize) -> bool| i64::try_from((0..200).filter(|sample| keeps(*sample)).count()).unwrap();
+    let count =
+        |keeps: &dyn Fn(usize) -> bool| i64::try_from((0..200).filter(|sample| keeps(*sample)).count()).unwrap();
     assert_eq!(kept("valid", 0), 200);
     assert_eq!(kept("peak_to_peak <= 1.6 um", 2), count(&|sample| holds(sample, 50.0)));
     let all = count(&|sample| torques.iter().all(|torque| holds(sample, *torque)));
@@ -88,6 +88,40 @@ fn indices_know_what_decides() {
     let summary = ste["ste"].tables.iter().find(|table| table.name() == "summary").unwrap();
     let (mean, error) = (statistics.floats("mean")[0], statistics.floats("mean_error")[0]);
     assert!((mean - summary.floats("mean")[0]).abs() < 5.0 * error && error < 1e-3 * mean, "{mean} {error}");
+}
+
+/// Tier: somebody else's implementation; SALib, from the same numbers. Totals are one formula. First orders are about another
+/// mean there, which moves them by less than their own errors.
+#[test]
+fn another_program_finds_the_same_indices() {
+    let text = scattered(
+        &[AMOUNT, TILT, &TORQUES.replace("25 N m, 50 N m, 100 N m", "50 N m")],
+        "samples: 128\nindices: 128\noutputs: [peak_to_peak]",
+    );
+    let (of, _) = ran(&text);
+    let (rows, indices) = (of("rows"), of("indices"));
+    let values = rows.floats("peak_to_peak");
+    // Two fields: itself, with either of them, and with both.
+    let at = |which: usize| -> Vec<f64> { values.chunks(4).map(|sample| sample[which]).collect() };
+    let replaced: Vec<[f64; 2]> = values.chunks(4).map(|sample| [sample[1], sample[2]]).collect();
+    let given = serde_json::json!({ "first": at(0), "second": at(3), "replaced": replaced });
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("values.json");
+    std::fs::write(&file, given.to_string()).unwrap();
+    let Some(said) = crate::python::run("salib_indices.py", &[file.as_os_str()]) else { return };
+    if said.trim().is_empty() {
+        eprintln!("SKIPPED: tests/python/salib_indices.py: there is no SALib");
+        return;
+    }
+    let found: serde_json::Value = serde_json::from_str(&said).unwrap();
+    for (place, field) in ["amount", "tilt"].into_iter().enumerate() {
+        let at = (0..2).find(|at| indices.texts("field")[*at] == field).unwrap();
+        let theirs = |which: &str| found[which][place].as_f64().unwrap();
+        let total = indices.floats("total")[at];
+        assert!((total / theirs("total") - 1.0).abs() < 1e-9, "{field}: {total} {}", theirs("total"));
+        let (first, error) = (indices.floats("first_order")[at], indices.floats("first_order_error")[at]);
+        assert!((first - theirs("first")).abs() < error, "{field}: {first} ± {error}, {}", theirs("first"));
+    }
 }
 
 /// Fields that go together: the rank correlation is that of the copula, and there are no indices.
