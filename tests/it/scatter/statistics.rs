@@ -7,7 +7,7 @@ use super::*;
 fn numbers_are_those_of_the_rows() {
     let text = scattered(
         &[AMOUNT, TILT, TORQUES],
-        "samples: 200\nindices: 0\noutputs: [peak_to_peak, mean]\nlimits: [peak_to_peak <= 1.6 um, mean <= 10 um]\nquantiles: [10 %, 50 %]",
+        "samples: 200\nindices: 0\noutputs: [peak_to_peak, mean]\nlimits: [peak_to_peak <= 3.7 um, mean <= 13 um]\nquantiles: [10 %, 50 %]",
     );
     let (of, _) = ran(&text);
     let rows = of("rows");
@@ -46,15 +46,15 @@ fn numbers_are_those_of_the_rows() {
             .unwrap();
         yields.integers("kept")[at]
     };
-    let holds = |sample: usize, torque: f64| at_torque(torque, "peak_to_peak")[sample] <= 1.6;
+    let holds = |sample: usize, torque: f64| at_torque(torque, "peak_to_peak")[sample] <= 3.7;
     let count =
         |keeps: &dyn Fn(usize) -> bool| i64::try_from((0..200).filter(|sample| keeps(*sample)).count()).unwrap();
     assert_eq!(kept("valid", 0), 200);
-    assert_eq!(kept("peak_to_peak <= 1.6 um", 2), count(&|sample| holds(sample, 50.0)));
+    assert_eq!(kept("peak_to_peak <= 3.7 um", 3), count(&|sample| holds(sample, 100.0)));
     let all = count(&|sample| torques.iter().all(|torque| holds(sample, *torque)));
-    assert_eq!(kept("peak_to_peak <= 1.6 um", 0), all);
+    assert_eq!(kept("peak_to_peak <= 3.7 um", 0), all);
     let both = count(&|sample| {
-        torques.iter().all(|torque| holds(sample, *torque) && at_torque(*torque, "mean")[sample] <= 10.0)
+        torques.iter().all(|torque| holds(sample, *torque) && at_torque(*torque, "mean")[sample] <= 13.0)
     });
     assert_eq!(kept("all limits", 0), both);
     assert!(all > 0 && all < 200, "the limit tells samples apart: {all}");
@@ -77,7 +77,7 @@ fn indices_know_what_decides() {
         let errors = ["first_order_error", "total_error"].map(|column| indices.floats(column)[at]);
         if indices.texts("field")[at] == "torque" {
             assert!((first - 1.0).abs() < 5.0 * errors[0] && (total - 1.0).abs() < 5.0 * errors[1], "{first} {total}");
-            assert!(errors[0] < 0.02 && errors[1] < 0.02, "{errors:?}");
+            assert!(errors[0] < 0.05 && errors[1] < 0.05, "{errors:?}");
         } else {
             assert!(first.abs() < 1e-9 && total.abs() < 1e-9, "{first} {total}");
         }
