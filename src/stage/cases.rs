@@ -335,6 +335,7 @@ pub struct OffDesign {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp)] // what must be met exactly
 mod tests {
     use super::*;
     use declare::declared::{Declared, record_of};
