@@ -1,6 +1,8 @@
 //! `kind: scatter` against the stages it stands for, closed forms, and what holds for samples and what is made of them.
 
+mod cases;
 mod messages;
+mod parts;
 mod rows;
 mod statistics;
 

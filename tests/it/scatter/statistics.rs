@@ -147,25 +147,3 @@ fn correlated_fields_go_together() {
     let exact = 6.0 / std::f64::consts::PI * 0.35_f64.asin();
     assert!((found - exact).abs() < 0.02, "{found} {exact}");
 }
-
-/// Tier: second method; a helix slope of the gear, which has the common face width, opens the gap that the load case states.
-/// Tables have the deviations as keys.
-#[test]
-fn deviations_are_keys_of_the_tables_of_ste() {
-    let ste = STE.replace("50 N m", "[50 N m, 80 N m], helix_slope: [-15 um, 0 um, 15 um]");
-    let cases = walk(&load(&study(&[PAIR, STIFFNESS, DESIGN, &ste])));
-    let of = |name: &str| cases["ste"].tables.iter().find(|table| table.name() == name).unwrap();
-    let summary = of("summary");
-    assert_eq!(summary.rows(), 6);
-    assert_eq!(summary.floats("helix_slope"), [-15.0, 0.0, 15.0, -15.0, 0.0, 15.0]);
-    assert_eq!(of("harmonics").rows(), 18);
-    let design = format!("{DESIGN}        - helix_slope: {{ gear: gear, amount: 15 um }}\n");
-    let slope = walk(&load(&study(&[PAIR, STIFFNESS, &design, STE])));
-    let alone = slope["ste"].tables.iter().find(|table| table.name() == "summary").unwrap();
-    let close = |one: f64, two: f64| assert!((one / two - 1.0).abs() < 1e-9, "{one} {two}");
-    close(summary.floats("peak_to_peak")[2], alone.floats("peak_to_peak")[0]);
-    // The modification takes material off, half of it on average.
-    close(summary.floats("mean")[2], alone.floats("mean")[0] - 7.5);
-    // An even face does not tell the signs apart.
-    close(summary.floats("peak_to_peak")[0], summary.floats("peak_to_peak")[2]);
-}
