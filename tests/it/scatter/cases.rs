@@ -48,9 +48,9 @@ fn a_search_over_cases_counts_what_the_stage_gives_for_each() {
     let off = "helix_slope: [-12 um, 0 um, 12 um]";
     let search = |at: &str| {
         format!(
-            "  found:\n    kind: optimizer\n    name: found\n    stiffness: stiffness\n    method: {{ grid: {{ points: 3 }} }}\n    \
+            "  found:\n    kind: optimizer\n    name: found\n    stiffness: stiffness\n    method: {{ grid: {{ levels: 3 }} }}\n    \
              positions: 16\n    at: {{ torque: [25 N m, 50 N m], {off}{at} }}\n    design:\n      \
-             - end_relief: {{ gear: gear, amount: [0 um, 10 um], length: 4 mm, end: I }}\n"
+             - end_relief: {{ gear: gear, amount: [4 um, 10 um], length: 4 mm, end: I }}\n"
         )
     };
     let ste =
