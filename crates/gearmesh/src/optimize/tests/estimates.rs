@@ -104,7 +104,9 @@ fn the_error_of_a_mean_falls_as_is_promised() {
         [(sobol as fn(usize, usize) -> Vec<f64>, -1.8..=-1.2, "sobol"), (random, -0.62..=-0.38, "random")]
     {
         let means: Vec<Estimate> = sizes.iter().map(|size| sample(ishigami, 3, *size, &draw).mean()).collect();
-        means.iter().for_each(|mean| within(*mean, 3.5, what));
+        for mean in &means {
+            within(*mean, 3.5, what);
+        }
         let errors: Vec<f64> = means.iter().map(|mean| mean.error).collect();
         let power = order(&sizes, &errors);
         assert!(orders.contains(&power), "{what}: {power} {errors:?}");
@@ -117,7 +119,9 @@ fn quantiles_have_errors_of_their_own_that_fall() {
     let sizes = [256, 1024, 4096, 16_384];
     for share in [0.05, 0.5, 0.95] {
         let found: Vec<Estimate> = sizes.iter().map(|size| sample(g, 1, *size, &sobol).quantile(share)).collect();
-        found.iter().for_each(|found| within(*found, 2.0 * share, "uniform"));
+        for found in &found {
+            within(*found, 2.0 * share, "uniform");
+        }
         let power = order(&sizes, &found.iter().map(|found| found.error).collect::<Vec<_>>());
         assert!(power < -0.8, "{share}: {power} {found:?}");
     }
