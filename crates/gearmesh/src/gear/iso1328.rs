@@ -115,6 +115,11 @@ mod tests {
         let pinion = gear(19, 3e-3, 20e-3);
         is(Slope::Profile, &pinion, 7, 11.0);
         is(Slope::Helix, &pinion, 7, 12.0);
+        // Where rounding hides no digit of a coefficient: 200 teeth, module 10, 200 mm, eight times 4 + 2 + 4 and
+        // 2.2361 + 4.9497 + 4 = 11.1858 in class 11.
+        let large = gear(200, 10e-3, 200e-3);
+        is(Slope::Profile, &large, 11, 80.0);
+        is(Slope::Helix, &large, 11, 89.0);
         // Class 1 is a quarter of class 5: 1.314 and 1.486.
         is(Slope::Profile, &pinion, 1, 1.3);
         is(Slope::Helix, &pinion, 1, 1.5);
