@@ -18,7 +18,7 @@ pub struct Spec {
     pub tables: Vec<String>,
     pub x: String,
     pub y: Vec<String>,
-    /// Column of the colours of a map.
+    /// Column of the colours of a map, or of where the bars of a histogram end.
     pub value: String,
     pub series: String,
     pub segments: String,
@@ -83,6 +83,9 @@ impl Spec {
                 "drawing" => Kind::Drawing,
                 "map" => Kind::Map,
                 "chart" => Kind::Chart,
+                "histogram" => Kind::Histogram,
+                "quantiles" => Kind::Quantiles,
+                "tornado" => Kind::Tornado,
                 _ => Kind::Line,
             },
             tables: words(text("tables")?),

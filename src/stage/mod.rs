@@ -3,6 +3,7 @@
 //! A stage is pure: the same configuration, inputs and seed give the same tables, bit for bit, whatever the number of
 //! threads. Must not know: the store, the runner, other stages (it sees their tables, never their code).
 
+pub mod cases;
 pub mod common;
 pub mod compliance;
 pub mod designs;
@@ -10,10 +11,12 @@ pub mod doubts;
 pub mod foreign;
 pub mod formula;
 pub mod kinds;
+pub mod limit;
 pub mod names;
 pub mod pair;
 pub mod quantity;
 pub mod root_influences;
+pub mod rows;
 
 pub use studygraph::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved,

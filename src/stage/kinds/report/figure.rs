@@ -241,7 +241,7 @@ impl Figure {
             return Err(no_rows(table, &self.conditions));
         }
         let x = column(&self.x)?;
-        if self.kind != How::Bar {
+        if !matches!(self.kind, How::Bar | How::Tornado) {
             numbers(x)?;
         }
         let mut unit: Option<&str> = None;
@@ -347,11 +347,13 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar, drawing, map or chart.", |row| row.kind.word())
+        .text("kind", "Line, points, bar, drawing, map, chart, histogram, quantiles or tornado.", |row| row.kind.word())
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
-        .text("value", "Column that a map shows as colours.", |row| row.value.as_str())
+        .text("value", "Column that a map shows as colours, or where the bars of a histogram end.", |row| {
+            row.value.as_str()
+        })
         .text("series", "Column whose values are drawn apart.", |row| row.series.as_str())
         .text("segments", "Column at whose changes a line is interrupted.", |row| row.segments.as_str())
         .text("length", "Column of the length that x stands for.", |row| row.length.as_str())

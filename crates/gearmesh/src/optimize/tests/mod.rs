@@ -5,6 +5,7 @@
 
 mod conformance;
 mod constrained;
+mod estimates;
 mod functions;
 mod kinks;
 mod reference;
