@@ -158,6 +158,14 @@ impl Strategy for EvolutionSearch {
     fn budget(&self) -> usize {
         self.population.len() * self.settings.generations + self.settings.polishing().unwrap_or(0)
     }
+
+    fn goes_on(&mut self) -> bool {
+        if self.polishing.is_none() {
+            self.begin_polishing();
+            return self.polishing.is_some();
+        }
+        false
+    }
 }
 
 impl EvolutionSearch {

@@ -5,6 +5,7 @@
 
 mod conformance;
 mod constrained;
+mod fronts;
 mod functions;
 mod kinks;
 mod reference;
