@@ -3,6 +3,7 @@
 //! A stage is pure: the same configuration, inputs and seed give the same tables, bit for bit, whatever the number of
 //! threads. Must not know: the store, the runner, other stages (it sees their tables, never their code).
 
+pub mod cases;
 pub mod common;
 pub mod compliance;
 pub mod designs;

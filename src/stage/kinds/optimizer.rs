@@ -7,6 +7,7 @@ mod sampling;
 
 use rayon::prelude::*;
 
+use crate::stage::cases::{Cases, Loads};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::doubts::Doubted;
@@ -14,7 +15,7 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omiss
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure};
 use declare::record::{Record, Value};
-use declare::units::{ANGLE, LENGTH, RATIO, TORQUE, showing};
+use declare::units::{ANGLE, LENGTH, RATIO, showing};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::modification::template::{Template, Variable};
@@ -82,17 +83,6 @@ struct Stated {
     pub contact: Contact,
 }
 
-/// The loads a design is judged by.
-#[derive(Debug, Declared)]
-struct Loads {
-    /// Torque on the pinion, one or several.
-    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, axis = usize::MAX, example = "100 N m")]
-    pub torque: Vec<f64>,
-    /// What counts when there are several.
-    #[declared(default = "worst")]
-    pub combine: Combine,
-}
-
 /// What is made small.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
 enum Objective {
@@ -102,17 +92,9 @@ enum Objective {
     Variance,
 }
 
-/// What counts of several values.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
-enum Combine {
-    /// the largest
-    Worst,
-    /// the mean
-    Mean,
-}
-
 struct Optimizer {
     stated: Stated,
+    cases: Cases,
     template: Template,
     settings: Settings,
 }
@@ -155,7 +137,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }
     let settings = common::settings(stated.positions, stated.slices, stated.contact);
     common::check_slices(settings, record)?;
-    let optimizer = Optimizer { stated, template, settings };
+    let cases = stated.at.cases(record.inside(Stated::NAMES.at))?;
+    let optimizer = Optimizer { stated, cases, template, settings };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's. Its
     // points are drawn when the stage runs.
     optimizer.bounds()?;
@@ -207,7 +190,7 @@ impl Optimizer {
     }
 
     fn best<'a>(&self) -> Columns<BestRow<'a>> {
-        let peak_to_peak = "Peak-to-peak of the transmission error, the largest of all loads.";
+        let peak_to_peak = "Peak-to-peak of the transmission error, the largest of all cases.";
         let slices = "Slices that were used on each stretch of the face without a closed form.";
         let error = "Estimated relative error of the objective from positions and slices.";
         let columns = Columns::new("best", "The best design that was found.")
@@ -277,18 +260,30 @@ impl Optimizer {
     /// The objective \[m or m²\]; infinite where the design cannot be built.
     fn value(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> f64 {
         let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
-        let Loads { torque, combine } = &self.stated.at;
-        let values = torque.iter().map(|torque| {
-            let loading = LoadCase::new(cycle, &design, *torque);
+        let values = self.of_cases(pair, &design, |design, torque| {
+            let loading = LoadCase::new(cycle, design, torque);
             match self.stated.minimize {
                 Objective::PeakToPeak => loading.peak_to_peak(),
                 Objective::Variance => loading.variance(),
             }
         });
-        match combine {
-            Combine::Worst => values.fold(0.0, f64::max),
-            Combine::Mean => values.sum::<f64>() / torque.len() as f64,
+        values.map_or(f64::INFINITY, |values| self.cases.combined(&values))
+    }
+
+    /// A value of each case; none where a design is no design any more with what is off.
+    fn of_cases<T: Default + Clone>(
+        &self,
+        pair: &GearPair,
+        design: &Design,
+        mut value: impl FnMut(&Design, f64) -> T,
+    ) -> Option<Vec<T>> {
+        let mut values = vec![T::default(); self.cases.all.len()];
+        for off in self.cases.designs(design, pair).ok()? {
+            for (place, torque) in &off.cases {
+                values[*place] = value(&off.design, *torque);
+            }
         }
+        Some(values)
     }
 
     /// The search with one sampling.
@@ -346,18 +341,14 @@ impl Optimizer {
     }
 
     /// Says what the law of contact may be off by at the design that was found.
-    fn warn(&self, context: &Context, design: &Design, cycle: &MeshCycle) {
-        for &torque in &self.stated.at.torque {
+    fn warn(&self, context: &Context, design: &Design, (pair, cycle): (&GearPair, &MeshCycle)) {
+        let told = self.of_cases(pair, design, |design, torque| {
             let loading = LoadCase::new(cycle, design, torque);
-            let doubted = loading.contact_doubt().map(|doubt| {
-                let peak_to_peak = loading.peak_to_peak();
-                Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }
-            });
-            doubted
-                .and_then(|doubted| doubted.told())
-                .into_iter()
-                .for_each(|case| (context.warn)(Warning::Cases(case)));
-        }
+            let doubt = loading.contact_doubt()?;
+            let peak_to_peak = loading.peak_to_peak();
+            Doubted { design: &self.stated.name, torque, doubt, peak_to_peak }.told()
+        });
+        told.into_iter().flatten().flatten().for_each(|case| (context.warn)(Warning::Cases(case)));
     }
 
     fn tables(
@@ -371,15 +362,11 @@ impl Optimizer {
         let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
-        let peak_to_peak = self
-            .stated
-            .at
-            .torque
-            .iter()
-            .map(|torque| LoadCase::new(cycle, &design, *torque).peak_to_peak())
-            .fold(0.0, f64::max);
+        let of_cases =
+            self.of_cases(pair, &design, |design, torque| LoadCase::new(cycle, design, torque).peak_to_peak());
+        let peak_to_peak = of_cases.into_iter().flatten().fold(0.0, f64::max);
         let row = BestRow { name: &self.stated.name, found, best, peak_to_peak };
-        self.warn(context, &design, cycle);
+        self.warn(context, &design, (pair, cycle));
         let design = NamedDesign { name: self.stated.name.clone(), elements: self.best_elements(&best.point) };
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,

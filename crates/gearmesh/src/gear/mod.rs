@@ -8,8 +8,10 @@ pub mod finite_elements;
 #[cfg(test)]
 pub(crate) mod fixtures;
 pub mod geometry;
+pub mod iso1328;
 pub mod iso6336_root;
 pub mod material;
+pub mod misalignment;
 pub mod modification;
 pub mod problem;
 #[cfg(test)]

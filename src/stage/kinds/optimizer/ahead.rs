@@ -25,7 +25,7 @@ impl Optimizer {
         let each = SOLVES + SOLVES_PER_POSITION * self.settings.positions as f64;
         // Far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let solves = (foreseen.evaluations as f64 * self.stated.at.torque.len() as f64 * each) as usize;
+        let solves = (foreseen.evaluations as f64 * self.cases.all.len() as f64 * each) as usize;
         let kept = if demand.table(EVALUATIONS) { foreseen.evaluations as u64 } else { 0 };
         let [designs, elements] = designs::schemas();
         Estimate::new(true)

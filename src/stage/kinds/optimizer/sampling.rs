@@ -43,7 +43,8 @@ impl Optimizer {
         look: impl FnOnce(Sampled<&mut dyn FnMut(Settings) -> f64>) -> T,
     ) -> Option<T> {
         let design = self.template.design(pair, point).ok()?;
-        let sliced = self.stated.at.torque.iter().any(|torque| LoadCase::new(base, &design, *torque).uses_slices());
+        let sliced = self.of_cases(pair, &design, |design, torque| LoadCase::new(base, design, torque).uses_slices());
+        let sliced = sliced?.contains(&true);
         let mut value = |settings| self.value(&base.sampled(settings), pair, point);
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }

@@ -58,16 +58,16 @@ impl<'a> Face<'a> {
     pub fn between(design: &Design, [from, to]: [f64; 2], rule: &'a Rule) -> Self {
         let width = to - from;
         let parts = || design.pinion.iter().chain(&design.gear).map(|part| &part.modification);
-        if !parts().any(|part| part.varies_along_face()) {
+        if design.tilt == 0.0 && !parts().any(|part| part.varies_along_face()) {
             return Self::flat(rule);
         }
         #[allow(clippy::float_cmp)] // the middle of the face is 0 only where it was put there
         let even = from == -to && design.lead_is_even();
         let cuts = cuts(design, [from, to]);
         let quadratic = |z: f64| {
-            parts()
-                .map(|part| part.lead_quadratic(z))
-                .try_fold([0.0; 3], |sum, part| part.map(|part| [sum[0] + part[0], sum[1] + part[1], sum[2] + part[2]]))
+            parts().map(|part| part.lead_quadratic(z)).try_fold([0.0, design.tilt, 0.0], |sum, part| {
+                part.map(|part| [sum[0] + part[0], sum[1] + part[1], sum[2] + part[2]])
+            })
         };
         let stretches = || cuts.windows(2).map(|cut| (cut[0], cut[1]));
         let polynomials: Option<Vec<_>> = stretches().map(|(from, to)| quadratic(0.5 * (from + to))).collect();

@@ -243,6 +243,9 @@ pub struct Design {
     pub pinion: Vec<NamedModification>,
     /// Modifications of the gear; their depths add up.
     pub gear: Vec<NamedModification>,
+    /// How fast the gap between the flanks grows with z, since the axes are not parallel or a lead is off \[m/m\]: of a pair as
+    /// it is mounted, see [`super::misalignment`]. It turns about the middle of the face, where it takes nothing off.
+    pub tilt: f64,
 }
 
 /// One modification and the name of its family.
@@ -266,8 +269,9 @@ impl Design {
 
     /// Whether what both gears lose across the face is the same on either side of its middle.
     #[must_use]
+    #[allow(clippy::float_cmp)] // no tilt is what nobody stated
     pub fn lead_is_even(&self) -> bool {
-        self.pinion.iter().chain(&self.gear).all(|part| part.modification.lead_is_even())
+        self.tilt == 0.0 && self.pinion.iter().chain(&self.gear).all(|part| part.modification.lead_is_even())
     }
 
     /// Adds a modification to one gear or both.
@@ -338,10 +342,11 @@ impl Design {
         self.side(side).iter().map(|part| part.modification.depth(roll)).sum()
     }
 
-    /// The sum of the lead deviations of both gears at z.
+    /// The sum of the lead deviations of both gears at z, and what their axes add.
     #[must_use]
     pub fn lead(&self, z: f64) -> f64 {
-        self.pinion.iter().chain(&self.gear).map(|part| part.modification.lead(z)).sum()
+        let parts = self.pinion.iter().chain(&self.gear).map(|part| part.modification.lead(z));
+        parts.sum::<f64>() + self.tilt * z
     }
 
     /// Every resolved parameter: gear, family, name, value (SI).

@@ -42,7 +42,7 @@ impl Modification for Even {
 
 fn with(surface: f64, lead: f64) -> Design {
     let modification = Arc::new(Even { surface, lead });
-    Design { pinion: vec![NamedModification { family: "test", modification }], gear: Vec::new() }
+    Design { pinion: vec![NamedModification { family: "test", modification }], ..Design::default() }
 }
 
 /// Tier: invariant; a value out of the range of its field is refused by that range, whoever states it.

@@ -1,0 +1,150 @@
+//! How far the slopes of a flank may be off in a tolerance class: ISO 1328-1:2013, 5.2 and 5.3.
+//!
+//! A tolerance is that of class 5 times (√2)^(A − 5), from lengths as they are, and rounded. Lengths in m; the formulas of the
+//! standard take mm and give µm. Must not know: modification, load.
+
+use std::ops::RangeInclusive;
+
+use super::geometry::Specification;
+use declare::error::Diagnostic;
+
+/// Classes that the standard has.
+pub const CLASSES: RangeInclusive<i64> = 1..=11;
+
+/// Where the formulas hold: teeth, reference diameter, module and face width \[mm\]. They are not to be extended.
+const TEETH: RangeInclusive<u32> = 5..=1000;
+const DIAMETER: RangeInclusive<f64> = 5.0..=15_000.0;
+const MODULE: RangeInclusive<f64> = 0.5..=70.0;
+const FACE_WIDTH: RangeInclusive<f64> = 4.0..=1200.0;
+
+/// What of a flank has a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Slope {
+    /// f_Hα, formula (7).
+    Profile,
+    /// f_Hβ, formula (10).
+    Helix,
+}
+
+/// The tolerance of a slope \[m\]: it may be off by as much to either side.
+///
+/// # Errors
+/// When the class or the gear is outside of the standard's ranges: which number, and what it may be.
+pub fn tolerance(slope: Slope, gear: &Specification, class: i64) -> Result<f64, Diagnostic> {
+    let (diameter, module, width) =
+        (1e3 * gear.module * f64::from(gear.teeth), 1e3 * gear.module, 1e3 * gear.face_width);
+    let outside = |what: &str, value: String, range: String| {
+        Err(Diagnostic::new(format!("ISO 1328-1 has no tolerance for {what} {value}; it has them for {range}")))
+    };
+    if !CLASSES.contains(&class) {
+        return outside("class", class.to_string(), format!("classes {} to {}", CLASSES.start(), CLASSES.end()));
+    }
+    if !TEETH.contains(&gear.teeth) {
+        return outside("a number of teeth of", gear.teeth.to_string(), "5 to 1000 teeth".to_owned());
+    }
+    // Lengths have come from mm and go back to them: what was 0.5 mm must not be outside by a rounding.
+    let lengths = [
+        ("a reference diameter of", diameter, DIAMETER),
+        ("a module of", module, MODULE),
+        ("a face width of", width, FACE_WIDTH),
+    ];
+    for (what, value, range) in lengths {
+        let slack = 1e-12 * value;
+        if value < range.start() - slack || value > range.end() + slack {
+            return outside(what, format!("{value:.6} mm"), format!("{} to {} mm", range.start(), range.end()));
+        }
+    }
+    let of_class_5 = match slope {
+        Slope::Profile => 0.4 * module + 0.001 * diameter + 4.0,
+        Slope::Helix => 0.05 * diameter.sqrt() + 0.35 * width.sqrt() + 4.0,
+    };
+    // √2 to a whole power: exact doublings, and one root for odd steps.
+    let step = class - 5;
+    let power = libm::scalbn(1.0, i32::try_from(step.div_euclid(2)).unwrap_or(0));
+    let root = if step.rem_euclid(2) == 1 { std::f64::consts::SQRT_2 } else { 1.0 };
+    Ok(1e-6 * rounded(of_class_5 * power * root))
+}
+
+/// As 5.2.3 has it \[µm\]: to 1 above 10, to 0.5 from 5 on, to 0.1 below.
+fn rounded(value: f64) -> f64 {
+    let to = |parts: f64| (value * parts).round() / parts;
+    if value > 10.0 {
+        to(1.0)
+    } else if value >= 5.0 {
+        to(2.0)
+    } else {
+        to(10.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gear::fixtures::standard;
+
+    fn gear(teeth: u32, module: f64, face_width: f64) -> Specification {
+        Specification { face_width, ..standard(teeth, module, 2.0) }
+    }
+
+    #[track_caller]
+    fn is(slope: Slope, gear: &Specification, class: i64, micrometres: f64) {
+        let found = tolerance(slope, gear, class).unwrap() * 1e6;
+        assert!((found - micrometres).abs() < 1e-9, "{found} is not {micrometres}");
+    }
+
+    /// Tier: worked by hand from formulas (7) and (10) with the rounding of 5.2.3; the edition of 2013 prints no tables. Module 2,
+    /// 50 teeth, 20 mm: 0.8 + 0.1 + 4 = 4.9 and 0.05·10 + 0.35·√20 + 4 = 6.065 in class 5. Module 3, 40 teeth, 30 mm in class 6:
+    /// 5.32·√2 = 7.524 and (0.5477 + 1.9170 + 4)·√2 = 9.143.
+    #[test]
+    fn tolerances_are_those_of_the_standard() {
+        let one = gear(50, 2e-3, 20e-3);
+        is(Slope::Profile, &one, 5, 4.9);
+        is(Slope::Helix, &one, 5, 6.0);
+        let two = gear(40, 3e-3, 30e-3);
+        is(Slope::Profile, &two, 6, 7.5);
+        is(Slope::Helix, &two, 6, 9.0);
+        // 19 teeth, module 3, 20 mm: 5.257 and 0.3775 + 1.5652 + 4 = 5.9427, in class 7 twice that.
+        let pinion = gear(19, 3e-3, 20e-3);
+        is(Slope::Profile, &pinion, 7, 11.0);
+        is(Slope::Helix, &pinion, 7, 12.0);
+        // Class 1 is a quarter of class 5: 1.314 and 1.486.
+        is(Slope::Profile, &pinion, 1, 1.3);
+        is(Slope::Helix, &pinion, 1, 1.5);
+    }
+
+    /// Tier: invariant; two classes double a tolerance, but for rounding.
+    #[test]
+    fn two_classes_double_a_tolerance() {
+        let gear = gear(60, 5e-3, 80e-3);
+        for slope in [Slope::Profile, Slope::Helix] {
+            for class in 1..=9 {
+                let [one, two] = [class, class + 2].map(|class| 1e6 * tolerance(slope, &gear, class).unwrap());
+                let half_step = |value: f64| {
+                    if value > 10.0 {
+                        0.5
+                    } else if value >= 5.0 {
+                        0.25
+                    } else {
+                        0.05
+                    }
+                };
+                let off = (two - 2.0 * one).abs();
+                assert!(off <= half_step(two) + 2.0 * half_step(one) + 1e-9, "{class}: {one} {two}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_outside_of_the_standard_is_refused_with_its_range() {
+        let refused = |gear: &Specification, class| tolerance(Slope::Helix, gear, class).unwrap_err().message;
+        let plain = gear(40, 3e-3, 30e-3);
+        assert!(refused(&plain, 12).contains("class 12") && refused(&plain, 0).contains("classes 1 to 11"));
+        assert!(refused(&gear(40, 3e-3, 3e-3), 6).contains("face width of 3.000000 mm; it has them for 4 to 1200 mm"));
+        assert!(refused(&gear(40, 0.4e-3, 5e-3), 6).contains("module of"));
+        assert!(refused(&gear(4, 3e-3, 5e-3), 6).contains("teeth of 4"));
+        // On the border, whatever rounding made of it.
+        for module in [0.5e-3, 70e-3] {
+            assert!(tolerance(Slope::Profile, &gear(20, module, 4e-3), 11).is_ok(), "{module}");
+        }
+    }
+}
