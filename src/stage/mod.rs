@@ -11,6 +11,7 @@ pub mod doubts;
 pub mod foreign;
 pub mod formula;
 pub mod kinds;
+pub mod measures;
 pub mod names;
 pub mod pair;
 pub mod quantity;

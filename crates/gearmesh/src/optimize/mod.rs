@@ -163,6 +163,14 @@ pub fn optimizer<M: Declared + Method + Clone>(
     search(method, bounds, seed)
 }
 
+/// A local search of `bounds` around a point of it, by a simplex whose first edges are `edge`, a share of each range: for what
+/// another search has found. It keeps constraints by [`constraints`]' order, so it never leaves a point that keeps them for
+/// one that does not.
+#[must_use]
+pub fn refinement(bounds: Bounds, from: &[f64], edge: f64, evaluations: usize) -> Optimizer {
+    Optimizer::new(Box::new(nelder_mead::Refinement::new(bounds.unit(from), edge, evaluations)), bounds)
+}
+
 /// Bytes of so many points as vectors of coordinates, with what the allocator keeps of each.
 fn points_held(count: usize, dimension: usize) -> usize {
     count.saturating_mul(8 * dimension + 40)

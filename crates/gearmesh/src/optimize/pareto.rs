@@ -158,6 +158,16 @@ pub fn front(members: &[Member]) -> Vec<Member> {
     archive.0.into_iter().map(|(_, member)| member).collect()
 }
 
+/// At most `count` members of a front, evenly, in their order.
+#[must_use]
+pub fn thinned(front: Vec<Member>, count: usize) -> Vec<Member> {
+    let objectives: Vec<Vec<f64>> = front.iter().map(|member| member.evaluation.objectives().collect()).collect();
+    let kept = even(&objectives.iter().map(|objectives| &objectives[..]).collect::<Vec<_>>(), count);
+    let mut kept = kept.into_iter().peekable();
+    let numbered = front.into_iter().enumerate();
+    numbered.filter(|(at, _)| kept.next_if_eq(at).is_some()).map(|(_, member)| member).collect()
+}
+
 /// The member nearest to the point that has the least of every objective, in shares of the front's extents: the compromise
 /// that a front offers when nothing else is known (Zeleny, Multiple Criteria Decision Making, 1982: compromise programming
 /// with the Euclidean distance). `None` of an empty front.

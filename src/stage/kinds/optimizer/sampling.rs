@@ -12,6 +12,10 @@ use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 /// Places on the diagonal of the box that stand for all of it.
 const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
 
+/// With fewer positions spans are as long as a smooth stretch; with fewer slices a crowned face is hardly seen.
+const FEWEST_POSITIONS: usize = 16;
+const FEWEST_SLICES: usize = 7;
+
 impl Optimizer {
     /// The settings to begin with.
     pub fn first_settings(&self, base: &MeshCycle, pair: &GearPair) -> Settings {
@@ -48,6 +52,14 @@ impl Optimizer {
         let mut value = |settings| self.value(&base.sampled(settings), pair, point);
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }
+}
+
+/// What a search looks at first: a quarter of the positions, and half of the slices, as long as either says anything. The cost
+/// of coupled slices goes with their number to a power above two.
+pub fn coarser(asked: Settings) -> Settings {
+    let positions = (asked.positions / 4).max(FEWEST_POSITIONS).min(asked.positions);
+    let slices = (asked.slices / 2 + 1).max(FEWEST_SLICES).min(asked.slices);
+    Settings { positions, slices, ..asked }
 }
 
 /// As fine as either.
