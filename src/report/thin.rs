@@ -29,7 +29,7 @@ impl Plot {
                 Kind::Line | Kind::Drawing | Kind::Chart => {
                     series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame));
                 }
-                Kind::Bar | Kind::Map => {}
+                Kind::Bar | Kind::Map | Kind::Front => {}
             }
         }
         self
