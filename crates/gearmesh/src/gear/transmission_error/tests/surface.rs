@@ -72,6 +72,7 @@ fn of(modification: impl Modification + 'static) -> Design {
     Design {
         pinion: vec![NamedModification { family: "test", modification: Arc::new(modification) }],
         gear: Vec::new(),
+        tilt: 0.0,
     }
 }
 
