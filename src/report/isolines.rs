@@ -80,9 +80,8 @@ mod tests {
         assert_eq!(joined.len(), 2);
         let ends: Vec<(f64, f64)> = joined.iter().flatten().copied().collect();
         assert!(ends.iter().all(|(x, y)| [0.0, 1.0].contains(x) || [0.0, 1.0].contains(y)));
-        let cuts_corner = |piece: &Piece, corner: (f64, f64)| {
-            piece.iter().all(|(x, y)| (x - corner.0).hypot(y - corner.1) < 0.7)
-        };
+        let cuts_corner =
+            |piece: &Piece, corner: (f64, f64)| piece.iter().all(|(x, y)| (x - corner.0).hypot(y - corner.1) < 0.7);
         assert!(joined.iter().any(|piece| cuts_corner(piece, (1.0, 0.0))));
         let parted = square([1.0, 0.0, 0.0, 1.0], 0.6);
         assert!(parted.iter().any(|piece| cuts_corner(piece, (0.0, 0.0))), "{parted:?}");

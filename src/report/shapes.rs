@@ -53,7 +53,11 @@ impl Plot {
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
             let mut line = String::new();
             for (x, y) in points.into_iter().filter_map(|point| frame.place(point)) {
-                let _ = if line.is_empty() { write!(line, "M{} {}", at(x), at(y)) } else { write!(line, "H{}V{}", at(x), at(y)) };
+                let _ = if line.is_empty() {
+                    write!(line, "M{} {}", at(x), at(y))
+                } else {
+                    write!(line, "H{}V{}", at(x), at(y))
+                };
             }
             let stroke = series.look.colour.stroke();
             let _ = write!(svg, r#"<g data-s="s{index}"><path class="jump" {stroke} d="{line}"/></g>"#);

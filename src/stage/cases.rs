@@ -4,7 +4,7 @@
 //! values of several fields are all combinations of them, torques slowest, then the fields in their order. Must not know:
 //! what is computed of a case, who chooses designs.
 
-use declare::declared::{Declared, goes_with};
+use declare::declared::goes_with;
 use declare::error::{Diagnostic, Failure, suggest};
 use declare::record::Record;
 use declare::units::{LENGTH, RATIO, TORQUE, parse_quantity};
@@ -18,7 +18,7 @@ use gearmesh::gear::modification::{Design, Gears};
 const MOST: f64 = 1e-3;
 
 /// By how much a pair is off as it is made and mounted, one value of each or several.
-#[derive(Clone, Debug, Default, PartialEq, Declared)]
+#[derive(Clone, Debug, PartialEq, Declared)]
 pub struct Deviations {
     /// f_Hβ of both gears together over the common face width: positive opens the flanks towards z = +b/2.
     #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "15 um")]

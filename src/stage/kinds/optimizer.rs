@@ -155,7 +155,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     }
     let goal = Goal::read(&stated.minimize, stated.subject_to.as_deref().unwrap_or_default())?;
     if goal.has_front() && !stated.method.finds_fronts() {
-        let message = format!("`{}` takes one objective, and there are {}", stated.method.name(), goal.objectives().len());
+        let message =
+            format!("`{}` takes one objective, and there are {}", stated.method.name(), goal.objectives().len());
         return Err(Diagnostic::new(message)
             .at(record.place_of(Stated::NAMES.method))
             .help("take `nsga2`, or a sample: `grid`, `latin_hypercube` or `sobol`"));
@@ -176,8 +177,10 @@ impl Optimizer {
         Bounds::new(self.template.variables().iter().map(|variable| (variable.minimum, variable.maximum)).collect())
     }
 
+    /// A staged search goes down by itself from what its method found.
     fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
-        optimize::search(&*self.stated.method, self.bounds()?, seed)
+        let unpolished = if self.is_staged() { self.stated.method.unpolished() } else { None };
+        optimize::search(unpolished.as_deref().unwrap_or(&*self.stated.method), self.bounds()?, seed)
     }
 
     /// A sample is looked at as a whole, and as asked for.
@@ -286,9 +289,7 @@ impl Optimizer {
         self.warn(context, &design, (pair, cycle));
         let named = |name: String, point: &[f64]| NamedDesign { name, elements: self.elements_at(point) };
         let mut designs = vec![named(name.to_owned(), &best.point)];
-        designs.extend(
-            (1..).zip(&found.front).map(|(number, member)| named(self.name_of(number), &member.point)),
-        );
+        designs.extend((1..).zip(&found.front).map(|(number, member)| named(self.name_of(number), &member.point)));
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
             self.history().table_of(&(1..).zip(found.history.iter().copied())).map_err(failed)?,
@@ -298,8 +299,11 @@ impl Optimizer {
             let points = || designs[1..].iter().zip(&found.front);
             let rows: Vec<FrontRow> = (1..)
                 .zip(points())
-                .map(|(number, (design, member))| {
-                    FrontRow { number, name: &design.name, member, limited: limited(&member.point) }
+                .map(|(number, (design, member))| FrontRow {
+                    number,
+                    name: &design.name,
+                    member,
+                    limited: limited(&member.point),
                 })
                 .collect();
             tables.push(self.front().table(&rows).map_err(failed)?);

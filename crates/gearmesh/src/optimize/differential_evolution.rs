@@ -108,6 +108,10 @@ impl Method for DifferentialEvolution {
         })
     }
 
+    fn unpolished(&self) -> Option<Box<dyn Method>> {
+        Some(Box::new(Self { polish: Polish::None, ..self.clone() }))
+    }
+
     fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
         let population = latin_hypercube::points(self.population, dimension, &mut seed.generator(0));
         Box::new(EvolutionSearch {

@@ -73,6 +73,12 @@ pub trait Method: Debug + Registrable + Send + Sync {
         true
     }
 
+    /// The same without a local search at its end, for somebody who goes on from what it finds by other means; none where
+    /// it has none.
+    fn unpolished(&self) -> Option<Box<dyn Method>> {
+        None
+    }
+
     /// Whether it finds fronts of several objectives. A sample does: nothing that it looks at follows from any of them.
     fn finds_fronts(&self) -> bool {
         !self.learns()

@@ -149,9 +149,11 @@ impl Nsga2Search {
             let kept = if front.len() > room { even(&objectives, room) } else { (0..front.len()).collect() };
             let distances = crowding(&kept.iter().map(|at| objectives[*at]).collect::<Vec<_>>());
             let of_front = kept.into_iter().zip(distances);
-            survivors.extend(
-                of_front.map(|(at, crowding)| Parent { rank, crowding, ..self.parents[front[at]].clone() }),
-            );
+            survivors.extend(of_front.map(|(at, crowding)| Parent {
+                rank,
+                crowding,
+                ..self.parents[front[at]].clone()
+            }));
         }
         self.parents = survivors;
     }

@@ -180,7 +180,8 @@ pub fn balanced(front: &[Member]) -> Option<&Member> {
     };
     let ends: Vec<_> = (0..objectives.first().map_or(0, Vec::len)).map(ends).collect();
     let distance = |at: usize| -> f64 {
-        let share = |(value, (low, high)): (&f64, &(f64, f64))| if high > low { (value - low) / (high - low) } else { 0.0 };
+        let share =
+            |(value, (low, high)): (&f64, &(f64, f64))| if high > low { (value - low) / (high - low) } else { 0.0 };
         objectives[at].iter().zip(&ends).map(share).map(|share| share * share).sum()
     };
     (0..front.len()).min_by(|a, b| distance(*a).total_cmp(&distance(*b))).map(|at| &front[at])

@@ -1,9 +1,9 @@
 //! How a search goes: with coarse samplings first, with the asked one where it decides, or with the asked one all along.
 //!
-//! A staged search runs its method with coarse samplings until nothing more is gained. Of what it tried the best designs, each
+//! A staged search runs its method with a coarse sampling until nothing more is gained. Of what it tried the best designs, each
 //! of a place of its own, are looked at as asked for, until none that is left can be the best: the coarse value of one would
-//! have to be off by more than any was. A simplex then goes down from the best of them, with all as asked for. Samples and
-//! `search: plain` look at every design as asked for. Must not know: how a method searches, what becomes a table.
+//! have to be off by more than any was. A simplex then goes down from the best of them, with all as asked for, after another
+//! with a sampling between where there is one. Samples and `search: plain` look at every design as asked for. Must not know: how a method searches, what becomes a table.
 
 use rayon::prelude::*;
 
@@ -25,15 +25,18 @@ use gearmesh::optimize::{self, Foreseen};
 /// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
 const ROUNDS: usize = 4;
 /// Passes at most: the coarse search, the look at its best, and what follows; or searches alone.
-pub const MOST: usize = 2 + ROUNDS;
+pub const MOST: usize = 2 + CLOSER + ROUNDS;
+/// Samplings between the coarse one and the asked one, at most.
+const CLOSER: usize = 1;
 /// Places that are looked at as asked for, at most, and at once.
 const PLACES: usize = 64;
 const AT_ONCE: usize = 8;
-/// Edge of the simplex that begins at the best of them, as a share of each range.
-const EDGE: f64 = 0.02;
+/// Edges of the simplex that begins at the best of them, as shares of each range: with the sampling between, which may have its
+/// minimum elsewhere than the coarse one, and with the asked one.
+const EDGES: [f64; 2] = [0.1, 0.02];
 /// Evaluations of a simplex, at most, and those without a gain after which it has settled, for each of its corners.
 const FOR_EACH_CORNER: usize = 60;
-const WITHOUT_GAIN: usize = 8;
+const WITHOUT_GAIN: usize = 16;
 
 /// The pass that looks for a design; what follows it looks closer.
 const SEARCH: &str = "search";
@@ -92,10 +95,10 @@ pub struct Run<'a> {
 
 /// What comes on top of what a method foresees, where a search is staged.
 pub fn on_top(foreseen: Foreseen, dimension: usize) -> Foreseen {
-    let more = PLACES + ROUNDS * refined(dimension);
+    let more = PLACES + CLOSER + (CLOSER + ROUNDS) * refined(dimension);
     Foreseen {
         evaluations: foreseen.evaluations.saturating_add(more),
-        batches: foreseen.batches.saturating_add(PLACES / AT_ONCE + ROUNDS * refined(dimension)),
+        batches: foreseen.batches.saturating_add(more),
         exact: false,
         ..foreseen
     }
@@ -181,7 +184,8 @@ impl<'a> Run<'a> {
         let mut search = self.search()?.until_settled(rule);
         let dimension = self.optimizer.template.variables().len();
         self.budget = (search.budget() + PLACES + refined(dimension)).max(1) as f64;
-        let reason = self.run(&mut search, coarser(asked), SEARCH)?;
+        let coarse = coarser(asked);
+        let reason = self.run(&mut search, coarse[0], SEARCH)?;
         self.doubt(&mut search);
         let ended = self.said(reason);
         self.built(search.best())?;
@@ -190,11 +194,15 @@ impl<'a> Run<'a> {
                 search.front(2 * self.optimizer.stated.front_points).into_iter().cloned().collect();
             return self.confirmed(&members, asked, ended);
         }
-        let first = self.confirm(asked)?;
-        let (mut from, mut settings) = (first, asked);
+        let mut from = self.confirm(asked)?;
+        for closer in &coarse[1..] {
+            let candidate = self.refine(&from, *closer, (EDGES[0], rule))?;
+            from = self.better(from, candidate, asked)?;
+        }
+        let mut settings = asked;
         let mut round = 1;
         loop {
-            let best = self.refine(&from, settings, rule)?;
+            let best = self.refine(&from, settings, (EDGES[1], rule))?;
             let error = self.optimizer.error(self.base, self.pair, &best.point, settings);
             match self.next_settings(&best.point, settings, error).filter(|_| round < ROUNDS) {
                 Some(next) => (from, settings, round) = (best, next, round + 1),
@@ -242,12 +250,27 @@ impl<'a> Run<'a> {
         Ok(best)
     }
 
-    /// Down from a design, as asked for.
-    fn refine(&mut self, from: &Candidate, settings: Settings, rule: Settled) -> Result<Candidate, Failure> {
+    /// Which of two designs is better as asked for, where only the first one's value is.
+    fn better(&mut self, one: Candidate, other: Candidate, asked: Settings) -> Result<Candidate, Failure> {
+        let cycle = self.base.sampled(asked);
+        let evaluations = self.evaluate(&cycle, std::slice::from_ref(&other.point))?;
+        self.note(&evaluations);
+        let (value, violation) = (evaluations[0].value, evaluations[0].violation());
+        let is_better = value < f64::INFINITY && (violation, value) < (one.violation, one.value);
+        Ok(if is_better { Candidate { value, violation, ..other } } else { one })
+    }
+
+    /// Down from a design.
+    fn refine(
+        &mut self,
+        from: &Candidate,
+        settings: Settings,
+        (edge, rule): (f64, Settled),
+    ) -> Result<Candidate, Failure> {
         let bounds = self.optimizer.bounds().map_err(|wrong| Failure::new(wrong.message))?;
         let corners = bounds.dimension() + 1;
         let rule = Settled { evaluations: WITHOUT_GAIN * corners, ..rule };
-        let search = optimize::refinement(bounds, &from.point, EDGE, refined(corners - 1));
+        let search = optimize::refinement(bounds, &from.point, edge, refined(corners - 1));
         let mut search = search.until_settled(rule);
         self.run(&mut search, settings, "refine")?;
         // It began at that design.
@@ -321,9 +344,8 @@ impl<'a> Run<'a> {
         let before = self.evaluations;
         self.extent.fill((f64::INFINITY, f64::NEG_INFINITY));
         let reason = search.run_constrained(|points| self.evaluate(&cycle, points))?;
-        self.history.extend(
-            search.history().iter().map(|row| Generation { evaluations: before + row.evaluations, ..*row }),
-        );
+        self.history
+            .extend(search.history().iter().map(|row| Generation { evaluations: before + row.evaluations, ..*row }));
         let (evaluations, best) = (search.evaluations(), search.best().map_or(f64::INFINITY, |best| best.value));
         if what == SEARCH {
             self.is_changed(evaluations);

@@ -8,7 +8,6 @@
 use super::Optimizer;
 use super::passes::Found;
 use crate::stage::Context;
-use declare::declared::{Declared, Registrable};
 use declare::number::significant;
 use declare::units::in_unit;
 use gearmesh::gear::geometry::GearPair;

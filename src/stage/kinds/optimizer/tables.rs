@@ -126,7 +126,8 @@ impl Optimizer {
     }
 
     pub fn front<'a>(&self) -> Columns<FrontRow<'a>> {
-        let about = "Designs that no other one beats in every objective, evenly spread, from the smallest first objective on.";
+        let about =
+            "Designs that no other one beats in every objective, evenly spread, from the smallest first objective on.";
         let columns = Columns::new("front", about)
             .integer("point", "Counts the points, from 1.", |row: &FrontRow<'a>| row.number)
             .key()
@@ -185,7 +186,7 @@ impl Optimizer {
             .integer("evaluations", "How often the objective was computed.", |row| row.1.evaluations)
             .float("best", self.objective_unit(), best, |row| finite(row.1.best))
             .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
-            .text("ended", "Why it ended.", |row| row.1.ended.as_str())
+            .text("ended", "Why it ended.", |row| row.1.ended.clone())
     }
 
     pub fn evaluations<'a>(&self) -> Columns<Tried<'a>> {

@@ -146,9 +146,11 @@ impl Figure {
         let several = move || self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
         let marked = move || self.marked_columns.iter().map(String::as_str).chain([DESIGN]).collect();
         tables
-            .chain(self.reference.iter().map(move |(stage, table)| {
-                (stage.as_str(), table.as_str(), several().collect::<Vec<&str>>())
-            }))
+            .chain(
+                self.reference
+                    .iter()
+                    .map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect::<Vec<&str>>())),
+            )
             .chain(self.marked.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), marked())))
     }
 

@@ -104,8 +104,7 @@ fn a_front_that_grows_no_more_ends_the_search() {
 #[test]
 fn without_a_point_that_keeps_the_constraints_there_is_no_front() {
     let mut search = search("nsga2", &[("generations", integer(30))], &[(0.0, 1.0); 2], 1);
-    let evaluate =
-        |x: &Vec<f64>| Evaluation { value: x[1], further: vec![1.0 - x[1]], constraints: vec![-0.5 - x[0]] };
+    let evaluate = |x: &Vec<f64>| Evaluation { value: x[1], further: vec![1.0 - x[1]], constraints: vec![-0.5 - x[0]] };
     search.run_constrained(|points| Ok::<_, Failure>(points.iter().map(evaluate).collect())).unwrap();
     assert!(search.front(10).is_empty());
     assert!((search.best().unwrap().violation - 0.5).abs() < 1e-3, "{:?}", search.best());
