@@ -116,14 +116,20 @@ struct Rule {
     /// Share of the best objective that counts as a gain; of a front, of what it dominates.
     #[declared(minimum = 0.0, maximum = 0.5, dimension = RATIO, default = "0.1 %")]
     pub improvement: f64,
-    /// Evaluations without a gain after which it ends: with 300, at most one in a hundred would have brought one.
-    #[declared(minimum = 1, maximum = 1_000_000_000, default = "300")]
-    pub evaluations: usize,
+    /// Evaluations without a gain after which it ends; 300 unless it is said, of a front 1000: then at most one in a hundred
+    /// would have brought a gain.
+    #[declared(minimum = 1, maximum = 1_000_000_000, example = "300")]
+    pub evaluations: Option<usize>,
 }
 
+/// What counts as a gain, and evaluations without one: the rule of three gives a hundredth. A front moves as a whole.
+const GAIN: f64 = 1e-3;
+const OF_ONE: usize = 300;
+const OF_A_FRONT: usize = 1000;
+
 impl Rule {
-    fn rule(self) -> Settled {
-        Settled { improvement: self.improvement, evaluations: self.evaluations }
+    fn rule(self, evaluations: usize) -> Settled {
+        Settled { improvement: self.improvement, evaluations: self.evaluations.unwrap_or(evaluations) }
     }
 }
 
@@ -189,7 +195,8 @@ impl Optimizer {
     }
 
     fn rule(&self) -> Settled {
-        self.stated.settled.unwrap_or(Rule { improvement: 1e-3, evaluations: 300 }).rule()
+        let evaluations = if self.goal.has_front() { OF_A_FRONT } else { OF_ONE };
+        self.stated.settled.unwrap_or(Rule { improvement: GAIN, evaluations: Some(evaluations) }).rule(evaluations)
     }
 
     fn foresee(&self) -> Result<Foreseen, Diagnostic> {

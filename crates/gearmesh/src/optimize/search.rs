@@ -96,7 +96,7 @@ pub struct Optimizer {
     /// For a local search with constraints: what it minimises in this round, and the round's minimum.
     multipliers: Option<Multipliers>,
     lowest: Option<Lowest>,
-    /// With several objectives: what no other point dominates, and the worst of the first admissible batch.
+    /// With several objectives: what no other point dominates, and beyond the worst of the first admissible batch.
     archive: Archive,
     reference: Vec<f64>,
     watch: Option<Watch>,
@@ -290,18 +290,21 @@ impl Optimizer {
         });
     }
 
-    /// The worst of each objective among the first points that keep the constraints.
+    /// Beyond the worst of each objective among the first points that keep the constraints, by a tenth of what they span: the
+    /// ends of a front count too.
     fn refer(&mut self, evaluations: &[Evaluation]) {
-        if !self.reference.is_empty() {
+        let kept = || evaluations.iter().filter(|it| it.admissible() && it.violation() == 0.0);
+        let Some(first) = kept().next().filter(|first| self.reference.is_empty() && !first.further.is_empty()) else {
             return;
-        }
-        for evaluation in evaluations.iter().filter(|it| it.admissible() && it.violation() == 0.0) {
-            if evaluation.further.is_empty() {
-                return;
-            }
-            let known = std::mem::take(&mut self.reference).into_iter().chain(std::iter::repeat(f64::NEG_INFINITY));
-            self.reference = evaluation.objectives().zip(known).map(|(value, known)| value.max(known)).collect();
-        }
+        };
+        let beyond = |axis: usize| {
+            let values = kept().filter_map(|it| it.objectives().nth(axis));
+            let (low, high) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+            let span = if high > low { high - low } else { high.abs().max(f64::MIN_POSITIVE) };
+            high + 0.1 * span
+        };
+        self.reference = (0..first.objectives().count()).map(beyond).collect();
     }
 
     /// Why the search has ended; `None` while it goes on.

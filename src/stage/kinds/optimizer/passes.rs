@@ -156,8 +156,8 @@ impl<'a> Run<'a> {
         let mut round = 1;
         loop {
             let mut search = self.search()?;
-            if let Some(rule) = self.optimizer.stated.settled {
-                search = search.until_settled(rule.rule());
+            if self.optimizer.stated.settled.is_some() {
+                search = search.until_settled(self.optimizer.rule());
             }
             // A repeated search is told of by itself.
             (self.history, self.evaluations, self.tried) = (Vec::new(), 0, Vec::new());

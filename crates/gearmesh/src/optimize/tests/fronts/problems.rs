@@ -6,7 +6,7 @@
 
 use super::Evaluation;
 
-pub struct Problem {
+pub(super) struct Problem {
     pub name: &'static str,
     pub bounds: Vec<(f64, f64)>,
     pub function: fn(&[f64]) -> Evaluation,
@@ -31,7 +31,7 @@ fn third(first: f64) -> f64 {
     1.0 - first.sqrt() - first * libm::sin(10.0 * std::f64::consts::PI * first)
 }
 
-pub fn problems() -> Vec<Problem> {
+pub(super) fn problems() -> Vec<Problem> {
     use std::f64::consts::{FRAC_PI_2, PI};
     vec![
         Problem {
