@@ -60,9 +60,10 @@ fn the_exact_fronts_are_those_of_their_closed_forms() {
 fn nsga2_finds_the_fronts() {
     for problem in problems() {
         let least = match problem.name {
-            "dtlz2" => 0.85,
-            "srn" | "bnh" => 0.985,
-            _ => 0.975,
+            "zdt1" => 0.990,
+            "zdt2" => 0.982,
+            "dtlz2" => 0.86,
+            _ => 0.993,
         };
         for seed in 0..3 {
             let done = run(search("nsga2", &[], &problem.bounds, seed), &problem);
@@ -96,7 +97,7 @@ fn a_front_that_grows_no_more_ends_the_search() {
         let done = run(search("nsga2", &[], &problem.bounds, 5).until_settled(rule), &problem);
         assert_eq!(done.finished(), Some(Reason::Settled), "{}", problem.name);
         let (few, many) = (share(&done, &problem, 100), share(&all, &problem, 100));
-        assert!(done.evaluations() < 18_000 && few > 0.96 * many, "{}: {few} {many}", problem.name);
+        assert!(done.evaluations() < 18_000 && few > 0.9 * many, "{}: {few} {many}", problem.name);
     }
 }
 

@@ -106,8 +106,19 @@ pub(super) fn problems() -> Vec<Problem> {
             reference: &[240.0, 0.0],
             exact: None,
             front: |t| {
-                let second = (1.5 + t * ((225.0_f64 - 6.25).sqrt() - 2.5)).powi(2);
-                vec![2.0 + 20.25 + second, -22.5 - second]
+                // On the line, at x = -2.5 where f1 and f2 weigh the same, and on the circle: weighted sums say so. The
+                // book has the middle alone.
+                let (x, y) = if t < 0.25 {
+                    let x = 1.1 - 3.6 * t / 0.25;
+                    (x, (x + 10.0) / 3.0)
+                } else if t < 0.75 {
+                    (-2.5, 2.5 + (t - 0.25) / 0.5 * ((225.0_f64 - 6.25).sqrt() - 2.5))
+                } else {
+                    let x = -2.5 - 4.0 * (t - 0.75) / 0.25;
+                    (x, (225.0 - x * x).sqrt())
+                };
+                let second = (y - 1.0).powi(2);
+                vec![2.0 + (x - 2.0).powi(2) + second, 9.0 * x - second]
             },
         },
     ]
