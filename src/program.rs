@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::stage::foreign::FOREIGN;
 use crate::stage::kinds::KINDS;
-use crate::stage::kinds::sweep::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
+use crate::stage::rows::computed::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
 use declare::work::Counter;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;

@@ -16,7 +16,12 @@ impl Plot {
         let is_slanted = self.slants_categories(frame);
         // Where nothing varies along y, its values say nothing.
         let is_flat = self.cells.as_ref().is_some_and(super::cells::Cells::has_one_row);
-        for Tick { value, label } in frame.y.ticks(frame.layout.ticks[1]).into_iter().filter(|_| !is_flat) {
+        let is_lying = self.kind == Kind::Tornado;
+        if is_lying {
+            self.name_bars(svg, frame);
+        }
+        for Tick { value, label } in frame.y.ticks(frame.layout.ticks[1]).into_iter().filter(|_| !is_flat && !is_lying)
+        {
             let y = frame.y(value);
             // What depths are counted from.
             let class = if self.kind == Kind::Chart && value == 0.0 { "axis" } else { "grid" };
@@ -45,7 +50,8 @@ impl Plot {
             }
         }
         let _ = write!(svg, r#"<path class="axis" d="M{left} {top}V{bottom}H{right}"/>"#);
-        let (x_power, y_power) = (if self.kind == Kind::Bar { 0 } else { frame.x.power() }, frame.y.power());
+        let (x_power, y_power) =
+            (if self.kind == Kind::Bar { 0 } else { frame.x.power() }, if is_lying { 0 } else { frame.y.power() });
         let label_y = frame.bottom() + if is_slanted { 100.0 } else { frame.layout.label };
         let middle = at(frame.left + frame.width / 2.0);
         let _ = write!(
@@ -66,6 +72,14 @@ impl Plot {
             r#"<text class="label" x="{x}" y="{middle}" text-anchor="middle" transform="rotate(-90 {x} {middle})">{}</text>"#,
             escape(&label)
         );
+    }
+
+    /// Names beside lying bars.
+    fn name_bars(&self, svg: &mut String, frame: &Frame) {
+        for (index, name) in self.categories.iter().enumerate() {
+            let (x, y, name) = (at(frame.left - 8.0), at(frame.y(index as f64) + 4.5), escape(name));
+            let _ = write!(svg, r#"<text class="tick name" x="{x}" y="{y}" text-anchor="end">{name}</text>"#);
+        }
     }
 
     fn draw_categories(&self, svg: &mut String, frame: &Frame, is_slanted: bool) {

@@ -41,7 +41,7 @@ impl Plot {
             "down": frame.is_downward,
             "equal": self.kind == Kind::Drawing,
             "ratio": frame.exaggeration,
-            "names": self.categories,
+            "names": if self.kind == Kind::Bar { &self.categories[..] } else { &[] },
             "series": series,
         });
         if let Some(cells) = &self.cells {

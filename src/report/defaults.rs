@@ -11,13 +11,14 @@ use declare::number::{significant, with_unit};
 use studygraph::store::bundle::MANY;
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
+use studygraph::table::schema::Column;
 
 /// # Errors
 /// When a table is damaged.
 pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result<Vec<Figure>, ReportError> {
     let mut drawn = Vec::new();
     // Results first, what they come from after them.
-    for kind in ["ste", "stiffness", "optimizer", "modification", "geometry"] {
+    for kind in ["scatter", "ste", "stiffness", "optimizer", "modification", "geometry"] {
         let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == kind).collect();
         // Nobody looks at thousands of figures.
         for stage in stages.iter().filter(|_| stages.len() <= MANY) {
@@ -49,6 +50,7 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
     let cycle = "Path position in the mesh cycle";
     let mut found = match stage.kind.as_str() {
         "ste" => of_transmission_error(name, &draw, tables),
+        "scatter" => super::scattered::specs(stage, &draw, tables),
         "stiffness" => {
             let curve =
                 draw("mesh", "Mesh stiffness over the mesh cycle", Kind::Line, "curve", "cycle_position", "stiffness");
@@ -75,15 +77,23 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
     found
 }
 
-type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
+pub type Draw<'a> = dyn Fn(&str, &str, Kind, &str, &str, &str) -> Spec + 'a;
 
 fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Vec<Spec> {
     let Some(summary) = tables(&format!("{stage}.summary")) else { return Vec::new() };
     let torques = torques(&summary);
     // The one in the middle: at the ends there is often no contact, or nothing but deflection.
     let Some(&torque) = torques.get(torques.len() / 2) else { return Vec::new() };
-    let at = with_unit(&significant(torque, 6), "N m");
-    let at_torque = |spec: Spec| Spec { conditions: vec![("torque".to_owned(), format!("{torque} N m"))], ..spec };
+    let off = deviations(&summary);
+    let at = off.iter().fold(with_unit(&significant(torque, 6), "N m"), |at, (name, value, unit)| {
+        format!("{at}, {} {}", name.replace('_', " "), with_unit(&significant(*value, 6), unit))
+    });
+    let with_off = |mut spec: Spec| {
+        spec.conditions.extend(off.iter().map(|(name, value, unit)| (name.clone(), format!("{value} {unit}"))));
+        spec
+    };
+    let at_torque =
+        |spec: Spec| with_off(Spec { conditions: vec![("torque".to_owned(), format!("{torque} N m"))], ..spec });
     let by_design = |spec: Spec| Spec { series: "design".to_owned(), ..spec };
     let cycle = |spec: Spec, y: &str| Spec {
         x_label: "Path position in the mesh cycle".to_owned(),
@@ -104,10 +114,10 @@ fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Ve
             "torque",
             "peak_to_peak",
         );
-        by_design(over)
+        with_off(by_design(over))
     } else {
         let title = format!("Peak-to-peak transmission error at {at}");
-        draw("peak_to_peak", &title, Kind::Bar, "summary", "design", "peak_to_peak")
+        with_off(draw("peak_to_peak", &title, Kind::Bar, "summary", "design", "peak_to_peak"))
     };
     let mut found = vec![
         cycle(error, "Transmission error"),
@@ -184,6 +194,17 @@ fn torques(summary: &Table) -> Vec<f64> {
     values.sort_by(f64::total_cmp);
     values.dedup();
     values
+}
+
+/// Further keys of a summary, with the value of each that is nearest to 0: a pair that is off as little as is looked at.
+fn deviations(summary: &Table) -> Vec<(String, f64, String)> {
+    let keys = summary.schema().columns.iter().filter(|column| column.key && column.name != "torque");
+    let nearest = |column: &Column| {
+        let Some(Data::Float(values)) = summary.column(&column.name) else { return None };
+        let value = values.iter().copied().reduce(|one, two| if two.abs() < one.abs() { two } else { one })?;
+        Some((column.name.clone(), value, column.unit.clone()))
+    };
+    keys.filter_map(nearest).collect()
 }
 
 fn designs(summary: &Table) -> Vec<String> {

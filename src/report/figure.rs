@@ -96,6 +96,10 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
     }
     plot.named = named(spec, tables)?;
     drawing.order_categories(spec, order);
+    if *kind == Kind::Quantiles {
+        let share = |series: &Series| if let Of::Quantity { value, .. } = series.of { value } else { f64::NAN };
+        drawing.series.sort_by(|one, two| share(one).total_cmp(&share(two)));
+    }
     let label = |given: &str, column: &str| if given.is_empty() { sentence(column) } else { given.to_owned() };
     let y_column = ys.first().map_or("", String::as_str);
     let [x_log, y_log] = spec.is_log;
@@ -104,7 +108,8 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
     plot.size = spec.size;
     plot.categories = drawing.categories.into_iter().map(|name| spec.label(&name)).collect();
     plot.series = drawing.series;
-    if *kind != Kind::Drawing {
+    plot.lie_down();
+    if !matches!(*kind, Kind::Drawing | Kind::Histogram | Kind::Quantiles | Kind::Tornado) {
         plot.series = plot.series.into_iter().map(interrupted).collect();
     }
     let tables = spec.tables.join(", ");
@@ -215,6 +220,8 @@ impl Drawing {
         let (x_data, y_data) = (column(x)?, column(y)?);
         let series_data = if series.is_empty() { None } else { Some(column(series)?) };
         let segment_data = if segments.is_empty() { None } else { Some(column(segments)?) };
+        // Of a histogram each row is a bar, which ends somewhere.
+        let ends = if spec.kind == Kind::Histogram { Some(column(&spec.value)?) } else { None };
         let own = self.series.len();
         let mut segment: Vec<Option<String>> = Vec::new();
         for &row in rows {
@@ -235,12 +242,17 @@ impl Drawing {
                 segment.push(None);
                 self.series.len() - 1
             });
-            let x = if spec.kind == Kind::Bar {
+            let x = if matches!(spec.kind, Kind::Bar | Kind::Tornado) {
                 self.category(shown(x_data, row, &unit(table, x)))
             } else {
                 number(table, x, x_data, row)?
             };
             let point = (x, number(table, y, y_data, row)?);
+            if let Some(ends) = ends {
+                let end = number(table, &spec.value, ends, row)?;
+                self.series[at].runs.push(vec![point, (end, point.1)]);
+                continue;
+            }
             let current = segment_data.map(|data| data.cell(row).to_string());
             let is_new = self.series[at].runs.is_empty() || segment[at - own] != current;
             if is_new {

@@ -121,15 +121,22 @@ impl Plot {
             } else {
                 0.0
             };
-            let scale = Scale::around(xs, self.x.is_log, 0.0, false)?;
+            let scale = Scale::around(xs, self.x.is_log, 0.0, self.kind == Kind::Tornado)?;
             let room = if scale.is_log { 0.0 } else { margin * (scale.high - scale.low) };
             Scale { low: scale.low - room, high: scale.high + room, ..scale }
         };
         // A drawing or a map need not show where zero is.
         let room = if matches!(self.kind, Kind::Drawing | Kind::Map) { 0.0 } else { 0.06 };
-        let from_zero = (self.kind == Kind::Bar && !self.y.is_log) || self.kind == Kind::Chart;
-        let y = Scale::around(ys, self.y.is_log, room, from_zero)?;
-        let longest = y.ticks(layout.ticks[1]).iter().map(|tick| tick.label.chars().count()).max().unwrap_or(0);
+        let bars = matches!(self.kind, Kind::Bar | Kind::Histogram);
+        let from_zero = (bars && !self.y.is_log) || self.kind == Kind::Chart;
+        let is_lying = self.kind == Kind::Tornado;
+        let names = || Scale { low: -0.5, high: self.categories.len().max(1) as f64 - 0.5, is_log: false };
+        let y = if is_lying { names() } else { Scale::around(ys, self.y.is_log, room, from_zero)? };
+        let longest = if is_lying {
+            self.categories.iter().map(|name| name.chars().count()).max().unwrap_or(0)
+        } else {
+            y.ticks(layout.ticks[1]).iter().map(|tick| tick.label.chars().count()).max().unwrap_or(0)
+        };
         let left = 8.0 + 6.0 * layout.character + layout.character * longest as f64;
         let right = layout.right + if self.kind == Kind::Map { 11.0 * layout.character } else { 0.0 };
         let width = layout.width - left - right;
@@ -138,7 +145,7 @@ impl Plot {
         } else {
             (x, y, width, layout.height)
         };
-        let is_downward = self.kind == Kind::Chart;
+        let is_downward = self.kind == Kind::Chart || is_lying;
         let frame = Frame { left, top, width, height, x, y, is_downward, exaggeration: None, layout };
         Some(self.length.map_or(frame, |length| exaggerated(frame, length)))
     }
@@ -151,6 +158,9 @@ impl Plot {
     }
 
     pub(super) fn slants_categories(&self, frame: &Frame) -> bool {
+        if self.kind == Kind::Tornado {
+            return false;
+        }
         let longest = self.categories.iter().map(|name| name.chars().count()).max().unwrap_or(0);
         frame.layout.character * longest as f64 > 0.94 * frame.width / self.categories.len().max(1) as f64
     }

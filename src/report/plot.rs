@@ -37,6 +37,12 @@ pub enum Kind {
     Front,
     /// Depths of a profile or a lead, drawn downwards and so many times as long.
     Chart,
+    /// Bars from one place to another; a run of two points each.
+    Histogram,
+    /// Bands between series that belong together, the first and the last, and so on; a line in the middle.
+    Quantiles,
+    /// Bars to the right, the largest on top; the y of a point is the index of its name.
+    Tornado,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -108,7 +114,7 @@ pub struct Plot {
     pub series: Vec<Series>,
     pub marks: Vec<Mark>,
     pub named: Vec<Named>,
-    /// Names under the bars; the x of a point is their index.
+    /// Names under or beside the bars; the x of a point, or its y, is their index.
     pub categories: Vec<String>,
     /// Of a map.
     pub cells: Option<Cells>,
@@ -217,6 +223,9 @@ impl Plot {
                 self.draw_points(svg, frame);
             }
             Kind::Bar => self.draw_bars(svg, frame),
+            Kind::Histogram => self.draw_histogram(svg, frame),
+            Kind::Quantiles => self.draw_bands(svg, frame),
+            Kind::Tornado => self.draw_tornado(svg, frame),
             Kind::Map => self.cells.iter().for_each(|cells| cells.draw(svg, frame)),
         }
         self.draw_marks(svg, frame);
@@ -237,6 +246,9 @@ impl Plot {
     /// What the legend names; empty where one series stands alone.
     #[must_use]
     pub fn legend(&self) -> Vec<Item> {
+        if self.kind == Kind::Quantiles {
+            return self.legend_of_bands();
+        }
         let is_alone = self.series.len() < 2 && self.marks.is_empty();
         let series = self.series.iter().enumerate().filter(|(_, series)| !is_alone && !self.is_named_point(series));
         let mut items: Vec<Item> = series
@@ -245,7 +257,7 @@ impl Plot {
                 key: format!("s{index}"),
                 sign: match self.kind {
                     Kind::Points | Kind::Front => Sign::Marker,
-                    Kind::Bar => Sign::Square,
+                    Kind::Bar | Kind::Histogram | Kind::Tornado => Sign::Square,
                     _ if self.shows_points(series) => Sign::LineAndMarker,
                     _ => Sign::Line,
                 },

@@ -19,7 +19,7 @@ pub struct Spec {
     pub tables: Vec<String>,
     pub x: String,
     pub y: Vec<String>,
-    /// Column of the colours of a map.
+    /// Column of the colours of a map, or of where the bars of a histogram end.
     pub value: String,
     pub isolines: bool,
     pub best: Best,
@@ -92,6 +92,9 @@ impl Spec {
                 "map" => Kind::Map,
                 "front" => Kind::Front,
                 "chart" => Kind::Chart,
+                "histogram" => Kind::Histogram,
+                "quantiles" => Kind::Quantiles,
+                "tornado" => Kind::Tornado,
                 _ => Kind::Line,
             },
             tables: words(text("tables")?),

@@ -26,10 +26,10 @@ impl Plot {
         for series in self.series.iter_mut().filter(|series| is_long(series)) {
             match self.kind {
                 Kind::Points => spread(&mut series.runs, &frame),
-                Kind::Line | Kind::Drawing | Kind::Chart => {
+                Kind::Line | Kind::Drawing | Kind::Chart | Kind::Quantiles => {
                     series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame));
                 }
-                Kind::Bar | Kind::Map | Kind::Front => {}
+                Kind::Bar | Kind::Map | Kind::Front | Kind::Histogram | Kind::Tornado => {}
             }
         }
         self

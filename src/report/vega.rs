@@ -40,7 +40,21 @@ impl Plot {
         let mut count = 0;
         for series in &self.series {
             for (run, points) in series.runs.iter().enumerate() {
+                if self.kind == Kind::Histogram {
+                    let (Some(from), Some(to)) = (points.first(), points.last()) else { continue };
+                    let (x, x2, y) = (number(from.0), number(to.0), number(from.1));
+                    values.push(json!({ "n": count, "series": series.label, "x": x, "x2": x2, "y": y }));
+                    count += 1;
+                    continue;
+                }
                 for &(x, y) in points {
+                    if self.kind == Kind::Tornado {
+                        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index
+                        let name = self.categories.get(y as usize);
+                        values.push(json!({ "n": count, "series": series.label, "x": number(x), "y": name }));
+                        count += 1;
+                        continue;
+                    }
                     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index
                     let category = self.categories.get(x as usize).filter(|_| self.kind == Kind::Bar);
                     let x = category.map_or_else(|| number(x), |category| json!(category));
@@ -51,8 +65,12 @@ impl Plot {
         }
         let x_type = if self.kind == Kind::Bar { "nominal" } else { "quantitative" };
         let mut x = channel("x", &self.x, x_type);
-        let mut y = channel("y", &self.y, "quantitative");
-        if self.kind == Kind::Bar {
+        let mut y = channel("y", &self.y, if self.kind == Kind::Tornado { "nominal" } else { "quantitative" });
+        if self.kind == Kind::Tornado {
+            y["sort"] = json!(self.categories);
+        } else if self.kind == Kind::Histogram {
+            x["scale"]["zero"] = json!(false);
+        } else if self.kind == Kind::Bar {
             x["sort"] = json!(self.categories);
         } else {
             x["scale"]["zero"] = json!(false);
@@ -71,6 +89,14 @@ impl Plot {
             Kind::Points | Kind::Front => json!({ "type": "point", "filled": true }),
             Kind::Bar => {
                 encoding["xOffset"] = json!({ "field": "series" });
+                json!({ "type": "bar" })
+            }
+            Kind::Histogram => {
+                encoding["x2"] = json!({ "field": "x2" });
+                json!({ "type": "bar" })
+            }
+            Kind::Tornado => {
+                encoding["yOffset"] = json!({ "field": "series" });
                 json!({ "type": "bar" })
             }
             _ => {

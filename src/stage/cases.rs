@@ -23,6 +23,12 @@ pub struct Deviations {
     /// f_Hβ of both gears together over the common face width: positive opens the flanks towards z = +b/2.
     #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "15 um")]
     pub helix_slope: Option<Vec<f64>>,
+    /// f_Hβ of the pinion over its face width: positive opens the flanks towards z = +b/2.
+    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "8 um")]
+    pub pinion_helix_slope: Option<Vec<f64>>,
+    /// f_Hβ of the gear over its face width: positive opens the flanks towards z = +b/2.
+    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "8 um")]
+    pub gear_helix_slope: Option<Vec<f64>>,
     /// f_Hα of the pinion over its active flank: positive takes material off at the tip.
     #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "5 um")]
     pub pinion_profile_slope: Option<Vec<f64>>,
@@ -41,11 +47,13 @@ pub struct Deviations {
 }
 
 /// What of a pair may be off.
-pub const FIELDS: usize = 5;
+pub const FIELDS: usize = 7;
 
 /// The fields of [`Deviation`], in their order: name, and what a column says of it.
 pub const DEVIATIONS: [(&str, &str); FIELDS] = [
     (Deviations::NAMES.helix_slope, "Helix slope deviation f_Hβ of both gears over the common face width."),
+    (Deviations::NAMES.pinion_helix_slope, "Helix slope deviation f_Hβ of the pinion over its face width."),
+    (Deviations::NAMES.gear_helix_slope, "Helix slope deviation f_Hβ of the gear over its face width."),
     (Deviations::NAMES.pinion_profile_slope, "Profile slope deviation f_Hα of the pinion."),
     (Deviations::NAMES.gear_profile_slope, "Profile slope deviation f_Hα of the gear."),
     (Deviations::NAMES.parallelism_in_plane, "Deviation f_Σδ of shaft parallelism in the plane of the axes."),
@@ -56,6 +64,8 @@ impl Deviations {
     fn fields(&self) -> [Option<&Vec<f64>>; FIELDS] {
         [
             self.helix_slope.as_ref(),
+            self.pinion_helix_slope.as_ref(),
+            self.gear_helix_slope.as_ref(),
             self.pinion_profile_slope.as_ref(),
             self.gear_profile_slope.as_ref(),
             self.parallelism_in_plane.as_ref(),
@@ -79,6 +89,11 @@ impl Deviations {
     /// Which fields are stated, as indices of [`DEVIATIONS`].
     pub fn stated(&self) -> Vec<usize> {
         (0..FIELDS).filter(|field| self.fields()[*field].is_some()).collect()
+    }
+
+    /// The values of a field; none where it is not stated.
+    pub fn values(&self, field: usize) -> &[f64] {
+        self.fields()[field].map_or(&[], Vec::as_slice)
     }
 
     /// All combinations of their values, the last field fastest; where nothing is stated the one that nothing is off.
@@ -120,15 +135,18 @@ impl Deviation {
     /// When what is left of a tooth is no tooth any more.
     pub fn on(&self, design: &Design, pair: &GearPair) -> Result<Design, Diagnostic> {
         let mut off = design.clone();
-        let [helix_slope, pinion, gear, in_plane, out_of_plane] = self.of_fields;
-        for (gears, amount) in [(Gears::Pinion, pinion), (Gears::Gear, gear)] {
+        let [helix_slope, pinion_helix, gear_helix, pinion_profile, gear_profile, in_plane, out_of_plane] =
+            self.of_fields;
+        for (gears, amount) in [(Gears::Pinion, pinion_profile), (Gears::Gear, gear_profile)] {
             if amount != 0.0 {
                 off.add(gears, &ProfileSlope { amount }, pair)?;
             }
         }
-        let face_width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
-        let bearing_span = self.bearing_span.unwrap_or(face_width);
-        off.tilt += helix_slope / face_width + ShaftParallelism { in_plane, out_of_plane, bearing_span }.tilt(pair);
+        let [pinion, gear] = [&pair.pinion, &pair.gear].map(|gear| gear.specification.face_width);
+        let common = pinion.min(gear);
+        let parallelism =
+            ShaftParallelism { in_plane, out_of_plane, bearing_span: self.bearing_span.unwrap_or(common) };
+        off.tilt += helix_slope / common + pinion_helix / pinion + gear_helix / gear + parallelism.tilt(pair);
         Ok(off)
     }
 }
@@ -320,7 +338,7 @@ pub struct OffDesign {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use declare::declared::record_of;
+    use declare::declared::{Declared, record_of};
     use declare::record::Value;
 
     fn loads(given: &[(&str, Value)]) -> (Loads, Record) {
@@ -347,7 +365,7 @@ mod tests {
         let cases = cases(&[("helix_slope", slopes), ("parallelism_in_plane", plane)]).unwrap();
         assert_eq!(cases.all.len(), 18);
         let second = cases.all[1];
-        assert!(second.torque < 51.0 && second.deviation.of_fields == [-15e-6, 0.0, 0.0, 10e-6, 0.0]);
+        assert!(second.torque < 51.0 && second.deviation.of_fields == [-15e-6, 0.0, 0.0, 0.0, 0.0, 10e-6, 0.0]);
         assert!(cases.all[6].torque > 79.0 && !cases.all[1].deviation.is_none());
         assert!(cases.all[2].deviation.of_fields == [0.0; FIELDS] && cases.all[2].deviation.is_none());
     }

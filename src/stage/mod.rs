@@ -11,11 +11,13 @@ pub mod doubts;
 pub mod foreign;
 pub mod formula;
 pub mod kinds;
+pub mod limit;
 pub mod measures;
 pub mod names;
 pub mod pair;
 pub mod quantity;
 pub mod root_influences;
+pub mod rows;
 
 pub use studygraph::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved,

@@ -30,6 +30,7 @@ mod report;
 mod results;
 mod rexs;
 mod root_stress;
+mod scatter;
 mod schema;
 mod settings;
 mod shards;

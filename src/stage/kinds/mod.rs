@@ -7,6 +7,7 @@ pub mod modification;
 pub mod optimizer;
 pub mod report;
 pub mod root_optimizer;
+pub mod scatter;
 pub mod stability;
 pub mod ste;
 pub mod stiffness;
@@ -23,6 +24,7 @@ pub const KINDS: &[&Kind] = &[
     &root_optimizer::KIND,
     &ste::KIND,
     &sweep::KIND,
+    &scatter::KIND,
     &accuracy::KIND,
     &stability::KIND,
     &export::KIND,

@@ -15,7 +15,8 @@ use rayon::prelude::*;
 
 use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
-use self::tables::{Found, Keyed, amplitudes, cost, curve, harmonics, points, summary};
+use self::tables::{Found, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
+use crate::stage::cases::{DEVIATIONS, Deviation, Deviations};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::doubts::Doubted;
 use crate::stage::names::{self, summary};
@@ -71,6 +72,8 @@ struct Ste {
     /// Torque on the pinion.
     #[declared(minimum = 0.0, maximum = 1e9, dimension = TORQUE, axis = 1, example = "100 N m")]
     pub torque: Vec<f64>,
+    #[declared(flatten)]
+    pub deviations: Deviations,
     /// Wanted relative accuracy of the peak-to-peak; sets positions and slices.
     #[declared(minimum = 1e-9, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
@@ -116,6 +119,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(*place));
         }
     }
+    ste.deviations.check(record)?;
     common::check_slices(ste.settings(), record)?;
     Ok(Box::new(ste))
 }
@@ -190,7 +194,7 @@ impl Ste {
 
     /// Of approaches that no linear model is for, of contacts that no law is for, and of accuracies that were not reached.
     fn warn(&self, context: &Context, answers: &[Keyed], module: f64) {
-        for (name, torque, answer) in answers {
+        for (name, Load { torque, .. }, answer) in answers {
             let (largest, reached) = (answer.summary.largest.value, answer.error);
             let tell = |about: &str, size: f64, what: String| {
                 let sentence = format!("design `{name}` at {torque} N m: {what}");
@@ -243,8 +247,8 @@ fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {
     [of(Side::Pinion, summary::ISO6336_ROOT_STRESS_PINION), of(Side::Gear, summary::ISO6336_ROOT_STRESS_GEAR)]
 }
 
-/// A design and its name.
-type Named = (Design, String);
+/// A design as it is made and mounted, its name, and what is off.
+type Named = (Design, String, Deviation);
 
 impl Stage for Ste {
     fn inputs(&self) -> Vec<Port> {
@@ -257,14 +261,15 @@ impl Stage for Ste {
     }
 
     fn outputs(&self) -> Vec<Schema> {
+        let stated = &self.deviations.stated()[..];
         vec![
-            summary().schema(),
-            curve().schema(),
-            harmonics().schema(),
-            cost().schema(),
-            samples::samples().schema(),
-            samples::summary().schema(),
-            pressures::map().schema(),
+            summary(stated).schema(),
+            curve(stated).schema(),
+            harmonics(stated).schema(),
+            cost(stated).schema(),
+            samples::samples(stated).schema(),
+            samples::summary(stated).schema(),
+            pressures::map(stated).schema(),
         ]
     }
 
@@ -275,7 +280,10 @@ impl Stage for Ste {
                 let names = |giver: &Placed<String>| of(&giver.value, names::designs::TABLE, names::designs::DESIGN);
                 Some(self.designs.iter().map(names).collect::<Option<Vec<_>>>()?.concat())
             }
-            _ => None,
+            _ => {
+                let field = DEVIATIONS.iter().position(|(name, _)| *name == column)?;
+                Some(self.deviations.values(field).iter().map(|value| in_unit(*value, "um").into()).collect())
+            }
         }
     }
 
@@ -332,6 +340,8 @@ impl Stage for Ste {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings())?;
+        let stated = &self.deviations.stated()[..];
+        let combinations = self.deviations.combinations();
         let mut designs: Vec<Named> = Vec::new();
         let mut givers: BTreeMap<String, &str> = BTreeMap::new();
         for (index, Placed { value: giver, .. }) in (1..).zip(&self.designs) {
@@ -343,7 +353,13 @@ impl Stage for Ste {
                         named.name
                     )));
                 }
-                designs.push((named.built(&pair)?, named.name));
+                let drawn = named.built(&pair)?;
+                for deviation in &combinations {
+                    let off = deviation.on(&drawn, &pair);
+                    let off =
+                        off.map_err(|wrong| Failure::new(format!("design `{}`: {}", named.name, wrong.message)))?;
+                    designs.push((off, named.name.clone(), *deviation));
+                }
             }
         }
         let root_stress = root_influences::are_wanted(context.demand);
@@ -358,7 +374,7 @@ impl Stage for Ste {
         tasks.sort_by(|a, b| a.0.1.cmp(&b.0.1).then(a.1.total_cmp(&b.1)));
         let narrowed = |schema: Schema| context.demand.narrowed(schema);
         let failed = |error: TableError| Failure::new(error.to_string());
-        let of_curve = narrowed(curve().schema());
+        let of_curve = narrowed(curve(stated).schema());
         let steps = Steps::new(context, tasks.len());
         let at_once = (tasks.len() / (SHARES * rayon::current_num_threads())).clamp(1, MOST_AT_ONCE);
         let parts: Vec<(Vec<Keyed>, Table)> = tasks
@@ -366,15 +382,16 @@ impl Stage for Ste {
             .map(|tasks| {
                 let mut answers = Vec::with_capacity(tasks.len());
                 let mut found = Vec::with_capacity(tasks.len());
-                for &((design, name), torque) in tasks {
+                for &((design, name, deviation), torque) in tasks {
                     context.check_stop()?;
+                    let load = Load { torque, deviation: *deviation };
                     let (answer, curve) =
                         self.answer(&base, (design, name), torque, wanted, per_torque.map(|unit| unit * torque))?;
-                    answers.push((name.as_str(), torque, answer));
-                    found.push((name.as_str(), torque, curve));
+                    answers.push((name.as_str(), load, answer));
+                    found.push((name.as_str(), load, curve));
                     steps.done();
                 }
-                let rows = curve().only(&of_curve).table_of(&points(&found)).map_err(failed)?;
+                let rows = curve(stated).only(&of_curve).table_of(&points(&found)).map_err(failed)?;
                 Ok((answers, rows))
             })
             .collect::<Result<_, Failure>>()?;
@@ -385,42 +402,46 @@ impl Stage for Ste {
         let none = || Table::from_rows(of_curve, Vec::new());
         let curves = Table::concatenated(parts).and_then(|curves| curves.map_or_else(none, Ok));
         let mut tables = vec![
-            summary().only(&narrowed(summary().schema())).table(&keyed).map_err(failed)?,
+            summary(stated).only(&narrowed(summary(stated).schema())).table(&keyed).map_err(failed)?,
             curves.map_err(failed)?,
-            harmonics().only(&narrowed(harmonics().schema())).table_of(&amplitudes(&keyed)).map_err(failed)?,
+            harmonics(stated)
+                .only(&narrowed(harmonics(stated).schema()))
+                .table_of(&amplitudes(&keyed))
+                .map_err(failed)?,
         ];
         if context.demand.table(tables::COST) {
-            tables.push(cost().table(&keyed).map_err(failed)?);
+            tables.push(cost(stated).table(&keyed).map_err(failed)?);
         }
         let [each, of_each] = [samples::TABLE, samples::SUMMARY].map(|table| context.demand.table(table));
         if each || of_each {
             let (mut rows, mut sums): (Vec<Keyed<Sample>>, Vec<Keyed<Samples>>) = Default::default();
-            for &((design, name), torque) in &tasks {
+            for &((design, name, deviation), torque) in &tasks {
                 context.check_stop()?;
-                let name = name.as_str();
+                let (name, load) = (name.as_str(), Load { torque, deviation: *deviation });
                 let loading = LoadCase::new(&base, design, torque);
                 let (taken, sum) = samples::taken(&loading, self.first_sample, self.samples);
-                rows.extend(taken.into_iter().map(|sample| (name, torque, sample)));
-                sums.push((name, torque, sum));
+                rows.extend(taken.into_iter().map(|sample| (name, load, sample)));
+                sums.push((name, load, sum));
             }
             if each {
-                tables.push(samples::samples().table(&rows).map_err(failed)?);
+                tables.push(samples::samples(stated).table(&rows).map_err(failed)?);
             }
             if of_each {
-                tables.push(samples::summary().table(&sums).map_err(failed)?);
+                tables.push(samples::summary(stated).table(&sums).map_err(failed)?);
             }
         }
         if context.demand.table(pressures::TABLE) {
             let strips = self.settings().slices;
             let maps: Vec<Vec<CellRow>> = tasks
                 .par_iter()
-                .map(|&((design, name), torque)| {
+                .map(|&((design, name, deviation), torque)| {
                     context.check_stop()?;
+                    let load = Load { torque, deviation: *deviation };
                     let cells = LoadCase::new(&base, design, torque).map(self.pressure_positions, strips);
-                    Ok(cells.into_iter().map(|cell| (name.as_str(), torque, cell)).collect())
+                    Ok(cells.into_iter().map(|cell| (name.as_str(), load, cell)).collect())
                 })
                 .collect::<Result<_, Failure>>()?;
-            tables.push(pressures::map().table_of(&maps.iter().flatten().copied()).map_err(failed)?);
+            tables.push(pressures::map(stated).table_of(&maps.iter().flatten().copied()).map_err(failed)?);
         }
         context.work.add(&base.work());
         Ok(tables)

@@ -30,8 +30,9 @@ fn wrong_sweeps_say_where_and_what_is_near() {
         (of("torque: { field: ste.torque, valuse: [1 N m] }", ""), "did you mean `values`?"),
         (of("torque: { field: ste.torque, from: 1 N m, to: 2 N m }", ""), "`torque` has no values of its own"),
         (of("torque: { field: ste.torque, values: [1 N m, 1 N m] }", ""), "has the value 1 N m twice"),
+        (of(&amount.replace("values: [1 um, 2 um]", "within: ± 2 um"), ""), "distributions are for `kind: scatter`"),
         (of("mean: { field: ste.torque, values: [1 N m] }", ""), "two columns `mean`"),
-        (of("reason: { field: ste.torque, values: [1 N m] }", ""), "a column of every sweep"),
+        (of("reason: { field: ste.torque, values: [1 N m] }", ""), "a column of every table of rows"),
         (
             of(
                 &format!("{amount}\n  again: {{ field: \"designs.designs.long[1].tip_relief.amount\", values: 1 um }}"),
@@ -72,7 +73,7 @@ fn wrong_sweeps_say_where_and_what_is_near() {
                 &swept(&format!("vary:\n  {amount}\noutputs: [mean]"))
                     .replace("torque: 50 N m", "torque: [50 N m, 60 N m]"),
             ),
-            "has several torques",
+            "has several values of `torque`",
         ),
     ] {
         assert!(found.contains(expected), "{expected}: {found}");

@@ -11,6 +11,9 @@ use crate::units::Dimension;
 /// What is varied, and the stages that this concerns.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Varied {
+    /// Of the asked stage and of all that it reads, near or far: the kind, and all fields as the study has them. They are no
+    /// part of a digest: what of them matters comes as tables.
+    pub nearby: Vec<(&'static str, Record)>,
     /// Those that have a varied field, those that read them, and the asked one, each after all it reads.
     pub stages: Vec<Stage>,
     /// In the order of the study; no two have one name.
@@ -55,6 +58,8 @@ pub struct Axis {
     pub values: Values,
     /// Where the values stand.
     pub values_place: Place,
+    /// What the field may be, in SI.
+    pub range: (f64, f64),
 }
 
 /// The values of a field, in SI.
@@ -64,6 +69,72 @@ pub enum Values {
     Each(Vec<f64>),
     /// Any from the first to the second, which is larger.
     Between(f64, f64),
+    /// As a distribution has them.
+    Spread(Spread),
+}
+
+/// How a field is distributed, as a study states it, in SI.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    pub form: Form,
+    /// The middle, the mean or the mode: as stated, or the value that the study has.
+    pub about: f64,
+    /// Where it is cut off, or begins and ends.
+    pub ends: [Option<f64>; 2],
+}
+
+/// The forms in which it can be stated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Form {
+    /// So far to either side.
+    Within(f64, Within),
+    /// As far as a class of tolerances allows.
+    Class(i64, Within),
+    /// Normal with this standard deviation.
+    Normal(f64),
+    /// Rising to a mode and falling, from end to end.
+    Triangular,
+}
+
+/// How values lie within a tolerance.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Within {
+    /// All alike.
+    Uniform,
+    /// Most in the middle, none at the limits.
+    Triangular,
+    /// Normal, three standard deviations to either limit, and nothing beyond.
+    Normal,
+}
+
+impl Within {
+    pub const WORDS: [&'static str; 3] = ["uniform", "triangular", "normal"];
+
+    #[must_use]
+    pub fn of(word: &str) -> Option<Self> {
+        let at = Self::WORDS.iter().position(|known| *known == word)?;
+        Some([Self::Uniform, Self::Triangular, Self::Normal][at])
+    }
+
+    #[must_use]
+    pub fn word(self) -> &'static str {
+        Self::WORDS[self as usize]
+    }
+}
+
+impl Spread {
+    fn write(&self, writer: &mut Writer) {
+        match self.form {
+            Form::Within(half, within) => writer.text("within").float(half).text(within.word()),
+            Form::Class(class, within) => writer.text("class").integer(class).text(within.word()),
+            Form::Normal(deviation) => writer.text("normal").float(deviation),
+            Form::Triangular => writer.text("triangular"),
+        };
+        writer.float(self.about);
+        for end in self.ends {
+            writer.flag(end.is_some()).float(end.unwrap_or(0.0));
+        }
+    }
 }
 
 impl Axis {
@@ -120,6 +191,10 @@ impl Varied {
             match &axis.values {
                 Values::Each(values) => writer.text("each").floats(values),
                 Values::Between(from, to) => writer.text("between").float(*from).float(*to),
+                Values::Spread(spread) => {
+                    spread.write(writer);
+                    continue;
+                }
             };
         }
     }
@@ -224,6 +299,7 @@ mod tests {
             multiple: None,
             values: Values::Each(vec![1e-6, 2e-6]),
             values_place: at(9),
+            range: (0.0, 1e-3),
         }
     }
 
@@ -247,7 +323,11 @@ mod tests {
             let mut filled = record();
             axis().put(&mut filled, first);
             let stage = Stage { name: "s".into(), kind: "k", record: record(), filled, reads: vec![None] };
-            Varied { stages: vec![stage], axes: vec![Axis { values: Values::Each(values), ..axis() }] }
+            Varied {
+                nearby: Vec::new(),
+                stages: vec![stage],
+                axes: vec![Axis { values: Values::Each(values), ..axis() }],
+            }
         };
         let digests = |varied: &Varied| {
             let (mut shared, mut all) = (Writer::new("test"), Writer::new("test"));

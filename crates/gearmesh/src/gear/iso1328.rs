@@ -5,14 +5,13 @@
 
 use std::ops::RangeInclusive;
 
-use super::geometry::Specification;
 use declare::error::Diagnostic;
 
 /// Classes that the standard has.
 pub const CLASSES: RangeInclusive<i64> = 1..=11;
 
 /// Where the formulas hold: teeth, reference diameter, module and face width \[mm\]. They are not to be extended.
-const TEETH: RangeInclusive<u32> = 5..=1000;
+const TEETH: RangeInclusive<i64> = 5..=1000;
 const DIAMETER: RangeInclusive<f64> = 5.0..=15_000.0;
 const MODULE: RangeInclusive<f64> = 0.5..=70.0;
 const FACE_WIDTH: RangeInclusive<f64> = 4.0..=1200.0;
@@ -26,13 +25,23 @@ pub enum Slope {
     Helix,
 }
 
+/// What tolerances depend on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToothSizes {
+    /// z.
+    pub teeth: i64,
+    /// m \[m\].
+    pub module: f64,
+    /// b \[m\].
+    pub face_width: f64,
+}
+
 /// The tolerance of a slope \[m\]: it may be off by as much to either side.
 ///
 /// # Errors
 /// When the class or the gear is outside of the standard's ranges: which number, and what it may be.
-pub fn tolerance(slope: Slope, gear: &Specification, class: i64) -> Result<f64, Diagnostic> {
-    let (diameter, module, width) =
-        (1e3 * gear.module * f64::from(gear.teeth), 1e3 * gear.module, 1e3 * gear.face_width);
+pub fn tolerance(slope: Slope, gear: &ToothSizes, class: i64) -> Result<f64, Diagnostic> {
+    let (diameter, module, width) = (1e3 * gear.module * gear.teeth as f64, 1e3 * gear.module, 1e3 * gear.face_width);
     let outside = |what: &str, value: String, range: String| {
         Err(Diagnostic::new(format!("ISO 1328-1 has no tolerance for {what} {value}; it has them for {range}")))
     };
@@ -80,14 +89,13 @@ fn rounded(value: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::gear::fixtures::standard;
 
-    fn gear(teeth: u32, module: f64, face_width: f64) -> Specification {
-        Specification { face_width, ..standard(teeth, module, 2.0) }
+    fn gear(teeth: i64, module: f64, face_width: f64) -> ToothSizes {
+        ToothSizes { teeth, module, face_width }
     }
 
     #[track_caller]
-    fn is(slope: Slope, gear: &Specification, class: i64, micrometres: f64) {
+    fn is(slope: Slope, gear: &ToothSizes, class: i64, micrometres: f64) {
         let found = tolerance(slope, gear, class).unwrap() * 1e6;
         assert!((found - micrometres).abs() < 1e-9, "{found} is not {micrometres}");
     }
@@ -136,7 +144,7 @@ mod tests {
 
     #[test]
     fn what_is_outside_of_the_standard_is_refused_with_its_range() {
-        let refused = |gear: &Specification, class| tolerance(Slope::Helix, gear, class).unwrap_err().message;
+        let refused = |gear: &ToothSizes, class| tolerance(Slope::Helix, gear, class).unwrap_err().message;
         let plain = gear(40, 3e-3, 30e-3);
         assert!(refused(&plain, 12).contains("class 12") && refused(&plain, 0).contains("classes 1 to 11"));
         assert!(refused(&gear(40, 3e-3, 3e-3), 6).contains("face width of 3.000000 mm; it has them for 4 to 1200 mm"));

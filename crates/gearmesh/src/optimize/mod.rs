@@ -33,6 +33,7 @@ pub mod powell;
 pub mod random;
 mod restarts;
 pub mod sampling;
+pub mod scrambled;
 pub mod search;
 pub mod settled;
 pub mod sobol;

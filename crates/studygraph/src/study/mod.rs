@@ -23,6 +23,7 @@ mod quantity;
 mod read;
 pub mod schema;
 pub mod settings;
+mod spread;
 mod structure;
 #[cfg(test)]
 mod tests;

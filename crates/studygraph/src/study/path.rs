@@ -123,6 +123,14 @@ impl FieldPath {
         self.reach(&mut stages.to_vec(), kinds).map(|(_, target)| target)
     }
 
+    /// What stands where it leads, or, where it is left out in the text, its default; nothing where there is none.
+    ///
+    /// # Errors
+    /// As [`FieldPath::find`].
+    pub fn written(&self, stages: &[KeyValue], kinds: &[&'static Kind]) -> Result<Node, Diagnostic> {
+        self.reach(&mut stages.to_vec(), kinds).map(|(node, _)| node.clone())
+    }
+
     /// Puts `value` where it leads, in the place of what was written there or left out.
     ///
     /// # Errors

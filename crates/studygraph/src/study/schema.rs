@@ -12,6 +12,7 @@ use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
 use declare::parameter::{Field, Member, Presence, Shape, Span};
+use declare::record::varied::Within;
 
 /// The schema of studies made of stages of these kinds.
 #[must_use]
@@ -240,6 +241,7 @@ fn varied() -> Value {
     });
     if let (Value::Object(properties), Value::Object(ends)) = (&mut properties, leaf::ends(&number)) {
         properties.extend(ends);
+        properties.extend(spread_of(&number));
     }
     json!({
         "type": "object",
@@ -252,6 +254,28 @@ fn varied() -> Value {
             "properties": properties,
         },
     })
+}
+
+/// What a column has whose field is distributed.
+fn spread_of(number: &Value) -> Map<String, Value> {
+    let one = |title: &str, description: &str, mut schema: Value| {
+        schema["title"] = json!(title);
+        schema["description"] = json!(description);
+        (title.to_lowercase(), schema)
+    };
+    let text = |example: &str| json!({ "type": ["string", "number"], "examples": [example] });
+    Map::from_iter([
+        one("Within", "So far to either side of the value in the study, or of `mean`.", text("± 2 um")),
+        one("Shape", "How values lie within the tolerance.", json!({ "enum": Within::WORDS, "default": "uniform" })),
+        one(
+            "Iso1328",
+            "Within the slope tolerance of this class of ISO 1328-1.",
+            json!({ "type": "integer", "minimum": 1, "maximum": 11, "examples": [7] }),
+        ),
+        one("Normal", "Normally distributed with this standard deviation; `from` and `to` cut it off.", text("1 um")),
+        one("Mean", "The middle, where that is not the value in the study.", number.clone()),
+        one("Mode", "The most frequent value, between `from` and `to`.", number.clone()),
+    ])
 }
 
 /// The summary, and what the schema cannot say.

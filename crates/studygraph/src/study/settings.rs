@@ -6,7 +6,7 @@ use serde_json::{Map, Value as Json, json};
 
 use super::words;
 use declare::parameter::{Field, Shape};
-use declare::record::varied::{Axis, Values};
+use declare::record::varied::{Axis, Form, Spread, Values};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
 
@@ -68,12 +68,30 @@ fn axis_shown(axis: &Axis) -> Json {
     };
     let shown = match &axis.values {
         Values::Between(from, to) => json!({ "from": one(*from), "to": one(*to) }),
+        Values::Spread(spread) => spread_shown(spread, &one),
         Values::Each(values) if values.len() <= MOST => values.iter().map(|si| one(*si)).collect(),
         Values::Each(values) => {
             json!({ "first": one(values[0]), "last": one(values[values.len() - 1]), "count": values.len() })
         }
     };
     json!({ "field": axis.path, "values": shown })
+}
+
+fn spread_shown(spread: &Spread, one: &dyn Fn(f64) -> Json) -> Json {
+    let mut shown = match spread.form {
+        Form::Within(half, within) => {
+            json!({ "within": one(half), "shape": within.word(), "about": one(spread.about) })
+        }
+        Form::Class(class, within) => json!({ "iso1328": class, "shape": within.word(), "about": one(spread.about) }),
+        Form::Normal(deviation) => json!({ "normal": one(deviation), "mean": one(spread.about) }),
+        Form::Triangular => json!({ "mode": one(spread.about) }),
+    };
+    for (name, end) in ["from", "to"].into_iter().zip(spread.ends) {
+        if let Some(end) = end {
+            shown[name] = one(end);
+        }
+    }
+    shown
 }
 
 fn number(shape: &Shape, si: f64) -> Json {

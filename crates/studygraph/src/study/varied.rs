@@ -9,6 +9,7 @@ use super::document::{Content, KeyValue, Node};
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::quantity::Measure;
+use super::spread;
 use super::words::{alternatives, expected, quote};
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::Shape;
@@ -18,7 +19,8 @@ use declare::units::{RATIO, split_quantity};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
 pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";
-const FIELDS: [&str; 5] = ["field", "values", "from", "to", "count"];
+const FIELDS: [&str; 11] =
+    ["field", "values", "from", "to", "count", "within", "shape", "iso1328", "normal", "mean", "mode"];
 
 /// A stage that the asked one reads, near or far.
 struct Link {
@@ -54,7 +56,8 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
     }
     let index = |name: &str| kept.iter().position(|link| link.name == name);
     let filled = Stages { pairs: &tree, ..stages };
-    let mut found = Varied::default();
+    let nearby = links.iter().map(|link| (link.kind.name, link.record.clone())).collect();
+    let mut found = Varied { nearby, ..Varied::default() };
     for link in &kept {
         // What is wrong with the values together is no mistake of the text in any one place.
         let (record, _) = read(filled, &link.name, of.place).map_err(|wrong| wrong.at(of.place))?;
@@ -168,42 +171,50 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         }
     };
     let one = |node: &Node| number(name, target.shape, node);
-    let (values, first, values_place) = match (given("values"), given("from"), given("to"), given("count")) {
-        (Some(values), None, None, None) => {
-            let items = if let Content::Sequence(items) = &values.node.content {
-                items.as_slice()
-            } else {
-                std::slice::from_ref(&values.node)
-            };
-            let Some(first) = items.first() else {
-                return Err(Diagnostic::new(format!("{} has no values", quote(name))).at(values.node.place));
-            };
-            (Values::Each(items.iter().map(one).collect::<Result<_, _>>()?), first.clone(), values.node.place)
-        }
-        (None, Some(from), Some(to), None) => {
-            let (low, high) = (one(&from.node)?, one(&to.node)?);
-            if low >= high {
-                let message = format!("`to` ({}) must be above `from` ({})", to.node.describe(), from.node.describe());
-                return Err(Diagnostic::new(message).at(to.node.place));
+    let about = || path.written(stages.pairs, stages.kinds);
+    let stated = spread::Stated { name, fields, place: pair.place, measure: measure(name, target.shape) };
+    let (values, first, values_place) = if let Some((spread, first, place)) = stated.spread(multiple, about)? {
+        (Values::Spread(spread), first, place)
+    } else {
+        match (given("values"), given("from"), given("to"), given("count")) {
+            (Some(values), None, None, None) => {
+                let items = if let Content::Sequence(items) = &values.node.content {
+                    items.as_slice()
+                } else {
+                    std::slice::from_ref(&values.node)
+                };
+                let Some(first) = items.first() else {
+                    return Err(Diagnostic::new(format!("{} has no values", quote(name))).at(values.node.place));
+                };
+                (Values::Each(items.iter().map(one).collect::<Result<_, _>>()?), first.clone(), values.node.place)
             }
-            (Values::Between(low, high), from.node.clone(), from.node.place)
-        }
-        (None, Some(from), Some(_), Some(_)) => {
-            let ends = fields.iter().filter(|field| field.key != "field").cloned().collect();
-            let node = Node { content: Content::Mapping(ends), place: pair.node.place };
-            (Values::Each(spaced(name, target.shape, &node)?), from.node.clone(), from.node.place)
-        }
-        _ => {
-            let message = format!("{} needs its `values`, or `from` and `to`", quote(name));
-            return Err(Diagnostic::new(message)
-                .at(pair.place)
-                .help("write `values: […]`, `from: …, to: …, count: …`, or for random designs `from: …, to: …`"));
+            (None, Some(from), Some(to), None) => {
+                let (low, high) = (one(&from.node)?, one(&to.node)?);
+                if low >= high {
+                    let message =
+                        format!("`to` ({}) must be above `from` ({})", to.node.describe(), from.node.describe());
+                    return Err(Diagnostic::new(message).at(to.node.place));
+                }
+                (Values::Between(low, high), from.node.clone(), from.node.place)
+            }
+            (None, Some(from), Some(_), Some(_)) => {
+                let ends = fields.iter().filter(|field| field.key != "field").cloned().collect();
+                let node = Node { content: Content::Mapping(ends), place: pair.node.place };
+                (Values::Each(spaced(name, target.shape, &node)?), from.node.clone(), from.node.place)
+            }
+            _ => {
+                let message = format!("{} needs its `values`, or `from` and `to`", quote(name));
+                return Err(Diagnostic::new(message)
+                    .at(pair.place)
+                    .help("write `values: […]`, `from: …, to: …, count: …`, or for random designs `from: …, to: …`"));
+            }
         }
     };
     let unit = match (&first.content, dimension) {
         (Content::Scalar { text, .. }, Some(dimension)) if dimension != RATIO => split_quantity(text).1.to_owned(),
         _ => String::new(),
     };
+    let Measure { minimum, maximum, .. } = measure(name, target.shape);
     let (name, place) = (name.clone(), written.node.place);
     let axis = Axis {
         name,
@@ -216,6 +227,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         multiple,
         values,
         values_place,
+        range: (minimum, maximum),
     };
     Ok((axis, stage.to_owned(), first))
 }

@@ -278,7 +278,7 @@ impl Figure {
             return Err(no_rows(table, &self.conditions));
         }
         let x = column(&self.x)?;
-        if self.kind != How::Bar {
+        if !matches!(self.kind, How::Bar | How::Tornado) {
             numbers(x)?;
         }
         let mut unit: Option<&str> = None;
@@ -384,11 +384,13 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar, drawing, map, front or chart.", |row| row.kind.word())
+        .text("kind", "Line, points, bar, drawing, map, front, chart, histogram, quantiles or tornado.", |row| row.kind.word())
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
-        .text("value", "Column that a map shows as colours.", |row| row.value.as_str())
+        .text("value", "Column that a map shows as colours, or where the bars of a histogram end.", |row| {
+            row.value.as_str()
+        })
         .flag("isolines", "Whether a map has lines of one value.", |row| row.isolines)
         .text("best", "Which cell of a map is marked: none, smallest or largest.", |row| row.best.word())
         .text("marked", "The table of the points that are named.", |row| dotted(&row.marked))

@@ -2,7 +2,7 @@
 //!
 //! Must not know: tables.
 
-use declare::declared::Placed;
+use declare::declared::{Placed, Words as _};
 use declare::error::Diagnostic;
 use declare::record::Record;
 use declare::{Declared, Words};
@@ -28,7 +28,7 @@ pub struct StatedFigure {
     /// column of the y axis; several need one unit
     #[declared(example = "peak_to_peak")]
     pub y: Vec<String>,
-    /// column that a map shows as colours
+    /// column that a map shows as colours, or where the bars of a histogram end
     #[declared(example = "pressure")]
     pub value: Option<String>,
     /// lines of one value over a map
@@ -114,6 +114,12 @@ pub enum How {
     Front,
     /// lines that go down with depth, a round number of times as long as `length`
     Chart,
+    /// a bar for each row, from `x` to `value`
+    Histogram,
+    /// bands between the quantiles of a column of shares, `series`: the outermost, and so on; the middle one is a line
+    Quantiles,
+    /// bars to the right, one below the other, the largest on top
+    Tornado,
 }
 
 /// Which cell of a map is marked.
@@ -149,7 +155,7 @@ pub enum Logarithmic {
     Both,
 }
 
-/// A map has a value, one y and one table; other figures have no value.
+/// A map has a value, one y and one table; a histogram has one too, and quantiles have shares. Other figures have no value.
 ///
 /// # Errors
 /// At the field that does not fit.
@@ -160,9 +166,21 @@ pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnosti
     for (field, _) in marked_places.iter().filter(|(_, column)| column.is_some() && stated.marked.is_none()) {
         return refused(field, &format!("`{field}` is a column of the table `marked`, which is not given"));
     }
+    let has_rows = matches!(stated.kind, How::Histogram | How::Quantiles | How::Tornado);
+    if has_rows && stated.log != Logarithmic::None {
+        return refused(NAMES.log, &format!("`kind: {}` has no logarithmic axis", stated.kind.word()));
+    }
+    if stated.kind == How::Histogram && stated.value.is_none() {
+        let message = "a histogram needs `value`, the column of where its bars end; they begin at `x`";
+        return Err(Diagnostic::new(message).at(record.place).help("for example `x: from, value: to`"));
+    }
+    if stated.kind == How::Quantiles && stated.series.is_none() {
+        let message = "quantiles need `series`, the column of their shares";
+        return Err(Diagnostic::new(message).at(record.place).help("for example `series: share`"));
+    }
     if stated.kind != How::Map {
         let of_maps = [
-            (NAMES.value, stated.value.is_some(), "is the column that a map shows as colours"),
+            (NAMES.value, stated.value.is_some() && stated.kind != How::Histogram, "is the column that a map shows as colours"),
             (NAMES.isolines, stated.isolines, "are lines over a map"),
             (NAMES.best, stated.best != Best::None, "is a cell of a map"),
         ];
@@ -170,6 +188,9 @@ pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnosti
             Some((field, _, what)) => refused(field, &format!("`{field}` {what}; write `kind: map`")),
             None => Ok(()),
         };
+    }
+    if stated.kind == How::Histogram {
+        return Ok(());
     }
     if stated.value.is_none() {
         let message = "a map needs `value`, the column that it shows as colours";

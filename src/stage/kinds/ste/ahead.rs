@@ -22,7 +22,9 @@ impl Ste {
     pub fn ahead(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
         let ports = (1..=self.designs.len()).map(|index| format!("designs_{index}"));
         let designs = ports.map(|port| ahead.rows(&port, names::designs::TABLE)).fold(RowCount::NONE, RowCount::and);
-        let curves = designs.times(RowCount::exact(self.torque.len()));
+        let stated = &self.deviations.stated()[..];
+        let loads = self.torque.len().saturating_mul(self.deviations.combinations().len());
+        let curves = designs.times(RowCount::exact(loads));
         let of_each = common::curve_rows(self.settings(), self.harmonics);
         let rows = curves.times(RowCount::about(of_each));
         let points = rows.count.min((THREADS * MOST_AT_ONCE).saturating_mul(of_each) as u64);
@@ -48,12 +50,12 @@ impl Ste {
             .work(&work, common::solve_times(self.settings()))
             // Room for as many points again as there are.
             .holding(CYCLE.saturating_add(points.saturating_mul(2 * point)).saturating_add(held))
-            .rows(demand, summary().schema(), curves)
-            .columns(demand, curve().schema(), rows)
-            .rows(demand, harmonics().schema(), curves.times(RowCount::exact(self.harmonics)))
-            .rows(demand, cost().schema(), curves)
-            .rows(demand, samples::samples().schema(), curves.times(RowCount::exact(self.samples)))
-            .rows(demand, samples::summary().schema(), curves)
-            .columns(demand, pressures::map().schema(), cells)
+            .rows(demand, summary(stated).schema(), curves)
+            .columns(demand, curve(stated).schema(), rows)
+            .rows(demand, harmonics(stated).schema(), curves.times(RowCount::exact(self.harmonics)))
+            .rows(demand, cost(stated).schema(), curves)
+            .rows(demand, samples::samples(stated).schema(), curves.times(RowCount::exact(self.samples)))
+            .rows(demand, samples::summary(stated).schema(), curves)
+            .columns(demand, pressures::map(stated).schema(), cells)
     }
 }

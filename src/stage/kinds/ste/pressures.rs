@@ -2,7 +2,7 @@
 //!
 //! Must not know: how a pressure is found.
 
-use super::tables::{Keyed, PointRow, keyed};
+use super::tables::{Keyed, Load, PointRow, keyed};
 use crate::stage::names::{curve, summary};
 use crate::stage::{Context, Demand};
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
@@ -138,13 +138,13 @@ pub fn contacts(loading: &LoadCase, position: f64, pairs: usize) -> Contacts {
 pub type CellRow<'a> = Keyed<'a, Cell>;
 
 /// The map.
-pub fn map<'a>() -> Columns<CellRow<'a>> {
+pub fn map<'a>(stated: &[usize]) -> Columns<CellRow<'a>> {
     let description = "Load per width and pressure over the path of contact and the face, on a regular grid of both.";
     let step = "Counts the positions of the pair: from 0 in A, so many in a base pitch; below 0 before A.";
     let strip = "Counts the strips of the face, equally wide, from 1; one where nothing varies across it.";
     let position = "Distance of the pair from A along the line of action.";
     let corner = "Whether the sharp corner of a tip is in contact: the pressure is infinite there.";
-    keyed(TABLE, description)
+    keyed(TABLE, description, stated)
         .integer("step", step, |row: &CellRow| row.2.step)
         .key()
         .integer("strip", strip, |row| row.2.strip)
@@ -174,7 +174,7 @@ pub fn warn(context: &Context, cycle: &MeshCycle, answers: &[Keyed]) {
         "the sharp corner of a tip touches, where the pressure is infinite; this law of contact does not know it, and the \
          pressures there are those of the flank beside it"
     };
-    for (design, torque, answer) in answers {
+    for (design, Load { torque, .. }, answer) in answers {
         let Some(Cornered { share, stretches }) = &answer.cornered else { continue };
         let is_largest = answer.summary.largest_pressure.is_some_and(|largest| largest.contact.at_corner);
         let largest = if is_largest { ", the largest of the curve among them" } else { "" };

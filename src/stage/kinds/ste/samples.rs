@@ -24,9 +24,9 @@ pub struct Sample {
     error: f64,
 }
 
-pub fn samples<'a>() -> Columns<Keyed<'a, Sample>> {
+pub fn samples<'a>(stated: &[usize]) -> Columns<Keyed<'a, Sample>> {
     let position = "Distance from where a pair starts contact, along the line of action.";
-    keyed(TABLE, "Transmission error at equidistant positions of the mesh cycle.")
+    keyed(TABLE, "Transmission error at equidistant positions of the mesh cycle.", stated)
         .integer("sample", "Counts the positions, from 1.", |row: &Keyed<Sample>| row.2.number)
         .key()
         .shown("rotation_angle", "deg", "Rotation of the pinion from the first sample.", |row| row.2.angle)
@@ -50,9 +50,9 @@ impl Samples {
     }
 }
 
-pub fn summary<'a>() -> Columns<Keyed<'a, Samples>> {
+pub fn summary<'a>(stated: &[usize]) -> Columns<Keyed<'a, Samples>> {
     let fitness = "f = n/Σ(TE − mean)² (mei2016, equation 16); NaN where nothing varies.";
-    keyed(SUMMARY, "What the samples of each curve amount to.")
+    keyed(SUMMARY, "What the samples of each curve amount to.", stated)
         .float("mean", "um", "Mean of the samples.", |row: &Keyed<Samples>| row.2.mean)
         .float("peak_to_peak", "um", "Largest less smallest sample.", |row| row.2.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))

@@ -4,6 +4,7 @@
 
 use super::pressures::Contacts;
 use super::{Answer, pressures};
+use crate::stage::cases::{DEVIATIONS, Deviation};
 use crate::stage::names;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
@@ -14,25 +15,37 @@ use studygraph::table::schema::Column;
 pub const HARMONICS: &str = "harmonics";
 pub const COST: &str = "cost";
 
-/// Design, torque, and what they gave.
-pub type Keyed<'a, T = Answer> = (&'a str, f64, T);
-
-/// The columns that say which curve a row is of.
-pub fn keyed<'a, T>(name: &str, description: &str) -> Columns<Keyed<'a, T>> {
-    Columns::new(name, description)
-        .text("design", "Name of the design.", |row: &Keyed<'a, T>| row.0)
-        .key()
-        .float("torque", "N m", "Torque on the pinion.", |row| row.1)
-        .key()
+/// Torque, and by how much the pair is off as it is made and mounted.
+#[derive(Clone, Copy)]
+pub struct Load {
+    /// On the pinion \[N m\].
+    pub torque: f64,
+    pub deviation: Deviation,
 }
 
-pub fn summary<'a>() -> Columns<Keyed<'a>> {
+/// Design, load, and what they gave.
+pub type Keyed<'a, T = Answer> = (&'a str, Load, T);
+
+/// The columns that say which curve a row is of; those of deviations are there where they are stated.
+pub fn keyed<'a, T>(name: &str, description: &str, stated: &[usize]) -> Columns<Keyed<'a, T>> {
+    let columns = Columns::new(name, description)
+        .text("design", "Name of the design.", |row: &Keyed<'a, T>| row.0)
+        .key()
+        .float("torque", "N m", "Torque on the pinion.", |row| row.1.torque)
+        .key();
+    stated.iter().fold(columns, |columns, &field| {
+        let (name, description) = DEVIATIONS[field];
+        columns.float(name, "um", description, move |row| row.1.deviation.of_fields[field]).key()
+    })
+}
+
+pub fn summary<'a>(stated: &[usize]) -> Columns<Keyed<'a>> {
     let mean = "Integral mean of the transmission error over the mesh cycle.";
     let variance = "Integral mean of the squared deviation from the mean.";
     let reciprocal = "f = 1/variance (mei2016, equation 16); NaN where nothing varies.";
     let slices = "Slices that were used on each stretch of the face without a closed form.";
     let error = "Estimated relative error of the peak-to-peak from positions and slices.";
-    let columns = keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.")
+    let columns = keyed(names::summary::TABLE, "What each curve of the transmission error amounts to.", stated)
         .float("mean", "um", mean, |row: &Keyed| row.2.summary.mean)
         .float("peak_to_peak", "um", "Largest less smallest transmission error.", |row| row.2.summary.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))
@@ -116,8 +129,8 @@ fn of_root(columns: Columns<Keyed<'_>>, gear: OfGear) -> Columns<Keyed<'_>> {
 }
 
 /// By itself, since a table with measured times differs from run to run.
-pub fn cost<'a>() -> Columns<Keyed<'a>> {
-    keyed(COST, "Error of each curve against the time it took.")
+pub fn cost<'a>(stated: &[usize]) -> Columns<Keyed<'a>> {
+    keyed(COST, "Error of each curve against the time it took.", stated)
         .float("peak_to_peak", "um", "As in the table `summary`.", |row: &Keyed| row.2.summary.peak_to_peak)
         .but(|column| column.tolerance(1e-12, 1e-9))
         .integer("positions", "As in the table `summary`.", |row| row.2.settings.positions)
@@ -142,7 +155,7 @@ pub struct OfCurve<'a> {
 pub type PointRow<'a> = Keyed<'a, OfCurve<'a>>;
 
 /// By far the longest tables.
-pub fn curve<'a>() -> Columns<PointRow<'a>> {
+pub fn curve<'a>(stated: &[usize]) -> Columns<PointRow<'a>> {
     let description = "Transmission error over one mesh cycle, with its extrema. Where the number of pairs changes there are \
                        two rows, one for each side.";
     let position = "Distance from where a pair starts contact, along the line of action.";
@@ -153,7 +166,7 @@ pub fn curve<'a>() -> Columns<PointRow<'a>> {
         Side::Gear => "Largest tensile stress at the roots of the gear's loaded teeth.",
     };
     let counts = "Counts the positions, from 1; those of the extrema are among them.";
-    let columns = keyed(names::curve::TABLE, description)
+    let columns = keyed(names::curve::TABLE, description, stated)
         .integer("point", counts, |row: &PointRow| row.2.number)
         .key()
         .float("cycle_position", "mm", position, |row| row.2.point.cycle_position)
@@ -200,18 +213,18 @@ pub type Found = (Vec<Point>, Vec<Contacts>);
 
 /// The points of curves, in the order of the keys, or the table sorts every row.
 pub fn points<'a>(curves: &'a [Keyed<'a, Found>]) -> impl Iterator<Item = PointRow<'a>> + Clone {
-    curves.iter().flat_map(|(design, torque, (points, contacts))| {
-        (1..).zip(points).map(move |(number, point)| {
-            (*design, *torque, OfCurve { number, point, contacts: contacts.get(number - 1) })
-        })
+    curves.iter().flat_map(|(design, load, (points, contacts))| {
+        (1..)
+            .zip(points)
+            .map(move |(number, point)| (*design, *load, OfCurve { number, point, contacts: contacts.get(number - 1) }))
     })
 }
 
 /// A harmonic: its order and its amplitude.
 pub type HarmonicRow<'a> = Keyed<'a, (usize, f64)>;
 
-pub fn harmonics<'a>() -> Columns<HarmonicRow<'a>> {
-    keyed(HARMONICS, "Harmonics of the transmission error.")
+pub fn harmonics<'a>(stated: &[usize]) -> Columns<HarmonicRow<'a>> {
+    keyed(HARMONICS, "Harmonics of the transmission error.", stated)
         .integer("order", "Multiple of the mesh frequency.", |(.., (order, _)): &HarmonicRow| *order)
         .key()
         .float("amplitude", "um", "Amplitude of the transmission error.", |(.., (_, amplitude))| *amplitude)
@@ -220,7 +233,7 @@ pub fn harmonics<'a>() -> Columns<HarmonicRow<'a>> {
 
 /// The harmonics of curves, in the order of the keys.
 pub fn amplitudes<'a>(answers: &'a [Keyed<'a>]) -> impl Iterator<Item = HarmonicRow<'a>> + Clone {
-    answers.iter().flat_map(|(design, torque, answer)| {
-        (1..).zip(&answer.summary.harmonics).map(move |(order, amplitude)| (*design, *torque, (order, *amplitude)))
+    answers.iter().flat_map(|(design, load, answer)| {
+        (1..).zip(&answer.summary.harmonics).map(move |(order, amplitude)| (*design, *load, (order, *amplitude)))
     })
 }

@@ -4,13 +4,13 @@
 //! grow with their number. Quantiles are read off 1024 equal steps between the extremes and are right to one of them.
 //! Sums run in the order of the rows. Must not know: what a column means.
 
-use std::collections::BTreeMap;
-
 use super::Sweep;
-use super::counting::{BINS, Group, Moments, bin, quantile, strata, without_numbers};
-use super::rows::REASON;
-use super::tables::{self, BestRow, Bin, EffectRow, InvalidRow, MapCell, Quantile, Share};
+use super::tables::{self, BestRow, Bin, EffectRow, MapCell, Quantile, Share};
 use crate::stage::RowCount;
+use crate::stage::rows::Column;
+use crate::stage::rows::computed::REASON;
+use crate::stage::rows::counting::{BINS, Group, Moments, bin, quantile, strata};
+use crate::stage::rows::invalid::{self, Invalid, MOST_REASONS};
 use studygraph::table::data::{Data, Table, TableError};
 use studygraph::table::schema::Schema;
 
@@ -21,8 +21,6 @@ const SHOWN_BINS: usize = 32;
 /// The most values or strata that a map has of a field.
 const MOST_OF_MAP: usize = 40;
 pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
-/// Reasons that are told apart.
-const MOST_REASONS: usize = 1000;
 /// Seconds that a row takes, twice read.
 pub const SECONDS_OF_ROW: f64 = 1e-6;
 
@@ -40,14 +38,13 @@ pub struct Tally<'s> {
     /// Of the objective, by pair of fields.
     maps: Vec<([usize; 2], Vec<Moments>)>,
     best: Vec<(f64, Vec<f64>)>,
-    invalid: BTreeMap<String, (u64, String, String)>,
+    invalid: Invalid,
     rows: u64,
-    others: u64,
 }
 
 impl<'s> Tally<'s> {
     pub fn new(sweep: &'s Sweep) -> Self {
-        let (groups, outputs) = (groups(sweep), sweep.outputs.len());
+        let (groups, outputs) = (groups(sweep), sweep.asked.outputs.len());
         let effects = groups.iter().map(|group| vec![vec![Moments::default(); outputs]; group.len()]).collect();
         let steps = groups.iter().map(|group| vec![vec![vec![0; BINS]; outputs]; group.len()]).collect();
         let maps = pairs(&groups).into_iter().map(|pair| {
@@ -62,9 +59,8 @@ impl<'s> Tally<'s> {
             whole: vec![vec![0; BINS]; outputs],
             maps: maps.collect(),
             best: Vec::new(),
-            invalid: BTreeMap::new(),
+            invalid: Invalid::default(),
             rows: 0,
-            others: 0,
             groups,
         }
     }
@@ -74,14 +70,14 @@ impl<'s> Tally<'s> {
         let sweep = self.sweep;
         let fields: Vec<&Data> =
             sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
-        let outputs: Vec<&[f64]> = sweep.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
+        let outputs: Vec<&[f64]> = sweep.asked.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
         let reasons = table.texts(REASON);
         let mut at = vec![0; fields.len()];
         for (row, reason) in reasons.iter().enumerate() {
             if !reason.is_empty() {
                 if pass == 0 {
                     self.rows += 1;
-                    self.add_invalid(reason, || described(sweep, &fields, row));
+                    self.invalid.add(reason, || described(sweep, &fields, row));
                 }
                 continue;
             }
@@ -141,24 +137,11 @@ impl<'s> Tally<'s> {
         }
     }
 
-    fn add_invalid(&mut self, reason: &str, row: impl Fn() -> String) {
-        let kind = without_numbers(reason);
-        if let Some((count, ..)) = self.invalid.get_mut(&kind) {
-            *count += 1;
-        } else if self.invalid.len() < MOST_REASONS {
-            self.invalid.insert(kind, (1, reason.to_owned(), row()));
-        } else {
-            self.others += 1;
-        }
-    }
-
     /// What is told where nothing, or nothing valid, came of it.
     pub fn warning(&self) -> Option<String> {
-        let invalid = self.invalid.values().map(|(count, ..)| count).sum::<u64>() + self.others;
-        let first = self.invalid.values().max_by_key(|(count, ..)| *count);
-        match (self.rows, first) {
+        match (self.rows, self.invalid.most_frequent()) {
             (0, _) => Some("no row passes `where`".to_owned()),
-            (rows, Some((_, reason, row))) if invalid == rows => {
+            (rows, Some((reason, row))) if self.invalid.count() == rows => {
                 Some(format!("none of the {rows} rows is valid; {row}: {reason}"))
             }
             _ => None,
@@ -189,7 +172,7 @@ impl<'s> Tally<'s> {
     pub fn tables(self) -> Result<Vec<Table>, TableError> {
         let sweep = self.sweep;
         let (mut effects, mut shares, mut quantiles, mut bins) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
-        for (output, asked) in sweep.outputs.iter().enumerate() {
+        for (output, asked) in sweep.asked.outputs.iter().enumerate() {
             let name = asked.column.name.as_str();
             for (field, column) in sweep.layout.columns.iter().enumerate() {
                 shares.push(Share { field: &column.axis.name, output: name, explained: self.share(field, output) });
@@ -233,7 +216,7 @@ impl<'s> Tally<'s> {
             let across = self.groups[*two].len();
             let filled = all.iter().enumerate().filter(|(_, moments)| moments.count > 0);
             cells.extend(filled.map(|(at, moments)| MapCell {
-                output: &sweep.outputs[sweep.objective].column.name,
+                output: &sweep.asked.outputs[sweep.objective].column.name,
                 fields: [one, two].map(|field| sweep.layout.columns[*field].axis.name.as_str()),
                 values: [self.groups[*one].value(at / across), self.groups[*two].value(at % across)],
                 count: moments.count,
@@ -242,15 +225,6 @@ impl<'s> Tally<'s> {
             }));
         }
         let best: Vec<BestRow> = (1..).zip(self.best).map(|(rank, (_, values))| BestRow { rank, values }).collect();
-        let mut invalid: Vec<InvalidRow> = self
-            .invalid
-            .into_iter()
-            .map(|(reason, (count, example, row))| InvalidRow { reason, count, example, row })
-            .collect();
-        if self.others > 0 {
-            let (reason, text) = ("others".to_owned(), String::new());
-            invalid.push(InvalidRow { reason, count: self.others, example: text.clone(), row: text });
-        }
         Ok(vec![
             tables::best(sweep).table(&best)?,
             tables::effects().table(&effects)?,
@@ -258,7 +232,7 @@ impl<'s> Tally<'s> {
             tables::maps().table(&cells)?,
             tables::distribution().table(&bins)?,
             tables::quantiles().table(&quantiles)?,
-            tables::invalid().table(&invalid)?,
+            self.invalid.table()?,
         ])
     }
 }
@@ -272,7 +246,7 @@ pub fn schemas(sweep: &Sweep) -> Vec<Schema> {
         tables::maps().schema(),
         tables::distribution().schema(),
         tables::quantiles().schema(),
-        tables::invalid().schema(),
+        invalid::columns().schema(),
     ]
 }
 
@@ -286,7 +260,7 @@ pub fn empty(sweep: &Sweep) -> Result<Vec<Table>, TableError> {
 
 /// How many rows they have, in the order of [`schemas`].
 pub fn foreseen(sweep: &Sweep) -> Vec<RowCount> {
-    let (groups, outputs) = (groups(sweep), sweep.outputs.len());
+    let (groups, outputs) = (groups(sweep), sweep.asked.outputs.len());
     let values: usize = groups.iter().map(Group::len).sum();
     let cells =
         pairs(&groups).into_iter().map(|pair| pair.map(|field| groups[field].len()).iter().product::<usize>()).sum();
@@ -304,7 +278,7 @@ pub fn foreseen(sweep: &Sweep) -> Vec<RowCount> {
 /// Bytes that counting takes.
 pub fn held(sweep: &Sweep) -> u64 {
     let values: usize = groups(sweep).iter().map(Group::len).sum();
-    (values * sweep.outputs.len() * (4 * BINS + size_of::<Moments>())) as u64
+    (values * sweep.asked.outputs.len() * (4 * BINS + size_of::<Moments>())) as u64
 }
 
 fn groups(sweep: &Sweep) -> Vec<Group> {
@@ -344,7 +318,7 @@ fn number(data: &Data, row: usize) -> f64 {
 }
 
 fn described(sweep: &Sweep, fields: &[&Data], row: usize) -> String {
-    let one = |(column, data): (&super::layout::Column, &&Data)| {
+    let one = |(column, data): (&Column, &&Data)| {
         format!("{} = {} {}", column.axis.name, data.cell(row), column.axis.unit).trim().to_owned()
     };
     sweep.layout.columns.iter().zip(fields).map(one).collect::<Vec<_>>().join(", ")

@@ -3,10 +3,12 @@
 //! Rows of a grid or a list come in the order of their values, what takes longest to change first; drawn ones in the order
 //! in which they are drawn. No list of all rows is ever made. Must not know: what is computed of a row.
 
+use super::draw::{Draw, Span};
 use super::method::Method;
-use super::values::{Draw, Level, RowSet, Span, level};
 use crate::stage::formula::{Formula, Names, Outcome};
 use crate::stage::quantity::Number;
+use crate::stage::rows::values::{Level, RowSet, level};
+use crate::stage::rows::{Column, rows_of_part};
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::record::varied::{Axis, Values};
@@ -16,30 +18,8 @@ use gearmesh::optimize::sobol::MOST_VARIABLES;
 use std::ops::Range;
 use studygraph::stage::parts;
 
-/// Rows of a part, on average; from [`MOST_PARTS`] parts on twice as many, four times as many and so on.
-const ROWS: usize = 1 << 13;
-const MOST_ROWS: usize = 1 << 16;
-const MOST_PARTS: usize = 128;
 /// More rows than that are refused: a slip is likelier.
 const MOST_IN_ALL: usize = 1_000_000_000;
-
-/// How long it takes to go on to another value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Class {
-    /// The pair, or what its teeth yield.
-    Upstream,
-    /// How a curve is sampled.
-    Sampling,
-    Design,
-    Torque,
-}
-
-/// A varied field as a column.
-#[derive(Clone, Debug)]
-pub struct Column {
-    pub axis: Axis,
-    pub class: Class,
-}
 
 /// All rows of a sweep.
 #[derive(Debug)]
@@ -65,8 +45,7 @@ enum Rows {
 impl Layout {
     /// # Errors
     /// Values that do not go with the method, or with each other; a filter that cannot be evaluated.
-    pub fn new(mut columns: Vec<Column>, method: Method, filter: Option<(Formula, Place)>) -> Result<Self, Diagnostic> {
-        columns.sort_by_key(|column| column.class);
+    pub fn new(columns: Vec<Column>, method: Method, filter: Option<(Formula, Place)>) -> Result<Self, Diagnostic> {
         let rows = match method {
             Method::Grid => grid(&columns)?,
             Method::Zip => zip(&columns)?,
@@ -155,7 +134,7 @@ impl Layout {
     }
 
     fn cut(&self) -> Vec<Range<usize>> {
-        let each = (target(self.count()) / self.of_unit()).max(1);
+        let each = (rows_of_part(self.count()) / self.of_unit()).max(1);
         if self.is_drawn() {
             let units = self.units();
             return (0..units.div_ceil(each)).map(|part| part * each..units.min((part + 1) * each)).collect();
@@ -214,7 +193,7 @@ impl Layout {
     /// A filter that cannot be evaluated in some row.
     pub fn rows(&self, part: usize, seed: &Seed) -> Result<RowSet, Failure> {
         let range = self.parts[part].clone();
-        let mut rows = RowSet::new(self.columns.len());
+        let mut rows = RowSet::new(usize::from(self.is_drawn()), self.columns.len());
         let kept = |rows: &mut RowSet| -> Result<(), Failure> {
             let passes = self.passes(rows.si(rows.len() - 1)).map_err(Failure::new)?;
             if !passes {
@@ -229,14 +208,14 @@ impl Layout {
                     let outer = self.unit(unit);
                     for index in 0..inner {
                         let inner = digits(&levels[*split..], index);
-                        rows.push(0, outer.iter().copied().chain(inner));
+                        rows.push(&[], outer.iter().copied().chain(inner));
                         kept(&mut rows)?;
                     }
                 }
             }
             Rows::Listed(all) => {
                 for unit in range {
-                    rows.push(0, all[unit].iter().copied());
+                    rows.push(&[], all[unit].iter().copied());
                     kept(&mut rows)?;
                 }
             }
@@ -245,7 +224,7 @@ impl Layout {
                 let mut point = vec![0.0; spans.len()];
                 for number in range {
                     draw.point(number, &mut point);
-                    rows.push(number + 1, spans.iter().zip(&point).map(|(span, share)| span.at(*share)));
+                    rows.push(&[number + 1], spans.iter().zip(&point).map(|(span, share)| span.at(*share)));
                     kept(&mut rows)?;
                 }
             }
@@ -266,12 +245,6 @@ impl Layout {
     }
 }
 
-/// Rows that a part holds on average, of so many in all.
-fn target(count: usize) -> usize {
-    let times = count.div_ceil(ROWS).div_ceil(MOST_PARTS).max(1).next_power_of_two();
-    ROWS.saturating_mul(times).min(MOST_ROWS)
-}
-
 fn write(levels: &[Level], writer: &mut Writer) {
     for level in levels {
         writer.float(level.shown);
@@ -282,6 +255,7 @@ fn first(values: &Values) -> f64 {
     match values {
         Values::Each(values) => values[0],
         Values::Between(low, _) => *low,
+        Values::Spread(spread) => spread.about,
     }
 }
 
@@ -304,7 +278,14 @@ fn each(column: &Column, method: &str) -> Result<Vec<Level>, Diagnostic> {
                 .at(*values_place)
                 .help("add a `count`, write its `values`, or take `method: { sobol: { samples: … } }`"))
         }
+        Values::Spread(_) => Err(no_distribution(column)),
     }
+}
+
+fn no_distribution(column: &Column) -> Diagnostic {
+    Diagnostic::new(format!("`{}` has a distribution, and a sweep takes values", column.axis.name))
+        .at(column.axis.values_place)
+        .help("write its `values`, or `from` and `to`; distributions are for `kind: scatter`")
 }
 
 fn too_many() -> Diagnostic {
@@ -326,7 +307,7 @@ fn grid(columns: &[Column]) -> Result<Rows, Diagnostic> {
     }
     let count = all.iter().try_fold(1_usize, |count, levels| count.checked_mul(levels.len()));
     let count = count.filter(|count| *count <= MOST_IN_ALL).ok_or_else(too_many)?;
-    let target = target(count);
+    let target = rows_of_part(count);
     let (mut split, mut inner) = (all.len(), 1);
     while split > 0 && inner * all[split - 1].len() <= target {
         split -= 1;
@@ -366,7 +347,11 @@ fn drawn(columns: &[Column], method: Method) -> Result<Rows, Diagnostic> {
         let message = format!("Sobol points are tabulated for at most {MOST_VARIABLES} fields, not {}", columns.len());
         return Err(Diagnostic::new(message).at(columns[MOST_VARIABLES].axis.place).help("use `latin_hypercube`"));
     }
+    if let Some(column) = columns.iter().find(|column| matches!(column.axis.values, Values::Spread(_))) {
+        return Err(no_distribution(column));
+    }
     let span = |column: &Column| match &column.axis.values {
+        Values::Spread(spread) => Span::Of(vec![level(spread.about, &column.axis.unit)]),
         Values::Between(low, high) => Span::Between {
             low: *low,
             high: *high,

@@ -14,14 +14,14 @@ pub struct BestRow {
 }
 
 pub fn best(sweep: &Sweep) -> Columns<BestRow> {
-    let by = &sweep.outputs[sweep.objective].column.name;
+    let by = &sweep.asked.outputs[sweep.objective].column.name;
     let columns = Columns::new("best", &format!("The rows with the smallest `{by}`."))
         .integer("rank", "Counts them, from 1, the smallest first.", |row: &BestRow| row.rank)
         .key();
     let fields = sweep.layout.columns.iter().map(|column| {
         (column.axis.name.clone(), column.axis.unit.clone(), format!("Value of `{}`.", column.axis.path), None)
     });
-    let outputs = sweep.outputs.iter().map(|output| {
+    let outputs = sweep.asked.outputs.iter().map(|output| {
         let Column { name, unit, description, tolerance, .. } = output.column.clone();
         (name, unit, description, Some(tolerance))
     });
@@ -164,21 +164,4 @@ pub fn quantiles<'a>() -> Columns<Quantile<'a>> {
         .key()
         .shown("value", "", value, |row| row.at)
         .but(|column| column.tolerance(1e-12, 1e-3))
-}
-
-/// Rows without numbers for one reason.
-pub struct InvalidRow {
-    pub reason: String,
-    pub count: u64,
-    pub example: String,
-    pub row: String,
-}
-
-pub fn invalid() -> Columns<InvalidRow> {
-    Columns::new("invalid", "Why rows have no numbers, and how many.")
-        .text("reason", "The reason, without its numbers.", |row: &InvalidRow| row.reason.clone())
-        .key()
-        .integer("rows", "How many rows have no numbers for it.", |row| row.count)
-        .text("example", "The reason of the first of them.", |row| row.example.clone())
-        .text("first_row", "The values of that row.", |row| row.row.clone())
 }

@@ -317,7 +317,7 @@ fn impossible_set_ups_are_refused() {
     assert!(refusal("grid", &[("levels", list(&[3, 4]))], 3).contains("2 levels are given for 3 variables"));
     assert!(refusal("grid", &[("levels", list(&[1000]))], 3).contains("1000000000 points"));
     assert!(refusal("grid", &[("levels", list(&[100_000]))], 5).contains("too many points to count"));
-    assert!(refusal("sobol", &[], 17).contains("at most 16 variables"));
+    assert!(refusal("sobol", &[], 49).contains("at most 48 variables"));
     assert!(refusal("nelder_mead", &[("evaluations", integer(10))], 10).contains("too few"));
     assert!(refusal("powell", &[("evaluations", integer(10))], 5).contains("too few for a line along each of 5"));
     let polish = [("polish", choice("nelder_mead")), ("polish_evaluations", integer(10))];

@@ -5,6 +5,7 @@
 
 mod conformance;
 mod constrained;
+mod estimates;
 mod fronts;
 mod functions;
 mod kinks;

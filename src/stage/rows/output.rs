@@ -16,7 +16,7 @@ const USUAL: &str = "summary";
 #[derive(Clone, Debug)]
 pub struct Output {
     pub cell: CellName,
-    /// As the sweep's table has it.
+    /// As the table of rows has it.
     pub column: Column,
 }
 
@@ -45,7 +45,7 @@ impl Output {
             return Err(Diagnostic::new(message));
         }
         if column.volatile {
-            let message = format!("column `{}` differs from run to run, so no sweep can keep it", column.name);
+            let message = format!("column `{}` differs from run to run, so no table of rows can keep it", column.name);
             return Err(Diagnostic::new(message));
         }
         check_conditions(schema, &cell.conditions).map_err(Diagnostic::new)?;

@@ -6,11 +6,10 @@
 
 use rayon::prelude::*;
 
-use super::Sweep;
 use super::chain::{Tables, Trouble};
-use super::layout::Class;
 use super::quick::{self, Before, Quick, Upstream};
 use super::values::RowSet;
+use super::{Asked, Class};
 use crate::stage::{Context, Inputs, Others};
 use declare::error::Failure;
 use declare::work::{Counter, Work};
@@ -19,7 +18,6 @@ use studygraph::table::data::{Cell, Data, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 pub const TABLE: &str = "rows";
-pub const NUMBER: &str = "sample";
 pub const REASON: &str = "reason";
 
 /// Rows that were computed, and rows that an earlier part had.
@@ -31,21 +29,19 @@ const AT_ONCE: usize = 32;
 /// Pairs with their compliances that are held at once, for each thread.
 const UPSTREAM_AT_ONCE: usize = 4;
 
-/// The number of a row or its values, its asked numbers, and why there are none.
-pub fn schema(sweep: &Sweep) -> Schema {
-    let drawn = sweep.layout.is_drawn();
-    let number = Column::integer(NUMBER, "Counts the designs in the order in which they are drawn, from 1.").key();
-    let mut columns = if drawn { vec![number] } else { Vec::new() };
-    for column in &sweep.layout.columns {
+/// The numbers of a row and its values, its asked numbers, and why there are none.
+pub fn schema(asked: &Asked) -> Schema {
+    let mut columns = asked.leading.clone();
+    for (column, is_key) in asked.columns.iter().zip(&asked.is_key) {
         let (name, description) = (&column.axis.name, format!("Value of `{}`.", column.axis.path));
         let column = if column.axis.multiple.is_some() {
             Column::integer(name, &description)
         } else {
             Column::float(name, &column.axis.unit, &description)
         };
-        columns.push(if drawn { column } else { column.key() });
+        columns.push(if *is_key { column.key() } else { column });
     }
-    columns.extend(sweep.outputs.iter().map(|output| output.column.clone()));
+    columns.extend(asked.outputs.iter().map(|output| output.column.clone()));
     columns.push(Column::text(REASON, "Why there are no numbers; empty where there are."));
     Schema::new(TABLE, "Every design with the numbers that are asked of it.", columns)
 }
@@ -53,32 +49,31 @@ pub fn schema(sweep: &Sweep) -> Schema {
 /// What was found of a row.
 type Answer = Result<Vec<f64>, String>;
 
-/// The table of a part.
+/// The table of some rows.
 ///
 /// # Errors
-/// When the user stopped, the filter cannot be evaluated, or the sweep cannot go on at all.
+/// When the user stopped, or the stage cannot go on at all.
 pub fn table(
-    sweep: &Sweep,
-    part: usize,
+    asked: &Asked,
+    rows: &RowSet,
     (context, inputs): (&Context, &Inputs),
     others: &dyn Others,
 ) -> Result<Table, Failure> {
-    let rows = sweep.layout.rows(part, &context.seed)?;
     let mut answers: Vec<Option<Answer>> = vec![None; rows.len()];
-    take_over(sweep, &rows, others, &mut answers);
+    take_over(asked, rows, others, &mut answers);
     let missing: Vec<usize> = (0..rows.len()).filter(|row| answers[*row].is_none()).collect();
     let work = Work::of(&ROWS_COMPUTED, missing.len()).with(&ROWS_TAKEN_OVER, rows.len() - missing.len());
     context.work.add(&work);
     let steps = Steps::new(context, missing.len());
-    for groups in groups(sweep, &rows, &missing).chunks(UPSTREAM_AT_ONCE * rayon::current_num_threads()) {
-        compute(sweep, &rows, groups, (context, inputs), &steps, &mut answers)?;
+    for groups in groups(asked, rows, &missing).chunks(UPSTREAM_AT_ONCE * rayon::current_num_threads()) {
+        compute(asked, rows, groups, (context, inputs), &steps, &mut answers)?;
     }
-    made(sweep, &rows, answers).map_err(|error| Failure::new(error.to_string()))
+    made(asked, rows, answers).map_err(|error| Failure::new(error.to_string()))
 }
 
 /// Stretches of missing rows with the same pair and compliances.
-fn groups<'m>(sweep: &Sweep, rows: &RowSet, missing: &'m [usize]) -> Vec<&'m [usize]> {
-    let is_upstream: Vec<bool> = sweep.layout.columns.iter().map(|column| column.class == Class::Upstream).collect();
+fn groups<'m>(asked: &Asked, rows: &RowSet, missing: &'m [usize]) -> Vec<&'m [usize]> {
+    let is_upstream: Vec<bool> = asked.columns.iter().map(|column| column.class == Class::Upstream).collect();
     let same = |one: &usize, two: &usize| {
         let pairs = rows.shown(*one).iter().zip(rows.shown(*two)).zip(&is_upstream);
         pairs.filter(|(_, is)| **is).all(|((one, two), _)| one.to_bits() == two.to_bits())
@@ -87,7 +82,7 @@ fn groups<'m>(sweep: &Sweep, rows: &RowSet, missing: &'m [usize]) -> Vec<&'m [us
 }
 
 fn compute(
-    sweep: &Sweep,
+    asked: &Asked,
     rows: &RowSet,
     groups: &[&[usize]],
     (context, inputs): (&Context, &Inputs),
@@ -97,7 +92,7 @@ fn compute(
     type Found = (Tables, Option<Upstream>);
     let upstream = |group: &&[usize]| -> Result<Result<Found, String>, Failure> {
         context.check_stop()?;
-        match found_upstream(sweep, rows.si(group[0]), context, inputs) {
+        match found_upstream(asked, rows.si(group[0]), context, inputs) {
             Ok(found) => Ok(Ok(found)),
             Err(Trouble::Invalid(reason)) => Ok(Err(reason)),
             Err(Trouble::Failed(failure)) => Err(failure),
@@ -121,9 +116,9 @@ fn compute(
                 }
             }
             Ok((_, Some(upstream))) => {
-                let Some(quick) = &sweep.quick else { return Ok(all) };
-                let chain = (&sweep.chain, sweep.layout.columns.as_slice());
-                for alike in block.chunk_by(|one, two| differ_in_torque_alone(sweep, rows.si(*one), rows.si(*two))) {
+                let Some(quick) = &asked.quick else { return Ok(all) };
+                let chain = (&asked.chain, asked.columns.as_slice());
+                for alike in block.chunk_by(|one, two| differ_in_torque_alone(asked, rows.si(*one), rows.si(*two))) {
                     quick.rows(chain, upstream, &mut before, alike.iter().map(|row| rows.si(*row)), &mut all);
                     for _ in alike {
                         steps.done();
@@ -132,7 +127,7 @@ fn compute(
             }
             Ok((tables, None)) => {
                 for row in *block {
-                    all.push(match one(sweep, rows.si(*row), tables, (context, inputs)) {
+                    all.push(match one(asked, rows.si(*row), tables, (context, inputs)) {
                         Ok(values) => Ok(values),
                         Err(Trouble::Invalid(reason)) => Err(reason),
                         Err(Trouble::Failed(failure)) => return Err(failure),
@@ -159,38 +154,38 @@ fn compute(
 
 /// What rows with these values share: the tables of the stages that no other value changes.
 fn found_upstream(
-    sweep: &Sweep,
+    asked: &Asked,
     row: &[f64],
     context: &Context,
     inputs: &Inputs,
 ) -> Result<(Tables, Option<Upstream>), Trouble> {
-    let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
+    let (chain, columns) = (&asked.chain, asked.columns.as_slice());
     let mut tables: Tables = (0..chain.links.len()).map(|_| None).collect();
     for link in 0..chain.links.len() - 1 {
         let is_shared = columns.iter().all(|column| column.axis.stage != link || column.class == Class::Upstream);
-        let is_skipped = sweep.quick.as_ref().and_then(Quick::skips) == Some(link);
+        let is_skipped = asked.quick.as_ref().and_then(Quick::skips) == Some(link);
         if is_shared && !is_skipped && chain.can_run(link, &tables) {
             tables[link] = Some(chain.run(link, (columns, row), &tables, (context, inputs))?);
         }
     }
-    let quick = sweep.quick.as_ref();
-    let upstream = quick.map(|quick| quick.upstream(chain, &tables, inputs, sweep.design.as_deref())).transpose()?;
+    let quick = asked.quick.as_ref();
+    let upstream = quick.map(|quick| quick.upstream(chain, &tables, inputs, asked.design.as_deref())).transpose()?;
     Ok((tables, upstream))
 }
 
-fn differ_in_torque_alone(sweep: &Sweep, one: &[f64], two: &[f64]) -> bool {
-    let columns = sweep.layout.columns.iter().zip(one.iter().zip(two));
+fn differ_in_torque_alone(asked: &Asked, one: &[f64], two: &[f64]) -> bool {
+    let columns = asked.columns.iter().zip(one.iter().zip(two));
     columns.filter(|(column, _)| column.class != Class::Torque).all(|(_, (one, two))| one.to_bits() == two.to_bits())
 }
 
 /// The numbers of a row, from table to table.
 fn one(
-    sweep: &Sweep,
+    asked: &Asked,
     row: &[f64],
     tables: &Tables,
     (context, inputs): (&Context, &Inputs),
 ) -> Result<Vec<f64>, Trouble> {
-    let (chain, columns) = (&sweep.chain, sweep.layout.columns.as_slice());
+    let (chain, columns) = (&asked.chain, asked.columns.as_slice());
     let mut tables = tables.clone();
     for link in 0..chain.links.len() {
         if tables[link].is_none() {
@@ -199,24 +194,24 @@ fn one(
     }
     let last = tables.pop().flatten().unwrap_or_default();
     let value = |output: &super::output::Output| {
-        output.take(&last, sweep.design.as_deref()).map_err(|problem| Trouble::Failed(Failure::new(problem)))
+        output.take(&last, asked.design.as_deref()).map_err(|problem| Trouble::Failed(Failure::new(problem)))
     };
-    sweep.outputs.iter().map(value).collect()
+    asked.outputs.iter().map(value).collect()
 }
 
 /// Fills in what tables of earlier parts know; both are in the order of their keys.
-fn take_over(sweep: &Sweep, rows: &RowSet, others: &dyn Others, answers: &mut [Option<Answer>]) {
+fn take_over(asked: &Asked, rows: &RowSet, others: &dyn Others, answers: &mut [Option<Answer>]) {
     let (Some(first), Some(last)) = ((rows.len() > 0).then_some(0), rows.len().checked_sub(1)) else { return };
-    let schema = &sweep.schema;
+    let schema = &asked.schema;
     let keys: Vec<usize> = schema.key_columns().collect();
-    for table in others.earlier(TABLE, &key(sweep, rows, first), &key(sweep, rows, last)) {
+    for table in others.earlier(TABLE, &key(asked, rows, first), &key(asked, rows, last)) {
         if table.schema() != schema {
             continue;
         }
-        let known = Known::of(sweep, &table);
+        let known = Known::of(asked, &table);
         let mut at = 0;
         for (row, answer) in answers.iter_mut().enumerate().filter(|(_, answer)| answer.is_none()) {
-            let wanted = key(sweep, rows, row);
+            let wanted = key(asked, rows, row);
             let order = |at: usize| {
                 let cells = keys.iter().map(|key| table.columns()[*key].cell(at));
                 let pairs = cells.zip(&wanted).map(|(cell, wanted)| ordered(&cell, wanted));
@@ -249,18 +244,16 @@ fn ordered(one: &Cell, two: &Cell) -> std::cmp::Ordering {
 }
 
 /// The key of a row.
-fn key(sweep: &Sweep, rows: &RowSet, row: usize) -> Vec<Cell> {
-    if sweep.layout.is_drawn() {
-        return vec![Cell::from(rows.numbers[row])];
-    }
-    let cells = sweep.layout.columns.iter().zip(rows.shown(row));
-    cells
-        .map(
-            |(column, value)| {
+fn key(asked: &Asked, rows: &RowSet, row: usize) -> Vec<Cell> {
+    let numbers = rows.numbers(row).iter().map(|number| Cell::from(*number));
+    let keyed = asked.columns.iter().zip(rows.shown(row)).zip(&asked.is_key).filter(|(_, is_key)| **is_key);
+    let values =
+        keyed.map(
+            |((column, value), _)| {
                 if column.axis.multiple.is_some() { Cell::Integer(whole(*value)) } else { Cell::Float(*value) }
             },
-        )
-        .collect()
+        );
+    numbers.chain(values).collect()
 }
 
 fn whole(value: f64) -> i64 {
@@ -278,9 +271,9 @@ struct Known<'t> {
 }
 
 impl<'t> Known<'t> {
-    fn of(sweep: &Sweep, table: &'t Table) -> Self {
-        let values = sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name));
-        let outputs = sweep.outputs.iter().map(|output| table.floats(&output.column.name));
+    fn of(asked: &Asked, table: &'t Table) -> Self {
+        let values = asked.columns.iter().filter_map(|column| table.column(&column.axis.name));
+        let outputs = asked.outputs.iter().map(|output| table.floats(&output.column.name));
         Self { values: values.collect(), outputs: outputs.collect(), reasons: table.texts(REASON) }
     }
 
@@ -299,15 +292,14 @@ impl<'t> Known<'t> {
     }
 }
 
-fn made(sweep: &Sweep, rows: &RowSet, answers: Vec<Option<Answer>>) -> Result<Table, TableError> {
+fn made(asked: &Asked, rows: &RowSet, answers: Vec<Option<Answer>>) -> Result<Table, TableError> {
     let count = rows.len();
     let mut columns = Vec::new();
-    if sweep.layout.is_drawn() {
-        columns.push(Data::Integer(
-            rows.numbers.iter().map(|number| i64::try_from(*number).unwrap_or(i64::MAX)).collect(),
-        ));
+    for at in 0..asked.leading.len() {
+        let numbers = (0..count).map(|row| i64::try_from(rows.numbers(row)[at]).unwrap_or(i64::MAX));
+        columns.push(Data::Integer(numbers.collect()));
     }
-    for (index, column) in sweep.layout.columns.iter().enumerate() {
+    for (index, column) in asked.columns.iter().enumerate() {
         let values = (0..count).map(|row| rows.shown(row)[index]);
         columns.push(if column.axis.multiple.is_some() {
             Data::Integer(values.map(whole).collect())
@@ -315,7 +307,7 @@ fn made(sweep: &Sweep, rows: &RowSet, answers: Vec<Option<Answer>>) -> Result<Ta
             Data::Float(values.collect())
         });
     }
-    let mut outputs: Vec<Vec<f64>> = sweep.outputs.iter().map(|_| Vec::with_capacity(count)).collect();
+    let mut outputs: Vec<Vec<f64>> = asked.outputs.iter().map(|_| Vec::with_capacity(count)).collect();
     let mut reasons = Vec::with_capacity(count);
     for answer in answers {
         let (values, reason) = match answer {
@@ -330,5 +322,5 @@ fn made(sweep: &Sweep, rows: &RowSet, answers: Vec<Option<Answer>>) -> Result<Ta
     }
     columns.extend(outputs.into_iter().map(Data::Float));
     columns.push(Data::Text(reasons));
-    Table::from_columns(sweep.schema.clone(), columns)
+    Table::from_columns(asked.schema.clone(), columns)
 }

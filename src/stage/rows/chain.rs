@@ -1,4 +1,4 @@
-//! The stages that a sweep computes anew, and what they read of each other and of the study.
+//! The stages that are computed anew for rows, and what they read of each other and of the study.
 //!
 //! Each is built by its kind from its record with a row's values in it, and run as in the study. Must not know: what any of
 //! them computes.
@@ -9,14 +9,14 @@ use declare::record::Record;
 use declare::record::varied::{self, Varied};
 use studygraph::table::data::Table;
 
-use super::layout::Column;
+use super::Column;
 
 /// Why a row has no values.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Trouble {
     /// Its design cannot be, for this reason.
     Invalid(String),
-    /// The user stopped, or the sweep itself cannot go on.
+    /// The user stopped, or the stage that has the rows cannot go on.
     Failed(Failure),
 }
 
@@ -34,7 +34,7 @@ impl Trouble {
 /// Where the tables of a port come from.
 #[derive(Clone, Debug, PartialEq)]
 enum Source {
-    /// A port of the sweep.
+    /// A port of the stage that has the rows.
     Outer(usize),
     Link(usize),
 }
@@ -54,7 +54,7 @@ pub struct Link {
 /// All of them, each after those it reads; the asked one is the last.
 pub struct Chain {
     pub links: Vec<Link>,
-    /// What they read of the study, as ports of the sweep.
+    /// What they read of the study, as ports of the stage that has the rows.
     pub outer: Vec<Port>,
 }
 

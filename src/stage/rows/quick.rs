@@ -6,9 +6,10 @@
 //! from, how a number is read off a curve.
 
 use super::chain::{Chain, Tables, Trouble};
-use super::layout::{Class, Column};
 use super::numbers::{HARMONICS, Numbers};
 use super::output::Output;
+use super::{Class, Column};
+use crate::stage::cases::{DEVIATIONS, Deviations};
 use crate::stage::common::{self, Contact, Slices};
 use crate::stage::designs::{self, Element, NamedDesign};
 use crate::stage::{Context, Inputs};
@@ -27,13 +28,15 @@ const POSITIONS: &str = "positions";
 const ACCURACY: &str = "accuracy";
 const DESIGNS: &str = "designs";
 
-/// The short way of a sweep.
+/// The short way of rows.
 pub struct Quick {
     numbers: Numbers,
     /// The columns of the torque and of the design.
     torque: Option<usize>,
     fixed_torque: f64,
     source: DesignSource,
+    /// Whether the pair may be off as it is made and mounted.
+    deviates: bool,
     /// Of the asked stage.
     last: usize,
 }
@@ -59,6 +62,8 @@ pub struct Upstream {
 pub struct Before {
     sampled: Option<(Vec<u64>, CycleOfRow)>,
     design: Option<(Vec<u64>, Result<Design, String>)>,
+    /// The same as it is made and mounted.
+    off: Option<(Vec<u64>, Result<Design, String>)>,
 }
 
 /// A pair's cycle as a row has it sampled.
@@ -91,7 +96,8 @@ impl Quick {
             }
             None => DesignSource::Tables,
         };
-        Some(Self { numbers, torque, fixed_torque: torques[0], source, last })
+        let deviates = DEVIATIONS.iter().any(|(field, _)| record.entry(field).is_some());
+        Some(Self { numbers, torque, fixed_torque: torques[0], source, deviates, last })
     }
 
     /// The link whose record has the designs: it need not be run.
@@ -209,11 +215,27 @@ impl Quick {
                 before.design = Some((key, built));
             }
         }
+        let drawn = match (&upstream.design, &before.design) {
+            (Some(design), _) | (None, Some((_, Ok(design)))) => design,
+            (None, Some((_, Err(message)))) => return Err(message.clone()),
+            (None, None) => return Err("there is no design".to_owned()),
+        };
+        if self.deviates {
+            let key = [bits(Class::Design), bits(Class::Deviation)].concat();
+            if before.off.as_ref().is_none_or(|(old, _)| *old != key) {
+                let record = chain.record(self.last, columns, row);
+                let off = match &Deviations::read(&record).combinations()[..] {
+                    [one] => one.on(drawn, &upstream.pair).map_err(|wrong| wrong.message),
+                    _ => Err("a row has one value of each field".to_owned()),
+                };
+                before.off = Some((key, off));
+            }
+        }
         let Some((_, sampled)) = &before.sampled else { return Err(String::new()) };
-        match (&upstream.design, &before.design) {
-            (Some(design), _) | (None, Some((_, Ok(design)))) => Ok((sampled, design)),
-            (None, Some((_, Err(message)))) => Err(message.clone()),
-            (None, None) => Err("there is no design".to_owned()),
+        match &before.off {
+            Some((_, Ok(design))) => Ok((sampled, design)),
+            Some((_, Err(message))) => Err(message.clone()),
+            None => Ok((sampled, drawn)),
         }
     }
 }
@@ -225,6 +247,10 @@ pub fn sampling(record: &Record) -> Settings {
         _ => Settings::default().positions,
     };
     common::settings(positions, Slices::read(record), Contact::read(record))
+}
+
+fn is_deviation(field: &str) -> bool {
+    field == Deviations::NAMES.bearing_span || DEVIATIONS.iter().any(|(name, _)| *name == field)
 }
 
 /// Whether a record has designs by name.
@@ -244,6 +270,7 @@ pub fn class(record: &Record, is_last: bool, slot: &[usize]) -> Class {
     match field {
         Some(DESIGNS) if !is_last && has_designs(record) => Class::Design,
         Some(TORQUE) if is_last && record.entry(DESIGNS).is_some() => Class::Torque,
+        Some(field) if is_last && record.entry(DESIGNS).is_some() && is_deviation(field) => Class::Deviation,
         _ if is_last => Class::Sampling,
         _ => Class::Upstream,
     }
@@ -257,10 +284,13 @@ pub fn names(record: &Record) -> Vec<&str> {
     }
 }
 
-/// The torques of the asked stage, where it has several and none is varied.
-pub fn several_torques(record: &Record) -> Option<&PlacedValue> {
-    let entry = record.entry(TORQUE).filter(|_| record.entry(DESIGNS).is_some())?;
-    matches!(&entry.value, Value::Axis(torques) if torques.len() > 1).then_some(entry)
+/// A field of the asked stage of which it has several values and none is varied, where it loads a pair.
+pub fn several(record: &Record, is_varied: impl Fn(&str) -> bool) -> Option<(&'static str, &PlacedValue)> {
+    record.entry(DESIGNS)?;
+    let fields = std::iter::once(TORQUE).chain(DEVIATIONS.map(|(field, _)| field));
+    fields
+        .filter_map(|field| Some((field, record.entry(field)?)))
+        .find(|(field, entry)| matches!(&entry.value, Value::Axis(values) if values.len() > 1) && !is_varied(field))
 }
 
 fn elements<'r>(record: &'r Record, design: &str) -> Option<&'r [PlacedValue]> {

@@ -1,0 +1,320 @@
+//! `kind: scatter`: what a stage gives where fields of the study, or of what it reads, are not quite what they should be.
+//!
+//! Samples are computed in parts that are kept by themselves, as the rows of a sweep are. Must not know: how a transmission
+//! error is found.
+
+mod correlation;
+mod distributions;
+mod layout;
+mod results;
+mod tables;
+
+use std::sync::Arc;
+
+use self::correlation::{Copula, Correlation};
+use self::layout::{Layout, Method};
+use self::results::{SHARES, Tally};
+use crate::stage::limit::Limit;
+use crate::stage::rows::computed::{self, REASON, TABLE};
+use crate::stage::rows::{Asked, Column as Field, Question};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Others, Parts, Port, RowCount, Stage};
+use declare::Declared;
+use declare::declared::{Declared, Placed};
+use declare::digest::{Digest, Writer};
+use declare::error::{Diagnostic, Failure};
+use declare::record::Record;
+use declare::record::varied::Varied;
+use declare::units::RATIO;
+use gearmesh::numeric::distribution::Distribution;
+use gearmesh::numeric::replicates::REPLICATES;
+use gearmesh::optimize::sobol::MOST_VARIABLES;
+use studygraph::table::data::{Table, TableError};
+use studygraph::table::schema::{Column, Schema};
+
+pub const KIND: Kind = Kind {
+    name: "scatter",
+    version: 1,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
+    curves: &[],
+    example: "
+kind: scatter
+of: ste
+vary:
+  amount: { field: \"modification.designs.relieved[0].tip_relief.amount\", within: ± 2 um }
+  tilt: { field: ste.helix_slope, normal: 5 um }
+  torque: { field: ste.torque, values: [25 N m, 50 N m] }
+samples: 128
+indices: 64
+outputs: [peak_to_peak]
+limits: [peak_to_peak <= 3 um]
+",
+    build,
+};
+
+/// How the numbers of a stage scatter where fields are not quite what they should be: samples, quantiles, yields, indices.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The stage whose numbers are asked; it and what it reads are as in the study but for what is varied.
+    #[declared(kinds = ["ste", "stiffness"])]
+    pub of: String,
+    /// Names of columns, with fields and how they are distributed; at `values` of a field every sample is looked at.
+    #[declared(varies = Stated::NAMES.of)]
+    pub vary: Varied,
+    /// Where samples come from.
+    #[declared(default = "sobol")]
+    pub method: Method,
+    /// How many samples are drawn.
+    #[declared(minimum = 16, maximum = 1_000_000_000, default = "1024")]
+    pub samples: usize,
+    /// How many of them also come with each field as another point has it, for Sobol' indices; 0 for none.
+    #[declared(minimum = 0, maximum = 100_000_000, default = "512")]
+    pub indices: usize,
+    /// Which fields go together, and how closely.
+    pub correlations: Option<Vec<Correlation>>,
+    /// Columns of the stage's tables: `column` of its summary, `table.column` or `table[key=value, …].column`.
+    #[declared(example = "peak_to_peak")]
+    pub outputs: Vec<Placed<String>>,
+    /// What the outputs should keep to; the table `yield` says how many samples do.
+    #[declared(example = "peak_to_peak <= 1 um")]
+    pub limits: Option<Vec<Placed<String>>>,
+    /// Shares of the samples whose quantiles are found; 1, 5, 25, 50, 75, 95 and 99 % unless it is said.
+    #[declared(minimum = 0.0, maximum = 1.0, dimension = RATIO, axis = usize::MAX, example = "99.7 %")]
+    pub quantiles: Option<Vec<f64>>,
+    /// The design that is meant, where the stage is given several.
+    #[declared(example = "long")]
+    pub design: Option<Placed<String>>,
+}
+
+/// Those of its fields that say which rows there are, and what is made of all of them.
+const OF_ROWS: &[&str] = &[
+    Stated::NAMES.vary,
+    Stated::NAMES.method,
+    Stated::NAMES.samples,
+    Stated::NAMES.indices,
+    Stated::NAMES.correlations,
+    Stated::NAMES.limits,
+    Stated::NAMES.quantiles,
+];
+
+/// The columns that tell rows apart, beside those that every sample is looked at with.
+const NUMBER: &str = "sample";
+const REPLACED: &str = "replaced";
+
+/// A scatter.
+pub struct Scatter {
+    asked: Asked,
+    layout: Layout,
+    limits: Vec<Limit>,
+    shares: Vec<f64>,
+    /// Whether indices were wanted and cannot be.
+    is_correlated: bool,
+    parts: Arc<Parts>,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+    let stated = Stated::checked(record)?;
+    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)));
+    if stated.vary.axes.is_empty() {
+        return nothing(Stated::NAMES.vary);
+    }
+    if stated.outputs.is_empty() {
+        return nothing(Stated::NAMES.outputs);
+    }
+    let question = Question {
+        of: &stated.of,
+        varied: stated.vary.clone(),
+        outputs: &stated.outputs,
+        design: stated.design.as_ref(),
+        reserved: &[NUMBER, REPLACED, REASON, "output", "share", "field", "limit", "case", "bin"],
+    };
+    let prepared = question.prepared()?;
+    let distributions: Vec<Option<Distribution>> = prepared
+        .columns
+        .iter()
+        .map(|column| distributions::of_column(column, &prepared.varied))
+        .collect::<Result<_, _>>()?;
+    let drawn: Vec<&Field> =
+        prepared.columns.iter().zip(&distributions).filter_map(|(column, found)| found.map(|_| column)).collect();
+    if drawn.is_empty() {
+        return Err(Diagnostic::new("nothing is distributed: all that is varied has values")
+            .at(record.place_of(Stated::NAMES.vary))
+            .help("write for example `within: ± 2 um`; combinations of values are `kind: sweep`"));
+    }
+    let correlations = stated.correlations.as_deref().unwrap_or_default();
+    let copula = Copula::new(correlations, &drawn)?;
+    let pairs = if copula.is_some() { 0 } else { stated.indices };
+    if pairs > 0 && pairs < 2 * REPLICATES {
+        let message = format!("`indices` is {pairs}; with fewer than {} they have no errors", 2 * REPLICATES);
+        let help = "take more, or 0 for none";
+        return Err(Diagnostic::new(message).at(record.place_of(Stated::NAMES.indices)).help(help));
+    }
+    // Pairs of points have twice as many coordinates.
+    if stated.method == Method::Sobol && 2 * drawn.len() > MOST_VARIABLES {
+        let message =
+            format!("Sobol points are tabulated for at most {} fields here, not {}", MOST_VARIABLES / 2, drawn.len());
+        let place = record.place_of(Stated::NAMES.vary);
+        return Err(Diagnostic::new(message).at(place).help("use `method: latin_hypercube`"));
+    }
+    let layout = Layout::new(&prepared.columns, &distributions, stated.method, [stated.samples, pairs], copula.clone());
+    let number = Column::integer(NUMBER, "Counts the samples in the order in which they are drawn, from 1.").key();
+    let replaced = "0 for the sample itself; otherwise counts the field that another point has, in the order of the \
+                    columns, and after them all fields together.";
+    let leading = vec![number, Column::integer(REPLACED, replaced).key()];
+    let is_key: Vec<bool> = distributions.iter().map(Option::is_none).collect();
+    let names: Vec<String> = prepared.columns.iter().map(|column| column.axis.name.clone()).collect();
+    let keyed = |column: &Field| names.iter().position(|name| *name == column.axis.name).is_some_and(|at| is_key[at]);
+    let (asked, varied) = prepared.asked(leading, keyed)?;
+    let columns: Vec<(&str, &str)> =
+        asked.outputs.iter().map(|output| (output.column.name.as_str(), output.column.unit.as_str())).collect();
+    let limits = stated.limits.iter().flatten().map(|text| Limit::read(&text.value, text.place, &columns));
+    let limits = limits.collect::<Result<Vec<_>, _>>()?;
+    let shares = stated.quantiles.clone().unwrap_or_else(|| SHARES.to_vec());
+    let is_correlated = copula.is_some() && stated.indices > 0;
+    let parts = Parts { fields: OF_ROWS, shared: Digest([0; 32]), each: Vec::new(), last_is_of_all: true };
+    let mut scatter = Scatter { asked, layout, limits, shares, is_correlated, parts: Arc::new(parts) };
+    scatter.parts = Arc::new(scatter.cut(&varied));
+    Ok(Box::new(scatter))
+}
+
+impl Scatter {
+    /// The columns that are distributed, and those at whose values every sample is looked at.
+    fn drawn(&self) -> impl Iterator<Item = &Field> {
+        self.asked.columns.iter().enumerate().filter(|(at, _)| !self.layout.is_crossed(*at)).map(|(_, column)| column)
+    }
+
+    fn crossed(&self) -> impl Iterator<Item = &Field> {
+        self.asked.columns.iter().enumerate().filter(|(at, _)| self.layout.is_crossed(*at)).map(|(_, column)| column)
+    }
+
+    fn cut(&self, varied: &Varied) -> Parts {
+        let mut shared = Writer::new("gearstudy 1 scatter rows");
+        varied.write_shared(&mut shared);
+        for column in &self.asked.columns {
+            shared.text(&column.axis.name);
+        }
+        let mut each: Vec<Digest> = (0..self.layout.parts()).map(|part| self.layout.digest(part)).collect();
+        let mut all = Writer::new("gearstudy 1 scatter of all");
+        all.count(self.layout.samples).count(self.layout.pairs).floats(&self.shares).count(self.limits.len());
+        for limit in &self.limits {
+            all.text(&limit.text);
+        }
+        all.count(each.len());
+        for digest in &each {
+            all.digest(digest);
+        }
+        each.push(all.finish());
+        Parts { fields: OF_ROWS, shared: shared.finish(), each, last_is_of_all: true }
+    }
+
+    /// What so many rows take, and what is made of all of them.
+    fn estimated(&self, demand: &Demand, rows: RowCount, of_all: bool) -> Estimate {
+        let mut estimate = self.asked.estimate(demand, rows);
+        for (schema, rows) in results::schemas(self).into_iter().zip(results::foreseen(self)) {
+            estimate = estimate.rows(demand, schema, if of_all { rows } else { RowCount::NONE });
+        }
+        if of_all { estimate.holding(results::held(self)) } else { estimate }
+    }
+
+    /// The rows of a part.
+    fn rows(&self, part: usize, (context, inputs): (&Context, &Inputs), others: &dyn Others) -> Result<Table, Failure> {
+        computed::table(&self.asked, &self.layout.rows(part, &context.seed), (context, inputs), others)
+    }
+
+    /// The tables of a part without those made of all.
+    fn of_part(&self, part: usize, given: (&Context, &Inputs), others: &dyn Others) -> Result<Vec<Table>, Failure> {
+        let mut tables = vec![self.rows(part, given, others)?];
+        for schema in results::schemas(self) {
+            tables.push(Table::from_rows(schema, Vec::new()).map_err(|error| Failure::new(error.to_string()))?);
+        }
+        Ok(tables)
+    }
+
+    /// The tables made of all parts, of which `of_part` gives the rows.
+    fn of_all(
+        &self,
+        context: &Context,
+        of_part: &mut dyn FnMut(usize) -> Result<Arc<Table>, Failure>,
+    ) -> Result<Vec<Table>, Failure> {
+        let failed = |error: TableError| Failure::new(error.to_string());
+        let mut tally = Tally::new(self);
+        for part in 0..self.layout.parts() {
+            context.check_stop()?;
+            tally.add(&*of_part(part)?);
+        }
+        let mut tables = vec![Table::from_rows(self.asked.schema.clone(), Vec::new()).map_err(failed)?];
+        if let Some(sentence) = tally.warning() {
+            (context.warn)(sentence.into());
+        }
+        tables.extend(tally.tables().map_err(failed)?);
+        Ok(tables)
+    }
+}
+
+impl Stage for Scatter {
+    fn inputs(&self) -> Vec<Port> {
+        self.asked.ports().to_vec()
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        let mut schemas = vec![self.asked.schema.clone()];
+        schemas.extend(results::schemas(self));
+        schemas
+    }
+
+    fn uses_seed(&self) -> bool {
+        true
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        self.estimated(demand, RowCount::exact(self.layout.count()), true)
+    }
+
+    fn estimate_part(&self, part: usize, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        if part == self.layout.parts() {
+            let estimate = self.estimated(demand, RowCount::NONE, true);
+            return estimate.taking(self.layout.count() as f64 * results::SECONDS_OF_ROW);
+        }
+        self.estimated(demand, RowCount::exact(self.layout.count_of(part)), false)
+    }
+
+    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
+        let mut omissions: Vec<Omission> = self.asked.left_out().into_iter().collect();
+        if self.is_correlated {
+            let why = "fields are correlated, and what one of them explains by itself is then not defined";
+            omissions.push(Omission::new("Sobol' indices", why));
+        }
+        omissions
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let alone = studygraph::stage::parts::Alone;
+        let mut parts = Vec::new();
+        for part in 0..self.layout.parts() {
+            parts.push(Arc::new(self.rows(part, (context, inputs), &alone)?));
+        }
+        let mut tables = self.of_all(context, &mut |part| Ok(Arc::clone(&parts[part])))?;
+        let rows = Table::concatenated(parts.into_iter().map(Arc::unwrap_or_clone).collect());
+        if let Some(rows) = rows.map_err(|error| Failure::new(error.to_string()))? {
+            tables[0] = rows;
+        }
+        Ok(tables)
+    }
+
+    fn parts(&self) -> Option<Parts> {
+        Some(Parts::clone(&self.parts))
+    }
+
+    fn run_part(
+        &self,
+        part: usize,
+        context: &Context,
+        inputs: &Inputs,
+        others: &dyn Others,
+    ) -> Result<Vec<Table>, Failure> {
+        if part < self.layout.parts() {
+            return self.of_part(part, (context, inputs), others);
+        }
+        self.of_all(context, &mut |part| others.of_part(part, TABLE))
+    }
+}
