@@ -5,8 +5,11 @@
 //! have to be off by more than any was. A simplex then goes down from the best of them, with all as asked for, after another
 //! with a sampling between where there is one. Samples and `search: plain` look at every design as asked for. Must not know: how a method searches, what becomes a table.
 
+mod closer;
+
 use rayon::prelude::*;
 
+use self::closer::{EDGES, FOR_EACH_CORNER};
 use super::goal::Worth;
 use super::sampling::{coarser, finer};
 use super::{EVALUATIONS, Optimizer};
@@ -15,12 +18,12 @@ use declare::error::Failure;
 use declare::number::significant;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
+use gearmesh::optimize::Foreseen;
 use gearmesh::optimize::constraints::{Evaluation, KEPT};
-use gearmesh::optimize::leaders::{Leader, Leaders};
+use gearmesh::optimize::leaders::Leaders;
 use gearmesh::optimize::pareto::{self, Member};
 use gearmesh::optimize::search::{Candidate, Generation, Optimizer as Search, Reason};
 use gearmesh::optimize::settled::Settled;
-use gearmesh::optimize::{self, Foreseen};
 
 /// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
 const ROUNDS: usize = 4;
@@ -31,13 +34,6 @@ const CLOSER: usize = 1;
 /// Places that are looked at as asked for, at most, and at once.
 const PLACES: usize = 64;
 const AT_ONCE: usize = 8;
-/// Edges of the simplex that begins at the best of them, as shares of each range: with the sampling between, which may have its
-/// minimum elsewhere than the coarse one, and with the asked one.
-const EDGES: [f64; 2] = [0.1, 0.02];
-/// Evaluations of a simplex, at most, and those without a gain after which it has settled, for each of its corners.
-const FOR_EACH_CORNER: usize = 60;
-const WITHOUT_GAIN: usize = 16;
-
 /// The pass that looks for a design; what follows it looks closer.
 const SEARCH: &str = "search";
 
@@ -215,92 +211,6 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The best of the leaders as asked for. The values of those that are not looked at would have to be off by more than
-    /// those of any that are.
-    fn confirm(&mut self, asked: Settings) -> Result<Candidate, Failure> {
-        let leaders: Vec<Leader> = self.leaders.all().to_vec();
-        let mut best: Option<Candidate> = None;
-        let mut off = 0.0_f64;
-        let mut looked = 0;
-        for some in leaders.chunks(AT_ONCE) {
-            if let Some(best) = &best
-                && some.iter().all(|leader| !may_lead(leader, best, off))
-            {
-                break;
-            }
-            let points: Vec<Vec<f64>> = some.iter().map(|leader| leader.point.clone()).collect();
-            let cycle = self.base.sampled(asked);
-            let evaluations = self.evaluate(&cycle, &points)?;
-            looked += points.len();
-            for (leader, evaluation) in some.iter().zip(&evaluations) {
-                let (value, violation) = (evaluation.value, evaluation.violation());
-                if value < f64::INFINITY {
-                    off = off.max((leader.value - value).abs() / value.abs().max(f64::MIN_POSITIVE));
-                    let found = Candidate { point: leader.point.clone(), value, violation };
-                    if best.as_ref().is_none_or(|best| (violation, value) < (best.violation, best.value)) {
-                        best = Some(found);
-                    }
-                }
-            }
-            self.note(&evaluations);
-        }
-        let best = best.ok_or_else(|| self.optimizer.nothing_built(self.pair))?;
-        let ended = format!("coarse values are off by up to {} %", significant(100.0 * off, 2));
-        self.passes.push(Pass { what: "confirm", settings: asked, evaluations: looked, best: best.value, ended });
-        Ok(best)
-    }
-
-    /// Which of two designs is better as asked for, where only the first one's value is.
-    fn better(&mut self, one: Candidate, other: Candidate, asked: Settings) -> Result<Candidate, Failure> {
-        let cycle = self.base.sampled(asked);
-        let evaluations = self.evaluate(&cycle, std::slice::from_ref(&other.point))?;
-        self.note(&evaluations);
-        let (value, violation) = (evaluations[0].value, evaluations[0].violation());
-        let is_better = value < f64::INFINITY && (violation, value) < (one.violation, one.value);
-        Ok(if is_better { Candidate { value, violation, ..other } } else { one })
-    }
-
-    /// Down from a design.
-    fn refine(
-        &mut self,
-        from: &Candidate,
-        settings: Settings,
-        (edge, rule): (f64, Settled),
-    ) -> Result<Candidate, Failure> {
-        let bounds = self.optimizer.bounds().map_err(|wrong| Failure::new(wrong.message))?;
-        let corners = bounds.dimension() + 1;
-        let rule = Settled { evaluations: WITHOUT_GAIN * corners, ..rule };
-        let search = optimize::refinement(bounds, &from.point, edge, refined(corners - 1));
-        let mut search = search.until_settled(rule);
-        self.run(&mut search, settings, "refine")?;
-        // It began at that design.
-        Ok(search.best().cloned().unwrap_or_else(|| from.clone()))
-    }
-
-    /// The points of a front as asked for: those that still are on it.
-    fn confirmed(&mut self, members: &[Member], asked: Settings, ended: String) -> Result<Found, Failure> {
-        if members.is_empty() {
-            return Err(self.nothing_kept());
-        }
-        let points: Vec<Vec<f64>> = members.iter().map(|member| member.point.clone()).collect();
-        let cycle = self.base.sampled(asked);
-        let evaluations = self.evaluate(&cycle, &points)?;
-        self.note(&evaluations);
-        let looked = points.len();
-        let again: Vec<Member> =
-            points.into_iter().zip(evaluations).map(|(point, evaluation)| Member { point, evaluation }).collect();
-        let mut front = pareto::front(&again);
-        front.sort_by(|a, b| a.evaluation.value.total_cmp(&b.evaluation.value));
-        let front = pareto::thinned(front, self.optimizer.stated.front_points);
-        let balanced = pareto::balanced(&front).ok_or_else(|| self.nothing_kept())?;
-        let best = Candidate { point: balanced.point.clone(), value: balanced.evaluation.value, violation: 0.0 };
-        let left = format!("{} of {looked} points are on the front", front.len());
-        self.passes.push(Pass { what: "confirm", settings: asked, evaluations: looked, best: best.value, ended: left });
-        let error = self.optimizer.error(self.base, self.pair, &best.point, asked);
-        self.is_accurate(error);
-        Ok(self.finish(best, front, (asked, error), ended))
-    }
-
     fn finish(
         &mut self,
         best: Candidate,
@@ -448,11 +358,4 @@ impl<'a> Run<'a> {
         }
         Failure::new(format!("no design that was tried keeps {}", never.join(" or ")))
     }
-}
-
-/// Whether a leader may be better than what was looked at, if its value is off by no more than any was.
-fn may_lead(leader: &Leader, best: &Candidate, off: f64) -> bool {
-    let least = leader.value - off * leader.value.abs();
-    // A constraint that is broken in a coarse look may be kept in a closer one.
-    least < best.value && leader.violation <= best.violation + off
 }

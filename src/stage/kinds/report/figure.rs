@@ -384,7 +384,9 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar, drawing, map, front, chart, histogram, quantiles or tornado.", |row| row.kind.word())
+        .text("kind", "Line, points, bar, drawing, map, front, chart, histogram, quantiles or tornado.", |row| {
+            row.kind.word()
+        })
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))

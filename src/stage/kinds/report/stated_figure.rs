@@ -180,7 +180,11 @@ pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnosti
     }
     if stated.kind != How::Map {
         let of_maps = [
-            (NAMES.value, stated.value.is_some() && stated.kind != How::Histogram, "is the column that a map shows as colours"),
+            (
+                NAMES.value,
+                stated.value.is_some() && stated.kind != How::Histogram,
+                "is the column that a map shows as colours",
+            ),
             (NAMES.isolines, stated.isolines, "are lines over a map"),
             (NAMES.best, stated.best != Best::None, "is a cell of a map"),
         ];
