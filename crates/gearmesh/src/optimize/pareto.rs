@@ -154,7 +154,9 @@ impl Archive {
 #[must_use]
 pub fn front(members: &[Member]) -> Vec<Member> {
     let mut archive = Archive::default();
-    members.iter().for_each(|member| archive.add(&member.point, &member.evaluation));
+    for member in members {
+        archive.add(&member.point, &member.evaluation);
+    }
     archive.0.into_iter().map(|(_, member)| member).collect()
 }
 
