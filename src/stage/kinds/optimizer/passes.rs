@@ -136,7 +136,7 @@ impl<'a> Run<'a> {
 
     /// Says which objectives no design of a search changed.
     fn is_changed(&self, evaluations: usize) {
-        let same = self.extent.iter().zip(self.optimizer.goal.objectives()).filter(|((least, most), _)| least == most);
+        let same = self.extent.iter().zip(self.optimizer.goal.objectives()).filter(|((least, most), _)| least >= most);
         let same: Vec<String> = same.map(|(_, objective)| format!("`{}`", objective.column)).collect();
         if evaluations > 1 && !same.is_empty() {
             let names = same.join(" and ");

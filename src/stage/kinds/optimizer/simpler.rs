@@ -15,6 +15,7 @@ use gearmesh::gear::modification::curve::Curve;
 use gearmesh::gear::modification::relief::{Amount, FromTip, Start};
 use gearmesh::gear::modification::tip_relief::TipRelief;
 use gearmesh::gear::modification::{Design, Gears};
+use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
@@ -58,7 +59,7 @@ impl Optimizer {
     fn long_relief(&self, found: &Found, pair: &GearPair, cycle: &MeshCycle) -> Option<Long> {
         let design = self.template.design(pair, &found.best.point).ok()?;
         let deflections = self.of_cases(pair, &design, |design, torque| {
-            LoadCase::new(cycle, design, torque).asked(Default::default()).largest.value
+            LoadCase::new(cycle, design, torque).asked(Asked::default()).largest.value
         });
         let most = 2.0 * deflections?.into_iter().fold(0.0, f64::max);
         let (mut from, mut to) = (0.0, most);

@@ -163,7 +163,7 @@ pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnosti
     const NAMES: StatedFigureNames = StatedFigure::NAMES;
     let refused = |field: &str, message: &str| Err(Diagnostic::new(message).at(record.place_of(field)));
     let marked_places = [(NAMES.marked_x, &stated.marked_x), (NAMES.marked_y, &stated.marked_y)];
-    for (field, _) in marked_places.iter().filter(|(_, column)| column.is_some() && stated.marked.is_none()) {
+    if let Some((field, _)) = marked_places.iter().find(|(_, column)| column.is_some() && stated.marked.is_none()) {
         return refused(field, &format!("`{field}` is a column of the table `marked`, which is not given"));
     }
     let has_rows = matches!(stated.kind, How::Histogram | How::Quantiles | How::Tornado);
