@@ -119,7 +119,7 @@ impl Measure {
             let help = if written.starts_with(HARMONICS) {
                 format!("a harmonic is written `{HARMONICS}[{ORDER}=1].{AMPLITUDE}`, its order at most {HIGHEST_ORDER}")
             } else {
-                format!("{}, or `{HARMONICS}[{ORDER}=1].{AMPLITUDE}`", suggest(written, names()))
+                format!("{}; a harmonic is `{HARMONICS}[{ORDER}=1].{AMPLITUDE}`", suggest(written, names()))
             };
             Diagnostic::new(format!("`{written}` is no number of a curve that a design can change")).help(help)
         })

@@ -9,7 +9,7 @@ mod closer;
 
 use rayon::prelude::*;
 
-use self::closer::{EDGES, FOR_EACH_CORNER};
+use self::closer::{ASKED, BETWEEN};
 use super::goal::Worth;
 use super::sampling::{coarser, finer};
 use super::{EVALUATIONS, Optimizer};
@@ -91,17 +91,13 @@ pub struct Run<'a> {
 
 /// What comes on top of what a method foresees, where a search is staged.
 pub fn on_top(foreseen: Foreseen, dimension: usize) -> Foreseen {
-    let more = PLACES + CLOSER + (CLOSER + ROUNDS) * refined(dimension);
+    let more = PLACES + CLOSER + CLOSER * BETWEEN.evaluations(dimension) + ROUNDS * ASKED.evaluations(dimension);
     Foreseen {
         evaluations: foreseen.evaluations.saturating_add(more),
         batches: foreseen.batches.saturating_add(more),
         exact: false,
         ..foreseen
     }
-}
-
-fn refined(dimension: usize) -> usize {
-    FOR_EACH_CORNER * (dimension + 1)
 }
 
 impl<'a> Run<'a> {
@@ -136,7 +132,11 @@ impl<'a> Run<'a> {
 
     /// Says which objectives no design of a search changed.
     fn is_changed(&self, evaluations: usize) {
-        let same = self.extent.iter().zip(self.optimizer.goal.objectives()).filter(|((least, most), _)| least >= most);
+        let same = self
+            .extent
+            .iter()
+            .zip(self.optimizer.goal.objectives())
+            .filter(|((least, most), _)| least.is_finite() && least >= most);
         let same: Vec<String> = same.map(|(_, objective)| format!("`{}`", objective.column)).collect();
         if evaluations > 1 && !same.is_empty() {
             let names = same.join(" and ");
@@ -179,7 +179,7 @@ impl<'a> Run<'a> {
         let rule = self.optimizer.rule();
         let mut search = self.search()?.until_settled(rule);
         let dimension = self.optimizer.template.variables().len();
-        self.budget = (search.budget() + PLACES + refined(dimension)).max(1) as f64;
+        self.budget = (search.budget() + PLACES + ASKED.evaluations(dimension)).max(1) as f64;
         let coarse = coarser(asked);
         let reason = self.run(&mut search, coarse[0], SEARCH)?;
         self.doubt(&mut search);
@@ -192,13 +192,13 @@ impl<'a> Run<'a> {
         }
         let mut from = self.confirm(asked)?;
         for closer in &coarse[1..] {
-            let candidate = self.refine(&from, *closer, (EDGES[0], rule))?;
+            let candidate = self.refine(&from, *closer, BETWEEN, rule)?;
             from = self.better(from, candidate, asked)?;
         }
         let mut settings = asked;
         let mut round = 1;
         loop {
-            let best = self.refine(&from, settings, (EDGES[1], rule))?;
+            let best = self.refine(&from, settings, ASKED, rule)?;
             let error = self.optimizer.error(self.base, self.pair, &best.point, settings);
             match self.next_settings(&best.point, settings, error).filter(|_| round < ROUNDS) {
                 Some(next) => (from, settings, round) = (best, next, round + 1),

@@ -38,21 +38,24 @@ impl Optimizer {
         }
         let Some(long) = self.long_relief(found, pair, cycle) else { return };
         let (best, gain) = (found.best.value, self.rule().improvement);
-        if long.value - best <= gain * best.abs() {
-            let [more, amount] = [long.value / best - 1.0, long.amount];
-            (context.warn)(
-                format!(
-                    "a simpler design is as good: linear tip relief of both gears by {} um from the highest point of single \
-                     contact (`tip_relief: {{ gear: both, amount: {} um, fraction: 1, curve: linear }}`) has an objective \
-                     that is {} % larger, and {} % is what counts as a gain",
-                    significant(in_unit(amount, "um"), 4),
-                    significant(in_unit(amount, "um"), 4),
-                    significant(100.0 * more, 2),
-                    significant(100.0 * gain, 2),
-                )
-                .into(),
-            );
+        if long.value - best > gain * best.abs() {
+            return;
         }
+        let amount = significant(in_unit(long.amount, "um"), 4);
+        let what = if long.amount > 0.0 {
+            format!(
+                "linear tip relief of both gears by {amount} um from the highest point of single contact (`tip_relief: \
+                 {{ gear: both, amount: {amount} um, fraction: 1, curve: linear }}`)"
+            )
+        } else {
+            "no modification at all".to_owned()
+        };
+        let [more, counts] = [long.value / best - 1.0, gain].map(|share| significant(100.0 * share, 2));
+        let said = format!(
+            "a simpler design is as good: {what}, whose objective is larger by {more} %, and {counts} % is what counts as \
+             a gain"
+        );
+        (context.warn)(said.into());
     }
 
     /// The best amount that keeps the constraints.

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how a method searches.
 
-use super::{AT_ONCE, Found, Pass, Run, refined};
+use super::{AT_ONCE, Found, Pass, Run};
 use declare::error::Failure;
 use declare::number::significant;
 use gearmesh::gear::transmission_error::cycle::Settings;
@@ -12,12 +12,27 @@ use gearmesh::optimize::pareto::{self, Member};
 use gearmesh::optimize::search::Candidate;
 use gearmesh::optimize::settled::Settled;
 
-/// Edges of the simplex that begins at the best of them, as shares of each range: with the sampling between, which may have its
-/// minimum elsewhere than the coarse one, and with the asked one.
-pub(super) const EDGES: [f64; 2] = [0.1, 0.02];
-/// Evaluations of a simplex, at most, and those without a gain after which it has settled, for each of its corners.
-pub(super) const FOR_EACH_CORNER: usize = 60;
-const WITHOUT_GAIN: usize = 16;
+/// How a simplex goes down.
+#[derive(Clone, Copy)]
+pub(super) struct Descent {
+    /// Its first edges, as a share of each range.
+    edge: f64,
+    /// For each of its corners: evaluations at most, and those without a gain after which it has settled.
+    most: usize,
+    without_gain: usize,
+}
+
+/// With the sampling between, whose minimum may be elsewhere than the coarse one's; it is cheap enough to follow a kink.
+pub(super) const BETWEEN: Descent = Descent { edge: 0.1, most: 250, without_gain: 40 };
+/// From there, as asked for.
+pub(super) const ASKED: Descent = Descent { edge: 0.02, most: 60, without_gain: 16 };
+
+impl Descent {
+    /// At most, with so many variables.
+    pub(super) fn evaluations(self, dimension: usize) -> usize {
+        self.most * (dimension + 1)
+    }
+}
 
 impl Run<'_> {
     /// The best of the leaders as asked for. The values of those that are not looked at would have to be off by more than
@@ -70,12 +85,13 @@ impl Run<'_> {
         &mut self,
         from: &Candidate,
         settings: Settings,
-        (edge, rule): (f64, Settled),
+        descent: Descent,
+        rule: Settled,
     ) -> Result<Candidate, Failure> {
         let bounds = self.optimizer.bounds().map_err(|wrong| Failure::new(wrong.message))?;
-        let corners = bounds.dimension() + 1;
-        let rule = Settled { evaluations: WITHOUT_GAIN * corners, ..rule };
-        let search = optimize::refinement(bounds, &from.point, edge, refined(corners - 1));
+        let dimension = bounds.dimension();
+        let rule = Settled { evaluations: descent.without_gain * (dimension + 1), ..rule };
+        let search = optimize::refinement(bounds, &from.point, descent.edge, descent.evaluations(dimension));
         let mut search = search.until_settled(rule);
         self.run(&mut search, settings, "refine")?;
         // It began at that design.
