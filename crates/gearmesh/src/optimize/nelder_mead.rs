@@ -75,12 +75,14 @@ enum Step {
 /// it has no use for rounds with multipliers, which come from outside.
 pub(super) struct Refinement(Restarted<SimplexSearch>);
 
-/// Extent at which a refinement has converged.
-const REFINED: f64 = 1e-6;
+/// Extent at which a refinement begins again, or looks for a kink: fine enough for gains of a thousandth, and reached before
+/// patience ends.
+const REFINED: f64 = 1e-4;
+const AGAIN: usize = 10;
 
 impl Refinement {
     pub(super) fn new(start: Vec<f64>, edge: f64, evaluations: usize) -> Self {
-        let limits = Limits { tolerance: REFINED, restarts: 3, evaluations };
+        let limits = Limits { tolerance: REFINED, restarts: AGAIN, evaluations };
         Self(Restarted::new(SimplexSearch::new(start, None, edge, REFINED), edge, limits))
     }
 }

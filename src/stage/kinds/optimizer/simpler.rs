@@ -8,6 +8,7 @@
 use super::Optimizer;
 use super::passes::Found;
 use crate::stage::Context;
+use declare::error::Failure;
 use declare::number::significant;
 use declare::units::in_unit;
 use gearmesh::gear::geometry::GearPair;
@@ -18,10 +19,12 @@ use gearmesh::gear::modification::{Design, Gears};
 use gearmesh::gear::transmission_error::asked::Asked;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
+use gearmesh::optimize;
+use gearmesh::optimize::bounds::Bounds;
 
-/// Amounts that are tried: evenly, and then twice between the neighbours of the best.
+/// Amounts that are tried evenly, and evaluations of a simplex that begins at the best of them, at most.
 const AMOUNTS: usize = 6;
-const CLOSER: usize = 2;
+const EVALUATIONS_OF_IT: usize = 40;
 
 /// Long relief of some amount, and its objective.
 struct Long {
@@ -65,20 +68,14 @@ impl Optimizer {
             LoadCase::new(cycle, design, torque).asked(Asked::default()).largest.value
         });
         let most = 2.0 * deflections?.into_iter().fold(0.0, f64::max);
-        let (mut from, mut to) = (0.0, most);
-        let mut best: Option<Long> = None;
-        for _ in 0..=CLOSER {
-            let step = (to - from) / AMOUNTS as f64;
-            for amount in (0..=AMOUNTS).map(|at| from + step * at as f64) {
-                let Some(value) = self.with_long_relief(pair, cycle, amount) else { continue };
-                if best.as_ref().is_none_or(|best| value < best.value) {
-                    best = Some(Long { amount, value });
-                }
-            }
-            let middle = best.as_ref()?.amount;
-            (from, to) = ((middle - step).max(0.0), middle + step);
-        }
-        best
+        let value = |amount: f64| self.with_long_relief(pair, cycle, amount).unwrap_or(f64::INFINITY);
+        let scanned = (0..=AMOUNTS).map(|at| most * at as f64 / AMOUNTS as f64);
+        let from = scanned.min_by(|a, b| value(*a).total_cmp(&value(*b)))?;
+        let bounds = Bounds::new(vec![(0.0, most)]).ok()?;
+        let mut search = optimize::refinement(bounds, &[from], 0.5 / AMOUNTS as f64, EVALUATIONS_OF_IT);
+        let values = |points: &[Vec<f64>]| points.iter().map(|point| value(point[0])).collect();
+        search.run(|points| Ok::<Vec<f64>, Failure>(values(points))).ok()?;
+        search.best().map(|best| Long { amount: best.point[0], value: best.value })
     }
 
     /// The objective; none where the relief does not fit or a constraint is broken.
