@@ -35,7 +35,7 @@ for problem in given["problems"]:
     for front, ours in zip(problem["fronts"], problem["hypervolumes"]):
         assert abs(volume(numpy.array(front)) / ours - 1.0) < 1e-12, (name, ours)
     settings = ("n_gen", given["generations"])
-    runs = [minimize(theirs, NSGA2(pop_size=given["population"]), settings, seed=seed) for seed in (1, 2)]
+    runs = [minimize(theirs, NSGA2(pop_size=given["population"]), settings, seed=seed) for seed in (1,)]
     peer = sum(volume(run.F) for run in runs) / len(runs)
     ours = sum(problem["hypervolumes"]) / len(problem["hypervolumes"])
     print(f"{name}: {ours / problem['exact']:.5f} of the exact hypervolume, pymoo {peer / problem['exact']:.5f}")

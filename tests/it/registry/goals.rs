@@ -45,7 +45,7 @@ fn worst(summary: &Table, design: &str, column: &str) -> f64 {
 }
 
 /// Tier: second method. The same method with every design as asked for, to its end: a staged search comes as near as what it
-/// calls a gain, and looks at a tenth of the designs as asked for. What it says of the best is what `ste` says.
+/// calls a gain, and looks at less than a quarter as many designs as asked for. What it says of the best is what `ste` says.
 #[test]
 fn a_staged_search_finds_the_same_with_few_designs_as_asked_for() {
     let ran = ran("
@@ -75,7 +75,7 @@ fn a_staged_search_finds_the_same_with_few_designs_as_asked_for() {
     let asked: i64 = asked.map(|row| passes.integers("evaluations")[row]).sum();
     let all = table(&ran, "plain", "best").integers("evaluations")[0];
     println!("{asked} of {all} designs as asked for");
-    assert!(5 * asked < all, "{asked} of {all}");
+    assert!(4 * asked < all, "{asked} of {all}");
     assert_eq!(passes.texts("what")[0], "search");
     assert!(table(&ran, "plain", "passes").rows() == 1);
 }

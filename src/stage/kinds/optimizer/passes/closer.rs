@@ -25,7 +25,7 @@ pub(super) struct Descent {
 /// With the sampling between, whose minimum may be elsewhere than the coarse one's; it is cheap enough to follow a kink.
 pub(super) const BETWEEN: Descent = Descent { edge: 0.1, most: 150, without_gain: 60 };
 /// From there, as asked for.
-pub(super) const ASKED: Descent = Descent { edge: 0.03, most: 60, without_gain: 30 };
+pub(super) const ASKED: Descent = Descent { edge: 0.03, most: 150, without_gain: 30 };
 
 impl Descent {
     /// At most, with so many variables.
