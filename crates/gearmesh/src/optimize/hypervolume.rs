@@ -46,6 +46,7 @@ mod tests {
 
     /// Tier: closed form.
     #[test]
+    #[allow(clippy::float_cmp, reason = "sums of these are exact")]
     fn boxes_that_overlap_count_once() {
         let points = vec![vec![1.0, 3.0], vec![2.0, 2.0], vec![3.0, 1.0], vec![2.5, 2.5], vec![5.0, 0.0]];
         assert_eq!(hypervolume(&points, &[4.0, 4.0]), 6.0);
