@@ -151,7 +151,8 @@ mod tests {
         let labels: Vec<String> = plot.legend().into_iter().map(|item| item.label).collect();
         assert_eq!(labels, ["5 % to 95 %", "25 % to 75 %", "50 %"]);
         let svg = plot.file();
-        assert_eq!((svg.matches("fill-opacity").count(), paths(&svg, r#"class="series""#).len()), (2, 1));
+        // The line is in the legend too.
+        assert_eq!((svg.matches("fill-opacity").count(), paths(&svg, r#"class="series""#).len()), (2, 2));
     }
 
     #[test]

@@ -5,9 +5,9 @@
 //! what is computed of a case, who chooses designs.
 
 use declare::declared::goes_with;
-use declare::error::{Diagnostic, Failure, suggest};
+use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
-use declare::units::{LENGTH, RATIO, TORQUE, parse_quantity};
+use declare::units::{LENGTH, RATIO, TORQUE};
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::misalignment::ShaftParallelism;
@@ -123,12 +123,6 @@ pub struct Deviation {
 }
 
 impl Deviation {
-    /// Whether a pair is as it is drawn.
-    #[allow(clippy::float_cmp)] // what nobody stated
-    pub fn is_none(&self) -> bool {
-        self.of_fields == [0.0; FIELDS]
-    }
-
     /// A design as it is made and mounted.
     ///
     /// # Errors
@@ -159,9 +153,8 @@ pub struct Loads {
     pub torque: Vec<f64>,
     #[declared(flatten)]
     pub deviations: Deviations,
-    /// How much each torque counts, torque: weight; all alike unless it is said.
-    #[declared(minimum = 0.0, maximum = 1e9, example = "2")]
-    pub weights: Option<Vec<(String, f64)>>,
+    /// How much each torque counts; all alike unless it is said.
+    pub weights: Option<Vec<Weight>>,
     /// What counts when there are several cases.
     #[declared(default = "worst")]
     pub combine: Combine,
@@ -171,6 +164,17 @@ pub struct Loads {
     /// How many standard deviations are added to the mean.
     #[declared(minimum = 0.0, maximum = 100.0, example = "3")]
     pub spread: Option<f64>,
+}
+
+/// How much a torque counts.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+pub struct Weight {
+    /// One of the torques.
+    #[declared(minimum = 1e-12, maximum = 1e9, dimension = TORQUE, example = "100 N m")]
+    pub torque: f64,
+    /// How much it counts beside the others.
+    #[declared(minimum = 0.0, maximum = 1e9, example = "2")]
+    pub weight: f64,
 }
 
 /// What counts of several values.
@@ -239,15 +243,16 @@ impl Loads {
         let Some(stated) = &self.weights else { return Ok(vec![1.0; self.torque.len()]) };
         let place = record.place_of(Self::NAMES.weights);
         let mut weights = vec![None; self.torque.len()];
-        for (text, weight) in stated {
-            let torque = parse_quantity(text).ok().filter(|found| found.dimension == TORQUE).map(|found| found.value);
-            let at = torque.and_then(|torque| self.torque.iter().position(|other| other.to_bits() == torque.to_bits()));
+        for (Weight { torque, weight }, own) in stated.iter().zip(record.each_inside(Self::NAMES.weights)) {
+            let at = self.torque.iter().position(|other| other.to_bits() == torque.to_bits());
+            let refused = |message: String| Diagnostic::new(message).at(own.place_of(Weight::NAMES.torque));
             let Some(at) = at else {
-                let known: Vec<String> = self.torque.iter().map(|torque| format!("{torque} N m")).collect();
-                let help = suggest(text, known.iter().map(String::as_str));
-                return Err(Diagnostic::new(format!("`{text}` is none of the torques")).at(place).help(help));
+                let known = self.torque.iter().map(|torque| format!("{torque} N m")).collect::<Vec<_>>().join(", ");
+                return Err(refused(format!("{torque} N m is none of the torques")).help(format!("they are {known}")));
             };
-            weights[at] = Some(*weight);
+            if weights[at].replace(*weight).is_some() {
+                return Err(refused(format!("the torque {torque} N m has two weights")));
+            }
         }
         if let Some(missing) = weights.iter().position(Option::is_none) {
             let message = format!("the torque {} N m has no weight", self.torque[missing]);
@@ -336,6 +341,7 @@ pub struct OffDesign {
 }
 
 #[cfg(test)]
+#[allow(clippy::float_cmp)] // what must be met exactly
 mod tests {
     use super::*;
     use declare::declared::{Declared, record_of};
@@ -353,9 +359,14 @@ mod tests {
         loads.cases(&record)
     }
 
-    fn weights(given: &[(&str, f64)]) -> Value {
-        let of = |(name, weight): &(&str, f64)| ((*name).to_owned(), declare::declared::entry(Value::Number(*weight)));
-        Value::Map(given.iter().map(of).collect())
+    fn weights(given: &[(f64, f64)]) -> Value {
+        let of = |(torque, weight): &(f64, f64)| {
+            declare::declared::entry(declare::declared::Parameter::to_value(&Weight {
+                torque: *torque,
+                weight: *weight,
+            }))
+        };
+        Value::List(given.iter().map(of).collect())
     }
 
     #[test]
@@ -366,8 +377,8 @@ mod tests {
         assert_eq!(cases.all.len(), 18);
         let second = cases.all[1];
         assert!(second.torque < 51.0 && second.deviation.of_fields == [-15e-6, 0.0, 0.0, 0.0, 0.0, 10e-6, 0.0]);
-        assert!(cases.all[6].torque > 79.0 && !cases.all[1].deviation.is_none());
-        assert!(cases.all[2].deviation.of_fields == [0.0; FIELDS] && cases.all[2].deviation.is_none());
+        assert!(cases.all[6].torque > 79.0);
+        assert!(cases.all[2].deviation.of_fields == [0.0; FIELDS]);
     }
 
     /// Tier: worked by hand.
@@ -379,7 +390,7 @@ mod tests {
         let close = |found: f64, exact: f64| assert!((found - exact).abs() < 1e-14, "{found} {exact}");
         close(of(&[]), 8.0);
         close(of(&[word("mean")]), 4.0);
-        let uneven = ("weights", weights(&[("200 N m", 1.0), ("50 N m", 2.0), ("80 N m", 1.0)]));
+        let uneven = ("weights", weights(&[(200.0, 1.0), (50.0, 2.0), (80.0, 1.0)]));
         close(of(&[word("mean"), uneven.clone()]), 3.75);
         let at = |share| ("quantile", Value::Quantity(share));
         close(of(&[word("quantile"), at(0.5), uneven.clone()]), 3.0);
@@ -398,9 +409,9 @@ mod tests {
         let quantile = ("quantile", Value::Quantity(0.9));
         assert!(refused(&[quantile]).contains("`quantile` goes with `combine: quantile` only"));
         assert!(refused(&[("combine", Value::Choice("quantile"))]).contains("needs its `quantile`"));
-        assert!(refused(&[("weights", weights(&[("51 N m", 1.0)]))]).contains("`51 N m` is none of the torques"));
-        assert!(refused(&[("weights", weights(&[("50 N m", 1.0)]))]).contains("80 N m has no weight"));
-        let none = weights(&[("50 N m", 0.0), ("80 N m", 0.0), ("200 N m", 0.0)]);
+        assert!(refused(&[("weights", weights(&[(51.0, 1.0)]))]).contains("51 N m is none of the torques"));
+        assert!(refused(&[("weights", weights(&[(50.0, 1.0)]))]).contains("80 N m has no weight"));
+        let none = weights(&[(50.0, 0.0), (80.0, 0.0), (200.0, 0.0)]);
         assert!(refused(&[("weights", none)]).contains("all weights are 0"));
         assert!(refused(&[("bearing_span", Value::Quantity(0.1))]).contains("`bearing_span` goes with"));
     }

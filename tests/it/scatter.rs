@@ -1,6 +1,8 @@
 //! `kind: scatter` against the stages it stands for, closed forms, and what holds for samples and what is made of them.
 
+mod cases;
 mod messages;
+mod parts;
 mod rows;
 mod statistics;
 
@@ -39,7 +41,7 @@ fn study(stages: &[&str]) -> String {
 
 /// The same with a scatter of `ste` that varies these columns and has these fields.
 fn scattered(vary: &[&str], fields: &str) -> String {
-    let vary: String = vary.iter().map(|column| format!("      {column}\n")).collect();
+    let vary = vary.iter().fold(String::new(), |text, column| text + "      " + column + "\n");
     let fields = format!("    {}\n", fields.trim().replace('\n', "\n    "));
     let scatter = format!("  scatter:\n    kind: scatter\n    of: ste\n    vary:\n{vary}");
     study(&[PAIR, STIFFNESS, DESIGN, STE, &scatter, &fields])

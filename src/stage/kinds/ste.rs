@@ -3,6 +3,7 @@
 //! Up to 128 torques are a chunk each, so an added one computes only itself. Must not know: who made the designs.
 
 mod ahead;
+mod nominal;
 mod pressures;
 mod samples;
 mod tables;
@@ -13,6 +14,7 @@ use std::time::Instant;
 
 use rayon::prelude::*;
 
+use self::nominal::nominal_root_stresses;
 use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
 use self::tables::{Found, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
@@ -30,8 +32,6 @@ use declare::error::{Diagnostic, Failure};
 use declare::record::Record;
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
 use gearmesh::gear::contact::SliceCoupling;
-use gearmesh::gear::geometry::{GearPair, Side};
-use gearmesh::gear::iso6336_root::nominal_root_stress;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::curve::{Summary, Wanted};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
@@ -230,21 +230,6 @@ impl Ste {
             }
         }
     }
-}
-
-/// The standard's root stress of both gears per torque on the pinion, where it is wanted and holds; a warning says why not.
-fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {
-    let of = |side: Side, column: &str| {
-        if !context.demand.column(summary::TABLE, column) {
-            return f64::NAN;
-        }
-        nominal_root_stress(pair, side, 1.0).unwrap_or_else(|why| {
-            let who = side.name();
-            (context.warn)(format!("`{column}` is left empty: ISO 6336-3 does not hold for the {who}: {why}").into());
-            f64::NAN
-        })
-    };
-    [of(Side::Pinion, summary::ISO6336_ROOT_STRESS_PINION), of(Side::Gear, summary::ISO6336_ROOT_STRESS_GEAR)]
 }
 
 /// A design as it is made and mounted, its name, and what is off.

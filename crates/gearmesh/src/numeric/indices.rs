@@ -87,7 +87,9 @@ pub fn indices<'a>(pairs: impl Iterator<Item = Pair<'a>> + Clone, fields: usize)
         replicates[number % REPLICATES].add(pair, origin);
     }
     let mut all = Sums::default();
-    replicates.iter().for_each(|sums| all.merge(sums));
+    for sums in &replicates {
+        all.merge(sums);
+    }
     let of_field = |field: usize| {
         let whole = all.indices(field);
         let own: Vec<[f64; 2]> =

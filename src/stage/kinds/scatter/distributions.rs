@@ -79,7 +79,8 @@ fn held(distribution: Distribution, column: &Column) -> Result<Distribution, Dia
     let (low, high) = (low.max(least), high.min(most));
     let cut = Distribution::Normal { mean, deviation, low, high };
     let lost = 1.0 - cut.kept() / distribution.kept();
-    if low >= high || !(lost <= MOST_OUTSIDE) {
+    // Of nothing at all it is NaN.
+    if low >= high || lost.is_nan() || lost > MOST_OUTSIDE {
         let message = format!(
             "{:.3} % of the values of `{}` would be outside of its field: {}",
             100.0 * if lost.is_nan() { 1.0 } else { lost },

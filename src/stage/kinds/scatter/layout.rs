@@ -34,7 +34,7 @@ pub enum Method {
 #[derive(Clone, Debug)]
 enum Source {
     /// Index among those that are distributed.
-    Drawn(usize, Distribution),
+    Drawn(usize),
     /// Index among those that are looked at in every sample.
     Crossed(usize),
 }
@@ -69,7 +69,7 @@ impl Layout {
         let (mut drawn, mut crossed, mut sources) = (Vec::new(), Vec::new(), Vec::new());
         for (column, distribution) in columns.iter().zip(distributions) {
             if let Some(distribution) = distribution {
-                sources.push(Source::Drawn(drawn.len(), *distribution));
+                sources.push(Source::Drawn(drawn.len()));
                 drawn.push(*distribution);
                 continue;
             }
@@ -189,30 +189,37 @@ impl Layout {
         rows
     }
 
-    /// Of the fields that are distributed, in SI.
-    fn values(&self, shares: &[f64]) -> Vec<f64> {
-        self.distributions.iter().zip(shares).map(|(distribution, share)| distribution.quantile(*share)).collect()
+    /// Of the fields that are distributed.
+    fn values(&self, shares: &[f64]) -> Vec<Level> {
+        let drawn = self.sources.iter().zip(&self.units).filter(|(source, _)| matches!(source, Source::Drawn(_)));
+        let of = |((distribution, share), (_, unit)): ((&Distribution, &f64), (&Source, &String))| {
+            let found = level(distribution.quantile(*share), unit);
+            // What is written with fewer digits may be beyond an end by a rounding.
+            let (low, high) = distribution.range();
+            Level { si: found.si.clamp(low, high), ..found }
+        };
+        self.distributions.iter().zip(shares).zip(drawn).map(of).collect()
     }
 
     fn levels<'l>(
         &'l self,
-        own: &'l [f64],
-        other: &'l [f64],
+        own: &'l [Level],
+        other: &'l [Level],
         replaced: usize,
         case: usize,
     ) -> impl Iterator<Item = Level> + 'l {
         let all = replaced == self.distributions.len() + 1;
-        self.sources.iter().zip(&self.units).map(move |(source, unit)| match source {
-            Source::Drawn(field, distribution) => {
-                let si = if all || replaced == field + 1 { other[*field] } else { own[*field] };
-                // What is written with fewer digits may be beyond an end by a rounding.
-                let (low, high) = distribution.range();
-                let found = level(si, unit);
-                Level { si: found.si.clamp(low, high), ..found }
+        self.sources.iter().map(move |source| match *source {
+            Source::Drawn(field) => {
+                if all || replaced == field + 1 {
+                    other[field]
+                } else {
+                    own[field]
+                }
             }
             Source::Crossed(at) => {
                 let behind: usize = self.crossed[at + 1..].iter().map(Vec::len).product();
-                self.crossed[*at][case / behind % self.crossed[*at].len()]
+                self.crossed[at][case / behind % self.crossed[at].len()]
             }
         })
     }

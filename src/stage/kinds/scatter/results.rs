@@ -29,7 +29,7 @@ pub const SHARES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
 /// Seconds that a row takes.
 pub const SECONDS_OF_ROW: f64 = 1e-6;
 
-/// Where tables have their limits in words.
+/// Rows of the table `yield` that no study states.
 const VALID: &str = "valid";
 const ALL: &str = "all limits";
 
@@ -203,7 +203,6 @@ fn field_row<'a>((field, distribution): (&'a Column, &gearmesh::numeric::distrib
     let show = showing(&field.axis.unit);
     let (mean, deviation) = distribution.moments();
     let (low, high) = distribution.range();
-    // A difference of two values of a unit without an origin of its own.
     let numbers = [show(mean), show(deviation), show(low), show(high)];
     FieldRow { field, described: described(field, distribution), numbers }
 }

@@ -72,7 +72,7 @@ pub fn quantiles<'a>(crossed: &[&Field]) -> Columns<About<'a, Quantile>> {
         .but(loose)
 }
 
-/// How wide the bands over something are: the quantiles of one output beside each other.
+/// How many samples have an output between two values.
 pub struct Bin {
     pub number: usize,
     pub from: f64,

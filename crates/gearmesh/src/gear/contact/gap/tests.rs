@@ -205,8 +205,7 @@ struct Own {
 fn scan(pair: &GearPair, own: impl IntoIterator<Item = Own>) {
     let of = |modification| Design {
         pinion: vec![crate::gear::modification::NamedModification { family: "own", modification }],
-        gear: Vec::new(),
-        tilt: 0.0,
+        ..Design::default()
     };
     let own: Vec<_> =
         own.into_iter().map(|Own { modification, amount, bend }| (of(modification), amount, bend)).collect();
@@ -382,7 +381,7 @@ fn profiles_known_to_be_quadratics_have_the_gaps_of_sampled_ones() {
             };
             parts.iter().map(hidden).collect()
         };
-        let sampled = Design { pinion: untold(&design.pinion), gear: untold(&design.gear), tilt: 0.0 };
+        let sampled = Design { pinion: untold(&design.pinion), gear: untold(&design.gear), ..design.clone() };
         let (profiles, others) = (design.profiles(0.0), sampled.profiles(0.0));
         let (known, found) = (Gaps::new(&pair, &profiles), Gaps::new(&pair, &others));
         for s in positions(&pair, 400) {

@@ -71,8 +71,7 @@ impl Modification for Relieved {
 fn of(modification: impl Modification + 'static) -> Design {
     Design {
         pinion: vec![NamedModification { family: "test", modification: Arc::new(modification) }],
-        gear: Vec::new(),
-        tilt: 0.0,
+        ..Design::default()
     }
 }
 
