@@ -1,15 +1,16 @@
 //! A map: a value for each cell of a grid, as steps of colour, with the scale that says which is which.
 //!
-//! Cells without a value, or with 0 where nothing is negative, stay blank: of pressures that is where nothing touches. Must
-//! not know: tables, axes.
+//! Places that the table does not have, and those with 0 where nothing is negative, stay blank: of pressures that is where
+//! nothing touches. Those of which it says that there is no value are crossed out. Must not know: tables, axes.
 
 use std::fmt::Write;
 
 use super::frame::Frame;
+use super::isolines::pieces;
 use super::look::Colour;
 use super::scale::Scale;
 use super::svg::{at, escape};
-use declare::number::unit_symbol;
+use declare::number::{significant, unit_symbol, with_unit};
 
 /// Steps of colour: cells of one step next to each other are one rectangle.
 const STEPS: usize = 24;
@@ -21,10 +22,24 @@ pub struct Cells {
     pub xs: Vec<f64>,
     /// Of the rows.
     pub ys: Vec<f64>,
+    /// Places of the columns and of the rows.
+    pub places: [Vec<f64>; 2],
     /// Row by row; NaN where there is none.
     pub values: Vec<f64>,
+    /// Those of which the table says that there is none.
+    pub missing: Vec<bool>,
     pub label: String,
     pub unit: String,
+    pub isolines: bool,
+    pub best: Best,
+}
+
+/// Which cell is marked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Best {
+    None,
+    Smallest,
+    Largest,
 }
 
 impl Cells {
@@ -44,10 +59,14 @@ impl Cells {
             return None;
         }
         let mut values = vec![f64::NAN; columns.len() * rows.len()];
+        let mut missing = vec![false; values.len()];
         for &(x, y, value) in points.iter().filter(|point| point.0.is_finite() && point.1.is_finite()) {
-            values[nearest(&rows, y) * columns.len() + nearest(&columns, x)] = value;
+            let index = nearest(&rows, y) * columns.len() + nearest(&columns, x);
+            (values[index], missing[index]) = (value, !value.is_finite());
         }
-        Some(Self { xs: edges(&columns), ys: edges(&rows), values, label, unit })
+        let (xs, ys) = (edges(&columns), edges(&rows));
+        let places = [columns, rows];
+        Some(Self { xs, ys, places, values, missing, label, unit, isolines: false, best: Best::None })
     }
 
     /// Whether nothing varies along y.
@@ -106,6 +125,11 @@ impl Cells {
             let _ = write!(svg, r#"<path class="cell" {} d="{path}"/>"#, Self::colour(step).fill());
         }
         svg.push_str("</g>");
+        self.draw_missing(svg, frame);
+        if self.isolines {
+            self.draw_isolines(svg, frame, &scale);
+        }
+        self.draw_best(svg, frame);
     }
 
     /// The steps with their values, to the right of the frame.
@@ -131,6 +155,68 @@ impl Cells {
             svg,
             r#"<text class="label" x="{x}" y="{y}" text-anchor="middle" transform="rotate(-90 {x} {y})">{}</text></g>"#,
             escape(&power)
+        );
+    }
+}
+
+impl Cells {
+    /// A cross over each cell of which the table says that there is no value.
+    fn draw_missing(&self, svg: &mut String, frame: &Frame) {
+        let columns = self.xs.len() - 1;
+        let mut path = String::new();
+        for (index, _) in self.missing.iter().enumerate().filter(|(_, is_missing)| **is_missing) {
+            let (column, row) = (index % columns, index / columns);
+            let [left, right] = [frame.x(self.xs[column]), frame.x(self.xs[column + 1])].map(at);
+            let [low, high] = [frame.y(self.ys[row]), frame.y(self.ys[row + 1])].map(at);
+            let _ = write!(path, "M{left} {low}L{right} {high}M{left} {high}L{right} {low}");
+        }
+        if !path.is_empty() {
+            let _ = write!(svg, r#"<path class="missing" d="{path}"><title>no value</title></path>"#);
+        }
+    }
+
+    /// A line for each tick of the scale of colours, with its value where it is longest.
+    fn draw_isolines(&self, svg: &mut String, frame: &Frame, scale: &Scale) {
+        let [xs, ys] = &self.places;
+        for tick in scale.ticks(frame.layout.ticks[1]) {
+            let pieces = pieces(xs, ys, &self.values, tick.value);
+            let placed: Vec<[(f64, f64); 2]> = pieces
+                .iter()
+                .filter_map(|[from, to]| Some([frame.place(*from)?, frame.place(*to)?]))
+                .filter(|[from, to]| from != to)
+                .collect();
+            let long = |[from, to]: &[(f64, f64); 2]| (from.0 - to.0).hypot(from.1 - to.1);
+            let Some(longest) = placed.iter().max_by(|a, b| long(a).total_cmp(&long(b))) else { continue };
+            let mut path = String::new();
+            for [from, to] in &placed {
+                let _ = write!(path, "M{} {}L{} {}", at(from.0), at(from.1), at(to.0), at(to.1));
+            }
+            let (x, y) = (at(0.5 * (longest[0].0 + longest[1].0)), at(0.5 * (longest[0].1 + longest[1].1)));
+            let _ = write!(
+                svg,
+                r#"<path class="isoline" d="{path}"/><text class="tick isovalue" x="{x}" y="{y}" dy="4" text-anchor="middle">{}</text>"#,
+                tick.label
+            );
+        }
+    }
+
+    /// A frame around the cell with the smallest or the largest value.
+    fn draw_best(&self, svg: &mut String, frame: &Frame) {
+        let numbers = self.values.iter().enumerate().filter(|(_, value)| value.is_finite());
+        let found = match self.best {
+            Best::None => None,
+            Best::Smallest => numbers.min_by(|a, b| a.1.total_cmp(b.1)),
+            Best::Largest => numbers.max_by(|a, b| a.1.total_cmp(b.1)),
+        };
+        let Some((index, value)) = found else { return };
+        let (column, row) = (index % (self.xs.len() - 1), index / (self.xs.len() - 1));
+        let [left, right] = [frame.x(self.xs[column]), frame.x(self.xs[column + 1])].map(at);
+        let [low, high] = [frame.y(self.ys[row]), frame.y(self.ys[row + 1])].map(at);
+        let title = with_unit(&significant(*value, 4), &self.unit);
+        let _ = write!(
+            svg,
+            r#"<path class="best" d="M{left} {low}H{right}V{high}H{left}Z"><title>{}</title></path>"#,
+            escape(&title)
         );
     }
 }

@@ -58,7 +58,9 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
         }
         "optimizer" => {
             let history = draw("search", "The search", Kind::Line, "history", "evaluations", "best_so_far");
-            vec![labelled(history, "Designs tried", "Best objective so far")]
+            let mut found = vec![labelled(history, "Designs tried", "Best objective so far")];
+            found.extend(of_front(name, &draw, tables));
+            found
         }
         "modification" => of_modification(&draw, &by),
         "geometry" => {
@@ -140,6 +142,16 @@ fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Ve
         }
     }
     found
+}
+
+/// The front of a search with several objectives, its balanced point named.
+fn of_front(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Option<Spec> {
+    let table = tables(&format!("{stage}.front"))?;
+    // After its number and its name come the objectives, in the order of the study.
+    let mut objectives = table.schema().columns.iter().skip(2).map(|column| column.name.clone());
+    let (x, y) = (objectives.next()?, objectives.next()?);
+    let front = draw("front", "Designs that no other one beats", Kind::Front, "front", &x, &y);
+    Some(Spec { marked: [format!("{stage}.best"), "objective".to_owned(), y], ..front })
 }
 
 fn of_modification(draw: &Draw<'_>, by: &dyn Fn(Spec, &str) -> Spec) -> Vec<Spec> {

@@ -5,7 +5,7 @@
 
 use super::cells::Cells;
 use super::order::Order;
-use super::plot::{Axis, Kind, Mark, Of, Plot, Series};
+use super::plot::{Axis, Kind, Mark, Named, Of, Plot, Series};
 use super::spec::Spec;
 use super::{ReportError, floats, integers, texts};
 use crate::report::look::Look;
@@ -94,6 +94,7 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
             plot.length = length(spec, &table, &rows, &plot.y.unit)?;
         }
     }
+    plot.named = named(spec, tables)?;
     drawing.order_categories(spec, order);
     if *kind == Kind::Quantiles {
         let share = |series: &Series| if let Of::Quantity { value, .. } = series.of { value } else { f64::NAN };
@@ -126,6 +127,22 @@ fn marks(published: &Table, number: i64) -> Result<Vec<Mark>, ReportError> {
     Ok(own.map(mark).collect())
 }
 
+/// The points that are named.
+fn named(spec: &Spec, tables: Tables<'_>) -> Result<Vec<Named>, ReportError> {
+    let [name, x, y] = &spec.marked;
+    if name.is_empty() {
+        return Ok(Vec::new());
+    }
+    let table = tables(name).ok_or_else(|| ReportError::Missing(name.clone()))?;
+    let column = |name: &str| table.column(name).ok_or_else(|| missing(&table, name));
+    let (names, xs, ys) = (texts(&table, "design")?, column(x)?, column(y)?);
+    let one = |row: usize| {
+        let place = (number(&table, x, xs, row)?, number(&table, y, ys, row)?);
+        Ok(Named { name: spec.label(&names[row]), place })
+    };
+    (0..table.rows()).map(one).collect()
+}
+
 /// The cells of a map.
 fn cells(spec: &Spec, table: &Table, rows: &[usize]) -> Result<Option<Cells>, ReportError> {
     let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
@@ -138,7 +155,8 @@ fn cells(spec: &Spec, table: &Table, rows: &[usize]) -> Result<Option<Cells>, Re
     let points: Vec<(f64, f64, f64)> = rows.iter().map(point).collect::<Result<_, ReportError>>()?;
     let label = spec.labels.iter().find(|(known, _)| *known == spec.value);
     let label = label.map_or_else(|| sentence(&spec.value), |label| label.1.clone());
-    Ok(Cells::new(&points, label, unit(table, &spec.value)))
+    let cells = Cells::new(&points, label, unit(table, &spec.value));
+    Ok(cells.map(|cells| Cells { isolines: spec.isolines, best: spec.best, ..cells }))
 }
 
 /// How long a unit of the x axis is, in the unit of the y axis; `None` where that is not one length everywhere.

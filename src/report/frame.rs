@@ -106,14 +106,15 @@ impl Plot {
     pub(super) fn frame(&self, top: f64, layout: Layout) -> Option<Frame> {
         let edges =
             |pick: fn(&super::cells::Cells) -> &[f64]| self.cells.iter().flat_map(pick).copied().collect::<Vec<f64>>();
-        let xs = self.points().map(|point| point.0).chain(self.marks.iter().filter_map(|mark| mark.x));
-        let ys = self.points().map(|point| point.1).chain(self.marks.iter().filter_map(|mark| mark.y));
+        let named = || self.named.iter().map(|named| named.place);
+        let xs = self.points().chain(named()).map(|point| point.0).chain(self.marks.iter().filter_map(|mark| mark.x));
+        let ys = self.points().chain(named()).map(|point| point.1).chain(self.marks.iter().filter_map(|mark| mark.y));
         let (xs, ys) = (xs.chain(edges(|cells| &cells.xs)), ys.chain(edges(|cells| &cells.ys)));
         let x = if self.kind == Kind::Bar {
             Scale { low: -0.5, high: self.categories.len().max(1) as f64 - 0.5, is_log: false }
         } else {
             // A point at the very edge would be cut in half.
-            let margin = if matches!(self.kind, Kind::Points | Kind::Drawing)
+            let margin = if matches!(self.kind, Kind::Points | Kind::Front | Kind::Drawing)
                 || self.marks.iter().any(|mark| mark.x.is_some())
             {
                 0.02

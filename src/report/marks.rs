@@ -8,6 +8,9 @@ use super::frame::Frame;
 use super::plot::{Kind, Plot, Series};
 use super::svg::{at, escape};
 
+/// Of a named point.
+const MARKER: &str = "m0-6l6 6l-6 6l-6-6z";
+
 impl Plot {
     /// A series of a drawing that is made of single points is named where it stands, not in the legend.
     pub(super) fn is_named_point(&self, series: &Series) -> bool {
@@ -25,6 +28,21 @@ impl Plot {
                 );
             }
             svg.push_str("</g>");
+        }
+    }
+
+    /// Points with their names beside them: of a design on a map or a front.
+    pub(super) fn draw_named(&self, svg: &mut String, frame: &Frame) {
+        for named in &self.named {
+            let Some((x, y)) = frame.place(named.place) else { continue };
+            // Beside the right edge there is no room on the right.
+            let (anchor, aside) = if x > frame.left + 0.75 * frame.width { ("end", -9) } else { ("start", 9) };
+            let below = if y < frame.top + 24.0 { 18 } else { -8 };
+            let (x, y, name) = (at(x), at(y), escape(&named.name));
+            let _ = write!(
+                svg,
+                r#"<path class="mark" style="stroke:var(--ink)" d="M{x} {y}{MARKER}"/><text class="point" x="{x}" y="{y}" dx="{aside}" dy="{below}" text-anchor="{anchor}">{name}</text>"#
+            );
         }
     }
 

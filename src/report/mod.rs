@@ -13,6 +13,7 @@ mod drawing;
 mod figure;
 mod frame;
 mod inputs;
+mod isolines;
 mod legend;
 mod look;
 mod marks;

@@ -33,6 +33,8 @@ pub enum Kind {
     Drawing,
     /// Colours over both axes.
     Map,
+    /// Points, and the steps between what they beat and what nobody reaches.
+    Front,
     /// Depths of a profile or a lead, drawn downwards and so many times as long.
     Chart,
     /// Bars from one place to another; a run of two points each.
@@ -88,6 +90,13 @@ pub struct Mark {
     pub look: Look,
 }
 
+/// A point with its name beside it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Named {
+    pub name: String,
+    pub place: (f64, f64),
+}
+
 /// How large a figure is as a file of its own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Size {
@@ -104,6 +113,7 @@ pub struct Plot {
     pub y: Axis,
     pub series: Vec<Series>,
     pub marks: Vec<Mark>,
+    pub named: Vec<Named>,
     /// Names under or beside the bars; the x of a point, or its y, is their index.
     pub categories: Vec<String>,
     /// Of a map.
@@ -124,6 +134,7 @@ impl Plot {
             y: Axis::default(),
             series: Vec::new(),
             marks: Vec::new(),
+            named: Vec::new(),
             categories: Vec::new(),
             cells: None,
             size: Size::Page,
@@ -207,6 +218,10 @@ impl Plot {
         match self.kind {
             Kind::Line | Kind::Drawing | Kind::Chart => self.draw_lines(svg, frame),
             Kind::Points => self.draw_points(svg, frame),
+            Kind::Front => {
+                self.draw_steps(svg, frame);
+                self.draw_points(svg, frame);
+            }
             Kind::Bar => self.draw_bars(svg, frame),
             Kind::Histogram => self.draw_histogram(svg, frame),
             Kind::Quantiles => self.draw_bands(svg, frame),
@@ -215,6 +230,7 @@ impl Plot {
         }
         self.draw_marks(svg, frame);
         self.draw_named_points(svg, frame);
+        self.draw_named(svg, frame);
         svg.push_str("</svg>");
         self.cells.iter().for_each(|cells| cells.draw_scale(svg, frame));
         svg.push_str("</svg>");
@@ -240,7 +256,7 @@ impl Plot {
                 label: if series.label.is_empty() { "computed".to_owned() } else { series.label.clone() },
                 key: format!("s{index}"),
                 sign: match self.kind {
-                    Kind::Points => Sign::Marker,
+                    Kind::Points | Kind::Front => Sign::Marker,
                     Kind::Bar | Kind::Histogram | Kind::Tornado => Sign::Square,
                     _ if self.shows_points(series) => Sign::LineAndMarker,
                     _ => Sign::Line,

@@ -45,6 +45,25 @@ impl Plot {
         }
     }
 
+    /// From point to point of a front, along what the ones to the left still beat.
+    pub(super) fn draw_steps(&self, svg: &mut String, frame: &Frame) {
+        for (index, series) in self.series.iter().enumerate() {
+            let mut points: Vec<(f64, f64)> =
+                series.runs.iter().flatten().filter(|(x, y)| x.is_finite() && y.is_finite()).copied().collect();
+            points.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut line = String::new();
+            for (x, y) in points.into_iter().filter_map(|point| frame.place(point)) {
+                let _ = if line.is_empty() {
+                    write!(line, "M{} {}", at(x), at(y))
+                } else {
+                    write!(line, "H{}V{}", at(x), at(y))
+                };
+            }
+            let stroke = series.look.colour.stroke();
+            let _ = write!(svg, r#"<g data-s="s{index}"><path class="jump" {stroke} d="{line}"/></g>"#);
+        }
+    }
+
     pub(super) fn draw_points(&self, svg: &mut String, frame: &Frame) {
         for (index, series) in self.series.iter().enumerate() {
             let _ = write!(svg, r#"<g data-s="s{index}">"#);

@@ -2,8 +2,9 @@
 //!
 //! Must not know: the tables that it is drawn from.
 
+use super::cells::Best;
 use super::plot::{Kind, Size};
-use super::{ReportError, integers, texts};
+use super::{ReportError, flags, integers, texts};
 use studygraph::table::data::Table;
 use studygraph::table::select::parse_conditions;
 
@@ -20,6 +21,10 @@ pub struct Spec {
     pub y: Vec<String>,
     /// Column of the colours of a map, or of where the bars of a histogram end.
     pub value: String,
+    pub isolines: bool,
+    pub best: Best,
+    /// `stage.table` of points that are named, and its columns for both axes; empty where there are none.
+    pub marked: [String; 3],
     pub series: String,
     pub segments: String,
     /// Column of the length that x stands for, of a chart.
@@ -48,6 +53,9 @@ impl Spec {
             x: x.to_owned(),
             y: vec![y.to_owned()],
             value: String::new(),
+            isolines: false,
+            best: Best::None,
+            marked: Default::default(),
             series: String::new(),
             segments: String::new(),
             length: String::new(),
@@ -82,6 +90,7 @@ impl Spec {
                 "points" => Kind::Points,
                 "drawing" => Kind::Drawing,
                 "map" => Kind::Map,
+                "front" => Kind::Front,
                 "chart" => Kind::Chart,
                 "histogram" => Kind::Histogram,
                 "quantiles" => Kind::Quantiles,
@@ -92,6 +101,13 @@ impl Spec {
             x: text("x")?,
             y: words(text("y")?),
             value: text("value")?,
+            isolines: flags(declared, "isolines")?[row],
+            best: match text("best")?.as_str() {
+                "smallest" => Best::Smallest,
+                "largest" => Best::Largest,
+                _ => Best::None,
+            },
+            marked: [text("marked")?, text("marked_x")?, text("marked_y")?],
             series: text("series")?,
             segments: text("segments")?,
             length: text("length")?,

@@ -29,7 +29,7 @@ impl Plot {
                 Kind::Line | Kind::Drawing | Kind::Chart | Kind::Quantiles => {
                     series.runs.iter_mut().for_each(|run| *run = outlined(run, &frame));
                 }
-                Kind::Bar | Kind::Map | Kind::Histogram | Kind::Tornado => {}
+                Kind::Bar | Kind::Map | Kind::Front | Kind::Histogram | Kind::Tornado => {}
             }
         }
         self

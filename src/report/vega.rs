@@ -86,7 +86,7 @@ impl Plot {
             encoding["color"] = json!({ "field": "series", "type": "nominal", "title": null, "scale": scale });
         }
         let mark = match self.kind {
-            Kind::Points => json!({ "type": "point", "filled": true }),
+            Kind::Points | Kind::Front => json!({ "type": "point", "filled": true }),
             Kind::Bar => {
                 encoding["xOffset"] = json!({ "field": "series" });
                 json!({ "type": "bar" })

@@ -302,6 +302,18 @@ impl Cases {
         }
     }
 
+    /// Of what must be small in every case: the largest value, or where a share of the cases is to be as good, the largest of
+    /// those.
+    ///
+    /// # Panics
+    /// As [`Cases::combined`].
+    pub fn decisive(&self, values: &[f64]) -> f64 {
+        match self.measure {
+            Measure::Quantile(_) => self.combined(values),
+            _ => values.iter().copied().fold(f64::NEG_INFINITY, f64::max),
+        }
+    }
+
     /// The cases as stretches with the same deviation: the design of each as it is made and mounted, with the torques and
     /// the places of its cases.
     ///

@@ -12,6 +12,7 @@ pub mod foreign;
 pub mod formula;
 pub mod kinds;
 pub mod limit;
+pub mod measures;
 pub mod names;
 pub mod pair;
 pub mod quantity;

@@ -151,6 +151,7 @@ fn meshes_converge_and_seeds_spread() {
     positions: 8
     at: { torque: 150 N m }
     method: { differential_evolution: { population: 10, generations: 4 } }
+    search: plain
     design: [tip_relief: { gear: both, amount: [0 um, 20 um], fraction: [0.2, 1] }]
   searches:
     kind: accuracy
@@ -321,5 +322,7 @@ fn a_wanted_accuracy_is_met_by_searches_curves_and_stiffness() {
         "{:?}",
         ran["hopeless"].warnings
     );
-    assert!(ran["ring"].warnings.is_empty() && ran["wish"].warnings.is_empty() && ran["search"].warnings.is_empty());
+    assert!(ran["ring"].warnings.is_empty() && ran["wish"].warnings.is_empty());
+    // Without end relief it is better, which the search says.
+    assert!(ran["search"].warnings.iter().all(|warning| warning.starts_with("a simpler design is as good")));
 }

@@ -1,40 +1,47 @@
-//! `kind: optimizer`: the modification that makes the transmission error smallest, by a chosen method, in a box.
+//! `kind: optimizer`: the modification that makes numbers of the transmission error smallest, by a chosen method, in a box.
 //!
 //! Every value of the designs that is given as `[least, most]` is a variable. Must not know: how any method searches.
 
 mod ahead;
+mod goal;
+mod passes;
 mod sampling;
+mod simpler;
+mod tables;
 
-use rayon::prelude::*;
-
+use self::goal::{Goal, Worth};
+use self::passes::{Found, Run};
+use self::tables::{BestRow, FrontRow};
 use crate::stage::cases::{Cases, Loads};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::designs::{self, Element, Elements, NamedDesign};
 use crate::stage::doubts::Doubted;
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names};
-use declare::declared::Declared;
+use crate::stage::{
+    Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names, root_influences,
+};
+use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure};
 use declare::record::{Record, Value};
-use declare::units::{ANGLE, LENGTH, RATIO, showing};
+use declare::units::RATIO;
 use declare::{Declared, Words};
 use gearmesh::gear::geometry::GearPair;
-use gearmesh::gear::modification::template::{Template, Variable};
+use gearmesh::gear::modification::template::Template;
 use gearmesh::gear::modification::{self, Design};
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::bounds::Bounds;
-use gearmesh::optimize::search::{Candidate, Generation, Optimizer as Search, Reason};
-use gearmesh::optimize::{self, Method};
-use studygraph::table::columns::{Columns, finite};
+use gearmesh::optimize::search::Optimizer as Search;
+use gearmesh::optimize::settled::Settled;
+use gearmesh::optimize::{self, Foreseen, Method};
 use studygraph::table::data::{Cell, Table, TableError};
-use studygraph::table::schema::{Column, Schema};
+use studygraph::table::schema::Schema;
 use studygraph::warning::Warning;
 
 const EVALUATIONS: &str = "evaluations";
 
 pub const KIND: Kind = Kind {
     name: "optimizer",
-    version: 1,
+    version: 2,
     summary: Stated::MEMBER.summary,
     fields: Stated::MEMBER.fields,
     curves: &[],
@@ -51,18 +58,21 @@ design:
     build,
 };
 
-/// Modifications that make the transmission error smallest, by a seeded search in a box.
+/// Modifications that make numbers of the transmission error smallest, by a seeded search in a box.
 #[derive(Debug, Declared)]
 struct Stated {
     /// The pair's compliances.
     #[declared(kinds = ["stiffness"])]
     pub stiffness: String,
-    /// How to search.
+    /// How to search; several objectives take `nsga2` or a sample.
     #[declared(default = "differential_evolution")]
     pub method: Box<dyn Method>,
-    /// What is to be small.
+    /// What is to be small, one or several: a column of `summary` of `ste`, or `harmonics[order=1].amplitude`.
     #[declared(default = "peak_to_peak")]
-    pub minimize: Objective,
+    pub minimize: Vec<Placed<String>>,
+    /// What every design must keep: `column <= limit` or `column >= limit`.
+    #[declared(example = "largest_pressure <= 1400 MPa")]
+    pub subject_to: Option<Vec<Placed<String>>>,
     /// The loads it is to be small at.
     pub at: Loads,
     /// The modifications; a value given as [least, most] is a variable.
@@ -71,6 +81,14 @@ struct Stated {
     /// Name of the design that is found.
     #[declared(default = "optimum")]
     pub name: String,
+    /// How closely designs are looked at on the way.
+    #[declared(default = "staged")]
+    pub search: How,
+    /// When the search has settled; a staged one does unless it is said, by the defaults.
+    pub settled: Option<Rule>,
+    /// Points of the front that are kept, with several objectives.
+    #[declared(minimum = 2, maximum = 10_000, default = "50")]
+    pub front_points: usize,
     /// Positions per base pitch; zone ends, relief starts, first touches and extrema come on top.
     #[declared(minimum = 8, maximum = 10_000, default = "64")]
     pub positions: usize,
@@ -83,43 +101,45 @@ struct Stated {
     pub contact: Contact,
 }
 
-/// What is made small.
+/// How closely designs are looked at on the way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
-enum Objective {
-    /// largest less smallest transmission error
-    PeakToPeak,
-    /// integral mean of the squared deviation of the transmission error
-    Variance,
+enum How {
+    /// with coarse samplings until nothing more is gained, the best of them and what is near as asked for; samples as `plain`
+    Staged,
+    /// every design as asked for, until the method ends
+    Plain,
+}
+
+/// When a search has settled: nothing more was gained for a while.
+#[derive(Clone, Copy, Debug, Declared)]
+struct Rule {
+    /// Share of the best objective that counts as a gain; of a front, of what it dominates.
+    #[declared(minimum = 0.0, maximum = 0.5, dimension = RATIO, default = "0.1 %")]
+    pub improvement: f64,
+    /// Evaluations without a gain after which it ends; 300 unless it is said, of a front 1000: then at most one in a hundred
+    /// would have brought a gain.
+    #[declared(minimum = 1, maximum = 1_000_000_000, example = "300")]
+    pub evaluations: Option<usize>,
+}
+
+/// What counts as a gain, and evaluations without one: the rule of three gives a hundredth. A front moves as a whole.
+const GAIN: f64 = 1e-3;
+const OF_ONE: usize = 300;
+const OF_A_FRONT: usize = 1000;
+
+impl Rule {
+    fn rule(self, evaluations: usize) -> Settled {
+        Settled { improvement: self.improvement, evaluations: self.evaluations.unwrap_or(evaluations) }
+    }
 }
 
 struct Optimizer {
     stated: Stated,
     cases: Cases,
+    goal: Goal,
     template: Template,
     settings: Settings,
 }
-
-/// What a search came to.
-struct Found {
-    search: Search,
-    reason: Reason,
-    /// Every design and its objective, if asked for.
-    tried: Vec<(Vec<f64>, f64)>,
-    settings: Settings,
-    /// Estimated relative error of the objective at the best design.
-    error: f64,
-}
-
-/// The best design: its point, and its largest peak-to-peak under any load.
-struct BestRow<'a> {
-    name: &'a str,
-    found: &'a Found,
-    best: &'a Candidate,
-    peak_to_peak: f64,
-}
-
-/// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
-const ROUNDS: usize = 4;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let stated = Stated::checked(record)?;
@@ -135,42 +155,27 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             .at(record.place_of(Stated::NAMES.name))
             .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"));
     }
+    if stated.minimize.is_empty() {
+        let place = record.place_of(Stated::NAMES.minimize);
+        return Err(Diagnostic::new("nothing is to be small").at(place).help("for example `minimize: peak_to_peak`"));
+    }
+    let goal = Goal::read(&stated.minimize, stated.subject_to.as_deref().unwrap_or_default())?;
+    if goal.has_front() && !stated.method.finds_fronts() {
+        let message =
+            format!("`{}` takes one objective, and there are {}", stated.method.name(), goal.objectives().len());
+        return Err(Diagnostic::new(message)
+            .at(record.place_of(Stated::NAMES.method))
+            .help("take `nsga2`, or a sample: `grid`, `latin_hypercube` or `sobol`"));
+    }
     let settings = common::settings(stated.positions, stated.slices, stated.contact);
     common::check_slices(settings, record)?;
     let cases = stated.at.cases(record.inside(Stated::NAMES.at))?;
-    let optimizer = Optimizer { stated, cases, template, settings };
+    let optimizer = Optimizer { stated, cases, goal, template, settings };
     // The method may refuse its parameters, or the number of variables: that is the study's mistake, not the run's. Its
     // points are drawn when the stage runs.
     optimizer.bounds()?;
-    let foreseen = optimizer.stated.method.foresee(optimizer.template.variables().len());
-    foreseen.map_err(|wrong| record.inside(Stated::NAMES.method).locate(wrong))?;
+    optimizer.foresee().map_err(|wrong| record.inside(Stated::NAMES.method).locate(wrong))?;
     Ok(Box::new(optimizer))
-}
-
-/// The unit a variable is shown in: amounts in µm, other lengths in mm.
-fn unit(variable: &Variable) -> &'static str {
-    match variable.dimension {
-        LENGTH if variable.name.contains("amount") => "um",
-        LENGTH => "mm",
-        ANGLE => "deg",
-        _ => "",
-    }
-}
-
-fn column(variable: &Variable) -> String {
-    variable.name.replace('.', "_")
-}
-
-/// A design that was tried: which one, from 1, its point and its objective.
-type Tried<'a> = (usize, &'a [f64], f64);
-
-/// What makes the reciprocal of an objective in a unit; NaN where that is none.
-fn fitness_in(unit: &str) -> impl Fn(f64) -> f64 + use<> {
-    let shown = showing(unit);
-    move |value| {
-        let shown = shown(finite(value));
-        if shown > 0.0 { 1.0 / shown } else { f64::NAN }
-    }
 }
 
 impl Optimizer {
@@ -178,96 +183,42 @@ impl Optimizer {
         Bounds::new(self.template.variables().iter().map(|variable| (variable.minimum, variable.maximum)).collect())
     }
 
+    /// A staged search goes down by itself from what its method found.
     fn search(&self, seed: declare::seed::Seed) -> Result<Search, Diagnostic> {
-        optimize::search(&*self.stated.method, self.bounds()?, seed)
+        let unpolished = if self.is_staged() { self.stated.method.unpolished() } else { None };
+        optimize::search(unpolished.as_deref().unwrap_or(&*self.stated.method), self.bounds()?, seed)
     }
 
-    fn objective_unit(&self) -> &'static str {
-        match self.stated.minimize {
-            Objective::PeakToPeak => "um",
-            Objective::Variance => "um^2",
-        }
+    /// A sample is looked at as a whole, and as asked for.
+    fn is_staged(&self) -> bool {
+        self.stated.search == How::Staged && self.stated.method.learns()
     }
 
-    fn best<'a>(&self) -> Columns<BestRow<'a>> {
-        let peak_to_peak = "Peak-to-peak of the transmission error, the largest of all cases.";
-        let slices = "Slices that were used on each stretch of the face without a closed form.";
-        let error = "Estimated relative error of the objective from positions and slices.";
-        let columns = Columns::new("best", "The best design that was found.")
-            .text("design", "Name of the design.", |row: &BestRow<'a>| row.name)
-            .key()
-            .float("objective", self.objective_unit(), "What was made small.", |row| finite(row.best.value))
-            .but(|column| column.tolerance(1e-9, 1e-6))
-            .float("peak_to_peak", "um", peak_to_peak, |row| row.peak_to_peak)
-            .but(|column| column.tolerance(1e-9, 1e-6))
-            .integer("evaluations", "How often the objective was computed.", |row| row.found.search.evaluations())
-            .integer("generations", "How many batches the search took.", |row| row.found.search.history().len())
-            .text("ended", "Why the search ended.", |row| row.found.reason.to_string())
-            .integer("positions", "Positions per base pitch that were used.", |row| row.found.settings.positions)
-            .integer("slices", slices, |row| row.found.settings.slices)
-            .float("error_estimate", "", error, |row| row.found.error)
-            .but(|column| column.tolerance(1e-9, 0.0));
-        // On a plateau many designs are as good: values of variables are compared loosely.
-        self.template.variables().iter().enumerate().fold(columns, |columns, (at, variable)| {
-            let description = "Value of the variable in the best design.";
-            columns
-                .float(&column(variable), unit(variable), description, move |row| row.best.point[at])
-                .but(|column| column.tolerance(0.0, 1e-3))
+    fn rule(&self) -> Settled {
+        let evaluations = if self.goal.has_front() { OF_A_FRONT } else { OF_ONE };
+        self.stated.settled.unwrap_or(Rule { improvement: GAIN, evaluations: Some(evaluations) }).rule(evaluations)
+    }
+
+    fn foresee(&self) -> Result<Foreseen, Diagnostic> {
+        let dimension = self.template.variables().len();
+        let foreseen = self.stated.method.foresee(dimension)?;
+        Ok(if self.is_staged() {
+            passes::on_top(foreseen, dimension)
+        } else {
+            Foreseen { exact: foreseen.exact && self.stated.settled.is_none(), ..foreseen }
         })
     }
 
-    fn history(&self) -> Columns<(usize, Generation)> {
-        let unit = self.objective_unit();
-        let (fitness, so_far, reciprocal) = (fitness_in(unit), fitness_in(unit), format!("1/{unit}"));
-        Columns::new("history", "The search, batch by batch (generation by generation).")
-            .integer("generation", "Counts the batches, from 1.", |row: &(usize, Generation)| row.0)
-            .key()
-            .integer("evaluations", "Evaluations so far.", |row| row.1.evaluations)
-            .float("best", unit, "Lowest objective in the batch.", |row| finite(row.1.best))
-            .but(Column::allows_nan)
-            .float("best_so_far", unit, "Lowest objective so far.", |row| finite(row.1.best_so_far))
-            .but(Column::allows_nan)
-            .float("mean", unit, "Mean objective of the batch.", |row| finite(row.1.mean))
-            .but(Column::allows_nan)
-            .shown("best_fitness", &reciprocal, "1/best: fitness of the best of the batch.", move |row| {
-                fitness(row.1.best)
-            })
-            .but(Column::allows_nan)
-            .shown("best_fitness_so_far", &reciprocal, "1/best so far.", move |row| so_far(row.1.best_so_far))
-            .but(Column::allows_nan)
+    /// What a point is worth; nothing where the design cannot be built.
+    fn worth(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> Worth {
+        let design = self.template.design(pair, point).ok();
+        let values = design.and_then(|design| self.measured(cycle, pair, &design));
+        self.goal.worth(&self.cases, &values.unwrap_or_else(|| vec![None]))
     }
 
-    fn evaluations<'a>(&self) -> Columns<Tried<'a>> {
-        let unit_of_objective = self.objective_unit();
-        let fitness = fitness_in(unit_of_objective);
-        let counts = "Counts the designs in the order of the search, from 1.";
-        let columns = Columns::new(EVALUATIONS, "Every design that was tried.")
-            .integer("evaluation", counts, |row: &Tried| row.0)
-            .key();
-        let columns = self.template.variables().iter().enumerate().fold(columns, |columns, (at, variable)| {
-            columns.float(&column(variable), unit(variable), "Value of the variable.", move |row: &Tried| row.1[at])
-        });
-        columns
-            .float("objective", unit_of_objective, "What is made small; NaN where no design can be built.", |row| {
-                finite(row.2)
-            })
-            .but(|column| column.allows_nan().tolerance(1e-9, 1e-6))
-            .shown("fitness", &format!("1/{unit_of_objective}"), "1/objective.", move |row| fitness(row.2))
-            .but(|column| column.allows_nan().tolerance(0.0, 1e-6))
-            .on_demand()
-    }
-
-    /// The objective \[m or m²\]; infinite where the design cannot be built.
-    fn value(&self, cycle: &MeshCycle, pair: &GearPair, point: &[f64]) -> f64 {
-        let Ok(design) = self.template.design(pair, point) else { return f64::INFINITY };
-        let values = self.of_cases(pair, &design, |design, torque| {
-            let loading = LoadCase::new(cycle, design, torque);
-            match self.stated.minimize {
-                Objective::PeakToPeak => loading.peak_to_peak(),
-                Objective::Variance => loading.variance(),
-            }
-        });
-        values.map_or(f64::INFINITY, |values| self.cases.combined(&values))
+    /// All measures of each case.
+    fn measured(&self, cycle: &MeshCycle, pair: &GearPair, design: &Design) -> Option<Vec<Option<Vec<f64>>>> {
+        self.of_cases(pair, design, |design, torque| self.goal.of_case(&LoadCase::new(cycle, design, torque)))
     }
 
     /// A value of each case; none where a design is no design any more with what is off.
@@ -286,34 +237,6 @@ impl Optimizer {
         Some(values)
     }
 
-    /// The search with one sampling.
-    fn found(
-        &self,
-        context: &Context,
-        base: &MeshCycle,
-        pair: &GearPair,
-        settings: Settings,
-    ) -> Result<Found, Failure> {
-        let cycle = base.sampled(settings);
-        let mut search = self.search(context.seed).map_err(|error| Failure::new(error.message))?;
-        let budget = search.budget().max(1) as f64;
-        let wanted = context.demand.table(EVALUATIONS);
-        let mut tried: Vec<(Vec<f64>, f64)> = Vec::new();
-        let mut done = 0_usize;
-        let reason = search.run(|points| -> Result<Vec<f64>, Failure> {
-            context.check_stop()?;
-            let values: Vec<f64> = points.par_iter().map(|point| self.value(&cycle, pair, point)).collect();
-            if wanted {
-                tried.extend(points.iter().cloned().zip(values.iter().copied()));
-            }
-            done += points.len();
-            (context.progress)(done as f64 / budget);
-            Ok(values)
-        })?;
-        let error = search.best().map_or(1.0, |best| self.error(base, pair, &best.point, settings));
-        Ok(Found { search, reason, tried, settings, error })
-    }
-
     /// Why a search found no design at all, by the one in the middle of the box.
     fn nothing_built(&self, pair: &GearPair) -> Failure {
         let variables = self.template.variables();
@@ -326,8 +249,8 @@ impl Optimizer {
         ))
     }
 
-    /// The elements with the values of the best point in the place of the ranges.
-    fn best_elements(&self, point: &[f64]) -> Vec<Element> {
+    /// The elements with the values of a point in the place of the ranges.
+    fn elements_at(&self, point: &[f64]) -> Vec<Element> {
         let mut values = point.iter();
         let mut elements = self.stated.design.elements();
         for element in &mut elements {
@@ -355,40 +278,76 @@ impl Optimizer {
         &self,
         context: &Context,
         found: &Found,
-        pair: &GearPair,
-        cycle: &MeshCycle,
+        (pair, cycle): (&GearPair, &MeshCycle),
     ) -> Result<Vec<Table>, Failure> {
-        let search = &found.search;
-        let best = search.best().ok_or_else(|| self.nothing_built(pair))?;
+        let best = &found.best;
         let failed = |error: TableError| Failure::new(error.to_string());
         let design = self.template.design(pair, &best.point).map_err(|error| Failure::new(error.message))?;
         let of_cases =
             self.of_cases(pair, &design, |design, torque| LoadCase::new(cycle, design, torque).peak_to_peak());
         let peak_to_peak = of_cases.into_iter().flatten().fold(0.0, f64::max);
-        let row = BestRow { name: &self.stated.name, found, best, peak_to_peak };
+        let limited = |point: &[f64]| {
+            if self.goal.limits.is_empty() { Vec::new() } else { self.worth(cycle, pair, point).limited }
+        };
+        let balanced = found.front.iter().find(|member| member.point == best.point);
+        let further = balanced.map(|member| member.evaluation.further.clone()).unwrap_or_default();
+        let name = self.stated.name.as_str();
+        let row = BestRow { name, found, peak_to_peak, further, limited: limited(&best.point) };
         self.warn(context, &design, (pair, cycle));
-        let design = NamedDesign { name: self.stated.name.clone(), elements: self.best_elements(&best.point) };
+        let named = |name: String, point: &[f64]| NamedDesign { name, elements: self.elements_at(point) };
+        let mut designs = vec![named(name.to_owned(), &best.point)];
+        designs.extend((1..).zip(&found.front).map(|(number, member)| named(self.name_of(number), &member.point)));
         let mut tables = vec![
             self.best().table(&[row]).map_err(failed)?,
-            self.history().table_of(&(1..).zip(search.history().iter().copied())).map_err(failed)?,
+            self.history().table_of(&(1..).zip(found.history.iter().copied())).map_err(failed)?,
+            self.passes().table_of(&(1..).zip(found.passes.iter().cloned())).map_err(failed)?,
         ];
-        tables.extend(designs::write(&[design], modification::members()).map_err(failed)?);
+        if self.goal.has_front() {
+            let points = || designs[1..].iter().zip(&found.front);
+            let rows: Vec<FrontRow> = (1..)
+                .zip(points())
+                .map(|(number, (design, member))| FrontRow {
+                    number,
+                    name: &design.name,
+                    member,
+                    limited: limited(&member.point),
+                })
+                .collect();
+            tables.push(self.front().table(&rows).map_err(failed)?);
+        }
+        tables.extend(designs::write(&designs, modification::members()).map_err(failed)?);
         Ok(tables)
+    }
+
+    /// The design of a point of the front.
+    fn name_of(&self, number: usize) -> String {
+        format!("{}_{number}", self.stated.name)
     }
 }
 
 impl Stage for Optimizer {
     fn inputs(&self) -> Vec<Port> {
-        common::mesh_cycle_ports(&self.stated.stiffness)
+        let mut ports = common::mesh_cycle_ports(&self.stated.stiffness);
+        if self.goal.needs_roots() {
+            ports.push(Port { only_for: &[], ..root_influences::port(&self.stated.stiffness) });
+        }
+        ports
     }
 
     fn keys(&self, _table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
-        (column == names::designs::DESIGN).then(|| vec![Cell::Text(self.stated.name.clone())])
+        // How many points a front has nobody knows before.
+        let is_known = column == names::designs::DESIGN && !self.goal.has_front();
+        is_known.then(|| vec![Cell::Text(self.stated.name.clone())])
     }
 
     fn outputs(&self) -> Vec<Schema> {
         let [designs, elements] = designs::schemas();
-        vec![self.best().schema(), self.history().schema(), designs, elements, self.evaluations().schema()]
+        let mut schemas = vec![self.best().schema(), self.history().schema(), self.passes().schema()];
+        if self.goal.has_front() {
+            schemas.push(self.front().schema());
+        }
+        schemas.extend([designs, elements, self.evaluations().schema()]);
+        schemas
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {
@@ -409,32 +368,17 @@ impl Stage for Optimizer {
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let (pair, base) = common::mesh_cycle(inputs, self.settings)?;
-        let mut settings = self.first_settings(&base, &pair);
-        let mut round = 1;
-        let mut found = loop {
-            let found = self.found(context, &base, &pair, settings)?;
-            let (Some(accuracy), Some(best)) = (self.stated.accuracy, found.search.best()) else { break found };
-            if found.error <= accuracy {
-                break found;
-            }
-            let next = sampling::finer(settings, self.settings_for(&base, &pair, &best.point, accuracy));
-            if round == ROUNDS || next == settings {
-                let reached = found.error;
-                (context.warn)(format!("the objective is accurate to {reached:.1e}, not to {accuracy:.1e}").into());
-                break found;
-            }
-            (settings, round) = (next, round + 1);
-        };
-        if let Some(doubt) = found.search.doubt() {
-            (context.warn)(doubt.to_owned().into());
-        }
-        let mut tables = self.tables(context, &found, &pair, &base.sampled(found.settings))?;
+        let base = if self.goal.needs_roots() { base.with_roots(&root_influences::of(inputs)?) } else { base };
+        let found = Run::new(self, context, (&base, &pair))?.found()?;
+        let cycle = base.sampled(found.settings);
+        let mut tables = self.tables(context, &found, (&pair, &cycle))?;
         if context.demand.table(EVALUATIONS) {
             let tried = (1..).zip(&found.tried).map(|(index, (point, value))| (index, point.as_slice(), *value));
             tables.push(
                 self.evaluations().table_of(&tried).map_err(|error: TableError| Failure::new(error.to_string()))?,
             );
         }
+        self.tell_if_simpler_does(context, &found, (&pair, &cycle));
         context.work.add(&base.work());
         Ok(tables)
     }

@@ -240,6 +240,7 @@ impl Stage for RootOptimizer {
             let told = worths.iter().map(|worth| Evaluation {
                 value: worth.objective,
                 constraints: worth.constraints.iter().map(|reserve| reserve / module).collect(),
+                ..Evaluation::default()
             });
             let told = told.collect();
             tried.extend(points.iter().cloned().zip(worths));

@@ -85,7 +85,7 @@ fn a_check_computes_what_takes_no_time_and_says_what_does_not_fit() {
         ("designs: [designs, optimum]", "designs: [designs, optimum]\n    slice_coupling: plate"),
     ];
     let message = checked(&whole_pairs);
-    assert!(message.starts_with("changed.yaml:42:21: `ste`: `slice_coupling: plate` needs"), "{message}");
+    assert!(message.starts_with("changed.yaml:43:21: `ste`: `slice_coupling: plate` needs"), "{message}");
     assert!(!desk.path("results").exists() && !desk.path(".gearstudy").exists(), "nothing is written");
 }
 

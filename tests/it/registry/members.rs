@@ -200,6 +200,7 @@ fn every_optimiser_finds_something_better_than_nothing() {
         ("differential_evolution", "{ population: 8, generations: 8, polish: nelder_mead }"),
         ("nelder_mead", "{ evaluations: 80 }"),
         ("powell", "{ evaluations: 80 }"),
+        ("nsga2", "{ population: 10, generations: 8 }"),
         ("grid", "{ levels: 6 }"),
         ("latin_hypercube", "{ points: 40 }"),
         ("sobol", "{ points: 32 }"),

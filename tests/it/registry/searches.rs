@@ -19,6 +19,7 @@ stages:
     kind: optimizer
     stiffness: k
     method: powell
+    search: plain
     at: { torque: 100 N m }
     design:
       - tip_relief: { gear: both, amount: [0 um, 30 um], length: [0.5 mm, 6 mm] }

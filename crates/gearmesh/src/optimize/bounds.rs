@@ -55,6 +55,16 @@ impl Bounds {
             .map(|(&(minimum, maximum), t)| (minimum * (1.0 - t) + maximum * t).clamp(minimum, maximum))
             .collect()
     }
+
+    /// The point of the unit cube for a point of the box.
+    #[must_use]
+    pub fn unit(&self, point: &[f64]) -> Vec<f64> {
+        let share = |(&(minimum, maximum), x): (&(f64, f64), &f64)| {
+            // Halves, or the difference may overflow.
+            ((0.5 * x - 0.5 * minimum) / (0.5 * maximum - 0.5 * minimum)).clamp(0.0, 1.0)
+        };
+        self.0.iter().zip(point).map(share).collect()
+    }
 }
 
 #[cfg(test)]
@@ -72,6 +82,10 @@ mod tests {
             prop_assert_eq!(at(0.0).to_bits(), a.to_bits());
             prop_assert_eq!(at(1.0).to_bits(), b.to_bits());
             prop_assert!((a..=b).contains(&at(t)));
+            // As near as the box has numbers.
+            let back = bounds.unit(&[at(t)])[0];
+            let size = a.abs().max(b.abs());
+            prop_assert!((back - t).abs() <= 4.0 * f64::EPSILON * (size / (0.5 * b - 0.5 * a) + 1.0), "{}", back);
         }
     }
 

@@ -22,6 +22,8 @@ pub const KEPT: f64 = 1e-7;
 pub struct Evaluation {
     /// To be small; NaN or +∞ where there is no value.
     pub value: f64,
+    /// What else is to be small, where there are several objectives; as many for every point.
+    pub further: Vec<f64>,
     /// Each kept where it is not negative, and of the order of −1 where it is clearly broken: lengths as shares of a
     /// length. As many for every point. An equation is two constraints, of both signs.
     pub constraints: Vec<f64>,
@@ -29,14 +31,20 @@ pub struct Evaluation {
 
 impl From<f64> for Evaluation {
     fn from(value: f64) -> Self {
-        Self { value, constraints: Vec::new() }
+        Self { value, ..Self::default() }
     }
 }
 
 impl Evaluation {
+    /// All that is to be small.
+    pub fn objectives(&self) -> impl Iterator<Item = f64> + '_ {
+        std::iter::once(self.value).chain(self.further.iter().copied())
+    }
+
     /// Without a value, or with a constraint that is not a number, a point is inadmissible.
     pub(super) fn admissible(&self) -> bool {
-        self.value < f64::INFINITY && self.constraints.iter().all(|constraint| constraint.is_finite())
+        self.objectives().all(|value| value < f64::INFINITY)
+            && self.constraints.iter().all(|constraint| constraint.is_finite())
     }
 
     /// The sum of what is broken; 0 where all constraints are kept.
@@ -117,7 +125,7 @@ mod tests {
     use super::*;
 
     fn evaluation(value: f64, constraints: &[f64]) -> Evaluation {
-        Evaluation { value, constraints: constraints.to_vec() }
+        Evaluation { value, constraints: constraints.to_vec(), ..Evaluation::default() }
     }
 
     #[test]

@@ -108,6 +108,10 @@ impl Method for DifferentialEvolution {
         })
     }
 
+    fn unpolished(&self) -> Option<Box<dyn Method>> {
+        Some(Box::new(Self { polish: Polish::None, ..self.clone() }))
+    }
+
     fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
         let population = latin_hypercube::points(self.population, dimension, &mut seed.generator(0));
         Box::new(EvolutionSearch {
@@ -157,6 +161,14 @@ impl Strategy for EvolutionSearch {
 
     fn budget(&self) -> usize {
         self.population.len() * self.settings.generations + self.settings.polishing().unwrap_or(0)
+    }
+
+    fn goes_on(&mut self) -> bool {
+        if self.polishing.is_none() {
+            self.begin_polishing();
+            return self.polishing.is_some();
+        }
+        false
     }
 }
 

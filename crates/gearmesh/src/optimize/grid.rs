@@ -38,6 +38,10 @@ impl Method for Grid {
         foreseen.map_err(|wrong| wrong.of(Self::NAMES.levels))
     }
 
+    fn learns(&self) -> bool {
+        false
+    }
+
     fn strategy(&self, dimension: usize, _: Seed) -> Box<dyn Strategy> {
         let levels = self.of_each(dimension).unwrap_or_default();
         let count = combinations(&levels).unwrap_or(0);

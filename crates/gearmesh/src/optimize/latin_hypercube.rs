@@ -26,6 +26,10 @@ impl Method for LatinHypercube {
         sampling::foreseen(Some(self.points), dimension, 8 * (dimension + 1))
     }
 
+    fn learns(&self) -> bool {
+        false
+    }
+
     fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy> {
         let columns = columns(self.points, dimension, &mut seed.generator(0));
         let layout = move |index: usize| columns.iter().map(|column| column[index]).collect();

@@ -20,22 +20,28 @@ pub mod constraints;
 pub mod differential_evolution;
 pub mod genetic;
 pub mod grid;
+pub mod hypervolume;
 mod kink;
 pub mod latin_hypercube;
+pub mod leaders;
 mod line;
 mod local;
 pub mod nelder_mead;
+pub mod nsga2;
+pub mod pareto;
 pub mod powell;
 pub mod random;
 mod restarts;
 pub mod sampling;
 pub mod scrambled;
 pub mod search;
+pub mod settled;
 pub mod sobol;
 
 use std::fmt::Debug;
 
 use bounds::Bounds;
+use constraints::Evaluation;
 use declare::declared::{Declared, Registrable};
 use declare::error::Diagnostic;
 use declare::registry;
@@ -63,6 +69,22 @@ pub trait Method: Debug + Registrable + Send + Sync {
     /// Settings that make no sense together, or for this number of variables, which no range can express.
     fn foresee(&self, dimension: usize) -> Result<Foreseen, Diagnostic>;
 
+    /// Whether where it looks follows from what it found; a sample was laid out before.
+    fn learns(&self) -> bool {
+        true
+    }
+
+    /// The same without a local search at its end, for somebody who goes on from what it finds by other means; none where
+    /// it has none.
+    fn unpolished(&self) -> Option<Box<dyn Method>> {
+        None
+    }
+
+    /// Whether it finds fronts of several objectives. A sample does: nothing that it looks at follows from any of them.
+    fn finds_fronts(&self) -> bool {
+        !self.learns()
+    }
+
     /// Sets itself up for a number of variables. Never called with what [`Method::foresee`] refuses.
     fn strategy(&self, dimension: usize, seed: Seed) -> Box<dyn Strategy>;
 }
@@ -72,6 +94,7 @@ registry!(
     differential_evolution::DifferentialEvolution,
     nelder_mead::NelderMead,
     powell::Powell,
+    nsga2::Nsga2,
     grid::Grid,
     latin_hypercube::LatinHypercube,
     sobol::Sobol,
@@ -100,6 +123,22 @@ pub trait Strategy: Send {
     fn local(&mut self) -> Option<&mut dyn Local> {
         None
     }
+
+    /// The method as one that ranks points by all that is known of them, if it does.
+    fn fronts(&mut self) -> Option<&mut dyn Fronts> {
+        None
+    }
+
+    /// Nothing more is gained by what it does: begins what comes last, if there is such a thing. Whether there is.
+    fn goes_on(&mut self) -> bool {
+        false
+    }
+}
+
+/// A method that keeps constraints and finds fronts by itself.
+pub trait Fronts {
+    /// As [`Strategy::learn`], and in its place.
+    fn learn_all(&mut self, evaluations: &[Evaluation]);
 }
 
 /// A method that searches from one point.
@@ -129,6 +168,14 @@ pub fn optimizer<M: Declared + Method + Clone>(
 ) -> Result<Optimizer, Diagnostic> {
     method.in_range()?;
     search(method, bounds, seed)
+}
+
+/// A local search of `bounds` around a point of it, by a simplex whose first edges are `edge`, a share of each range: for what
+/// another search has found. It keeps constraints by [`constraints`]' order, so it never leaves a point that keeps them for
+/// one that does not.
+#[must_use]
+pub fn refinement(bounds: Bounds, from: &[f64], edge: f64, evaluations: usize) -> Optimizer {
+    Optimizer::new(Box::new(nelder_mead::Refinement::new(bounds.unit(from), edge, evaluations)), bounds)
 }
 
 /// Bytes of so many points as vectors of coordinates, with what the allocator keeps of each.

@@ -10,6 +10,7 @@
 
 use super::local::{self, Limits, Search, Start, clip};
 use super::restarts::Restarted;
+use super::search::Reason;
 use super::{Foreseen, Method, Strategy};
 use declare::Declared;
 use declare::error::Diagnostic;
@@ -68,6 +69,40 @@ enum Step {
         limit: f64,
     },
     Shrink,
+}
+
+/// A simplex around what another search has found. It is no [`Strategy::local`]: begun on a point that keeps all constraints
+/// it has no use for rounds with multipliers, which come from outside.
+pub(super) struct Refinement(Restarted<SimplexSearch>);
+
+/// Extent at which a refinement begins again, or looks for a kink: fine enough for gains of a thousandth, and reached before
+/// patience ends.
+const REFINED: f64 = 1e-4;
+const AGAIN: usize = 10;
+
+impl Refinement {
+    pub(super) fn new(start: Vec<f64>, edge: f64, evaluations: usize) -> Self {
+        let limits = Limits { tolerance: REFINED, restarts: AGAIN, evaluations };
+        Self(Restarted::new(SimplexSearch::new(start, None, edge, REFINED), edge, limits))
+    }
+}
+
+impl Strategy for Refinement {
+    fn batch(&self) -> &[Vec<f64>] {
+        self.0.batch()
+    }
+
+    fn learn(&mut self, values: &[f64]) -> Result<(), String> {
+        self.0.learn(values)
+    }
+
+    fn finished(&self) -> Option<Reason> {
+        self.0.finished()
+    }
+
+    fn budget(&self) -> usize {
+        self.0.budget()
+    }
 }
 
 /// The search; also used to polish what another method found.

@@ -2,14 +2,18 @@
 //!
 //! An objective may be NaN or +∞ where a point is inadmissible: such a point ranks behind every number and is never the
 //! best. −∞ is refused: nothing could be better, so it is a mistake of the objective. An objective with constraints gives
-//! an [`Evaluation`] per point; by what rule a method keeps them, [`super::constraints`] says. Must not know: which method
-//! runs.
+//! an [`Evaluation`] per point; by what rule a method keeps them, [`super::constraints`] says. With several objectives the
+//! points that no other one dominates are kept beside the best, which is that of the first objective. Must not know: which
+//! method runs.
 
 use std::fmt;
 
 use super::Strategy;
 use super::bounds::Bounds;
 use super::constraints::{Evaluation, Multipliers, feasible_first};
+use super::hypervolume::hypervolume;
+use super::pareto::{Archive, Member};
+use super::settled::{Settled, Watch};
 use declare::error::Failure;
 
 /// Why a search ended.
@@ -25,6 +29,8 @@ pub enum Reason {
     Evaluations,
     /// All points of a sample were evaluated.
     Complete,
+    /// Nothing more was gained, by the rule that was asked for.
+    Settled,
 }
 
 impl Reason {
@@ -37,7 +43,7 @@ impl Reason {
                  `differential_evolution`",
             ),
             Self::Evaluations => Some("the search has used up its `evaluations` and has not converged; give it more"),
-            Self::Generations | Self::Converged | Self::Complete => None,
+            Self::Generations | Self::Converged | Self::Complete | Self::Settled => None,
         }
     }
 }
@@ -50,6 +56,7 @@ impl fmt::Display for Reason {
             Self::Stalled => "stalled",
             Self::Evaluations => "evaluations used up",
             Self::Complete => "all points evaluated",
+            Self::Settled => "settled",
         })
     }
 }
@@ -89,7 +96,15 @@ pub struct Optimizer {
     /// For a local search with constraints: what it minimises in this round, and the round's minimum.
     multipliers: Option<Multipliers>,
     lowest: Option<Lowest>,
+    /// With several objectives: what no other point dominates, and beyond the worst of the first admissible batch.
+    archive: Archive,
+    reference: Vec<f64>,
+    watch: Option<Watch>,
+    has_settled: bool,
 }
+
+/// Of a front with more than two objectives as many points tell how far it has come: the hypervolume of all takes too long.
+const TELLING: usize = 100;
 
 /// The minimum of a round, in the unit cube.
 struct Lowest {
@@ -111,13 +126,25 @@ impl Optimizer {
             evaluations: 0,
             multipliers: None,
             lowest: None,
+            archive: Archive::default(),
+            reference: Vec::new(),
+            watch: None,
+            has_settled: false,
         };
         optimizer.take_batch();
         optimizer
     }
 
+    /// The same, ended as soon as nothing more is gained: of a front, of the hypervolume below the worst that the first
+    /// batch had of each objective.
+    #[must_use]
+    pub fn until_settled(mut self, rule: Settled) -> Self {
+        self.watch = Some(Watch::new(rule));
+        self
+    }
+
     fn take_batch(&mut self) {
-        self.batch = match self.strategy.finished() {
+        self.batch = match self.finished() {
             None => self.strategy.batch().iter().map(|unit| self.bounds.point(unit)).collect(),
             Some(_) => Vec::new(),
         };
@@ -161,12 +188,39 @@ impl Optimizer {
         }
         let merits = self.merits(&evaluations);
         let lowest = self.lowest_with(&merits, &evaluations);
-        self.strategy.learn(&merits).map_err(Failure::new)?;
+        match self.strategy.fronts() {
+            Some(fronts) => fronts.learn_all(&evaluations),
+            None => self.strategy.learn(&merits).map_err(Failure::new)?,
+        }
         self.lowest = lowest;
         self.note(&evaluations);
+        self.refer(&evaluations);
         self.next_round();
+        self.settle();
         self.take_batch();
         Ok(())
+    }
+
+    /// Whether the rule that was asked for says that nothing more is gained; then what comes last in the method begins, or
+    /// the search ends.
+    fn settle(&mut self) {
+        let (best, evaluations) = (self.progress(), self.evaluations);
+        if let Some(watch) = &mut self.watch
+            && self.strategy.finished().is_none()
+            && watch.has_settled(best, evaluations)
+        {
+            watch.begin_again(evaluations);
+            self.has_settled = !self.strategy.goes_on();
+        }
+    }
+
+    /// What falls as the search gets on; +∞ while nothing keeps the constraints.
+    fn progress(&self) -> f64 {
+        if self.watch.is_none() || self.reference.is_empty() {
+            return self.history.last().map_or(f64::INFINITY, |generation| generation.best_so_far);
+        }
+        let count = if self.reference.len() > 2 { TELLING } else { usize::MAX };
+        -hypervolume(&self.archive.objectives(count), &self.reference)
     }
 
     /// What the method sees: values, where there are no constraints.
@@ -219,6 +273,9 @@ impl Optimizer {
             if value < f64::INFINITY && self.best.as_ref().is_none_or(better) {
                 self.best = Some(Candidate { point: point.clone(), value, violation });
             }
+            if !evaluation.further.is_empty() {
+                self.archive.add(point, evaluation);
+            }
         }
         let kept =
             evaluations.iter().filter(|evaluation| evaluation.violation() == 0.0 && evaluation.value.is_finite());
@@ -233,10 +290,34 @@ impl Optimizer {
         });
     }
 
+    /// Beyond the worst of each objective among the first points that keep the constraints, by a tenth of what they span: the
+    /// ends of a front count too.
+    fn refer(&mut self, evaluations: &[Evaluation]) {
+        let kept = || evaluations.iter().filter(|it| it.admissible() && it.violation() == 0.0);
+        let Some(first) = kept().next().filter(|first| self.reference.is_empty() && !first.further.is_empty()) else {
+            return;
+        };
+        let beyond = |axis: usize| {
+            let values = kept().filter_map(|it| it.objectives().nth(axis));
+            let (low, high) =
+                values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| (low.min(value), high.max(value)));
+            let span = if high > low { high - low } else { high.abs().max(f64::MIN_POSITIVE) };
+            high + 0.1 * span
+        };
+        self.reference = (0..first.objectives().count()).map(beyond).collect();
+    }
+
     /// Why the search has ended; `None` while it goes on.
     #[must_use]
     pub fn finished(&self) -> Option<Reason> {
-        self.strategy.finished()
+        if self.has_settled { Some(Reason::Settled) } else { self.strategy.finished() }
+    }
+
+    /// With several objectives: the points that keep all constraints and that no other one dominates, at most `count` that
+    /// lie evenly, from the smallest first objective on.
+    #[must_use]
+    pub fn front(&self, count: usize) -> Vec<&Member> {
+        self.archive.even(count)
     }
 
     /// Why the point that was found may not be a minimum, where a local search says so of itself; a population has looked

@@ -85,6 +85,10 @@ impl Method for Sobol {
         sampling::foreseen(Some(self.points), dimension, 0)
     }
 
+    fn learns(&self) -> bool {
+        false
+    }
+
     fn strategy(&self, dimension: usize, _: Seed) -> Box<dyn Strategy> {
         let sequence = Sequence::new(dimension);
         let layout =

@@ -2,7 +2,7 @@
 //!
 //! Must not know: how any method searches.
 
-use super::{EVALUATIONS, Optimizer};
+use super::{EVALUATIONS, Optimizer, passes};
 use crate::stage::designs::{self, rows_of};
 use crate::stage::{Ahead, Demand, Estimate, RowCount, common};
 use declare::work::Work;
@@ -18,7 +18,7 @@ impl Optimizer {
     pub fn ahead(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
         let dimension = self.template.variables().len();
         // What the method refuses was refused when the stage was built.
-        let Ok(foreseen) = self.stated.method.foresee(dimension) else {
+        let Ok(foreseen) = self.foresee() else {
             return Estimate::new(true);
         };
         let as_many = |count| if foreseen.exact { RowCount::exact(count) } else { RowCount::at_most(count) };
@@ -28,13 +28,21 @@ impl Optimizer {
         let solves = (foreseen.evaluations as f64 * self.cases.all.len() as f64 * each) as usize;
         let kept = if demand.table(EVALUATIONS) { foreseen.evaluations as u64 } else { 0 };
         let [designs, elements] = designs::schemas();
-        Estimate::new(true)
+        let points = if self.goal.has_front() { self.stated.front_points } else { 0 };
+        let count = |of_design: usize| {
+            let most = of_design.saturating_mul(points + 1);
+            if points == 0 { RowCount::exact(most) } else { RowCount::at_most(most) }
+        };
+        let parameters = self.stated.design.elements().iter().map(rows_of).sum();
+        let estimate = Estimate::new(true)
             .work(&Work::of(&CONTACT_SOLVES, solves), common::solve_times(self.settings))
             .holding((foreseen.memory as u64 + CYCLE).saturating_add(kept.saturating_mul(8 * dimension as u64 + 40)))
             .rows(demand, self.best().schema(), RowCount::exact(1))
             .rows(demand, self.history().schema(), as_many(foreseen.batches))
-            .rows(demand, designs, RowCount::exact(1))
-            .rows(demand, elements, RowCount::exact(self.stated.design.elements().iter().map(rows_of).sum()))
-            .columns(demand, self.evaluations().schema(), as_many(foreseen.evaluations))
+            .rows(demand, self.passes().schema(), RowCount::at_most(passes::MOST))
+            .rows(demand, designs, count(1))
+            .rows(demand, elements, count(parameters))
+            .columns(demand, self.evaluations().schema(), as_many(foreseen.evaluations));
+        if points == 0 { estimate } else { estimate.rows(demand, self.front().schema(), RowCount::at_most(points)) }
     }
 }

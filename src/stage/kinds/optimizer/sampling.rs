@@ -4,6 +4,7 @@
 //! know: how the search goes on.
 
 use super::Optimizer;
+use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::load_case::LoadCase;
@@ -11,6 +12,10 @@ use gearmesh::gear::transmission_error::sampling::{Against, Sampled};
 
 /// Places on the diagonal of the box that stand for all of it.
 const PROBES: [f64; 5] = [0.1, 0.3, 0.5, 0.7, 0.9];
+
+/// With fewer positions spans are as long as a smooth stretch; with fewer slices a crowned face is hardly seen.
+const FEWEST_POSITIONS: usize = 16;
+const FEWEST_SLICES: usize = 5;
 
 impl Optimizer {
     /// The settings to begin with.
@@ -45,9 +50,23 @@ impl Optimizer {
         let design = self.template.design(pair, point).ok()?;
         let sliced = self.of_cases(pair, &design, |design, torque| LoadCase::new(base, design, torque).uses_slices());
         let sliced = sliced?.contains(&true);
-        let mut value = |settings| self.value(&base.sampled(settings), pair, point);
+        let mut value = |settings| self.worth(&base.sampled(settings), pair, point).evaluation.value;
         Some(look(Sampled::new(sliced, Against::Finer, &mut value)))
     }
+}
+
+/// What a search looks at on its way to the asked sampling, the coarsest first: a quarter of the positions, and half of the
+/// slices, as long as either says anything. Slices that hold each other are halved twice: their cost goes with their number to
+/// a power above two.
+pub fn coarser(asked: Settings) -> Vec<Settings> {
+    let positions = (asked.positions / 4).max(FEWEST_POSITIONS).min(asked.positions);
+    let half = |slices: usize| (slices / 2 + 1).max(FEWEST_SLICES).min(slices);
+    let once = half(asked.slices);
+    let slices = match asked.slice_coupling {
+        SliceCoupling::Plate if half(once) < once => vec![half(once), once],
+        _ => vec![once],
+    };
+    slices.into_iter().map(|slices| Settings { positions, slices, ..asked }).collect()
 }
 
 /// As fine as either.

@@ -4,7 +4,7 @@
 //! not know: how anything is drawn.
 
 use super::operand::{in_si, no_rows, table};
-use super::stated_figure::{How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
+use super::stated_figure::{Best, How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
 use crate::stage::quantity::{described, same_dimension};
 use crate::stage::{Ahead, Inputs};
 use declare::declared::{Placed, Words};
@@ -16,6 +16,9 @@ use studygraph::table::columns::Columns;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Column, Type};
 use studygraph::table::select::{CellName, rows_where, unknown_column};
+
+/// The column with the names of points.
+const DESIGN: &str = "design";
 
 /// A published point or line; lengths along the axes, in SI.
 struct Mark {
@@ -40,6 +43,11 @@ pub struct Figure {
     x: String,
     y: Vec<String>,
     value: String,
+    isolines: bool,
+    best: Best,
+    /// Stage and table of the named points, and their columns.
+    marked: Option<(String, String)>,
+    marked_columns: [String; 2],
     series: String,
     segments: String,
     length: String,
@@ -104,6 +112,13 @@ impl Figure {
             x: text(&stated.x),
             y: stated.y.iter().map(text).collect(),
             value: maybe(&stated.value),
+            isolines: stated.isolines,
+            best: stated.best,
+            marked: stated.marked.as_ref().map(read_table).transpose()?,
+            marked_columns: [
+                stated.marked_x.as_ref().map_or_else(|| text(&stated.x), text),
+                stated.marked_y.as_ref().or(stated.y.first()).map(text).unwrap_or_default(),
+            ],
             series: maybe(&stated.series),
             segments: maybe(&stated.segments),
             length: maybe(&stated.length),
@@ -129,9 +144,14 @@ impl Figure {
         };
         let tables = self.tables.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), columns()));
         let several = move || self.y.iter().chain(self.conditions.iter().map(|(column, _)| column)).map(String::as_str);
-        tables.chain(
-            self.reference.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect())),
-        )
+        let marked = move || self.marked_columns.iter().map(String::as_str).chain([DESIGN]).collect();
+        tables
+            .chain(
+                self.reference
+                    .iter()
+                    .map(move |(stage, table)| (stage.as_str(), table.as_str(), several().collect::<Vec<&str>>())),
+            )
+            .chain(self.marked.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), marked())))
     }
 
     /// The conditions that some rows of each of its tables must meet, one by one.
@@ -187,6 +207,9 @@ impl Figure {
             self.check_reference(table(stage, name, inputs)?, &y_unit)?;
             y_unit.clear();
         }
+        if let Some((stage, name)) = &self.marked {
+            self.check_marked(table(stage, name, inputs)?, [&x_unit, &y_unit])?;
+        }
         let mut marks = Vec::new();
         for (number, mark) in (1..).zip(&self.published) {
             let along =
@@ -195,6 +218,20 @@ impl Figure {
             marks.push(MarkRow { figure: self.number, number, label: &mark.label, x, y });
         }
         Ok(marks)
+    }
+
+    /// Whether the named points have numbers in the units of the axes.
+    fn check_marked(&self, table: &Table, units: [&String; 2]) -> Result<(), String> {
+        let schema = table.schema();
+        schema.column(DESIGN).ok_or_else(|| unknown_column(schema, DESIGN))?;
+        for (name, unit) in self.marked_columns.iter().zip(units) {
+            let column = schema.column(name).ok_or_else(|| unknown_column(schema, name))?;
+            numbers(column)?;
+            if column.unit != *unit {
+                return Err(format!("`{name}` of the named points is in `{}`, the axis in `{unit}`", column.unit));
+            }
+        }
+        Ok(())
     }
 
     /// As JSON: a name may have any character.
@@ -347,13 +384,20 @@ pub fn figures<'a>() -> Columns<&'a Figure> {
         .key()
         .text("name", "Name of the file in `figures/`.", |row| row.name.as_str())
         .text("title", "What is shown.", |row| row.title.as_str())
-        .text("kind", "Line, points, bar, drawing, map, chart, histogram, quantiles or tornado.", |row| row.kind.word())
+        .text("kind", "Line, points, bar, drawing, map, front, chart, histogram, quantiles or tornado.", |row| {
+            row.kind.word()
+        })
         .text("tables", "The tables it is drawn from, `stage.table`, separated by commas.", |row| dotted(&row.tables))
         .text("x", "Column of the x axis.", |row| row.x.as_str())
         .text("y", "Columns of the y axis, separated by commas.", |row| row.y.join(", "))
         .text("value", "Column that a map shows as colours, or where the bars of a histogram end.", |row| {
             row.value.as_str()
         })
+        .flag("isolines", "Whether a map has lines of one value.", |row| row.isolines)
+        .text("best", "Which cell of a map is marked: none, smallest or largest.", |row| row.best.word())
+        .text("marked", "The table of the points that are named.", |row| dotted(&row.marked))
+        .text("marked_x", "Its column for the x axis.", |row| row.marked_columns[0].as_str())
+        .text("marked_y", "Its column for the y axis.", |row| row.marked_columns[1].as_str())
         .text("series", "Column whose values are drawn apart.", |row| row.series.as_str())
         .text("segments", "Column at whose changes a line is interrupted.", |row| row.segments.as_str())
         .text("length", "Column of the length that x stands for.", |row| row.length.as_str())

@@ -31,6 +31,21 @@ pub struct StatedFigure {
     /// column that a map shows as colours, or where the bars of a histogram end
     #[declared(example = "pressure")]
     pub value: Option<String>,
+    /// lines of one value over a map
+    #[declared(default = "false")]
+    pub isolines: bool,
+    /// which cell of a map is marked
+    #[declared(default = "none")]
+    pub best: Best,
+    /// `stage.table` with a column `design` whose rows are named where they lie
+    #[declared(example = "optimum.best")]
+    pub marked: Option<Placed<String>>,
+    /// column of `marked` for the x axis; that of the figure unless it is said
+    #[declared(example = "tip_relief_amount")]
+    pub marked_x: Option<String>,
+    /// column of `marked` for the y axis; that of the figure unless it is said
+    #[declared(example = "tip_relief_length")]
+    pub marked_y: Option<String>,
     /// column whose values are drawn apart, one line each
     #[declared(example = "design")]
     pub series: Option<String>,
@@ -93,8 +108,10 @@ pub enum How {
     Bar,
     /// lines, true to scale: both axes have one length per unit
     Drawing,
-    /// colours over both axes; cells without a value stay blank
+    /// colours over both axes; places that the table does not have stay blank, those without a value are crossed out
     Map,
+    /// points of a front, with the steps between what they beat and what nobody reaches
+    Front,
     /// lines that go down with depth, a round number of times as long as `length`
     Chart,
     /// a bar for each row, from `x` to `value`
@@ -103,6 +120,17 @@ pub enum How {
     Quantiles,
     /// bars to the right, one below the other, the largest on top
     Tornado,
+}
+
+/// Which cell of a map is marked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Best {
+    /// no cell
+    None,
+    /// the one with the smallest value
+    Smallest,
+    /// the one with the largest value
+    Largest,
 }
 
 /// How large the file of a figure is.
@@ -134,6 +162,10 @@ pub enum Logarithmic {
 pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnostic> {
     const NAMES: StatedFigureNames = StatedFigure::NAMES;
     let refused = |field: &str, message: &str| Err(Diagnostic::new(message).at(record.place_of(field)));
+    let marked_places = [(NAMES.marked_x, &stated.marked_x), (NAMES.marked_y, &stated.marked_y)];
+    if let Some((field, _)) = marked_places.iter().find(|(_, column)| column.is_some() && stated.marked.is_none()) {
+        return refused(field, &format!("`{field}` is a column of the table `marked`, which is not given"));
+    }
     let has_rows = matches!(stated.kind, How::Histogram | How::Quantiles | How::Tornado);
     if has_rows && stated.log != Logarithmic::None {
         return refused(NAMES.log, &format!("`kind: {}` has no logarithmic axis", stated.kind.word()));
@@ -146,9 +178,18 @@ pub fn check_map(stated: &StatedFigure, record: &Record) -> Result<(), Diagnosti
         let message = "quantiles need `series`, the column of their shares";
         return Err(Diagnostic::new(message).at(record.place).help("for example `series: share`"));
     }
-    if stated.kind != How::Map && stated.kind != How::Histogram {
-        return match &stated.value {
-            Some(_) => refused(NAMES.value, "`value` is the column that a map shows as colours; write `kind: map`"),
+    if stated.kind != How::Map {
+        let of_maps = [
+            (
+                NAMES.value,
+                stated.value.is_some() && stated.kind != How::Histogram,
+                "is the column that a map shows as colours",
+            ),
+            (NAMES.isolines, stated.isolines, "are lines over a map"),
+            (NAMES.best, stated.best != Best::None, "is a cell of a map"),
+        ];
+        return match of_maps.iter().find(|(_, is_given, _)| *is_given) {
+            Some((field, _, what)) => refused(field, &format!("`{field}` {what}; write `kind: map`")),
             None => Ok(()),
         };
     }

@@ -36,6 +36,8 @@ fn variants() -> Vec<(&'static str, Vec<(&'static str, Value)>)> {
         ),
         ("nelder_mead", vec![("edge", Value::Number(1.0))]),
         ("nelder_mead", vec![("start", choice("random")), ("evaluations", integer(50))]),
+        ("nsga2", vec![few(), ("generations", integer(7))]),
+        ("nsga2", vec![few(), ("generations", integer(7)), ("mutation", Value::Number(1.0))]),
         ("powell", vec![("step", Value::Number(1.0))]),
         ("powell", vec![("start", choice("random")), ("evaluations", integer(50))]),
         ("grid", vec![("levels", levels)]),

@@ -121,7 +121,7 @@ fn solve(method: &str, given: &[(&str, Value)], problem: &Problem, scale: f64) -
     let mut search = search(method, given, problem.bounds, 1);
     let evaluate = |point: &Vec<f64>| {
         let (value, constraints) = (problem.function)(point);
-        Evaluation { value: scale * value, constraints }
+        Evaluation { value: scale * value, constraints, ..Evaluation::default() }
     };
     search.run_constrained(|points| Ok::<_, Failure>(points.iter().map(evaluate).collect())).unwrap();
     search
@@ -172,14 +172,18 @@ fn a_cliff_stops_a_line_search_far_from_the_minimum() {
     let cliff = super::run(search("powell", &[], &bounds, 1), |x| if kept(x) < 0.0 { f64::INFINITY } else { slope(x) });
     assert!(cliff.best().unwrap().value > 1.2, "{:?}", cliff.best());
     let mut smooth = search("powell", &[], &bounds, 1);
-    let evaluate = |x: &Vec<f64>| Evaluation { value: slope(x), constraints: vec![kept(x)] };
+    let evaluate = |x: &Vec<f64>| Evaluation { value: slope(x), constraints: vec![kept(x)], ..Evaluation::default() };
     smooth.run_constrained(|points| Ok::<_, Failure>(points.iter().map(evaluate).collect())).unwrap();
     assert!((smooth.best().unwrap().value - 0.9).abs() < 1e-6, "{:?}", smooth.best());
 }
 
 #[test]
 fn where_nothing_keeps_the_constraints_the_least_broken_point_is_named() {
-    let evaluate = |x: &Vec<f64>| Evaluation { value: x[0], constraints: vec![-0.25 - x[0] * x[0], x[1] - 2.0] };
+    let evaluate = |x: &Vec<f64>| Evaluation {
+        value: x[0],
+        constraints: vec![-0.25 - x[0] * x[0], x[1] - 2.0],
+        ..Evaluation::default()
+    };
     for (method, near) in
         [("powell", 1e-5), ("nelder_mead", 1e-5), ("differential_evolution", 1e-5), ("genetic", 1e-2), ("grid", 1e-9)]
     {
@@ -191,7 +195,7 @@ fn where_nothing_keeps_the_constraints_the_least_broken_point_is_named() {
         assert!(search.history().iter().all(|row| row.best.is_infinite() && row.best_so_far.is_infinite()), "{method}");
     }
     let mut tournament = search("genetic", &[("selection", choice("tournament"))], &[(0.0, 1.0)], 1);
-    let broken = Evaluation { value: -1.0, constraints: vec![-2.0 * KEPT] };
+    let broken = Evaluation { value: -1.0, constraints: vec![-2.0 * KEPT], ..Evaluation::default() };
     tournament.tell_constrained(vec![broken; 100]).unwrap();
     assert!(tournament.best().unwrap().violation > KEPT);
 }
@@ -203,6 +207,7 @@ fn a_constraint_that_is_no_number_makes_a_point_inadmissible() {
         let evaluate = |x: &Vec<f64>| Evaluation {
             value: x[0] * x[0] + x[1],
             constraints: vec![if x[0] < 0.4 { f64::NAN } else { x[1] - 0.2 }],
+            ..Evaluation::default()
         };
         search.run_constrained(|points| Ok::<_, Failure>(points.iter().map(evaluate).collect())).unwrap();
         let best = search.best().unwrap();

@@ -6,6 +6,7 @@
 mod conformance;
 mod constrained;
 mod estimates;
+mod fronts;
 mod functions;
 mod kinks;
 mod reference;
