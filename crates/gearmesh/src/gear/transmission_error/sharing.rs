@@ -2,7 +2,7 @@
 //!
 //! Must not know: which pairs are within reach, which positions are computed.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
 use super::cycle::Elasticity;
 use super::load_case::{LoadCase, Regime};
@@ -10,9 +10,9 @@ use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::plain::PlainLaw;
-use crate::gear::contact::springs::{Faces, LinearPairs, LinearPairsOnOne, LogarithmicPairs};
+use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::numeric::by_loads;
-use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
+use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring};
 
 impl<'a> LoadCase<'a> {
     /// Equilibrium of the pairs within reach, of the nearest of which the law may be known, and, where slices hold each other,
@@ -24,7 +24,7 @@ impl<'a> LoadCase<'a> {
             Regime::Pairs | Regime::CoupledPairs => None,
             Regime::CoupledSlices(slices) => Some(slices),
         };
-        self.count.solve();
+        self.count.solves(1);
         if let Some(slices) = slices {
             let above = self.alone(reach.nearest_position(), &mut None);
             let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
@@ -52,11 +52,11 @@ impl<'a> LoadCase<'a> {
                     *slot = graded.value(*s);
                 }
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
-                if let (Some(piece), Regime::Pairs) = (faces.one_piece(), &self.regime) {
-                    let pairs = LinearPairsOnOne { stiffness, piece };
-                    return complementarity::balance(&pairs, reach.gaps(), self.force, above);
+                let (pairs, gaps) = (LinearPairs { stiffness, faces }, reach.gaps());
+                match self.coupling_of(reach) {
+                    None => complementarity::balance(&pairs, gaps, self.force, above),
+                    Some(coupling) => complementarity::balance_coupled(&pairs, gaps, &coupling, self.force, above),
                 }
-                self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } if reach.springs().len() <= 2 => {
                 self.balance_of_logarithms::<2>(reach, nearest, faces)
@@ -87,7 +87,8 @@ impl<'a> LoadCase<'a> {
         let even = self.line_load.over(reach.springs().len());
         let logs = std::array::from_fn(|_| Cell::new(even));
         let (rates, width) = (elasticity.rates(), self.cycle.face_width);
-        let pairs = LogarithmicPairs { plain, rates, whole: &whole, series, width, faces, logs };
+        let last = [const { RefCell::new(Vec::new()) }; N];
+        let pairs = LogarithmicPairs { plain, rates, whole: &whole, series, width, faces, logs, last };
         if faces.are_flat() {
             let coupling = self.coupling_of(reach);
             let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);
@@ -95,15 +96,13 @@ impl<'a> LoadCase<'a> {
                 return found;
             }
         }
-        let above = pairs.above(reach.nearest(), self.force);
-        self.balance_of_pairs(reach, &pairs, above)
-    }
-
-    fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
         let gaps = reach.gaps();
         match self.coupling_of(reach) {
-            None => complementarity::balance(responses, gaps, self.force, above),
-            Some(coupling) => complementarity::balance_coupled(responses, gaps, &coupling, self.force, above),
+            None => complementarity::balance(&pairs, gaps, self.force, pairs.above(reach.nearest(), self.force)),
+            Some(coupling) => {
+                let about = pairs.likely(gaps, self.force);
+                complementarity::balance_coupled(&pairs, gaps, &coupling, self.force, about)
+            }
         }
     }
 
