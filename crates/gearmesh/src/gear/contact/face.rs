@@ -309,13 +309,13 @@ impl Piece {
     /// How far h stays below base + `depth`, for `depth` > 0.
     #[inline]
     fn reach(&self, depth: f64) -> f64 {
-        if self.slope == 0.0 {
-            return (depth * self.per_bend).sqrt().min(self.length);
-        }
-        // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
-        let root = (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt();
-        let reach = (2.0 * depth / (self.slope + root)).min(self.length);
-        if depth >= self.rise { self.length } else { reach }
+        let reach = if self.slope == 0.0 {
+            (depth * self.per_bend).sqrt()
+        } else {
+            // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
+            2.0 * depth / (self.slope + (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt())
+        };
+        if depth >= self.rise { self.length } else { reach.min(self.length) }
     }
 
     /// How fast it grows with the depth.

@@ -132,8 +132,7 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, 
     /// Where a slice of a pair is on the law, if nothing is known of places nearby.
     fn inverted(&self, pair: usize, penetration: f64) -> Inverse {
         let known = self.plain[pair].load(self.rates, penetration);
-        let (load, slope) = known.unwrap_or_else(|| self.slice(pair).load(penetration));
-        Inverse { penetration, load: Known::new(load), slope }
+        Inverse::new(penetration, known.unwrap_or_else(|| self.slice(pair).load(penetration)))
     }
 
     /// Next to a tip, or beyond what the law is made for.
@@ -175,7 +174,7 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Springs for LogarithmicPa
             } else {
                 last.push(found)
             }
-            (found.load.number, found.slope)
+            (found.load, found.slope)
         });
         (self.width * load, self.width * slope)
     }
