@@ -134,13 +134,13 @@ fn balance_of<const N: usize>(springs: &impl Springs, gaps: [f64; N], total: f64
     balance
 }
 
-/// Equilibrium with coupling; the rest as in [`balance`]. The search begins at the approach `about`, > 0.
-pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, about: f64) -> Balance {
-    let mut start = Balance { approach: about, ..Balance::EMPTY };
+/// Equilibrium with coupling; the rest as in [`balance`].
+pub fn balance_coupled(springs: &impl Springs, gaps: &[f64], coupling: &Coupling, total: f64, above: f64) -> Balance {
+    let mut start = Balance { approach: above, ..Balance::EMPTY };
     for (penetration, gap) in start.penetration.iter_mut().zip(gaps) {
-        *penetration = about - gap;
+        *penetration = above - gap;
     }
-    newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, about))
+    newton(springs, gaps, coupling, total, start).unwrap_or_else(|| relaxed(springs, gaps, coupling, total, above))
 }
 
 fn newton(

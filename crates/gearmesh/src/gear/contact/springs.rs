@@ -9,7 +9,7 @@ use super::flattening::InSeries;
 use super::inverse::Inverse;
 use super::plain::PlainLaw;
 use crate::numeric::by_loads::{Yielded, Yielding};
-use crate::numeric::complementarity::{MOST_SPRINGS, PerSpring, Springs, linear_approach};
+use crate::numeric::complementarity::{PerSpring, Springs};
 use crate::numeric::logarithm::Known;
 
 /// The deviations across the common face.
@@ -116,17 +116,6 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, 
             return (plain.rates_at(self.rates[0], known.number, known.log), false);
         }
         self.beyond_plain(pair, known)
-    }
-
-    /// About the approach at which the pairs carry `total`: as if each were as stiff as under an equal part of it.
-    #[must_use]
-    pub fn likely(&self, gaps: &[f64], total: f64) -> f64 {
-        let part = total / gaps.len() as f64;
-        let mut stiffness = [0.0; MOST_SPRINGS];
-        for (pair, stiffness) in stiffness[..gaps.len()].iter_mut().enumerate() {
-            *stiffness = part / (self.about(pair, part).penetration + self.faces.of(pair).mean);
-        }
-        linear_approach(&stiffness, gaps, total)
     }
 
     /// Where a slice of a pair is on the law, if nothing is known of places nearby.

@@ -12,7 +12,7 @@ use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::plain::PlainLaw;
 use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::numeric::by_loads;
-use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring};
+use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
 impl<'a> LoadCase<'a> {
     /// Equilibrium of the pairs within reach, of the nearest of which the law may be known, and, where slices hold each other,
@@ -52,11 +52,7 @@ impl<'a> LoadCase<'a> {
                     *slot = graded.value(*s);
                 }
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
-                let (pairs, gaps) = (LinearPairs { stiffness, faces }, reach.gaps());
-                match self.coupling_of(reach) {
-                    None => complementarity::balance(&pairs, gaps, self.force, above),
-                    Some(coupling) => complementarity::balance_coupled(&pairs, gaps, &coupling, self.force, above),
-                }
+                self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } if reach.springs().len() <= 2 => {
                 self.balance_of_logarithms::<2>(reach, nearest, faces)
@@ -96,13 +92,15 @@ impl<'a> LoadCase<'a> {
                 return found;
             }
         }
+        let above = pairs.above(reach.nearest(), self.force);
+        self.balance_of_pairs(reach, &pairs, above)
+    }
+
+    fn balance_of_pairs(&self, reach: &WithinReach, responses: &impl Springs, above: f64) -> Balance {
         let gaps = reach.gaps();
         match self.coupling_of(reach) {
-            None => complementarity::balance(&pairs, gaps, self.force, pairs.above(reach.nearest(), self.force)),
-            Some(coupling) => {
-                let about = pairs.likely(gaps, self.force);
-                complementarity::balance_coupled(&pairs, gaps, &coupling, self.force, about)
-            }
+            None => complementarity::balance(responses, gaps, self.force, above),
+            Some(coupling) => complementarity::balance_coupled(responses, gaps, &coupling, self.force, above),
         }
     }
 
