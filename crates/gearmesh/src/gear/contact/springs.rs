@@ -152,7 +152,7 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Yielding for LogarithmicP
 impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Springs for LogarithmicPairs<'_, 'a, F, N> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
         let last = &mut *self.last[pair].borrow_mut();
-        last.reserve(self.faces.of(pair).slices());
+        last.reserve(self.faces.of(pair).slices().saturating_sub(last.len()));
         let (load, slope) = self.faces.of(pair).summed(penetration, |slice, depth| {
             // From where it was before, or else from the slice beside it.
             let near = last.get(slice).or(last.last());
