@@ -10,6 +10,7 @@ use self::bordered::Bordered;
 use super::crossing::crossing;
 
 pub(super) mod bordered;
+pub mod side_by_side;
 
 /// The most springs one problem may have.
 pub const MOST_SPRINGS: usize = 6;
@@ -120,39 +121,17 @@ pub fn balance(springs: &impl Springs, gaps: &[f64], total: f64, above: f64) -> 
 
 #[inline]
 fn balance_of<const N: usize>(springs: &impl Springs, gaps: [f64; N], total: f64, above: f64) -> Balance {
-    let mut approach = above;
-    let (mut loads, mut rises) = ([0.0; N], [0.0; N]);
-    let (mut excess, mut slope) = (0.0, 0.0);
-    for _ in 0..200 {
-        let mut sum = 0.0;
-        slope = 0.0;
-        for spring in 0..N {
-            let penetration = approach - gaps[spring];
-            let (load, rise) = if penetration > 0.0 { springs.response(spring, penetration) } else { (0.0, 0.0) };
-            (loads[spring], rises[spring]) = (load, rise);
-            sum += load;
-            slope += rise;
-        }
-        excess = sum - total;
-        let step = -excess / slope;
-        let next = approach + step;
-        // A spring that the last step would lift off has to be left out by a whole step.
-        let lifts = || (0..N).any(|spring| loads[spring] + rises[spring] * step < 0.0);
-        let settled = excess.abs() <= ROUNDING * total || (excess.abs() <= NEARLY * total && !lifts());
-        if settled || !(next > 0.0 && next.is_finite()) {
-            break;
-        }
-        approach = next;
-    }
-    // The last step is so short that it needs no new responses.
-    let step = if slope > 0.0 { -excess / slope } else { 0.0 };
-    approach += step;
-    let mut found = Balance { approach, slope, ..Balance::EMPTY };
+    let responses = |spring: usize, [penetration]: &[f64; 1]| {
+        let (load, rise) = if *penetration > 0.0 { springs.response(spring, *penetration) } else { (0.0, 0.0) };
+        [[load], [rise]]
+    };
+    let found = side_by_side::balances(responses, &gaps.map(|gap| [gap]), total, [above]);
+    let mut balance = Balance { approach: found.approach[0], slope: found.slope[0], ..Balance::EMPTY };
     for spring in 0..N {
-        found.penetration[spring] = approach - gaps[spring];
-        found.loads[spring] = (loads[spring] + rises[spring] * step).max(0.0);
+        balance.penetration[spring] = found.penetration[spring][0];
+        balance.loads[spring] = found.loads[spring][0];
     }
-    found
+    balance
 }
 
 /// Equilibrium with coupling; the rest as in [`balance`].

@@ -43,13 +43,20 @@ impl Known {
     #[must_use]
     #[inline]
     pub fn next(&self, number: f64) -> Self {
+        self.near(number).unwrap_or_else(|| Self::new(number))
+    }
+
+    /// The same if it is within a tenth of this.
+    #[must_use]
+    #[inline]
+    pub fn near(&self, number: f64) -> Option<Self> {
         let z = (number - self.number) / (number + self.number);
         if z.abs() > REACH || z.is_nan() {
-            return Self::new(number);
+            return None;
         }
         let q = z * z;
         let tail = 1.0 / 3.0 + q * (0.2 + q * (1.0 / 7.0 + q * (1.0 / 9.0 + q * (1.0 / 11.0 + q / 13.0))));
-        Self { number, log: self.log + 2.0 * (z + z * q * tail) }
+        Some(Self { number, log: self.log + 2.0 * (z + z * q * tail) })
     }
 }
 

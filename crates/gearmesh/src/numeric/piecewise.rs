@@ -272,6 +272,25 @@ impl Piecewise {
     }
 }
 
+impl Piecewise {
+    /// The values at ascending places, if one piece has them all: each as [`Piecewise::value`] has it.
+    #[must_use]
+    #[inline]
+    pub fn values<const M: usize>(&self, x: &[f64; M]) -> Option<[f64; M]> {
+        if x[0] < self.lower {
+            return None;
+        }
+        let piece = self.piece(x[0]).filter(|piece| x[M - 1] <= piece.upper)?;
+        let places = x.map(|x| (x - piece.middle) * piece.per_half);
+        match piece.follows {
+            Follows::Nothing => None,
+            Follows::Zero => Some([0.0; M]),
+            Follows::Few => Some(places.map(|t| few(&piece.coefficients, t))),
+            Follows::All => Some(places.map(|t| value(&piece.coefficients, t))),
+        }
+    }
+}
+
 /// The first few polynomials, as in [`value`].
 #[inline]
 fn few([c0, c1, c2, c3, c4, c5, c6, ..]: &[f64; TERMS], t: f64) -> f64 {

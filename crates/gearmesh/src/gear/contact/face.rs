@@ -37,6 +37,8 @@ pub struct Piece {
     slope: f64,
     bend: f64,
     length: f64,
+    /// 1/`bend`.
+    per_bend: f64,
     /// h at the upper end less `base`.
     rise: f64,
     /// z of the lower end.
@@ -190,11 +192,12 @@ impl<'a> Face<'a> {
         levels
     }
 
-    /// The stretch that stands for all of the face, if one does: of a crowned one.
+    /// The stretch that stands for all of the face, if one does: of a flat or a crowned one.
     #[must_use]
     #[inline]
     pub fn one_piece(&self) -> Option<&Piece> {
         match &self.shape {
+            DeviationForm::Flat => Some(&Piece::FLAT),
             DeviationForm::Quadratic(pieces) if pieces.len() == 1 => pieces.first(),
             _ => None,
         }
@@ -215,22 +218,23 @@ impl<'a> Face<'a> {
                 }
                 (sum, share)
             }
-            DeviationForm::Sliced(_) => self.summed(penetration, |depth| (depth, 1.0)),
+            DeviationForm::Sliced(_) => self.summed(penetration, |_, depth| (depth, 1.0)),
         }
     }
 
-    /// Width means of `response` (value and slope at a local penetration > 0), by slices. The slope is that of the sum
-    /// itself, whose slices move as the contact widens: Newton's method for pairs that nearly share their deflection
-    /// takes more of its digits than slices give the integral of slopes.
+    /// Width means of `response` (value and slope of a slice, by its place among all, at a local penetration > 0), by slices.
+    /// The slope is that of the sum itself, whose slices move as the contact widens: Newton's method for pairs that nearly
+    /// share their deflection takes more of its digits than slices give the integral of slopes.
     #[must_use]
-    pub fn summed(&self, penetration: f64, response: impl Fn(f64) -> (f64, f64)) -> (f64, f64) {
-        let (mut sum, mut slope) = (0.0, 0.0);
+    pub fn summed(&self, penetration: f64, mut response: impl FnMut(usize, f64) -> (f64, f64)) -> (f64, f64) {
+        let (mut sum, mut slope, mut slice) = (0.0, 0.0, 0);
         let mut add = |share: f64, depth: f64, [widening, sinking]: [f64; 2]| {
             if depth > 0.0 {
-                let (value, rise) = response(depth);
+                let (value, rise) = response(slice, depth);
                 sum += share * value;
                 slope += widening * value + share * sinking * rise;
             }
+            slice += 1;
         };
         match &self.shape {
             DeviationForm::Flat => add(1.0, penetration, [0.0, 1.0]),
@@ -280,6 +284,10 @@ fn slices(stretches: impl Iterator<Item = (f64, f64)>, rule: &Rule) -> Vec<(f64,
 }
 
 impl Piece {
+    /// One that does not rise.
+    const FLAT: Self =
+        Self { base: 0.0, slope: 0.0, bend: 0.0, per_bend: 0.0, length: 1.0, rise: 0.0, low: 0.0, weight: 1.0 };
+
     /// `polynomial` in z from `from` to `to`, between which it is monotonic, seen from its lower end.
     fn new(polynomial: [f64; 3], from: f64, to: f64, width: f64) -> Self {
         let [constant, slope, bend] = polynomial;
@@ -290,7 +298,7 @@ impl Piece {
         // Against rounding where the lower end is the vertex.
         let slope = if steepness * length <= 1e-14 * (bend * length * length).abs() { 0.0 } else { steepness };
         let rise = (length * (slope + length * bend)).max(0.0);
-        Self { base: height(low), slope, bend, length, rise, low, weight: 1.0 / width }
+        Self { base: height(low), slope, bend, per_bend: 1.0 / bend, length, rise, low, weight: 1.0 / width }
     }
 
     fn mean(&self) -> f64 {
@@ -301,12 +309,13 @@ impl Piece {
     /// How far h stays below base + `depth`, for `depth` > 0.
     #[inline]
     fn reach(&self, depth: f64) -> f64 {
-        if depth >= self.rise {
-            return self.length;
-        }
-        // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
-        let root = (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt();
-        (2.0 * depth / (self.slope + root)).min(self.length)
+        let reach = if self.slope == 0.0 {
+            (depth * self.per_bend).sqrt()
+        } else {
+            // The root of slope ζ + bend ζ² = depth in the form that does not cancel.
+            2.0 * depth / (self.slope + (self.slope * self.slope + 4.0 * self.bend * depth).max(0.0).sqrt())
+        };
+        if depth >= self.rise { self.length } else { reach.min(self.length) }
     }
 
     /// How fast it grows with the depth.
@@ -318,13 +327,12 @@ impl Piece {
     #[must_use]
     #[inline]
     pub fn passed(&self, penetration: f64) -> (f64, f64) {
+        // Without a branch: it is computed for several penetrations at a time.
         let depth = penetration - self.base;
-        if depth <= 0.0 {
-            return (0.0, 0.0);
-        }
         let reach = self.reach(depth);
         let width = self.weight * reach;
-        (width * (depth - reach * (0.5 * self.slope + reach * self.bend / 3.0)), width)
+        let passed = width * (depth - reach * (0.5 * self.slope + reach * (self.bend / 3.0)));
+        if depth > 0.0 { (passed, width) } else { (0.0, 0.0) }
     }
 }
 
@@ -372,7 +380,7 @@ mod tests {
                 let grid = 1e-7 + 1.0 / (share * f64::from(count)) / (share * f64::from(count));
                 assert!((passed / exact - 1.0).abs() < grid, "{index} {penetration}: {passed:e} {exact:e}");
                 assert!((width - share).abs() < 2e-5, "{index} {penetration}: {width} {share}");
-                let (summed, _) = face.summed(penetration, |depth| (depth, 1.0));
+                let (summed, _) = face.summed(penetration, |_, depth| (depth, 1.0));
                 assert!((summed / passed - 1.0).abs() < 1e-12, "slices are exact for what is quadratic");
             }
         }
@@ -382,7 +390,7 @@ mod tests {
     /// differences show it, since seventeen slices of w/(1 − ln w) are off by 1e-4.
     #[test]
     fn the_slope_is_that_of_the_sum_of_slices() {
-        let law = |w: f64| {
+        let law = |_: usize, w: f64| {
             let total = 1.0 - libm::log(w / 1e-3);
             (w / total, (1.0 + 1.0 / total) / total)
         };

@@ -5,6 +5,7 @@
 pub mod face;
 pub mod flattening;
 pub mod gap;
+pub mod inverse;
 pub mod patch;
 pub mod plain;
 pub mod rounding;

@@ -36,7 +36,7 @@ impl Springs for Slices<'_> {
                 (stiffness * passed, stiffness * share)
             }
             Slice::Logarithmic(law) => {
-                let (load, slope) = face.summed(penetration, |depth| law.load(depth));
+                let (load, slope) = face.summed(penetration, |_, depth| law.load(depth));
                 (width * load, width * slope)
             }
         }

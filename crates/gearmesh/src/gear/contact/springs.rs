@@ -2,10 +2,11 @@
 //!
 //! Stiffness in N/m over the common face width. Must not know: where in the mesh cycle the position is.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
-use super::face::{Face, Piece};
+use super::face::Face;
 use super::flattening::InSeries;
+use super::inverse::Inverse;
 use super::plain::PlainLaw;
 use crate::numeric::by_loads::{Yielded, Yielding};
 use crate::numeric::complementarity::{PerSpring, Springs};
@@ -27,13 +28,6 @@ impl<'a> Faces<'a> {
             Self::Same(face) => face,
             Self::Each(faces) => &faces[pair],
         }
-    }
-
-    /// The stretch that stands for the faces of all pairs, if one does.
-    #[must_use]
-    #[inline]
-    pub fn one_piece(self) -> Option<&'a Piece> {
-        if let Self::Same(face) = self { face.one_piece() } else { None }
     }
 
     /// Whether the flanks run parallel across the face.
@@ -67,22 +61,6 @@ impl Springs for LinearPairs<'_> {
     }
 }
 
-/// Pairs with the linear contact law whose face is of one stretch.
-pub struct LinearPairsOnOne<'a> {
-    /// Stiffness of each pair as if the face were flat \[N/m\].
-    pub stiffness: PerSpring,
-    /// The stretch.
-    pub piece: &'a Piece,
-}
-
-impl Springs for LinearPairsOnOne<'_> {
-    #[inline]
-    fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let (passed, share) = self.piece.passed(penetration);
-        (self.stiffness[pair] * passed, self.stiffness[pair] * share)
-    }
-}
-
 /// Pairs with the load-dependent contact law. A slice that carries p has the penetration b·c·p + p(α − β ln p), c the
 /// compliance of both teeth without the contact.
 pub struct LogarithmicPairs<'p, 'a, F, const N: usize> {
@@ -100,6 +78,8 @@ pub struct LogarithmicPairs<'p, 'a, F, const N: usize> {
     pub faces: Faces<'p>,
     /// Loads per width that each pair had last, or may have, and their logarithms.
     pub logs: [Cell<Known>; N],
+    /// Where on the law each slice of each pair was last.
+    pub last: [RefCell<Vec<Inverse>>; N],
 }
 
 impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, F, N> {
@@ -128,6 +108,22 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> LogarithmicPairs<'_, 'a, 
         Yielded { penetration, rate: slope * per_width, bend: bend * (per_width * per_width), is_rough }
     }
 
+    /// At any load per width.
+    #[inline]
+    fn rates_at(&self, pair: usize, known: Known) -> ([f64; 3], bool) {
+        let plain = &self.plain[pair];
+        if plain.holds(known.number) {
+            return (plain.rates_at(self.rates[0], known.number, known.log), false);
+        }
+        self.beyond_plain(pair, known)
+    }
+
+    /// Where a slice of a pair is on the law, if nothing is known of places nearby.
+    fn inverted(&self, pair: usize, penetration: f64) -> Inverse {
+        let known = self.plain[pair].load(self.rates, penetration);
+        Inverse::new(penetration, known.unwrap_or_else(|| self.slice(pair).load(penetration)))
+    }
+
     /// Next to a tip, or beyond what the law is made for.
     #[cold]
     fn beyond_plain(&self, pair: usize, known: Known) -> ([f64; 3], bool) {
@@ -141,12 +137,7 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Yielding for LogarithmicP
     fn penetration(&self, pair: usize, load: f64) -> Yielded {
         let known = self.logs[pair].get().next(load / self.width);
         self.logs[pair].set(known);
-        let plain = &self.plain[pair];
-        let (rates, is_rough) = if plain.holds(known.number) {
-            (plain.rates_at(self.rates[0], known.number, known.log), false)
-        } else {
-            self.beyond_plain(pair, known)
-        };
+        let (rates, is_rough) = self.rates_at(pair, known);
         self.yielded(rates, is_rough)
     }
 
@@ -160,8 +151,20 @@ impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Yielding for LogarithmicP
 
 impl<'a, F: Fn(usize) -> InSeries<'a>, const N: usize> Springs for LogarithmicPairs<'_, 'a, F, N> {
     fn response(&self, pair: usize, penetration: f64) -> (f64, f64) {
-        let one = |depth: f64| self.plain[pair].load(self.rates, depth).unwrap_or_else(|| self.slice(pair).load(depth));
-        let (load, slope) = self.faces.of(pair).summed(penetration, one);
+        let last = &mut *self.last[pair].borrow_mut();
+        last.reserve(self.faces.of(pair).slices().saturating_sub(last.len()));
+        let (load, slope) = self.faces.of(pair).summed(penetration, |slice, depth| {
+            // From where it was before, or else from the slice beside it.
+            let near = last.get(slice).or(last.last());
+            let found = near.and_then(|near| near.next(depth, |load| self.rates_at(pair, load)));
+            let found = found.unwrap_or_else(|| self.inverted(pair, depth));
+            if let Some(last) = last.get_mut(slice) {
+                *last = found;
+            } else {
+                last.push(found);
+            }
+            (found.load, found.slope)
+        });
         (self.width * load, self.width * slope)
     }
 }
@@ -196,6 +199,7 @@ mod tests {
                 width: 18e-3,
                 faces,
                 logs: logs(),
+                last: [RefCell::default()],
             };
             let none = [const { OnceCell::new() }; 1];
             let (slow, quick) = (of(PlainLaw::NONE, &whole), of(known, &none));

@@ -83,27 +83,29 @@ pub struct Wedge {
     ratio: f64,
     /// In order; the first one over ln(−λ).
     tables: [Table; 5],
+    /// Of the first two what [`Wedge::more`] grows by per B/k₀, and its slope.
+    by_ratio: [Bundle<2, NODES>; 2],
     /// Times 1/λ² beyond [`FAR`].
     rest: f64,
     /// At [`BEYOND`].
     last: [f64; 4],
-    /// At [`FAR`].
-    first: [f64; 4],
+    /// What turns, at [`FAR`].
+    first: [f64; 2],
     /// [`Wedge::turned`] at twice [`FAR`], and the logarithm of that.
     second: [f64; 3],
     /// How the contact spreads.
     spreads: Spreads,
 }
 
-/// A stretch of λ: values in the order of [`Rates`].
-type Table = Bundle<8, NODES>;
+/// A stretch of λ: `more` and its slope, both that turn, and their slopes.
+type Table = Bundle<6, NODES>;
 
 /// What a wedge does at a place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rates {
     /// [`Wedge::more`], and its slope.
     pub more: [f64; 2],
-    /// What that grows by per B/k₀, and the slope of it.
+    /// What that grows by per B/k₀, and the slope of it; 0 inside, at λ > 0.
     pub by_ratio: [f64; 2],
     /// [`Wedge::turned`], and the slopes of it.
     pub turned: [[f64; 2]; 2],
@@ -145,17 +147,22 @@ impl Wedge {
         });
         let contacts: [Vec<Contact>; 5] =
             std::array::from_fn(|table| places[table].iter().map(|[place, _]| contact(*place)).collect());
-        let tables: [Table; 5] = std::array::from_fn(|table| {
+        let tabulated: [(Table, Bundle<2, NODES>); 5] = std::array::from_fn(|table| {
             let found = places[table].iter().zip(&contacts[table]).map(|([place, _], found)| values(*place, found));
             tabulated(ranges[table], &places[table], &found.collect::<Vec<_>>())
         });
+        let by_ratio = [0, 1].map(|table: usize| tabulated[table].1.clone());
+        let tables = tabulated.map(|(table, _)| table);
         let spreads = Spreads::new(&ranges, &contacts, &reached);
-        let [first, last] = [(4, FAR), (0, logs[1])].map(|(table, at): (usize, f64)| {
-            let [more, _, by_ratio, _, g, h, _, _] = tables[table].values(at);
-            [more, by_ratio, g, h]
-        });
-        let rest = (first[0] + ratio * libm::log(FAR)) * FAR * FAR;
-        let mut wedge = Self { ratio, tables, rest, last, first, second: [0.0; 3], spreads };
+        let at = |table: usize, at: f64| {
+            let [more, _, g, h, _, _] = tables[table].values(at);
+            [more, g, h]
+        };
+        let ([more, g, h], [last, last_g, last_h]) = (at(4, FAR), at(0, logs[1]));
+        let last = [last, by_ratio[0].values(logs[1])[0], last_g, last_h];
+        let rest = (more + ratio * libm::log(FAR)) * FAR * FAR;
+        let (first, second) = ([g, h], [0.0; 3]);
+        let mut wedge = Self { ratio, tables, by_ratio, rest, last, first, second, spreads };
         let [[g, h], _] = wedge.turned(2.0 * FAR);
         wedge.second = [g, h, libm::log(2.0 * FAR)];
         wedge
@@ -186,11 +193,11 @@ impl Wedge {
         let far = |[g, h]: [f64; 2]| [[g, h], [-g / place, -h / place]];
         if place > FAR {
             let square = self.rest / (place * place);
-            let [values, slopes] = far([self.first[2], self.first[3]].map(|value| value * FAR / place));
+            let [values, slopes] = far(self.first.map(|value| value * FAR / place));
             let beyond = log - std::f64::consts::LN_10;
             return Rates {
                 more: [square - self.ratio * log, -(2.0 * square + self.ratio) / place],
-                by_ratio: [-log, -1.0 / place],
+                by_ratio: [0.0; 2],
                 turned: [
                     [values[0], values[1] + beyond * values[0]],
                     [slopes[0], slopes[1] + beyond * slopes[0] + values[0] / place],
@@ -206,7 +213,8 @@ impl Wedge {
             };
         }
         let (table, at, rate) = if place < JOINTS[0] { (0, log, 1.0 / place) } else { (self.table(place), place, 1.0) };
-        let [more, slope, by_ratio, by_ratio_slope, g, h, g_slope, h_slope] = self.tables[table].values(at);
+        let [more, slope, g, h, g_slope, h_slope] = self.tables[table].values(at);
+        let [by_ratio, by_ratio_slope] = self.by_ratio.get(table).map_or([0.0; 2], |table| table.values(at));
         Rates {
             more: [more, slope * rate],
             by_ratio: [by_ratio, by_ratio_slope * rate],
@@ -258,8 +266,9 @@ impl Wedge {
     }
 }
 
-/// The tables of a stretch of a variable, from λ at its nodes, with what turns slopes into λ d/dλ, and what was found there.
-fn tabulated([lower, upper]: [f64; 2], places: &[[f64; 2]], found: &[[f64; 4]]) -> Table {
+/// The tables of a stretch of a variable, from λ at its nodes, with what turns slopes into λ d/dλ, and what was found there;
+/// and what `more` grows by per B/k₀, with its slope.
+fn tabulated([lower, upper]: [f64; 2], places: &[[f64; 2]], found: &[[f64; 4]]) -> (Table, Bundle<2, NODES>) {
     let series = |values: &dyn Fn(usize) -> f64| {
         Series::from_values(lower, upper, &(0..NODES).map(values).collect::<Vec<f64>>())
     };
@@ -282,7 +291,7 @@ fn tabulated([lower, upper]: [f64; 2], places: &[[f64; 2]], found: &[[f64; 4]]) 
         with_slope(series(&|k| 2.5 * found[k][3] - 0.5 * rates[2][k] + 0.5 * found[k][2])),
     ];
     let [(more, slope), (by_ratio, by_ratio_slope), (g, g_slope), (h, h_slope)] = &values;
-    Bundle::of([more, slope, by_ratio, by_ratio_slope, g, h, g_slope, h_slope])
+    (Bundle::of([more, slope, g, h, g_slope, h_slope]), Bundle::of([by_ratio, by_ratio_slope]))
 }
 
 /// A contact from `start` to 1 by what its pressures do to it: −∫ [ln|x − y| + B/k₀ ln((x + y)/2)] at places x, for each

@@ -26,18 +26,18 @@ impl LoadCase<'_> {
     /// level that a pair's penetration passes.
     pub(super) fn change(&self, span: &Span, states: &[Equilibrium; NODES], nodes: &[usize]) -> Option<Cut> {
         let springs = self.cycle.springs(span.pairs);
-        let loaded = |node: usize, pair: usize| states[node].balance.penetration[pair] > 0.0;
-        let changes = |pair: usize| nodes[1..].iter().any(|node| loaded(*node, pair) != loaded(nodes[0], pair));
         // Most spans have neither, which shows at a glance.
-        let passes = |pair: usize| {
-            let within = |[least, most]: [f64; 2], node: &usize| {
+        let any = (0..springs).any(|pair| {
+            let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
+            for node in nodes {
                 let penetration = states[*node].balance.penetration[pair];
-                [least.min(penetration), most.max(penetration)]
-            };
-            let [least, most] = nodes.iter().fold([f64::INFINITY, f64::NEG_INFINITY], within);
-            self.levels.iter().any(|level| (least - level > 0.0) != (most - level > 0.0))
-        };
-        if !(0..springs).any(|pair| changes(pair) || (!self.levels.is_empty() && passes(pair))) {
+                least = if penetration < least { penetration } else { least };
+                most = if penetration > most { penetration } else { most };
+            }
+            let passes = |level: f64| (least > level) != (most > level);
+            passes(0.0) || self.levels.iter().any(|level| passes(*level))
+        });
+        if !any {
             return None;
         }
         for ends in nodes.windows(2) {

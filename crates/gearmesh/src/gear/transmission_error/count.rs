@@ -45,8 +45,8 @@ impl<'a> Count<'a> {
         Self { total, slices, solves: Cell::new(0), pressures: Cell::new(0), root_stresses: Cell::new(0) }
     }
 
-    pub(super) fn solve(&self) {
-        self.solves.set(self.solves.get() + 1);
+    pub(super) fn solves(&self, count: usize) {
+        self.solves.set(self.solves.get() + count);
     }
 
     pub(super) fn pressure(&self) {

@@ -97,6 +97,24 @@ impl<'a> Flanks<'a> {
         if self.is_surface { self.least_gap(s) } else { self.middle.gap(s) }
     }
 
+    /// The same without quick copies.
+    pub(super) fn searched(&self, s: f64) -> Option<f64> {
+        if self.is_surface {
+            return self
+                .sections
+                .iter()
+                .filter_map(|section| Some(section.searched(s)? + section.lead))
+                .reduce(f64::min);
+        }
+        self.middle.searched(s)
+    }
+
+    /// The gaps at ascending path positions of flanks that are no surface, if all are quick to find.
+    #[inline]
+    pub(super) fn quick_gaps<const M: usize>(&self, places: &[f64; M]) -> Option<[f64; M]> {
+        if self.middle.gaps.is_none() { Some([0.0; M]) } else { self.middle.copies.values(places) }
+    }
+
     /// Out of the way of what most designs need.
     #[cold]
     fn least_gap(&self, s: f64) -> Option<f64> {
@@ -199,11 +217,14 @@ impl<'a> FaceSection<'a> {
 
     #[inline]
     fn gap(&self, s: f64) -> Option<f64> {
-        let Some(gaps) = &self.gaps else { return Some(0.0) };
-        match self.copies.value(s) {
-            Some(gap) => Some(gap),
-            None => gaps.at(s),
+        if self.gaps.is_none() {
+            return Some(0.0);
         }
+        self.copies.value(s).or_else(|| self.searched(s))
+    }
+
+    fn searched(&self, s: f64) -> Option<f64> {
+        self.gaps.as_ref().map_or(Some(0.0), |gaps| gaps.at(s))
     }
 
     /// With what the leads take off.

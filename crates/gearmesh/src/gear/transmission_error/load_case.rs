@@ -147,29 +147,36 @@ impl<'a> LoadCase<'a> {
             positions: cycle.settings.positions,
             refines,
         };
-        let mut window = (cycle.pair.start_of_contact, cycle.pair.end_of_contact);
         if cycle.settings.corner_contact == CornerContact::Exact {
-            let corners = load_case.corners();
-            window = corners.0;
-            load_case.touching = Touching::Anywhere { window, limit: corners.1 };
+            load_case.touching = load_case.corners();
         }
-        load_case.breaks = Arc::make_mut(&mut load_case.flanks).follow(window).into();
+        load_case.follow();
         load_case
     }
 
-    /// With corner contact: between which path positions anything can touch, and the gap where the model ends.
-    fn corners(&self) -> ((f64, f64), f64) {
+    /// Finds the gaps wherever pairs may touch.
+    fn follow(&mut self) {
+        let window = match self.touching {
+            Touching::LineOfAction => (self.cycle.pair.start_of_contact, self.cycle.pair.end_of_contact),
+            Touching::Anywhere { window, .. } => window,
+        };
+        self.breaks = Arc::make_mut(&mut self.flanks).follow(window).into();
+    }
+
+    /// With corner contact: between which path positions anything can touch, and the gap where the model ends. What quick
+    /// copies there may be makes no difference.
+    fn corners(&self) -> Touching {
         let (pair, flanks) = (&self.cycle.pair, &self.flanks);
         let (first, last) = self.cycle.path.window();
         // A little inside, for rounding.
         let inwards = CLOSEST * pair.base_pitch;
-        let ends = [flanks.gap(first + inwards), flanks.gap(last - inwards)];
+        let ends = [flanks.searched(first + inwards), flanks.searched(last - inwards)];
         let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + flanks.offset();
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
-        let maximum =
-            inside.fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.gap(s).unwrap_or(0.0)));
+        let maximum = inside
+            .fold(0.0, |maximum: f64, s| maximum.max(self.alone(s, &mut None) + flanks.searched(s).unwrap_or(0.0)));
         let outermost = |from: f64, to: f64| {
             let (mut near, mut far) = (from, to);
             for _ in 0..MOST_HALVINGS {
@@ -177,11 +184,11 @@ impl<'a> LoadCase<'a> {
                     break;
                 }
                 let middle = 0.5 * (near + far);
-                if flanks.gap(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
+                if flanks.searched(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
             }
             far
         };
-        ((outermost(from, first), outermost(to, last)), limit)
+        Touching::Anywhere { window: (outermost(from, first), outermost(to, last)), limit }
     }
 
     /// Whether the number of slices across the face matters: not where every pair's load has a closed form.
@@ -208,6 +215,12 @@ impl<'a> LoadCase<'a> {
         }
     }
 
+    /// Whether flanks touch on the line of action only, from A to E.
+    #[inline]
+    pub(super) fn touches_on_line(&self) -> bool {
+        matches!(self.touching, Touching::LineOfAction)
+    }
+
     /// Where slices hold each other.
     pub(super) fn slices(&self) -> Option<&Sliced<'a>> {
         if let Regime::CoupledSlices(slices) = &self.regime { Some(slices) } else { None }
@@ -226,16 +239,23 @@ impl<'a> LoadCase<'a> {
         Self { positions, ..self.clone() }
     }
 
-    /// The same design under another torque, as [`LoadCase::new`] gives it: gaps need not be found again, but with corner
-    /// contact, where the load decides how far out they are looked at.
+    /// The same design under another torque, as [`LoadCase::new`] gives it, to the last bit: gaps need not be found again, but
+    /// with corner contact where the load makes them be looked at farther out, or less far.
     #[must_use]
     pub fn with_torque(&self, torque: f64) -> Self {
-        let is_known = self.force > 0.0 && torque > 0.0 && matches!(self.touching, Touching::LineOfAction);
-        if !is_known {
+        let is_anywhere = !self.touches_on_line();
+        if self.force <= 0.0 || torque <= 0.0 || (is_anywhere && self.flanks.is_surface) {
             return Self::new(self.cycle, self.design, torque);
         }
         let force = torque / self.cycle.pair.pinion.base_radius;
-        Self { force, line_load: Known::new(force / self.cycle.face_width), ..self.clone() }
+        let mut other = Self { force, line_load: Known::new(force / self.cycle.face_width), ..self.clone() };
+        if let Touching::Anywhere { window, .. } = self.touching {
+            other.touching = other.corners();
+            if !matches!(other.touching, Touching::Anywhere { window: now, .. } if now == window) {
+                other.follow();
+            }
+        }
+        other
     }
 
     /// The same design when nothing is transmitted.
@@ -256,6 +276,9 @@ impl<'a> LoadCase<'a> {
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
+        if let Some([state]) = self.together(&[position], pairs) {
+            return state;
+        }
         let mut nearest = None;
         let reach = self.within_reach(position, pairs, None, &mut nearest);
         let (balance, peaks) = self.balance(&reach, nearest.as_ref());

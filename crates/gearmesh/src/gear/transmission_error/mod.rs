@@ -25,6 +25,7 @@ mod sliced;
 pub mod stiffness;
 #[cfg(test)]
 mod tests;
+mod together;
 pub mod trace;
 mod walk;
 mod within_reach;

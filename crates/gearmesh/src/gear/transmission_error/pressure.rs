@@ -114,7 +114,7 @@ impl LoadCase<'_> {
             Elasticity::Linear(stiffness) => stiffness.value(s) * face.passed(penetration).0 / self.cycle.face_width,
             elasticity @ Elasticity::Logarithmic { .. } => {
                 let law = elasticity.series(s, None);
-                face.summed(penetration, |depth| law.load(depth)).0
+                face.summed(penetration, |_, depth| law.load(depth)).0
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! Must not know: which pairs are within reach, which positions are computed.
 
-use std::cell::{Cell, OnceCell};
+use std::cell::{Cell, OnceCell, RefCell};
 
 use super::cycle::Elasticity;
 use super::load_case::{LoadCase, Regime};
@@ -10,7 +10,7 @@ use super::within_reach::WithinReach;
 use crate::gear::contact::face::Face;
 use crate::gear::contact::flattening::InSeries;
 use crate::gear::contact::plain::PlainLaw;
-use crate::gear::contact::springs::{Faces, LinearPairs, LinearPairsOnOne, LogarithmicPairs};
+use crate::gear::contact::springs::{Faces, LinearPairs, LogarithmicPairs};
 use crate::numeric::by_loads;
 use crate::numeric::complementarity::{self, Balance, Coupling, MOST_SPRINGS, PerSpring, Springs};
 
@@ -24,7 +24,7 @@ impl<'a> LoadCase<'a> {
             Regime::Pairs | Regime::CoupledPairs => None,
             Regime::CoupledSlices(slices) => Some(slices),
         };
-        self.count.solve();
+        self.count.solves(1);
         if let Some(slices) = slices {
             let above = self.alone(reach.nearest_position(), &mut None);
             let (balance, peaks) = slices.balance(self.cycle, reach, [self.force, above]);
@@ -52,10 +52,6 @@ impl<'a> LoadCase<'a> {
                     *slot = graded.value(*s);
                 }
                 let above = complementarity::linear_approach(&stiffness, reach.gaps(), self.force) + faces.mean();
-                if let (Some(piece), Regime::Pairs) = (faces.one_piece(), &self.regime) {
-                    let pairs = LinearPairsOnOne { stiffness, piece };
-                    return complementarity::balance(&pairs, reach.gaps(), self.force, above);
-                }
                 self.balance_of_pairs(reach, &LinearPairs { stiffness, faces }, above)
             }
             Elasticity::Logarithmic { .. } if reach.springs().len() <= 2 => {
@@ -87,7 +83,8 @@ impl<'a> LoadCase<'a> {
         let even = self.line_load.over(reach.springs().len());
         let logs = std::array::from_fn(|_| Cell::new(even));
         let (rates, width) = (elasticity.rates(), self.cycle.face_width);
-        let pairs = LogarithmicPairs { plain, rates, whole: &whole, series, width, faces, logs };
+        let last = [const { RefCell::new(Vec::new()) }; N];
+        let pairs = LogarithmicPairs { plain, rates, whole: &whole, series, width, faces, logs, last };
         if faces.are_flat() {
             let coupling = self.coupling_of(reach);
             let found = by_loads::balance(&pairs, reach.gaps(), coupling.as_ref(), self.force);

@@ -13,6 +13,7 @@ mod root_stress;
 mod sampling;
 mod spans;
 mod surface;
+mod together;
 mod work;
 
 use super::curve::Wanted;

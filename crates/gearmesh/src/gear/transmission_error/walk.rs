@@ -88,8 +88,14 @@ impl LoadCase<'_> {
             return Some(cut);
         }
         let rows = &self.cycle.rows;
-        for (node, state) in states.iter_mut().enumerate().take(NODES - 1).skip(1) {
-            *state = self.state(span.position(rows, node), span.pairs);
+        let inside: [f64; NODES - 2] = std::array::from_fn(|node| span.position(rows, node + 1));
+        match self.together(&inside, span.pairs) {
+            Some(found) => states[1..NODES - 1].copy_from_slice(&found),
+            None => {
+                for (state, position) in states[1..NODES - 1].iter_mut().zip(inside) {
+                    *state = self.state(position, span.pairs);
+                }
+            }
         }
         if may_cut && let Some(cut) = self.change(span, states, &EACH) {
             return Some(cut);

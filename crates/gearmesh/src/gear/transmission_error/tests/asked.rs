@@ -44,7 +44,7 @@ fn another_torque_leaves_the_gaps_as_they_are() {
             for design in [Design::default(), ga_design(&pair, 8e-6, 4e-3, 5e-6)] {
                 for first in [0.0, 700.0] {
                     let known = LoadCase::new(&cycle, &design, torque(first));
-                    for force in [0.0, 300.0, 1867.0] {
+                    for force in [0.0, 300.0, 701.0, 1867.0] {
                         let (shared, own) =
                             (known.with_torque(torque(force)), LoadCase::new(&cycle, &design, torque(force)));
                         let case = format!("{corner_contact:?}, {first}, then {force}");

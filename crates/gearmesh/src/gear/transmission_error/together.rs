@@ -1,0 +1,78 @@
+//! Equilibria at several positions at once: of pairs that hold themselves, under the linear law, on a face of one stretch.
+//!
+//! That is what most designs are that a search or a sweep tries. Each position has what it has alone, to the last bit. Must
+//! not know: which positions are computed.
+
+use super::cycle::Elasticity;
+use super::load_case::{Equilibrium, LoadCase, Regime};
+use crate::gear::contact::face::Piece;
+use crate::numeric::complementarity::side_by_side::{balances, linear_approaches};
+use crate::numeric::complementarity::{Balance, MOST_SPRINGS};
+use crate::numeric::graded::Graded;
+
+/// What all pairs have in common.
+struct Alike<'a> {
+    stiffness: &'a Graded,
+    piece: &'a Piece,
+}
+
+impl LoadCase<'_> {
+    /// Equilibria at ascending positions with `pairs` inside the path of contact; nothing where there is more to them.
+    #[inline]
+    pub(super) fn together<const M: usize>(&self, positions: &[f64; M], pairs: usize) -> Option<[Equilibrium; M]> {
+        let (Regime::Pairs, Elasticity::Linear(stiffness)) = (&self.regime, &self.cycle.elasticity) else {
+            return None;
+        };
+        if !self.touches_on_line() || self.flanks.is_surface {
+            return None;
+        }
+        let alike = Alike { stiffness, piece: self.flanks.face.one_piece()? };
+        match pairs {
+            1 => Some(self.alike::<1, M>(&alike, positions)),
+            2 => Some(self.alike::<2, M>(&alike, positions)),
+            _ => None,
+        }
+    }
+
+    #[inline]
+    fn alike<const N: usize, const M: usize>(&self, alike: &Alike, positions: &[f64; M]) -> [Equilibrium; M] {
+        self.count.solves(M);
+        let (mut stiffness, mut gaps) = ([[0.0; M]; N], [[0.0; M]; N]);
+        let mut smallest = [f64::INFINITY; M];
+        for spring in 0..N {
+            let places = positions.map(|position| self.cycle.path_position(position, spring));
+            stiffness[spring] = places.map(|s| alike.stiffness.value(s));
+            // On the line of action there always is one.
+            gaps[spring] =
+                self.flanks.quick_gaps(&places).unwrap_or_else(|| places.map(|s| self.gap(s).unwrap_or(0.0)));
+            for m in 0..M {
+                smallest[m] = smallest[m].min(gaps[spring][m]);
+            }
+        }
+        for gaps in &mut gaps {
+            for m in 0..M {
+                gaps[m] -= smallest[m];
+            }
+        }
+        let mean = self.flanks.face.mean;
+        let above = linear_approaches(&stiffness, &gaps, self.force).map(|approach| approach + mean);
+        let responses = |spring: usize, penetration: &[f64; M]| {
+            let (mut loads, mut rises) = ([0.0; M], [0.0; M]);
+            for m in 0..M {
+                let (passed, share) = alike.piece.passed(penetration[m]);
+                (loads[m], rises[m]) = (stiffness[spring][m] * passed, stiffness[spring][m] * share);
+            }
+            [loads, rises]
+        };
+        let found = balances(responses, &gaps, self.force, above);
+        let offset = self.flanks.offset();
+        std::array::from_fn(|m| {
+            let (mut loads, mut penetration) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
+            for spring in 0..N {
+                (loads[spring], penetration[spring]) = (found.loads[spring][m], found.penetration[spring][m]);
+            }
+            let balance = Balance { approach: found.approach[m], loads, penetration, slope: found.slope[m] };
+            Equilibrium { unloaded: smallest[m] + offset, balance, peaks: None }
+        })
+    }
+}
