@@ -350,9 +350,9 @@ mod tests {
     use studygraph::table::schema::{Column, Schema};
 
     fn declared(columns: &[(&str, &str)]) -> Table {
-        let schema = vec![Column::integer("figure", "Number.").key()];
+        let schema = vec![Column::integer("figure", "Number.").key(), Column::flag("isolines", "A flag.")];
         let texts = columns.iter().map(|(name, _)| Column::text(name, "A word."));
-        let row: Row = std::iter::once(1.into()).chain(columns.iter().map(|(_, word)| (*word).into())).collect();
+        let row: Row = [1.into(), false.into()].into_iter().chain(columns.iter().map(|(_, word)| (*word).into())).collect();
         Table::from_rows(Schema::new("figures", "Figures.", schema.into_iter().chain(texts).collect()), vec![row])
             .unwrap()
     }
@@ -386,6 +386,10 @@ mod tests {
                 ("value", ""),
                 ("length", ""),
                 ("labels", ""),
+                ("best", "none"),
+                ("marked", ""),
+                ("marked_x", ""),
+                ("marked_y", ""),
                 ("width", "page"),
                 ("tables", "one.summary, two.summary"),
                 ("x", "seconds"),

@@ -199,7 +199,7 @@ mod tests {
         close(goal.limits[1].reserve(0.9), -0.25);
         // A limit of 0 has no size; one µm is one.
         close(goal.limits[2].reserve(2e-6), -2.0);
-        assert_eq!(goal.limits[0].missed(-0.25, "MPa"), "1750 MPa, 350 MPa too much");
+        assert_eq!(goal.limits[0].missed(-0.25, "MPa"), "1750\u{202f}MPa, 350\u{202f}MPa too much");
         assert_eq!(goal.limits[1].missed(-0.25, ""), "0.9, 0.3 too little");
     }
 

@@ -47,10 +47,9 @@ fn exact_residual(case: &Case) -> ([f64; 2], [f64; 2]) {
 }
 
 /// Tier: second method. With gaps in twice the precision, loads and approach of the kernels are complementary to 1e-12, for
-/// gears of a thousand teeth too, which move by little under the same torque; what is left there is what copies of gaps keep.
+/// gears of a thousand teeth too, which move by little under the same torque; gaps and their copies are as exact as is said.
 #[test]
-fn complementarity_with_exact_gaps_is_kept_to_what_copies_keep() {
-    let mut by_copies = 0;
+fn complementarity_is_kept_with_exact_gaps_too() {
     for teeth in [[19, 48], [100, 48], [300, 48], [1000, 48]] {
         let mut case = base();
         case.gears = of_teeth(teeth);
@@ -58,14 +57,8 @@ fn complementarity_with_exact_gaps_is_kept_to_what_copies_keep() {
         case.model.method = Arc::new(WeberBanaschek::default());
         case.model.assumptions.coupled = true;
         let ([residual, without_copies], off) = exact_residual(&case);
-        println!("{teeth:?}: {residual:e}, without copies {without_copies:e}; gaps off by {off:?}");
+        println!("{teeth:?}: {residual:e}, without what copies are off by {without_copies:e}; gaps off by {off:?}");
         assert!(residual < PROMISED, "{teeth:?}: {residual:e}");
         assert!(off.iter().all(|off| *off < COPY), "{teeth:?}: {off:?}");
-        // What is less than this is not told from roundings.
-        if residual > 1e-13 {
-            assert!(without_copies < 0.25 * residual, "{teeth:?}: {without_copies:e} {residual:e}");
-            by_copies += 1;
-        }
     }
-    assert!(by_copies > 0);
 }
