@@ -109,7 +109,7 @@ fn what_is_gone_and_what_came_in_is_told_by_name() {
     let from: Vec<&str> = why["from"].as_array().unwrap().iter().map(|name| name.as_str().unwrap()).collect();
     assert!(!from.is_empty() && from.iter().all(|name| name.starts_with("optimum.")), "{from:?}");
     let (pretty, _) = desk.run(&["diff"], 4);
-    let shown = "why: input optimum (best, history, elements changed)";
+    let shown = "why: input optimum (best, history, passes, elements changed)";
     assert!(pretty.contains(shown) && !pretty.contains("designs_2"), "{pretty}");
     let several = desk.run(&["diff", "--tolerance", "mean=1"], 4).0;
     assert!(several.contains("the tolerance of `mean` is that of 3 columns: optimum.history.mean, "), "{several}");
