@@ -352,7 +352,8 @@ mod tests {
     fn declared(columns: &[(&str, &str)]) -> Table {
         let schema = vec![Column::integer("figure", "Number.").key(), Column::flag("isolines", "A flag.")];
         let texts = columns.iter().map(|(name, _)| Column::text(name, "A word."));
-        let row: Row = [1.into(), false.into()].into_iter().chain(columns.iter().map(|(_, word)| (*word).into())).collect();
+        let row: Row =
+            [1.into(), false.into()].into_iter().chain(columns.iter().map(|(_, word)| (*word).into())).collect();
         Table::from_rows(Schema::new("figures", "Figures.", schema.into_iter().chain(texts).collect()), vec![row])
             .unwrap()
     }
