@@ -22,6 +22,7 @@ mod pressure;
 mod properties;
 mod python;
 mod query;
+mod recall;
 mod reference;
 mod registry;
 mod reliability;

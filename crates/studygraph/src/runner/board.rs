@@ -401,8 +401,13 @@ impl<'a> Board<'a> {
     /// The journal after this run: stages without news keep what they had.
     #[must_use]
     pub fn next_journal(&self) -> Journal {
-        let stages = self.study.nodes.iter().zip(&self.nodes).filter_map(|(node, progress)| {
-            let last = || self.last.get(&node.name).map(|&index| self.journal.stages[index].clone());
+        let known = |name: &str| self.last.get(name).map(|&index| self.journal.stages[index].clone());
+        let stages = self.study.stages().filter_map(|stage| {
+            let (node, progress) = match stage {
+                Ok(node) => (&self.study.nodes[node], &self.nodes[node]),
+                Err(unread) => return known(&unread.name),
+            };
+            let last = || known(&node.name);
             let keys = || progress.parts.iter().map(|part| part.record.clone());
             match progress.state {
                 StageState::Hit | StageState::Done => Some(JournalStage {

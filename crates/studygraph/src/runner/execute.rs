@@ -19,12 +19,14 @@ use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
 use super::plan;
+use super::recall::{Part, Recalled};
 use super::work::{Ended, Run, message};
 use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
-use crate::store::results::{Draw, Folder, Published, Source};
+use crate::store::manifest::Manifest;
+use crate::store::results::{Draw, Folder, Known, Published, Source};
 use crate::study::Study;
 use crate::table::data::Table;
 use declare::error::Diagnostic;
@@ -43,6 +45,17 @@ pub enum RunError {
     Threads { threads: usize, problem: String },
 }
 
+/// Where a run keeps and publishes, and who hears of it.
+#[derive(Clone, Copy)]
+pub struct Surroundings<'a> {
+    pub cache: &'a Cache,
+    pub observer: &'a dyn Observer,
+    pub stop: &'a AtomicBool,
+    pub folder: &'a Folder,
+    /// Draws the report.
+    pub draw: Option<Draw<'a>>,
+}
+
 /// Runs a study and brings its results folder up to date; `draw` draws the report.
 ///
 /// # Errors
@@ -56,52 +69,85 @@ pub fn run(
     folder: &Folder,
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
-    let facts =
-        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
-    let publish = |outcome: &Outcome| {
-        // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
-        let go_on = |file: &str| {
-            let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);
-            if is_late { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
-        };
-        let next = |file: &str| {
-            observer.event(&Event::Publishing { file });
-            go_on(file)
-        };
-        let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
-        let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
-        let pieces = |stage: &str, table: &str| {
-            let file = format!("{stage}.{table}.parquet");
-            let found = outcome.pieces(cache, stage, table)?;
-            let found = found.map(move |piece| go_on(&file).and(piece));
-            Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
-        };
-        folder.publish(
-            outcome.manifest(study),
-            facts,
-            Source {
-                bytes: &bytes,
-                pieces: Some(&pieces),
-                table: Some(&table),
-                draw,
-                next: &next,
-                code: study.program.about.code,
-            },
-        )
-    };
-    let mut outcome = execute(study, cache, options, observer, stop)?;
-    let mut published = publish(&outcome);
+    let around = Surroundings { cache, observer, stop, folder, draw };
+    let mut board = executed(study, options, around)?;
+    let mut outcome = board.outcome();
+    let mut published = publish(study, outcome.manifest(study), &outcome, options, around, None);
     if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
-        outcome = execute(study, cache, options, observer, stop)?;
-        published = publish(&outcome);
+        drop(board);
+        board = executed(study, options, around)?;
+        outcome = board.outcome();
+        published = publish(study, outcome.manifest(study), &outcome, options, around, None);
     }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    note::keep(study, cache, options, folder, &outcome, &published);
+    let recalled = || Recalled::of(study, &board.board.graph, None);
+    note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
     Ok((outcome, published))
+}
+
+/// The same for a study of which only some stages were read, with the options that it was chosen for; none where all of it
+/// must be read after all.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_part(
+    part: &Part,
+    options: &Options,
+    around: Surroundings<'_>,
+) -> Result<Option<(Outcome, Published)>, RunError> {
+    let Surroundings { cache, observer, folder, .. } = around;
+    let Ok(Some(known)) = folder.known() else { return Ok(None) };
+    let board = executed(&part.study, &part.options, around)?;
+    let outcome = board.outcome();
+    let Some(manifest) = part.whole(outcome.manifest(&part.study), &known.manifest) else { return Ok(None) };
+    // What else there is to be said of the folder a run of all stages says, and makes good.
+    let published = match publish(&part.study, manifest, &outcome, options, around, Some(known)) {
+        Err(StoreError::Damaged { .. } | StoreError::Format { .. }) => return Ok(None),
+        published => published,
+    };
+    for message in &warnings(cache, &outcome) {
+        observer.event(&Event::Warning { message });
+    }
+    let published = published?;
+    let recalled = || part.recalled(&board.board.graph);
+    note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
+    Ok(Some((outcome, published)))
+}
+
+fn publish(
+    study: &Study,
+    manifest: Manifest,
+    outcome: &Outcome,
+    options: &Options,
+    Surroundings { cache, observer, stop, folder, draw }: Surroundings<'_>,
+    known: Option<Known>,
+) -> Result<Published, StoreError> {
+    let facts =
+        || Facts::collect(&study.program.about, study.path.parent().unwrap_or(Path::new("")), options.threads());
+    // What a run that was stopped had finished is published; only whoever asks meanwhile gets less.
+    let go_on = |file: &str| {
+        let is_late = !outcome.stopped && stop.load(Ordering::Relaxed);
+        if is_late { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
+    };
+    let next = |file: &str| {
+        observer.event(&Event::Publishing { file });
+        go_on(file)
+    };
+    let bytes = |stage: &str, table: &str| outcome.bytes(cache, stage, table);
+    let table = |stage: &str, table: &str| outcome.table(cache, stage, table);
+    let pieces = |stage: &str, table: &str| {
+        let file = format!("{stage}.{table}.parquet");
+        let found = outcome.pieces(cache, stage, table)?;
+        let found = found.map(move |piece| go_on(&file).and(piece));
+        Some(Box::new(found) as Box<dyn Iterator<Item = Result<Table, StoreError>>>)
+    };
+    let code = study.program.about.code;
+    let source = Source { bytes: &bytes, pieces: Some(&pieces), table: Some(&table), draw, next: &next, code };
+    folder.publish_over(known.or_else(|| folder.known().ok().flatten()), manifest, facts, source)
 }
 
 /// What the next run will miss.
@@ -133,6 +179,29 @@ pub fn execute(
     observer: &dyn Observer,
     stop: &AtomicBool,
 ) -> Result<Outcome, RunError> {
+    let nowhere = Folder::new(Path::new(""), "");
+    let around = Surroundings { cache, observer, stop, folder: &nowhere, draw: None };
+    Ok(executed(study, options, around)?.outcome())
+}
+
+/// A board at the end of a run.
+struct Executed<'a> {
+    board: Board<'a>,
+    stopped: bool,
+    seconds: f64,
+}
+
+impl Executed<'_> {
+    fn outcome(&self) -> Outcome {
+        Outcome::of(&self.board, self.stopped, self.seconds)
+    }
+}
+
+fn executed<'a>(
+    study: &'a Study,
+    options: &'a Options,
+    Surroundings { cache, observer, stop, .. }: Surroundings<'a>,
+) -> Result<Executed<'a>, RunError> {
     let began = Instant::now();
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
@@ -168,7 +237,7 @@ pub fn execute(
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
-    Ok(Outcome::of(&board, stopped, began.elapsed().as_secs_f64()))
+    Ok(Executed { board, stopped, seconds: began.elapsed().as_secs_f64() })
 }
 
 impl Run<'_> {

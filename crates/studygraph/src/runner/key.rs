@@ -174,17 +174,24 @@ impl Parts<'_> {
             fields.push(((*field).to_owned(), Short::from(&shared)));
         }
         config.count(fields.len());
-        let mut demand = Writer::new("gearstudy 1 demand");
-        demand.count(self.demand.tables.len());
-        for (table, columns) in &self.demand.tables {
-            demand.text(table).count(columns.len());
-            for column in columns {
-                demand.text(column);
-            }
-        }
         let seed = self.seed.map(|seed| seed.digest());
-        Common { code: self.code, config: config.finish(), fields, seed, demand: demand.finish(), inputs: &self.inputs }
+        let demand = demand(self.demand);
+        Common { code: self.code, config: config.finish(), fields, seed, demand, inputs: &self.inputs }
     }
+}
+
+/// The digest of what is asked of a stage.
+#[must_use]
+pub fn demand(demand: &Demand) -> Digest {
+    let mut writer = Writer::new("gearstudy 1 demand");
+    writer.count(demand.tables.len());
+    for (table, columns) in &demand.tables {
+        writer.text(table).count(columns.len());
+        for column in columns {
+            writer.text(column);
+        }
+    }
+    writer.finish()
 }
 
 /// Digests that all chunks of a stage have in common.

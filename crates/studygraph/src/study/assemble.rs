@@ -4,13 +4,14 @@
 
 use std::path::Path;
 
+use super::blocks::Blocks;
 use super::decode::Decoder;
 use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Faults, Node, Source, Study, cells, links, settings};
+use super::{Changes, Faults, Node, Source, Study, Unread, cells, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -57,10 +58,33 @@ pub const SET: &str = "set";
 /// # Errors
 /// What is wrong with it.
 pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study, Faults> {
+    of_tree(parse(text)?, text, path, program)
+}
+
+/// Makes a study of some of the stages of a text, which no other one reads; the others are told by name and kind.
+///
+/// # Errors
+/// What is wrong with it, at whatever place.
+pub fn part(
+    blocks: &Blocks,
+    stages: &[usize],
+    unread: Vec<Unread>,
+    path: &Path,
+    program: &'static Program,
+) -> Result<Study, Faults> {
+    let (text, shifts) = blocks.of(stages);
+    let mut root = parse(&text)?;
+    if let Some(root) = &mut root {
+        root.shift(&shifts);
+    }
+    Ok(Study { unread, ..of_tree(root, blocks.text(), path, program)? })
+}
+
+fn of_tree(root: Option<Tree>, text: &str, path: &Path, program: &'static Program) -> Result<Study, Faults> {
     let start = Place { line: 1, column: 1, ..Place::default() };
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
-    let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
+    let root = root.filter(|root| !root.is_null()).ok_or_else(empty)?;
     let root = with_what_is_set(root, program.kinds)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
@@ -99,6 +123,7 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
         changes: Changes::default(),
         name,
         nodes,
+        unread: Vec::new(),
         program,
     })
 }

@@ -104,6 +104,20 @@ impl Folder {
         facts: impl FnOnce() -> Facts,
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
+        self.publish_over(self.known().ok().flatten(), manifest, facts, source)
+    }
+
+    /// The same where it was looked already what is there.
+    ///
+    /// # Errors
+    /// As [`Folder::publish`].
+    pub fn publish_over<'m>(
+        &self,
+        known: Option<Known>,
+        manifest: impl Into<Cow<'m, Manifest>>,
+        facts: impl FnOnce() -> Facts,
+        source: Source<'_>,
+    ) -> Result<Published, StoreError> {
         let manifest: Cow<'m, Manifest> = manifest.into();
         let draws = source.draw.is_some();
         let nothing = |old: Known| {
@@ -111,7 +125,7 @@ impl Folder {
             Published { manifest: old.manifest, changes: Changes::default(), undrawn: None, seen }
         };
         let mut before = None;
-        if let Some(mut old) = self.known().ok().flatten() {
+        if let Some(mut old) = known {
             old.manifest.share(&manifest);
             let new = with_earlier_tables(Some(&old), &manifest);
             let changes = compare(Some(&old), &new, draws, self);
