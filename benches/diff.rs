@@ -44,7 +44,7 @@ fn publish(folder: &Path, table: &Table) {
         kind: "ste".to_owned(),
         version: 1,
         keys: Vec::new(),
-        config: serde_json::Value::Null,
+        config: serde_json::Value::Null.into(),
         status: "ran".to_owned(),
         why: String::new(),
         seconds: 0.0,

@@ -25,9 +25,10 @@ pub(super) fn help(words: &[String], man: Option<&Path>) -> Result<(), Ending> {
         let here = command.get_name().to_owned();
         let known: Vec<String> = names(command);
         let Some(found) = command.find_subcommand_mut(word) else {
-            let help = match known.is_empty() {
-                true => format!("`{here}` has no commands of its own"),
-                false => suggest(word, known.iter().map(String::as_str).collect::<Vec<_>>()),
+            let help = if known.is_empty() {
+                format!("`{here}` has no commands of its own")
+            } else {
+                suggest(word, known.iter().map(String::as_str).collect::<Vec<_>>())
             };
             return Err(Ending::Usage(format!("there is no command `{word}`; {help}")));
         };

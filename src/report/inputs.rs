@@ -60,7 +60,7 @@ mod tests {
             kind: "geometry".to_owned(),
             version: 1,
             keys: Vec::new(),
-            config,
+            config: config.into(),
             status: "ran".to_owned(),
             why: String::new(),
             seconds: 0.0,

@@ -192,11 +192,11 @@ pub fn band(title: &str, [across, up]: [Named; 2], points: &[[f64; 4]], vertical
     };
     let line = |of: usize| points.iter().map(|point| place(point, of)).collect::<Vec<_>>().join("L");
     let back = points.iter().rev().map(|point| place(point, 1)).collect::<Vec<_>>().join("L");
-    let dots: String = points.iter().map(|point| format!("M{}h0", place(point, 2))).collect();
+    let dots = points.iter().map(|point| place(point, 2)).collect::<Vec<_>>().join("h0M");
     let (upper, middle) = (line(3), line(2));
     let _ = write!(
         panel.svg,
-        r#"<path d="M{upper}L{back}Z" style="fill:var(--s0);fill-opacity:.18"/><path class="series" style="stroke:var(--s0)" d="M{middle}"/><path class="dot" style="stroke:var(--s0)" d="{dots}"/>"#
+        r#"<path d="M{upper}L{back}Z" style="fill:var(--s0);fill-opacity:.18"/><path class="series" style="stroke:var(--s0)" d="M{middle}"/><path class="dot" style="stroke:var(--s0)" d="M{dots}h0"/>"#
     );
     panel.finish()
 }

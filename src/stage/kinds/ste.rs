@@ -221,8 +221,9 @@ impl Ste {
             }
             let peak_to_peak = answer.summary.peak_to_peak;
             let doubted = answer.doubt.map(|doubt| Doubted { design: name, torque: *torque, doubt, peak_to_peak });
-            let told = doubted.and_then(|doubted| doubted.told());
-            told.into_iter().for_each(|case| (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`"))));
+            if let Some(case) = doubted.and_then(|doubted| doubted.told()) {
+                (context.warn)(Warning::Cases(case.with_each("`summary.contact_doubt`")));
+            }
         }
     }
 }

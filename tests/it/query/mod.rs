@@ -73,7 +73,7 @@ impl Shop {
             kind: "ste".to_owned(),
             version: 1,
             keys: Vec::new(),
-            config: Value::Null,
+            config: Value::Null.into(),
             status: "ran".to_owned(),
             why: String::new(),
             seconds: 0.0,

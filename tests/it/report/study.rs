@@ -59,7 +59,7 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
             demand: start,
             inputs: Vec::new(),
         }],
-        config: serde_json::Value::Null,
+        config: serde_json::Value::Null.into(),
         status: status.to_owned(),
         why: why.to_owned(),
         seconds,

@@ -17,6 +17,10 @@ use declare::error::suggest;
 /// Columns that one tolerance is meant for and that are named; of more only their number is said.
 const MOST_MEANT: usize = 6;
 
+/// Of a kind of stage and its table, where that holds sampled curves: the column over which they are sampled, and the one that
+/// is told first.
+pub type Curves<'a> = &'a dyn Fn(&str, &str) -> Option<(&'static str, &'static str)>;
+
 /// What is asked for besides the two sides.
 #[derive(Default)]
 pub struct Options<'a> {
@@ -28,9 +32,8 @@ pub struct Options<'a> {
     pub cache: Option<&'a Cache>,
     /// Whether a study that only the later side has is left out on purpose.
     pub leaves_out: Option<&'a dyn Fn(&str) -> bool>,
-    /// Of a table of a kind of stage that holds sampled curves, the column over which they are sampled, and the one that is
-    /// told first.
-    pub curves: Option<&'a dyn Fn(&str, &str) -> Option<(&'static str, &'static str)>>,
+    /// Which tables hold sampled curves.
+    pub curves: Option<Curves<'a>>,
     /// Whether a file of a folder of results is one that is not kept there on purpose.
     pub not_kept: Option<&'a dyn Fn(&Path) -> bool>,
 }

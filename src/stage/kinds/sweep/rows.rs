@@ -116,14 +116,18 @@ fn compute(
         match &found[*group] {
             Err(reason) => {
                 all.extend(block.iter().map(|_| Err(reason.clone())));
-                block.iter().for_each(|_| steps.done());
+                for _ in *block {
+                    steps.done();
+                }
             }
             Ok((_, Some(upstream))) => {
                 let Some(quick) = &sweep.quick else { return Ok(all) };
                 let chain = (&sweep.chain, sweep.layout.columns.as_slice());
                 for alike in block.chunk_by(|one, two| differ_in_torque_alone(sweep, rows.si(*one), rows.si(*two))) {
                     quick.rows(chain, upstream, &mut before, alike.iter().map(|row| rows.si(*row)), &mut all);
-                    alike.iter().for_each(|_| steps.done());
+                    for _ in alike {
+                        steps.done();
+                    }
                 }
             }
             Ok((tables, None)) => {
