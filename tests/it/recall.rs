@@ -48,14 +48,15 @@ fn pair(width: usize) -> String {
 }
 
 fn crowned(pair: &str, amount: usize) -> String {
-    format!("kind: modification\npair: {pair}\ndesigns: {{ a: [lead_crowning: {{ gear: pinion, amount: {amount} um }}] }}")
+    format!(
+        "kind: modification\npair: {pair}\ndesigns: {{ a: [lead_crowning: {{ gear: pinion, amount: {amount} um }}] }}"
+    )
 }
 
 /// A report whose figure wants a table that nobody else does.
 fn report(cell: &str, figure: Option<&str>) -> String {
-    let mut text = format!(
-        "kind: report\npublished:\n  - cell: {cell}\n    value: 1.6\n    tolerance: 10 %\n    where: by hand"
-    );
+    let mut text =
+        format!("kind: report\npublished:\n  - cell: {cell}\n    value: 1.6\n    tolerance: 10 %\n    where: by hand");
     if let Some(stage) = figure {
         write!(
             text,
@@ -68,11 +69,12 @@ fn report(cell: &str, figure: Option<&str>) -> String {
 }
 
 impl Book {
-    fn new(generator: &mut impl Rng) -> Self {
+    /// `crowned`: stages of one kind.
+    fn new(crowned: usize, generator: &mut impl Rng) -> Self {
         let mut book = Self { title: 0, sheets: Vec::new(), next: 0 };
         book.add(0, "pair".to_owned(), pair(20));
         book.add(1, "other".to_owned(), pair(22));
-        for _ in 0..6 + below(generator, 40) {
+        for _ in 0..crowned {
             book.add_crowned(generator);
         }
         if below(generator, 2) == 0 {
@@ -231,7 +233,8 @@ impl Home {
 
 fn edits(seed: u64, count: usize) -> usize {
     let mut generator = Seed::of_stage(seed, "recall").generator(0);
-    let mut book = Book::new(&mut generator);
+    // About as many as have figures and files of their own, and fewer, and more.
+    let mut book = Book::new([32, 9, 33, 40][below(&mut generator, 4)], &mut generator);
     let (quick, whole) = (Home::new(), Home::new());
     let mut parts = 0;
     for number in 0..count {
@@ -255,7 +258,7 @@ fn edits(seed: u64, count: usize) -> usize {
         assert_eq!(differences(&found[0], &found[1]), Vec::<String>::new(), "after edit {number} of {seed}\n{text}");
         let journal = |home: &Home| Cache::open(&home.path("cache")).unwrap().journal("tiny");
         assert_eq!(journal(&quick), journal(&whole), "after edit {number} of {seed}\n{text}");
-        if number % 6 == 5 {
+        if number % 4 == 3 {
             let empty = Home::new();
             assert_eq!(empty.run(&text), 0);
             let fresh = published(&empty.path("results/tiny"));
@@ -269,15 +272,15 @@ fn edits(seed: u64, count: usize) -> usize {
 #[test]
 fn a_run_of_what_changed_comes_to_what_a_run_of_all_does() {
     let studies = std::env::var("GEARSTUDY_EDITS").ok().and_then(|text| text.parse().ok()).unwrap_or(4);
-    let parts: usize = (0..studies).map(|seed| edits(seed, 14)).sum();
-    assert!(parts as u64 >= 4 * studies, "{parts} of {studies} studies");
+    let parts: usize = (0..studies).map(|seed| edits(seed, 9)).sum();
+    assert!(parts as u64 >= 3 * studies, "{parts} of {studies} studies");
 }
 
 /// Whatever happened to a file since, all of the study is read.
 #[test]
 fn only_where_all_is_as_the_run_before_left_it() {
     let mut generator = Seed::of_stage(1, "recall").generator(0);
-    let mut book = Book::new(&mut generator);
+    let mut book = Book::new(20, &mut generator);
     let home = Home::new();
     assert_eq!(home.run(&book.text()), 0);
     let changed = |book: &mut Book| {

@@ -296,12 +296,7 @@ fn keys(manifest: &Manifest) -> impl Iterator<Item = Digest> {
 }
 
 /// What the program takes for good in a state must be good.
-fn accepted(
-    place: &Place,
-    whole: &Tables,
-    expected: &Published,
-    manifest: &Manifest,
-) -> Vec<String> {
+fn accepted(place: &Place, whole: &Tables, expected: &Published, manifest: &Manifest) -> Vec<String> {
     let mut wrong = Vec::new();
     let cache = Cache::open_if_possible(&place.disk.join("cache"));
     let packed: Vec<Digest> = whole.keys().map(|(key, _)| *key).collect();

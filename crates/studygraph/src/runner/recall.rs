@@ -145,9 +145,8 @@ impl Recalled {
                     let own = &earlier.stages[own as usize];
                     let now = |other: &u32| known.get(&*earlier.stages[*other as usize].name).copied();
                     let all = |others: &[u32]| others.iter().map(now).collect::<Option<Vec<u32>>>();
-                    let asks = own.asks.iter().map(|(of, wants)| {
-                        Some((now(of)?, ask(&earlier.asked[*wants as usize])))
-                    });
+                    let asks =
+                        own.asks.iter().map(|(of, wants)| Some((now(of)?, ask(&earlier.asked[*wants as usize]))));
                     let asks = asks.collect::<Option<_>>()?;
                     let (mentions, reads) = (all(&own.mentions)?, all(&own.reads)?);
                     Recollection { name, kind, lines: own.lines, mentions, reads, asks, demand: own.demand }

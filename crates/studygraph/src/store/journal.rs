@@ -198,7 +198,8 @@ mod tests {
     #[test]
     fn a_damaged_journal_is_none_and_a_damaged_line_nothing() {
         let text = Journal::of(&[stage("a", 1), stage("b", 2)]).bytes();
-        for end in 0..text.len() {
+        // Without its last line feed it is one still.
+        for end in 0..text.len() - 1 {
             assert!(Journal::parse(text[..end].to_vec()).is_err(), "{end}");
         }
         let mut damaged = text.clone();

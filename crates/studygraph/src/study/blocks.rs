@@ -170,9 +170,10 @@ fn parts(word: &str) -> impl Iterator<Item = Range<usize>> {
     let dashes: Vec<usize> = word.match_indices('-').map(|(at, _)| at).collect();
     let starts: Vec<usize> = [0].into_iter().chain(dashes.iter().map(|at| at + 1)).collect();
     let ends: Vec<usize> = dashes.into_iter().chain([word.len()]).collect();
-    starts.into_iter().enumerate().flat_map(move |(first, start)| {
-        ends[first..].to_vec().into_iter().map(move |end| start..end)
-    })
+    starts
+        .into_iter()
+        .enumerate()
+        .flat_map(move |(first, start)| ends[first..].to_vec().into_iter().map(move |end| start..end))
 }
 
 #[cfg(test)]
@@ -228,7 +229,7 @@ mod tests {
         let found = |text: &str| mentions(text, &known);
         assert_eq!(found("x: a.t[k=1].v-b-c.t.v"), [0, 1]);
         assert_eq!(found("[a,a-b,b-c-m10]"), [0, 1, 2]);
-        assert_eq!(found("ab m1 m101 b c_b-cd"), []);
+        assert!(found("ab m1 m101 b c_b-cd").is_empty());
         assert_eq!(found("(m10)/'a'"), [0, 2]);
     }
 }
