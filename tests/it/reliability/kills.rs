@@ -1,6 +1,6 @@
 //! SIGKILL at random moments of a study of very many stages: the next run goes on from there, and all come to the same.
 //!
-//! By itself few moments of a study of some hundred stages; `GEARSTUDY_KILLS=50x5000` kills at 50 moments of 5,000 stages.
+//! By itself few moments of a study of some hundred stages; `GEARSTUDY_KILLS=20x1000` kills at 20 moments of 1,000 stages.
 //! Must not know: how entries are kept.
 
 use std::fs;

@@ -15,6 +15,7 @@ use rayon::{ScopeFifo, ThreadPoolBuilder};
 use super::board::{Board, StageState, Step};
 use super::events::{Event, Observer, Silent};
 use super::fault::Fault;
+use super::graph::Graph;
 use super::note;
 use super::options::Options;
 use super::outcome::Outcome;
@@ -70,21 +71,18 @@ pub fn run(
     draw: Option<Draw<'_>>,
 ) -> Result<(Outcome, Published), RunError> {
     let around = Surroundings { cache, observer, stop, folder, draw };
-    let mut board = executed(study, options, around)?;
-    let mut outcome = board.outcome();
+    let (mut outcome, mut graph) = executed(study, options, around)?;
     let mut published = publish(study, outcome.manifest(study), &outcome, options, around, None);
     if let Err(StoreError::Damaged { .. }) = published {
         // Plans look at headers only; a table that is found damaged now is forgotten, and computed again.
-        drop(board);
-        board = executed(study, options, around)?;
-        outcome = board.outcome();
+        (outcome, graph) = executed(study, options, around)?;
         published = publish(study, outcome.manifest(study), &outcome, options, around, None);
     }
     for message in &warnings(cache, &outcome) {
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    let recalled = || Recalled::of(study, &board.board.graph, None);
+    let recalled = || Recalled::of(study, &graph, None);
     note::keep(study, (cache, options, folder), (&outcome, &published), recalled, None);
     Ok((outcome, published))
 }
@@ -101,8 +99,7 @@ pub fn run_part(
 ) -> Result<Option<(Outcome, Published)>, RunError> {
     let Surroundings { cache, observer, folder, .. } = around;
     let Ok(Some(known)) = folder.known() else { return Ok(None) };
-    let board = executed(&part.study, &part.options, around)?;
-    let outcome = board.outcome();
+    let (outcome, graph) = executed(&part.study, &part.options, around)?;
     let Some(manifest) = part.whole(outcome.manifest(&part.study), &known.manifest) else { return Ok(None) };
     // What else there is to be said of the folder a run of all stages says, and makes good.
     let published = match publish(&part.study, manifest, &outcome, options, around, Some(known)) {
@@ -113,7 +110,7 @@ pub fn run_part(
         observer.event(&Event::Warning { message });
     }
     let published = published?;
-    let recalled = || part.recalled(&board.board.graph);
+    let recalled = || part.recalled(&graph);
     note::keep(&part.study, (cache, options, folder), (&outcome, &published), recalled, Some(&part.note));
     Ok(Some((outcome, published)))
 }
@@ -181,27 +178,15 @@ pub fn execute(
 ) -> Result<Outcome, RunError> {
     let nowhere = Folder::new(Path::new(""), "");
     let around = Surroundings { cache, observer, stop, folder: &nowhere, draw: None };
-    Ok(executed(study, options, around)?.outcome())
+    Ok(executed(study, options, around)?.0)
 }
 
-/// A board at the end of a run.
-struct Executed<'a> {
-    board: Board<'a>,
-    stopped: bool,
-    seconds: f64,
-}
-
-impl Executed<'_> {
-    fn outcome(&self) -> Outcome {
-        Outcome::of(&self.board, self.stopped, self.seconds)
-    }
-}
-
-fn executed<'a>(
-    study: &'a Study,
-    options: &'a Options,
-    Surroundings { cache, observer, stop, .. }: Surroundings<'a>,
-) -> Result<Executed<'a>, RunError> {
+/// What came of a run, and its graph.
+fn executed(
+    study: &Study,
+    options: &Options,
+    Surroundings { cache, observer, stop, .. }: Surroundings<'_>,
+) -> Result<(Outcome, Graph), RunError> {
     let began = Instant::now();
     let mut board = Board::new(study, cache, options, &Silent)?;
     let queued = board.settle();
@@ -237,7 +222,8 @@ fn executed<'a>(
         cache.put_journal(&study.name, &journal);
     }
     let stopped = stop.load(Ordering::Relaxed) && board.nodes.iter().any(|progress| progress.given_up);
-    Ok(Executed { board, stopped, seconds: began.elapsed().as_secs_f64() })
+    let outcome = Outcome::of(&board, stopped, began.elapsed().as_secs_f64());
+    Ok((outcome, board.graph))
 }
 
 impl Run<'_> {
