@@ -185,17 +185,27 @@ impl Opened {
         if !is_bundle(&record.file) {
             return read();
         }
+        part(&*self.whole(place, read)?, record.stage()).map_err(damaged)
+    }
+
+    /// All that the file of a bundle holds.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn whole<E>(&self, place: &str, read: impl FnOnce() -> Result<Table, E>) -> Result<Arc<Table>, E> {
         let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(place).cloned();
-        let bundle = match known {
-            Some(bundle) => bundle,
-            None => {
-                let bundle = Arc::new(read()?);
-                let mut opened = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-                opened.insert(place.to_owned(), Arc::clone(&bundle));
-                bundle
-            }
-        };
-        part(&bundle, record.stage()).map_err(damaged)
+        match known {
+            Some(bundle) => Ok(bundle),
+            None => Ok(self.put(place, read()?)),
+        }
+    }
+
+    /// Notes what a file holds that was written or read.
+    pub fn put(&self, place: &str, bundle: Table) -> Arc<Table> {
+        let bundle = Arc::new(bundle);
+        let mut opened = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        opened.insert(place.to_owned(), Arc::clone(&bundle));
+        bundle
     }
 
     /// Files may be others by now.

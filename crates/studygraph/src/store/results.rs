@@ -141,6 +141,14 @@ impl Folder {
         parquet::read(bytes).map_err(|problem| self.damaged(file, &problem))
     }
 
+    /// The same of a bundle, which is read once for all who ask.
+    ///
+    /// # Errors
+    /// As [`Folder::whole`].
+    pub fn shared(&self, file: &str) -> Result<Arc<Table>, StoreError> {
+        self.opened.whole(file, || self.whole(file))
+    }
+
     /// What `look` finds, which reads the manifest and then files. While a run publishes, its files and its manifest do
     /// not belong together: where `look` finds a fault, it looks once more when no run publishes.
     ///

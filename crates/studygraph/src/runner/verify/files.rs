@@ -163,7 +163,8 @@ impl<R: Read + Seek> Files<'_, R> {
         };
         let of_record = |record: &TableRecord| found(&record.file);
         // A manifest may list what no file can hold; its tables are looked at all the same.
-        if hdf5_bytes(&name, self.manifest, &of_record, &found).is_ok_and(|bytes| *archived == bytes) {
+        let of_bundle = |file: &str| found(file).map(Into::into);
+        if hdf5_bytes(&name, self.manifest, &of_record, &of_bundle).is_ok_and(|bytes| *archived == bytes) {
             return Ok(Some(VerifiedFile { file: name, agreement: Agreement::Identical }));
         }
         let path = work.join("archived.h5");

@@ -196,18 +196,21 @@ struct Named {
     schemas: Vec<(String, TableSchema)>,
     /// Of kind and table, the places of those that were met.
     met: HashMap<(String, String), Vec<usize>>,
-    /// Names by kind and by the columns' place in memory, which alike tables share; it stays theirs while the manifest does.
-    quick: HashMap<(*const ColumnRecord, *const u8, String), String>,
+    /// The last name of these columns' place in memory, which alike tables share, with its kind and table; the place stays
+    /// theirs while the manifest does.
+    quick: HashMap<(*const ColumnRecord, *const u8), (String, String, String)>,
 }
 
 impl Named {
     fn name(&mut self, kind: &str, table: &TableRecord) -> String {
-        let place = (table.columns.as_ptr(), table.description.as_ptr(), format!("{kind}.{}", table.table()));
-        if let Some(name) = self.quick.get(&place) {
+        let place = (table.columns.as_ptr(), table.description.as_ptr());
+        if let Some((of, own, name)) = self.quick.get(&place)
+            && (of.as_str(), own.as_str()) == (kind, table.table())
+        {
             return name.clone();
         }
         let name = self.compared(kind, table);
-        self.quick.insert(place, name.clone());
+        self.quick.insert(place, (kind.to_owned(), table.table().to_owned(), name.clone()));
         name
     }
 

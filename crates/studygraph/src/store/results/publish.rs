@@ -215,9 +215,9 @@ impl Folder {
         for (_, table) in bundle::published(&new) {
             if let Some(members) = bundles.get(table.file.as_str()).filter(|_| tables.contains(&table.file)) {
                 (source.next)(&table.file)?;
-                let bytes = self.bundle(old, members, source)?;
-                self.put(&mut listed, &table.file, &bytes, table.varies())?;
-                self.opened.clear();
+                let all = self.bundle(old, members, source)?;
+                self.put(&mut listed, &table.file, &parquet::write(&all)?, table.varies())?;
+                self.opened.put(&table.file, all);
             } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
@@ -342,7 +342,7 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record), &|file| self.whole(file))?;
+        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record), &|file| self.shared(file))?;
         // Its bytes depend on the version of libhdf5 as well.
         self.put(listed, &name, &bytes, true)
     }
@@ -360,7 +360,7 @@ impl Folder {
         let table = |name: &str| {
             let found = match records.get(name) {
                 Some(record) => self.table(record),
-                None if is_bundle(name) => self.whole(&own_file(name)),
+                None if is_bundle(name) => self.shared(&own_file(name)).map(|table| (*table).clone()),
                 None => return None,
             };
             found.map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
@@ -459,7 +459,7 @@ pub fn hdf5_bytes(
     name: &str,
     manifest: &Manifest,
     table: &dyn Fn(&TableRecord) -> Result<Table, StoreError>,
-    whole: &dyn Fn(&str) -> Result<Table, StoreError>,
+    whole: &dyn Fn(&str) -> Result<std::sync::Arc<Table>, StoreError>,
 ) -> Result<Vec<u8>, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
@@ -467,7 +467,7 @@ pub fn hdf5_bytes(
             writer.leave_out(group, record)?;
             continue;
         }
-        let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)? };
+        let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)?.into() };
         writer.add(group, &table)?;
     }
     writer.finish()
