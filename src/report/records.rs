@@ -91,6 +91,8 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
         entries.push((described(record, &name, rows, is_bundle), shown));
         stages[at].tables.push(TableView { record, name, rows, is_stored });
     }
+    // Of thousands of stages few have tables of their own.
+    stages.retain(|stage| !stage.tables.is_empty() || !stage.files.is_empty());
     let sizes: Vec<usize> = entries.iter().map(|(_, (size, _))| *size).collect();
     let mut by_size: Vec<usize> = (0..entries.len()).collect();
     by_size.sort_by_key(|&entry| sizes[entry]);
