@@ -84,7 +84,8 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
         let shown = table.map_or((0, Vec::new()), |table| {
             let own = shown(record, &table, is_bundle);
             // What has no room at all need not be written to know it.
-            let size = own.iter().map(|data| length(*data, table.rows())).sum();
+            let size =
+                own.iter().fold(0, |size, data| if size > ROOM { size } else { size + length(*data, table.rows()) });
             let rows = if size > ROOM { table.rows().min(FIRST_ROWS) } else { table.rows() };
             (size, own.into_iter().map(|data| values(data, rows)).collect())
         });
