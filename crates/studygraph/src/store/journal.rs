@@ -73,7 +73,9 @@ impl Journal {
     #[must_use]
     pub fn of(stages: &[JournalStage]) -> Self {
         let mut journal = Self::default();
-        stages.iter().for_each(|stage| journal.add(stage));
+        for stage in stages {
+            journal.add(stage);
+        }
         journal
     }
 

@@ -5,6 +5,7 @@
 //! it with what the parser found in the same lines. Must not know: fields, kinds.
 
 use std::collections::HashMap;
+use std::hash::BuildHasher;
 use std::ops::Range;
 
 use super::document::Shift;
@@ -147,13 +148,13 @@ fn is_plain(text: &[u8]) -> bool {
 
 /// The stages of `known` that a text may speak of, each once, ascending: every word that is the name of one, be it meant so or
 /// not.
-pub fn mentions(text: &str, known: &HashMap<&str, u32>) -> Vec<u32> {
+pub fn mentions<S: BuildHasher>(text: &str, known: &HashMap<&str, u32, S>) -> Vec<u32> {
     let mut found = Vec::new();
     for word in text.split(|character: char| !is_in_name(character)).filter(|word| !word.is_empty()) {
         found.extend(known.get(word));
         // A difference of two cells is one word as well.
         if word.contains('-') {
-            found.extend(parts(word).filter_map(|part| known.get(&word[part])));
+            found.extend(parts(word).into_iter().filter_map(|part| known.get(&word[part])));
         }
     }
     found.sort_unstable();
@@ -166,14 +167,15 @@ fn is_in_name(character: char) -> bool {
 }
 
 /// What stands between any two dashes of a word.
-fn parts(word: &str) -> impl Iterator<Item = Range<usize>> {
+fn parts(word: &str) -> Vec<Range<usize>> {
     let dashes: Vec<usize> = word.match_indices('-').map(|(at, _)| at).collect();
-    let starts: Vec<usize> = [0].into_iter().chain(dashes.iter().map(|at| at + 1)).collect();
-    let ends: Vec<usize> = dashes.into_iter().chain([word.len()]).collect();
-    starts
-        .into_iter()
-        .enumerate()
-        .flat_map(move |(first, start)| ends[first..].to_vec().into_iter().map(move |end| start..end))
+    let starts = [0].into_iter().chain(dashes.iter().map(|at| at + 1));
+    let ends: Vec<usize> = dashes.iter().copied().chain([word.len()]).collect();
+    let mut parts = Vec::new();
+    for (first, start) in starts.enumerate() {
+        parts.extend(ends[first..].iter().map(|&end| start..end));
+    }
+    parts
 }
 
 #[cfg(test)]
