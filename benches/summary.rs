@@ -10,8 +10,8 @@ use crate::program::Process;
 /// Bench or process, its target \[s\], what is compared.
 const TARGETS: &[(&str, f64, &str)] = &[
     ("study energy_ga, cold", 1.0, "whole process, no cache, no results"),
-    ("study energy_ga, nothing to do", 15e-3, "whole process, everything cached and published"),
-    ("gearstudy --version", 5e-3, "whole process"),
+    ("study energy_ga, nothing to do", 10e-3, "whole process, everything cached and published"),
+    ("gearstudy --version", 3e-3, "whole process"),
     ("stage/optimum", 0.3, "genetic, 100 × 100, 64 positions, all threads"),
     ("diff/report 1e5 rows x 9", 0.1, "two folders of Parquet to the text, rows by key"),
     ("diff/report 1e6 rows x 9", 1.0, "as before"),
@@ -21,7 +21,7 @@ const TARGETS: &[(&str, f64, &str)] = &[
     ("finite elements/curve, resolved, coupled, corner contact", 150e-6, "as before"),
     (
         "finite elements/both sweeps of mei2016",
-        2.0,
+        1.0,
         "1,250 coupled curves with corner contact, 24 positions, all threads",
     ),
     ("profile/whole gear, 17 teeth x 200 points", 100e-6, "exact points of all teeth, one thread"),

@@ -36,7 +36,9 @@ fn paths(value: &Value, at: &str, found: &mut BTreeSet<String>) {
             }
         }
         Value::Array(items) if !items.is_empty() => {
-            items.iter().for_each(|item| paths(item, &format!("{at}[]"), found))
+            for item in items {
+                paths(item, &format!("{at}[]"), found);
+            }
         }
         _ => drop(found.insert(at.to_owned())),
     }
@@ -45,7 +47,9 @@ fn paths(value: &Value, at: &str, found: &mut BTreeSet<String>) {
 /// What the samples have is documented, and what is documented stands in one of them.
 fn as_documented(section: &str, samples: &[Value]) {
     let mut found = BTreeSet::new();
-    samples.iter().for_each(|sample| paths(sample, "", &mut found));
+    for sample in samples {
+        paths(sample, "", &mut found);
+    }
     let documented = rows(section);
     assert!(!documented.is_empty(), "{section} has no table");
     let covers = |path: &str, found: &str| match path.strip_suffix(".*") {

@@ -48,11 +48,13 @@ fn commands(text: &str) -> Vec<String> {
     all.filter(|line| line.strip_prefix("gearstudy ").is_some_and(|rest| !rest.starts_with(['…', '.']))).collect()
 }
 
-/// The words of a command, with something in the place of `STUDY`, `[KIND]`, `N` and their like.
+/// The words of a command, with something in the place of `STUDY`, `[KIND]`, `N`, `…`, `${number}` and their like.
 fn words(command: &str) -> Vec<String> {
     let shown = |word: &str| {
         let plain = word.trim_matches(['[', ']', '"', '\'']).trim_end_matches('…');
-        let placeholder = !plain.is_empty() && plain.chars().all(|c| c.is_ascii_uppercase());
+        let placeholder = !plain.is_empty() && plain.chars().all(|c| c.is_ascii_uppercase())
+            || word == "…"
+            || plain.starts_with("${");
         if placeholder { "1".to_owned() } else { plain.to_owned() }
     };
     // A quoted word may hold spaces: `--where 'torque=50 N m'`.

@@ -2,6 +2,7 @@
 //!
 //! Must not know: how any of it was computed. Field names are read by other programs: additions only, or another format.
 
+mod lines;
 mod wire;
 
 use std::borrow::Cow;
@@ -267,7 +268,7 @@ impl Manifest {
     pub fn text_with(&self, files: &[FileRecord]) -> Result<Vec<u8>, serde_json::Error> {
         let mut text = Vec::new();
         wire::text(self, files)
-            .serialize(&mut serde_json::Serializer::with_formatter(&mut text, wire::Lines::default()))?;
+            .serialize(&mut serde_json::Serializer::with_formatter(&mut text, lines::Lines::default()))?;
         text.push(b'\n');
         Ok(text)
     }

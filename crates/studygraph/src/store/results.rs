@@ -7,6 +7,7 @@
 
 mod bundled;
 mod changes;
+mod drawn;
 mod known;
 mod pieces;
 mod publish;

@@ -5,13 +5,12 @@
 
 use std::borrow::Cow;
 use std::collections::{BTreeMap, HashMap};
-use std::io;
 use std::sync::Arc;
 
 use serde::ser::SerializeMap;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-use serde_json::ser::Formatter;
 
+use super::lines::Lines;
 use super::{
     ColumnRecord, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
     StudyFolder, TableRecord,
@@ -184,7 +183,7 @@ pub(super) fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<
         return None;
     }
     let mut new = text[..at].to_vec();
-    let lines = Lines { depth: 1, has_value: false };
+    let lines = Lines::inside();
     files.serialize(&mut serde_json::Serializer::with_formatter(&mut new, lines)).ok()?;
     new.extend_from_slice(b"\n}\n");
     Some(new)
@@ -371,85 +370,5 @@ impl Stage<'_> {
             left_out: self.left_out.into_owned(),
             tables: self.tables.into_iter().map(table).collect::<Result<_, String>>()?,
         })
-    }
-}
-
-/// One line for each value down to this depth, and what is deeper on its line.
-const DEPTH: usize = 4;
-
-/// Writes JSON whose outer levels have lines of their own.
-#[derive(Default)]
-pub(super) struct Lines {
-    depth: usize,
-    has_value: bool,
-}
-
-impl Lines {
-    fn open<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
-        self.depth += 1;
-        self.has_value = false;
-        writer.write_all(bracket)
-    }
-
-    fn close<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {
-        self.depth -= 1;
-        if self.has_value && self.depth < DEPTH {
-            self.line(writer)?;
-        }
-        self.has_value = true;
-        writer.write_all(bracket)
-    }
-
-    fn next<W: ?Sized + io::Write>(&self, writer: &mut W, first: bool) -> io::Result<()> {
-        match (first, self.depth <= DEPTH) {
-            (true, false) => Ok(()),
-            (false, false) => writer.write_all(b", "),
-            (true, true) => self.line(writer),
-            (false, true) => writer.write_all(b",").and_then(|()| self.line(writer)),
-        }
-    }
-
-    fn line<W: ?Sized + io::Write>(&self, writer: &mut W) -> io::Result<()> {
-        writer.write_all(&b"\n          "[..=self.depth.min(DEPTH)])
-    }
-}
-
-impl Formatter for Lines {
-    fn begin_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.open(writer, b"[")
-    }
-
-    fn end_array<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.close(writer, b"]")
-    }
-
-    fn begin_array_value<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
-        self.next(writer, first)
-    }
-
-    fn end_array_value<W: ?Sized + io::Write>(&mut self, _writer: &mut W) -> io::Result<()> {
-        self.has_value = true;
-        Ok(())
-    }
-
-    fn begin_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.open(writer, b"{")
-    }
-
-    fn end_object<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        self.close(writer, b"}")
-    }
-
-    fn begin_object_key<W: ?Sized + io::Write>(&mut self, writer: &mut W, first: bool) -> io::Result<()> {
-        self.next(writer, first)
-    }
-
-    fn begin_object_value<W: ?Sized + io::Write>(&mut self, writer: &mut W) -> io::Result<()> {
-        writer.write_all(b": ")
-    }
-
-    fn end_object_value<W: ?Sized + io::Write>(&mut self, _writer: &mut W) -> io::Result<()> {
-        self.has_value = true;
-        Ok(())
     }
 }

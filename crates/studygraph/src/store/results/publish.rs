@@ -7,13 +7,12 @@
 //! how anything is drawn.
 
 use std::borrow::Cow;
-use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::ErrorKind;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
-use super::{Changes, FIGURES, FileState, Folder, Known, MANIFEST, MEASURED, PAGE, held_text, here, is_drawn, split};
+use super::{Changes, FileState, Folder, Known, MANIFEST, PAGE, held_text, here, is_drawn, split};
 use crate::store::bundle::{self, is_bundle};
 use crate::store::error::StoreError;
 use crate::store::facts::Facts;
@@ -22,7 +21,7 @@ use crate::store::file::{self, Durability};
 use crate::store::hdf5;
 use crate::store::index::{self, Index, Seen};
 use crate::store::lock;
-use crate::store::manifest::{FileRecord, Manifest, TableRecord, own_file};
+use crate::store::manifest::{FileRecord, Manifest, TableRecord};
 use crate::store::parquet;
 use crate::table::data::Table;
 
@@ -87,8 +86,8 @@ pub struct Published {
 
 /// What the new manifest and the new index list.
 #[derive(Default)]
-struct Listed {
-    files: Vec<FileRecord>,
+pub(super) struct Listed {
+    pub(super) files: Vec<FileRecord>,
     seen: Vec<Seen>,
 }
 
@@ -319,7 +318,7 @@ impl Folder {
         file::write(&path, &text, Durability::Synced)
     }
 
-    fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
+    pub(super) fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
         let path = self.path().join(file);
         file::write(&path, bytes, Durability::Lazy)?;
         listed.add(index::written(&path, file, bytes)?, varies);
@@ -351,60 +350,6 @@ impl Folder {
     #[allow(clippy::unused_self, clippy::unnecessary_wraps)] // the same shape with and without the feature
     fn put_hdf5(&self, _listed: &mut Listed, _manifest: &Manifest) -> Result<(), StoreError> {
         Ok(())
-    }
-
-    fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
-        let fault = RefCell::new(None);
-        let records: HashMap<&str, &TableRecord> =
-            manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| (&*record.name, record)).collect();
-        let table = |name: &str| {
-            let found = match records.get(name) {
-                Some(record) => self.table(record),
-                None if is_bundle(name) => self.shared(&own_file(name)).map(|table| (*table).clone()),
-                None => return None,
-            };
-            found.map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
-        };
-        let drawn = draw(manifest, &table);
-        match (drawn, fault.take()) {
-            // A clone has only the tables that git keeps, and a page may be drawn without.
-            (Ok(drawn), Some(fault)) if is_absent(&fault) => Ok(drawn),
-            // What is wrong with a file says more than that its table is missing. A page that leaves it out would stay.
-            (_, Some(fault)) => Err(fault.to_string()),
-            (drawn, None) => drawn,
-        }
-    }
-
-    fn put_drawn(&self, drawn: Vec<Drawn>) -> Result<Listed, String> {
-        let mut listed = Listed::default();
-        for Drawn { file, bytes, varies } in drawn {
-            let folder = self.path().join(&file);
-            let folder = folder.parent().unwrap_or(self.path());
-            fs::create_dir_all(folder).map_err(|error| StoreError::io("make", folder)(error).to_string())?;
-            self.put(&mut listed, &file, &bytes, varies).map_err(|error| error.to_string())?;
-        }
-        for folder in [FIGURES, MEASURED] {
-            file::sweep(&self.path().join(folder));
-        }
-        Ok(listed)
-    }
-
-    /// Figures that are no more, which would be taken for current ones. Where no page was listed, by an earlier version or
-    /// because a run was killed, nobody knows which were ours: what is called a figure is taken for one.
-    fn former(&self, earlier: &[String], drawn: &Listed) -> Vec<String> {
-        let new: HashSet<&String> = drawn.files.iter().map(|record| &record.file).collect();
-        let is_new = |file: &String| new.contains(file);
-        if earlier.iter().any(|file| file == PAGE) {
-            return earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect();
-        }
-        let figures = |folder: &str| -> Vec<String> {
-            let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
-            let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
-            let figures = names
-                .filter(|name| name.split_once('.').is_some_and(|(_, ending)| ["svg", "vl.json"].contains(&ending)));
-            figures.map(|name| format!("{folder}/{name}")).collect()
-        };
-        [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
     }
 
     /// Notes what had to be read. Without it all is read again next time, so a folder that cannot be written is not a
@@ -439,12 +384,12 @@ impl Listed {
     }
 }
 
-fn is_absent(fault: &StoreError) -> bool {
+pub(super) fn is_absent(fault: &StoreError) -> bool {
     matches!(fault, StoreError::Io { source, .. } if source.kind() == ErrorKind::NotFound)
 }
 
 /// Keeps the first fault; that a file is not there gives way to any other.
-fn worse(fault: &mut Option<StoreError>, other: StoreError) {
+pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
     if fault.as_ref().is_none_or(is_absent) {
         *fault = Some(other);
     }

@@ -147,7 +147,7 @@ fn missing_files_come_back_without_a_new_manifest() {
         let (_, table) = tables.iter().find(|(_, table)| table.name() == name).unwrap();
         parquet::write(table)
     };
-    let again = folder.publish(&manifest(&tables), panics, Source::of(&bytes)).unwrap();
+    let again = folder.publish(manifest(&tables), panics, Source::of(&bytes)).unwrap();
     assert_eq!(again.changes.tables, ["ste.curve.parquet"]);
     assert_eq!(before, fs::read(folder.path().join(MANIFEST)).unwrap());
     assert_eq!(folder.changes(&manifest(&tables), false), Changes::default());
@@ -169,7 +169,7 @@ fn after_a_kill_no_new_file_passes_for_the_old_one() {
         "curve" => Ok(vec![b'x'; usize::try_from(length).unwrap()]),
         _ => Err(StoreError::InUse { path: "killed".to_owned(), who: String::new() }),
     };
-    assert!(folder.publish(&manifest(&new), || unreachable!(), Source::of(&bytes)).is_err());
+    assert!(folder.publish(manifest(&new), || unreachable!(), Source::of(&bytes)).is_err());
     assert_eq!(folder.changes(&manifest(&old), false).tables, ["ste.curve.parquet", "ste.summary.parquet"]);
     publish(&folder, &old, &manifest(&old));
     for record in &folder.manifest().unwrap().stages[1].tables {
@@ -222,13 +222,13 @@ fn files_that_a_table_holds_are_published_kept_whole_and_removed() {
     assert_eq!(folder.changes(&manifest(&with(&["0", "EOF"])), false), Changes::default());
     let facts = Facts::default;
     assert_eq!(
-        folder.publish(&manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap().changes,
+        folder.publish(manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap().changes,
         Changes::default()
     );
 
     // A file that was cut short comes back from its table.
     fs::write(folder.path().join("ste.b.dxf"), "0").unwrap();
-    let again = folder.publish(&manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap();
+    let again = folder.publish(manifest(&with(&["0", "EOF"])), facts, Source::of(&nothing)).unwrap();
     assert_eq!((again.changes.files.len(), read("ste.b.dxf").as_str()), (1, "0\nEOF\n"));
 
     let (second, _) = publish(&folder, &with(&["0", "EOF", "9"]), &manifest(&with(&["0", "EOF", "9"])));
@@ -250,7 +250,7 @@ fn publish_drawn(folder: &Folder, tables: &[(&str, Table)]) -> Published {
     let bytes = |stage: &str, name: &str| {
         parquet::write(&tables.iter().find(|(s, table)| *s == stage && table.name() == name).unwrap().1)
     };
-    folder.publish(&manifest(tables), Facts::default, Source { draw: Some(&draw), ..Source::of(&bytes) }).unwrap()
+    folder.publish(manifest(tables), Facts::default, Source { draw: Some(&draw), ..Source::of(&bytes) }).unwrap()
 }
 
 /// All files of a folder but the manifest and the index.
@@ -364,7 +364,7 @@ fn a_page_that_cannot_be_drawn_keeps_no_table_back() {
     let bytes = |_: &str, name: &str| parquet::write(&tables.iter().find(|(_, table)| table.name() == name).unwrap().1);
     let fails: Draw<'_> = &|_, _| Err("no ink".to_owned());
     let published =
-        folder.publish(&manifest(&tables), Facts::default, Source { draw: Some(fails), ..Source::of(&bytes) }).unwrap();
+        folder.publish(manifest(&tables), Facts::default, Source { draw: Some(fails), ..Source::of(&bytes) }).unwrap();
     assert_eq!(published.undrawn.as_deref(), Some("no ink"));
     assert!(listed(&folder).contains(&"ste.curve.parquet".to_owned()) && !listed(&folder).contains(&PAGE.to_owned()));
     fs::create_dir_all(folder.path().join(FIGURES)).unwrap();
@@ -390,7 +390,7 @@ fn publishing_stops_before_any_file_and_the_next_run_ends_it() {
             if asked.get() > stop_before { Err(StoreError::Stopped { path: file.to_owned() }) } else { Ok(()) }
         };
         let source = Source { draw: Some(&draw), next: &next, ..Source::of(&bytes) };
-        let Err(fault) = folder.publish(&manifest(&tables), Facts::default, source) else {
+        let Err(fault) = folder.publish(manifest(&tables), Facts::default, source) else {
             // Three tables, HDF5 where there is any, and the page before and after it is drawn.
             assert_eq!(stop_before, if cfg!(feature = "hdf5") { 6 } else { 5 });
             return;

@@ -45,8 +45,8 @@ fn structure_is_told_in_the_words_of_whoever_wrote_it() {
         ),
         ("title: A small", "title: \"A small", "2:1: a quote is opened and not closed in its line"),
         (
-            "    module: 3 mm\n    pressure_angle",
-            "    module:3mm\n    pressure_angle",
+            "    module: 3 mm\n    rack",
+            "    module:3mm\n    rack",
             "8:5: a space is missing behind the `:` of `module:3mm`\n  help: write `module: 3mm`",
         ),
         ("tables: [1, 2]", "tables: [1, 2]]", "3:9: `{` is opened here and closed by `]`"),

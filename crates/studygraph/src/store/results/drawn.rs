@@ -1,0 +1,70 @@
+//! Page and figures: drawn from what is published, put beside it, and removed when they are no more.
+//!
+//! Must not know: how anything is drawn.
+
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+use std::fs;
+
+use super::publish::{Draw, Drawn, Listed, is_absent, worse};
+use super::{FIGURES, Folder, MEASURED, PAGE, here, is_drawn};
+use crate::store::bundle::is_bundle;
+use crate::store::error::StoreError;
+use crate::store::file;
+use crate::store::manifest::{Manifest, TableRecord, own_file};
+
+impl Folder {
+    pub(super) fn drawings(&self, manifest: &Manifest, draw: Draw<'_>) -> Result<Vec<Drawn>, String> {
+        let fault = RefCell::new(None);
+        let records: HashMap<&str, &TableRecord> =
+            manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| (&*record.name, record)).collect();
+        let table = |name: &str| {
+            let found = match records.get(name) {
+                Some(record) => self.table(record),
+                None if is_bundle(name) => self.shared(&own_file(name)).map(|table| (*table).clone()),
+                None => return None,
+            };
+            found.map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()
+        };
+        let drawn = draw(manifest, &table);
+        match (drawn, fault.take()) {
+            // A clone has only the tables that git keeps, and a page may be drawn without.
+            (Ok(drawn), Some(fault)) if is_absent(&fault) => Ok(drawn),
+            // What is wrong with a file says more than that its table is missing. A page that leaves it out would stay.
+            (_, Some(fault)) => Err(fault.to_string()),
+            (drawn, None) => drawn,
+        }
+    }
+
+    pub(super) fn put_drawn(&self, drawn: Vec<Drawn>) -> Result<Listed, String> {
+        let mut listed = Listed::default();
+        for Drawn { file, bytes, varies } in drawn {
+            let folder = self.path().join(&file);
+            let folder = folder.parent().unwrap_or(self.path());
+            fs::create_dir_all(folder).map_err(|error| StoreError::io("make", folder)(error).to_string())?;
+            self.put(&mut listed, &file, &bytes, varies).map_err(|error| error.to_string())?;
+        }
+        for folder in [FIGURES, MEASURED] {
+            file::sweep(&self.path().join(folder));
+        }
+        Ok(listed)
+    }
+
+    /// Figures that are no more, which would be taken for current ones. Where no page was listed, by an earlier version or
+    /// because a run was killed, nobody knows which were ours: what is called a figure is taken for one.
+    pub(super) fn former(&self, earlier: &[String], drawn: &Listed) -> Vec<String> {
+        let new: HashSet<&String> = drawn.files.iter().map(|record| &record.file).collect();
+        let is_new = |file: &String| new.contains(file);
+        if earlier.iter().any(|file| file == PAGE) {
+            return earlier.iter().filter(|file| is_drawn(file) && here(file) && !is_new(file)).cloned().collect();
+        }
+        let figures = |folder: &str| -> Vec<String> {
+            let entries = fs::read_dir(self.path().join(folder)).into_iter().flatten().flatten();
+            let names = entries.map(|entry| entry.file_name().to_string_lossy().into_owned());
+            let figures = names
+                .filter(|name| name.split_once('.').is_some_and(|(_, ending)| ["svg", "vl.json"].contains(&ending)));
+            figures.map(|name| format!("{folder}/{name}")).collect()
+        };
+        [FIGURES, MEASURED].into_iter().flat_map(figures).filter(|file| !is_new(file)).collect()
+    }
+}
