@@ -44,7 +44,9 @@ fn commands(text: &str) -> Vec<String> {
         .lines()
         .filter(|line| !line.trim_start().starts_with("```"))
         .flat_map(|line| line.split('`').skip(1).step_by(2).map(str::to_owned).collect::<Vec<_>>());
-    let all = fenced.chain(inline).map(|line| line.split("  #").flat_map(|line| line.split(" | ")).next().unwrap_or("").trim().to_owned());
+    let all = fenced
+        .chain(inline)
+        .map(|line| line.split("  #").flat_map(|line| line.split(" | ")).next().unwrap_or("").trim().to_owned());
     all.filter(|line| line.strip_prefix("gearstudy ").is_some_and(|rest| !rest.starts_with(['…', '.']))).collect()
 }
 
