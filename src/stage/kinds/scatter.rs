@@ -13,9 +13,10 @@ use std::sync::Arc;
 
 use self::correlation::{Copula, Correlation};
 use self::layout::{Layout, Method};
-use self::results::{SHARES, Tally};
+use self::results::{Results, SHARES};
 use crate::stage::limit::Limit;
-use crate::stage::rows::computed::{self, REASON, TABLE};
+use crate::stage::rows::computed::REASON;
+use crate::stage::rows::gathered::{self, Gathered, RowParts, Tally};
 use crate::stage::rows::{Asked, Column as Field, Question};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Others, Parts, Port, RowCount, Stage};
 use declare::Declared;
@@ -28,7 +29,7 @@ use declare::units::RATIO;
 use gearmesh::numeric::distribution::Distribution;
 use gearmesh::numeric::replicates::REPLICATES;
 use gearmesh::optimize::sobol::MOST_VARIABLES;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::Table;
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -193,61 +194,41 @@ impl Scatter {
         for column in &self.asked.columns {
             shared.text(&column.axis.name);
         }
-        let mut each: Vec<Digest> = (0..self.layout.parts()).map(|part| self.layout.digest(part)).collect();
         let mut all = Writer::new("gearstudy 1 scatter of all");
         all.count(self.layout.samples).count(self.layout.pairs).floats(&self.shares).count(self.limits.len());
         for limit in &self.limits {
             all.text(&limit.text);
         }
-        all.count(each.len());
-        for digest in &each {
-            all.digest(digest);
-        }
-        each.push(all.finish());
-        Parts { fields: OF_ROWS, shared: shared.finish(), each, last_is_of_all: true }
+        gathered::parts(&self.layout, OF_ROWS, &shared, all)
+    }
+}
+
+impl Gathered for Scatter {
+    const SECONDS_OF_ROW: f64 = 1e-6;
+    const PASSES: usize = 1;
+
+    fn asked(&self) -> &Asked {
+        &self.asked
     }
 
-    /// What so many rows take, and what is made of all of them.
-    fn estimated(&self, demand: &Demand, rows: RowCount, of_all: bool) -> Estimate {
-        let mut estimate = self.asked.estimate(demand, rows);
-        for (schema, rows) in results::schemas(self).into_iter().zip(results::foreseen(self)) {
-            estimate = estimate.rows(demand, schema, if of_all { rows } else { RowCount::NONE });
-        }
-        if of_all { estimate.holding(results::held(self)) } else { estimate }
+    fn layout(&self) -> &impl RowParts {
+        &self.layout
     }
 
-    /// The rows of a part.
-    fn rows(&self, part: usize, (context, inputs): (&Context, &Inputs), others: &dyn Others) -> Result<Table, Failure> {
-        computed::table(&self.asked, &self.layout.rows(part, &context.seed), (context, inputs), others)
+    fn schemas(&self) -> Vec<Schema> {
+        results::schemas(self)
     }
 
-    /// The tables of a part without those made of all.
-    fn of_part(&self, part: usize, given: (&Context, &Inputs), others: &dyn Others) -> Result<Vec<Table>, Failure> {
-        let mut tables = vec![self.rows(part, given, others)?];
-        for schema in results::schemas(self) {
-            tables.push(Table::from_rows(schema, Vec::new()).map_err(|error| Failure::new(error.to_string()))?);
-        }
-        Ok(tables)
+    fn foreseen(&self) -> Vec<RowCount> {
+        results::foreseen(self)
     }
 
-    /// The tables made of all parts, of which `of_part` gives the rows.
-    fn of_all(
-        &self,
-        context: &Context,
-        of_part: &mut dyn FnMut(usize) -> Result<Arc<Table>, Failure>,
-    ) -> Result<Vec<Table>, Failure> {
-        let failed = |error: TableError| Failure::new(error.to_string());
-        let mut tally = Tally::new(self);
-        for part in 0..self.layout.parts() {
-            context.check_stop()?;
-            tally.add(&*of_part(part)?);
-        }
-        let mut tables = vec![Table::from_rows(self.asked.schema.clone(), Vec::new()).map_err(failed)?];
-        if let Some(sentence) = tally.warning() {
-            (context.warn)(sentence.into());
-        }
-        tables.extend(tally.tables().map_err(failed)?);
-        Ok(tables)
+    fn held(&self) -> u64 {
+        results::held(self)
+    }
+
+    fn tally(&self) -> Box<dyn Tally + '_> {
+        Box::new(Results::new(self))
     }
 }
 
@@ -257,9 +238,7 @@ impl Stage for Scatter {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let mut schemas = vec![self.asked.schema.clone()];
-        schemas.extend(results::schemas(self));
-        schemas
+        gathered::outputs(self)
     }
 
     fn uses_seed(&self) -> bool {
@@ -267,15 +246,11 @@ impl Stage for Scatter {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        self.estimated(demand, RowCount::exact(self.layout.count()), true)
+        gathered::estimate(self, demand)
     }
 
     fn estimate_part(&self, part: usize, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        if part == self.layout.parts() {
-            let estimate = self.estimated(demand, RowCount::NONE, true);
-            return estimate.taking(self.layout.count() as f64 * results::SECONDS_OF_ROW);
-        }
-        self.estimated(demand, RowCount::exact(self.layout.count_of(part)), false)
+        gathered::estimate_part(self, part, demand)
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -288,17 +263,7 @@ impl Stage for Scatter {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let alone = studygraph::stage::parts::Alone;
-        let mut parts = Vec::new();
-        for part in 0..self.layout.parts() {
-            parts.push(Arc::new(self.rows(part, (context, inputs), &alone)?));
-        }
-        let mut tables = self.of_all(context, &mut |part| Ok(Arc::clone(&parts[part])))?;
-        let rows = Table::concatenated(parts.into_iter().map(Arc::unwrap_or_clone).collect());
-        if let Some(rows) = rows.map_err(|error| Failure::new(error.to_string()))? {
-            tables[0] = rows;
-        }
-        Ok(tables)
+        gathered::run(self, context, inputs)
     }
 
     fn parts(&self) -> Option<Parts> {
@@ -312,9 +277,6 @@ impl Stage for Scatter {
         inputs: &Inputs,
         others: &dyn Others,
     ) -> Result<Vec<Table>, Failure> {
-        if part < self.layout.parts() {
-            return self.of_part(part, (context, inputs), others);
-        }
-        self.of_all(context, &mut |part| others.of_part(part, TABLE))
+        gathered::run_part(self, part, (context, inputs), others)
     }
 }

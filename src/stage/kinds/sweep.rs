@@ -12,11 +12,12 @@ mod tables;
 
 use std::sync::Arc;
 
-use self::effects::Tally;
+use self::effects::Effects;
 use self::layout::Layout;
 use self::method::Method;
 use crate::stage::formula::Formula;
-use crate::stage::rows::computed::{self, REASON, TABLE};
+use crate::stage::rows::computed::REASON;
+use crate::stage::rows::gathered::{self, Gathered, RowParts, Tally};
 use crate::stage::rows::{Asked, Question};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Others, Parts, Port, RowCount, Stage};
 use declare::Declared;
@@ -25,7 +26,7 @@ use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, suggest};
 use declare::record::Record;
 use declare::record::varied::Varied;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::Table;
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -148,59 +149,38 @@ impl Sweep {
         for column in &self.layout.columns {
             shared.text(&column.axis.name);
         }
-        let mut each: Vec<Digest> = (0..self.layout.parts()).map(|part| self.layout.digest(part)).collect();
         let mut all = Writer::new("gearstudy 1 sweep of all");
-        all.count(self.objective).count(self.best).count(each.len());
-        for digest in &each {
-            all.digest(digest);
-        }
-        each.push(all.finish());
-        Parts { fields: OF_ROWS, shared: shared.finish(), each, last_is_of_all: true }
+        all.count(self.objective).count(self.best);
+        gathered::parts(&self.layout, OF_ROWS, &shared, all)
+    }
+}
+
+impl Gathered for Sweep {
+    const SECONDS_OF_ROW: f64 = 1e-6;
+    const PASSES: usize = 2;
+
+    fn asked(&self) -> &Asked {
+        &self.asked
     }
 
-    /// What so many rows take, and what is made of all of them.
-    fn estimated(&self, demand: &Demand, rows: RowCount, of_all: bool) -> Estimate {
-        let mut estimate = self.asked.estimate(demand, rows);
-        for (schema, rows) in effects::schemas(self).into_iter().zip(effects::foreseen(self)) {
-            estimate = estimate.rows(demand, schema, if of_all { rows } else { RowCount::NONE });
-        }
-        if of_all { estimate.holding(effects::held(self)) } else { estimate }
+    fn layout(&self) -> &impl RowParts {
+        &self.layout
     }
 
-    /// The rows of a part.
-    fn rows(&self, part: usize, (context, inputs): (&Context, &Inputs), others: &dyn Others) -> Result<Table, Failure> {
-        let rows = self.layout.rows(part, &context.seed)?;
-        computed::table(&self.asked, &rows, (context, inputs), others)
+    fn schemas(&self) -> Vec<Schema> {
+        effects::schemas(self)
     }
 
-    /// The tables of a part without those made of all.
-    fn of_part(&self, part: usize, given: (&Context, &Inputs), others: &dyn Others) -> Result<Vec<Table>, Failure> {
-        let mut tables = vec![self.rows(part, given, others)?];
-        tables.extend(effects::empty(self).map_err(|error| Failure::new(error.to_string()))?);
-        Ok(tables)
+    fn foreseen(&self) -> Vec<RowCount> {
+        effects::foreseen(self)
     }
 
-    /// The tables made of all parts, of which `of_part` gives the rows.
-    fn of_all(
-        &self,
-        context: &Context,
-        of_part: &mut dyn FnMut(usize) -> Result<Arc<Table>, Failure>,
-    ) -> Result<Vec<Table>, Failure> {
-        let failed = |error: TableError| Failure::new(error.to_string());
-        let mut tally = Tally::new(self);
-        for pass in 0..effects::PASSES {
-            for part in 0..self.layout.parts() {
-                context.check_stop()?;
-                let rows = of_part(part)?;
-                tally.add(pass, &rows);
-            }
-        }
-        let mut tables = vec![Table::from_rows(self.asked.schema.clone(), Vec::new()).map_err(failed)?];
-        if let Some(sentence) = tally.warning() {
-            (context.warn)(sentence.into());
-        }
-        tables.extend(tally.tables().map_err(failed)?);
-        Ok(tables)
+    fn held(&self) -> u64 {
+        effects::held(self)
+    }
+
+    fn tally(&self) -> Box<dyn Tally + '_> {
+        Box::new(Effects::new(self))
     }
 }
 
@@ -210,9 +190,7 @@ impl Stage for Sweep {
     }
 
     fn outputs(&self) -> Vec<Schema> {
-        let mut schemas = vec![self.asked.schema.clone()];
-        schemas.extend(effects::schemas(self));
-        schemas
+        gathered::outputs(self)
     }
 
     fn uses_seed(&self) -> bool {
@@ -220,19 +198,11 @@ impl Stage for Sweep {
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let count = self.layout.count();
-        let rows = if self.layout.is_filtered() { RowCount::at_most(count) } else { RowCount::exact(count) };
-        self.estimated(demand, rows, true)
+        gathered::estimate(self, demand)
     }
 
     fn estimate_part(&self, part: usize, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        if part == self.layout.parts() {
-            let estimate = self.estimated(demand, RowCount::NONE, true);
-            return estimate.taking(self.layout.count() as f64 * effects::SECONDS_OF_ROW);
-        }
-        let count = self.layout.count_of(part);
-        let rows = if self.layout.is_filtered() { RowCount::at_most(count) } else { RowCount::exact(count) };
-        self.estimated(demand, rows, false)
+        gathered::estimate_part(self, part, demand)
     }
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
@@ -240,17 +210,7 @@ impl Stage for Sweep {
     }
 
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let alone = studygraph::stage::parts::Alone;
-        let mut parts = Vec::new();
-        for part in 0..self.layout.parts() {
-            parts.push(Arc::new(self.rows(part, (context, inputs), &alone)?));
-        }
-        let mut tables = self.of_all(context, &mut |part| Ok(Arc::clone(&parts[part])))?;
-        let rows = Table::concatenated(parts.into_iter().map(Arc::unwrap_or_clone).collect());
-        if let Some(rows) = rows.map_err(|error| Failure::new(error.to_string()))? {
-            tables[0] = rows;
-        }
-        Ok(tables)
+        gathered::run(self, context, inputs)
     }
 
     fn parts(&self) -> Option<Parts> {
@@ -264,9 +224,6 @@ impl Stage for Sweep {
         inputs: &Inputs,
         others: &dyn Others,
     ) -> Result<Vec<Table>, Failure> {
-        if part < self.layout.parts() {
-            return self.of_part(part, (context, inputs), others);
-        }
-        self.of_all(context, &mut |part| others.of_part(part, TABLE))
+        gathered::run_part(self, part, (context, inputs), others)
     }
 }

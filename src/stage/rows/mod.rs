@@ -6,6 +6,7 @@
 pub mod chain;
 pub mod computed;
 pub(crate) mod counting;
+pub mod gathered;
 pub mod invalid;
 mod numbers;
 pub mod output;

@@ -52,7 +52,7 @@ fn wrong_scatters_say_where_and_what_is_near() {
         (of(&[AMOUNT], "samples: 2000000000"), "between 16 and"),
         (of(&[AMOUNT], "indices: 3"), "with fewer than 16"),
         (of(&[AMOUNT], "limits: [maen <= 3 um]"), "did you mean `mean`?"),
-        (of(&[AMOUNT], "limits: [mean <= 3 MPa]"), "not of the kind of `mean`"),
+        (of(&[AMOUNT], "limits: [mean <= 3 MPa]"), "`3 MPa` is no limit of `mean`"),
         (correlated("{ between: [amount, tilt], is: 0.5 }"), "accepted"),
         (correlated("{ between: [amount, tlit], is: 0.5 }"), "did you mean `tilt`?"),
         (correlated("{ between: [amount], is: 0.5 }"), "names two columns"),

@@ -90,9 +90,11 @@ mod tests {
         for amount in [3e-6, 15e-6, -40e-6] {
             let relief = ("tip_relief", "both", &[("amount", Quantity(6e-6)), ("fraction", Quantity(1.0))][..]);
             let slope = ("helix_slope", "gear", &[("amount", Quantity(amount))][..]);
-            let (by_slope, by_tilt) = (tilted(&[relief, slope], 0.0), tilted(&[relief], amount / width));
-            for cycle in cycles() {
-                let [one, two] = [&by_slope, &by_tilt].map(|design| summary(&cycle, design));
+            let crown = ("lead_crowning", "pinion", &[("amount", Quantity(4e-6))][..]);
+            let flat = (tilted(&[relief, slope], 0.0), tilted(&[relief], amount / width));
+            let crowned = (tilted(&[relief, crown, slope], 0.0), tilted(&[relief, crown], amount / width));
+            for (cycle, (by_slope, by_tilt)) in cycles().iter().flat_map(|cycle| [(cycle, &flat), (cycle, &crowned)]) {
+                let [one, two] = [by_slope, by_tilt].map(|design| summary(cycle, design));
                 let close =
                     |one: f64, two: f64| assert!((one - two).abs() < 1e-9 * two.abs() + 1e-17, "{one:e} {two:e}");
                 close(one.peak_to_peak, two.peak_to_peak);
@@ -119,6 +121,7 @@ mod tests {
             let mean = |design: Design| summary(&cycle, &design).mean;
             let same = |one: f64, two: f64| (one / two - 1.0).abs() < 1e-9;
             assert!(same(mean(even(tilt)), mean(even(-tilt))));
+            assert!(even(0.0).lead_is_even() && !even(tilt).lead_is_even());
             let [towards, away] = [mean(at_first(tilt)), mean(at_first(-tilt))];
             assert!((towards / away - 1.0).abs() > 1e-3, "{towards:e} {away:e}");
             // The mirrored face with the mirrored tilt.

@@ -4,11 +4,12 @@
 //! counted in its limit. Must not know: how a design is found, how it is searched.
 
 use crate::stage::cases::Cases;
+use crate::stage::limit::Comparison;
 use crate::stage::measures::{Measure, Measures};
 use declare::declared::Placed;
 use declare::error::Diagnostic;
 use declare::number::{significant, with_unit};
-use declare::units::{in_unit, parse_quantity};
+use declare::units::in_unit;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 use gearmesh::optimize::constraints::Evaluation;
 
@@ -131,27 +132,18 @@ impl Limit {
     }
 
     fn parse(text: &str, measures: &mut Vec<Measure>) -> Result<Self, Diagnostic> {
-        let sides = ["<=", ">="].iter().find_map(|sign| text.split_once(sign).map(|sides| (*sign, sides)));
-        let Some((sign, (name, limit))) = sides else {
+        let Some(comparison) = Comparison::of(text).filter(|comparison| comparison.may_be_met) else {
             return Err(Diagnostic::new(format!("`{text}` is not a constraint"))
                 .help("write `column <= limit` or `column >= limit`, for example `largest_pressure <= 1400 MPa`"));
         };
-        let measure = Measure::read(name)?;
-        let limit = limit.trim();
-        let quantity = parse_quantity(limit).map_err(|error| Diagnostic::new(format!("`{limit}`: {error}")))?;
-        let unit = if measure.unit.is_empty() { "1" } else { measure.unit };
-        let one = parse_quantity(&format!("1 {unit}")).map_err(|error| Diagnostic::new(error.to_string()))?;
-        if quantity.dimension != one.dimension {
-            let example = if measure.unit.is_empty() { "a plain number".to_owned() } else { format!("in {unit}") };
-            return Err(Diagnostic::new(format!("`{limit}` is no limit of `{}`", name.trim()))
-                .help(format!("its limit is given {example}")));
-        }
+        let measure = Measure::read(comparison.name)?;
+        let [value, one] = comparison.bound(measure.unit)?;
         let index = measures.iter().position(|known| *known == measure).unwrap_or_else(|| {
             measures.push(measure);
             measures.len() - 1
         });
-        let scale = if quantity.value == 0.0 { one.value } else { quantity.value.abs() };
-        Ok(Self { measure: index, is_most: sign == "<=", value: quantity.value, scale, text: text.to_owned() })
+        let scale = if value == 0.0 { one } else { value.abs() };
+        Ok(Self { measure: index, is_most: comparison.is_upper, value, scale, text: text.to_owned() })
     }
 
     /// What is left, in shares of the limit.

@@ -7,11 +7,14 @@
 use std::ops::Range;
 
 use super::correlation::Copula;
+use crate::stage::RowCount;
+use crate::stage::rows::gathered::RowParts;
 use crate::stage::rows::values::{Level, RowSet, level};
 use crate::stage::rows::{Column, rows_of_part};
 use declare::Words;
 use declare::declared::Words as _;
 use declare::digest::{Digest, Writer};
+use declare::error::Failure;
 use declare::record::varied::Values;
 use declare::seed::Seed;
 use gearmesh::numeric::distribution::Distribution;
@@ -115,14 +118,6 @@ impl Layout {
         self.count_between(&(0..self.samples))
     }
 
-    pub fn parts(&self) -> usize {
-        self.parts.len()
-    }
-
-    pub fn count_of(&self, part: usize) -> usize {
-        self.count_between(&self.parts[part])
-    }
-
     fn count_between(&self, samples: &Range<usize>) -> usize {
         let [with, without] = self.of_sample();
         let first = samples.end.min(self.pairs).saturating_sub(samples.start);
@@ -137,56 +132,6 @@ impl Layout {
             (from..to).step_by(each).map(move |start| start..to.min(start + each))
         };
         stretch(0, self.pairs, with).chain(stretch(self.pairs, self.samples, without)).collect()
-    }
-
-    /// What is in a part: its rows, whatever others there are.
-    pub fn digest(&self, part: usize) -> Digest {
-        let mut writer = Writer::new("gearstudy 1 scatter part");
-        let range = &self.parts[part];
-        writer.text(self.method.word()).count(range.start).count(range.end);
-        writer.flag(range.start < self.pairs);
-        writer.count(if self.method == Method::LatinHypercube { self.samples } else { 0 });
-        for distribution in &self.distributions {
-            match *distribution {
-                Distribution::Uniform { low, high } => writer.text("uniform").float(low).float(high),
-                Distribution::Triangular { low, mode, high } => {
-                    writer.text("triangular").float(low).float(mode).float(high)
-                }
-                Distribution::Normal { mean, deviation, low, high } => {
-                    writer.text("normal").float(mean).float(deviation).float(low).float(high)
-                }
-            };
-        }
-        for levels in &self.crossed {
-            writer.floats(&levels.iter().map(|level| level.shown).collect::<Vec<_>>());
-        }
-        if let Some(copula) = &self.copula {
-            writer.text("correlated").floats(&copula.factors());
-        }
-        writer.finish()
-    }
-
-    /// The rows of a part.
-    pub fn rows(&self, part: usize, seed: &Seed) -> RowSet {
-        let fields = self.distributions.len();
-        let draw = Draw::new(self.method, self.samples, 2 * fields, seed);
-        let mut rows = RowSet::new(2, self.sources.len());
-        let mut points = vec![0.0; 2 * fields];
-        for number in self.parts[part].clone() {
-            draw.point(number, &mut points);
-            let (first, second) = points.split_at_mut(fields);
-            if let Some(copula) = &self.copula {
-                copula.correlate(first);
-            }
-            let [own, other] = [&*first, &*second].map(|shares| self.values(shares));
-            let replaced = if number < self.pairs { fields + 2 } else { 1 };
-            for replaced in 0..replaced {
-                for case in 0..self.cases() {
-                    rows.push(&[number + 1, replaced], self.levels(&own, &other, replaced, case));
-                }
-            }
-        }
-        rows
     }
 
     /// Of the fields that are distributed.
@@ -230,6 +175,65 @@ enum Draw {
     Sobol(Scrambled),
     Strata(Vec<LatinHypercube>),
     Random(Random),
+}
+
+impl RowParts for Layout {
+    fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// What is in a part: its rows, whatever others there are.
+    fn digest(&self, part: usize) -> Digest {
+        let mut writer = Writer::new("gearstudy 1 scatter part");
+        let range = &self.parts[part];
+        writer.text(self.method.word()).count(range.start).count(range.end);
+        writer.flag(range.start < self.pairs);
+        writer.count(if self.method == Method::LatinHypercube { self.samples } else { 0 });
+        for distribution in &self.distributions {
+            match *distribution {
+                Distribution::Uniform { low, high } => writer.text("uniform").float(low).float(high),
+                Distribution::Triangular { low, mode, high } => {
+                    writer.text("triangular").float(low).float(mode).float(high)
+                }
+                Distribution::Normal { mean, deviation, low, high } => {
+                    writer.text("normal").float(mean).float(deviation).float(low).float(high)
+                }
+            };
+        }
+        for levels in &self.crossed {
+            writer.floats(&levels.iter().map(|level| level.shown).collect::<Vec<_>>());
+        }
+        if let Some(copula) = &self.copula {
+            writer.text("correlated").floats(&copula.factors());
+        }
+        writer.finish()
+    }
+
+    fn rows(&self, part: usize, seed: &Seed) -> Result<RowSet, Failure> {
+        let fields = self.distributions.len();
+        let draw = Draw::new(self.method, self.samples, 2 * fields, seed);
+        let mut rows = RowSet::new(2, self.sources.len());
+        let mut points = vec![0.0; 2 * fields];
+        for number in self.parts[part].clone() {
+            draw.point(number, &mut points);
+            let (first, second) = points.split_at_mut(fields);
+            if let Some(copula) = &self.copula {
+                copula.correlate(first);
+            }
+            let [own, other] = [&*first, &*second].map(|shares| self.values(shares));
+            let replaced = if number < self.pairs { fields + 2 } else { 1 };
+            for replaced in 0..replaced {
+                for case in 0..self.cases() {
+                    rows.push(&[number + 1, replaced], self.levels(&own, &other, replaced, case));
+                }
+            }
+        }
+        Ok(rows)
+    }
+
+    fn row_count(&self, part: Option<usize>) -> RowCount {
+        RowCount::exact(part.map_or_else(|| self.count(), |part| self.count_between(&self.parts[part])))
+    }
 }
 
 impl Draw {

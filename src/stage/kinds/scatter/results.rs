@@ -10,6 +10,7 @@ use crate::stage::RowCount;
 use crate::stage::rows::Column;
 use crate::stage::rows::computed::REASON;
 use crate::stage::rows::counting::bin;
+use crate::stage::rows::gathered::Tally;
 use crate::stage::rows::invalid::{self, Invalid, MOST_REASONS};
 use declare::units::showing;
 use gearmesh::numeric::indices::{Pair, indices};
@@ -26,15 +27,12 @@ fn steps(samples: usize) -> usize {
 
 /// Shares of which the quantiles are found, unless others are asked.
 pub const SHARES: [f64; 7] = [0.01, 0.05, 0.25, 0.5, 0.75, 0.95, 0.99];
-/// Seconds that a row takes.
-pub const SECONDS_OF_ROW: f64 = 1e-6;
-
 /// Rows of the table `yield` that no study states.
 const VALID: &str = "valid";
 const ALL: &str = "all limits";
 
 /// What of the rows is kept.
-pub struct Tally<'s> {
+pub struct Results<'s> {
     scatter: &'s Scatter,
     /// By case and output the number of each sample; NaN where there is none.
     values: Vec<Vec<f64>>,
@@ -45,7 +43,7 @@ pub struct Tally<'s> {
     last_invalid: Option<usize>,
 }
 
-impl<'s> Tally<'s> {
+impl<'s> Results<'s> {
     pub fn new(scatter: &'s Scatter) -> Self {
         let layout = &scatter.layout;
         let groups = layout.cases() * scatter.asked.outputs.len();
@@ -60,52 +58,7 @@ impl<'s> Tally<'s> {
         }
     }
 
-    /// Takes the rows of a part; parts come in their order.
-    pub fn add(&mut self, table: &Table) {
-        let (layout, asked) = (&self.scatter.layout, &self.scatter.asked);
-        let (samples, replaced) = (table.integers(super::NUMBER), table.integers(super::REPLACED));
-        let outputs: Vec<&[f64]> = asked.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
-        let reasons = table.texts(REASON);
-        let fields: Vec<&Data> = asked.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
-        let variations = layout.distributions.len() + 1;
-        for (row, reason) in reasons.iter().enumerate() {
-            let (Ok(sample), Ok(replaced)) = (usize::try_from(samples[row] - 1), usize::try_from(replaced[row])) else {
-                continue;
-            };
-            if !reason.is_empty() && replaced == 0 {
-                self.invalid.add(reason, || row_described(&asked.columns, &fields, row));
-                if self.last_invalid != Some(sample) {
-                    self.invalid_samples += 1;
-                    self.last_invalid = Some(sample);
-                }
-            }
-            // Every part has whole samples, each with all its cases, one behind the other.
-            let case = row % layout.cases();
-            for (at, values) in outputs.iter().enumerate() {
-                let group = case * outputs.len() + at;
-                if replaced == 0 {
-                    self.values[group][sample] = values[row];
-                } else {
-                    self.replaced[group][sample * variations + replaced - 1] = values[row];
-                }
-            }
-        }
-    }
-
-    /// What is told of samples without numbers.
-    pub fn warning(&self) -> Option<String> {
-        let (reason, row) = self.invalid.most_frequent()?;
-        let all = self.scatter.layout.samples;
-        let share = 100.0 * self.invalid_samples as f64 / all as f64;
-        let count = self.invalid_samples;
-        Some(format!("{count} of {all} samples ({share:.3} %) have no numbers, most often, with {row}: {reason}"))
-    }
-
-    /// The tables, without that of the rows.
-    ///
-    /// # Errors
-    /// As [`Table::from_columns`].
-    pub fn tables(self) -> Result<Vec<Table>, TableError> {
+    fn made(self) -> Result<Vec<Table>, TableError> {
         let (layout, asked) = (&self.scatter.layout, &self.scatter.asked);
         let cases: Vec<Vec<f64>> = (0..layout.cases()).map(|case| layout.case(case)).collect();
         let names: Vec<&str> = asked.outputs.iter().map(|output| output.column.name.as_str()).collect();
@@ -205,6 +158,52 @@ fn field_row<'a>((field, distribution): (&'a Column, &gearmesh::numeric::distrib
     let (low, high) = distribution.range();
     let numbers = [show(mean), show(deviation), show(low), show(high)];
     FieldRow { field, described: described(field, distribution), numbers }
+}
+
+impl Tally for Results<'_> {
+    fn add(&mut self, _pass: usize, table: &Table) {
+        let (layout, asked) = (&self.scatter.layout, &self.scatter.asked);
+        let (samples, replaced) = (table.integers(super::NUMBER), table.integers(super::REPLACED));
+        let outputs: Vec<&[f64]> = asked.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
+        let reasons = table.texts(REASON);
+        let fields: Vec<&Data> = asked.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
+        let variations = layout.distributions.len() + 1;
+        for (row, reason) in reasons.iter().enumerate() {
+            let (Ok(sample), Ok(replaced)) = (usize::try_from(samples[row] - 1), usize::try_from(replaced[row])) else {
+                continue;
+            };
+            if !reason.is_empty() && replaced == 0 {
+                self.invalid.add(reason, || row_described(&asked.columns, &fields, row));
+                if self.last_invalid != Some(sample) {
+                    self.invalid_samples += 1;
+                    self.last_invalid = Some(sample);
+                }
+            }
+            // Every part has whole samples, each with all its cases, one behind the other.
+            let case = row % layout.cases();
+            for (at, values) in outputs.iter().enumerate() {
+                let group = case * outputs.len() + at;
+                if replaced == 0 {
+                    self.values[group][sample] = values[row];
+                } else {
+                    self.replaced[group][sample * variations + replaced - 1] = values[row];
+                }
+            }
+        }
+    }
+
+    /// What is told of samples without numbers.
+    fn warning(&self) -> Option<String> {
+        let (reason, row) = self.invalid.most_frequent()?;
+        let all = self.scatter.layout.samples;
+        let share = 100.0 * self.invalid_samples as f64 / all as f64;
+        let count = self.invalid_samples;
+        Some(format!("{count} of {all} samples ({share:.3} %) have no numbers, most often, with {row}: {reason}"))
+    }
+
+    fn tables(self: Box<Self>) -> Result<Vec<Table>, TableError> {
+        self.made()
+    }
 }
 
 fn row_described(columns: &[Column], fields: &[&Data], row: usize) -> String {

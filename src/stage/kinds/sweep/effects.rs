@@ -10,28 +10,24 @@ use crate::stage::RowCount;
 use crate::stage::rows::Column;
 use crate::stage::rows::computed::REASON;
 use crate::stage::rows::counting::{BINS, Group, Moments, bin, quantile, strata};
+use crate::stage::rows::gathered::Tally;
 use crate::stage::rows::invalid::{self, Invalid, MOST_REASONS};
 use studygraph::table::data::{Data, Table, TableError};
 use studygraph::table::schema::Schema;
 
-/// How often all rows are read.
-pub const PASSES: usize = 2;
 /// Steps of the table `distribution`.
 const SHOWN_BINS: usize = 32;
 /// The most values or strata that a map has of a field.
 const MOST_OF_MAP: usize = 40;
 pub const QUANTILES: [f64; 7] = [0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0];
-/// Seconds that a row takes, twice read.
-pub const SECONDS_OF_ROW: f64 = 1e-6;
-
 /// What of the rows is kept.
-pub struct Tally<'s> {
+pub struct Effects<'s> {
     sweep: &'s Sweep,
     groups: Vec<Group>,
     /// By output.
     all: Vec<Moments>,
     /// By field, group and output.
-    effects: Vec<Vec<Vec<Moments>>>,
+    of_groups: Vec<Vec<Vec<Moments>>>,
     /// Counts in steps, by field, group and output; and by output alone.
     steps: Vec<Vec<Vec<Vec<u32>>>>,
     whole: Vec<Vec<u64>>,
@@ -42,7 +38,7 @@ pub struct Tally<'s> {
     rows: u64,
 }
 
-impl<'s> Tally<'s> {
+impl<'s> Effects<'s> {
     pub fn new(sweep: &'s Sweep) -> Self {
         let (groups, outputs) = (groups(sweep), sweep.asked.outputs.len());
         let effects = groups.iter().map(|group| vec![vec![Moments::default(); outputs]; group.len()]).collect();
@@ -54,7 +50,7 @@ impl<'s> Tally<'s> {
         Self {
             sweep,
             all: vec![Moments::default(); outputs],
-            effects,
+            of_groups: effects,
             steps,
             whole: vec![vec![0; BINS]; outputs],
             maps: maps.collect(),
@@ -65,34 +61,6 @@ impl<'s> Tally<'s> {
         }
     }
 
-    /// Takes the rows of a part; parts come in their order, all of them once in every pass.
-    pub fn add(&mut self, pass: usize, table: &Table) {
-        let sweep = self.sweep;
-        let fields: Vec<&Data> =
-            sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
-        let outputs: Vec<&[f64]> = sweep.asked.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
-        let reasons = table.texts(REASON);
-        let mut at = vec![0; fields.len()];
-        for (row, reason) in reasons.iter().enumerate() {
-            if !reason.is_empty() {
-                if pass == 0 {
-                    self.rows += 1;
-                    self.invalid.add(reason, || described(sweep, &fields, row));
-                }
-                continue;
-            }
-            for (slot, (group, data)) in at.iter_mut().zip(self.groups.iter().zip(&fields)) {
-                *slot = group.at(number(data, row));
-            }
-            if pass == 0 {
-                self.rows += 1;
-                self.add_row(&at, &fields, &outputs, row);
-            } else {
-                self.count_row(&at, &outputs, row);
-            }
-        }
-    }
-
     fn add_row(&mut self, at: &[usize], fields: &[&Data], outputs: &[&[f64]], row: usize) {
         for (index, values) in outputs.iter().enumerate() {
             let value = values[row];
@@ -100,7 +68,7 @@ impl<'s> Tally<'s> {
                 continue;
             }
             self.all[index].add(value);
-            for (effects, group) in self.effects.iter_mut().zip(at) {
+            for (effects, group) in self.of_groups.iter_mut().zip(at) {
                 effects[*group][index].add(value);
             }
         }
@@ -130,21 +98,10 @@ impl<'s> Tally<'s> {
             }
             let Moments { low, high, .. } = self.all[index];
             self.whole[index][bin(value, low, high, BINS)] += 1;
-            for ((field, group), effects) in at.iter().enumerate().zip(&self.effects) {
+            for ((field, group), effects) in at.iter().enumerate().zip(&self.of_groups) {
                 let Moments { low, high, .. } = effects[*group][index];
                 self.steps[field][*group][index][bin(value, low, high, BINS)] += 1;
             }
-        }
-    }
-
-    /// What is told where nothing, or nothing valid, came of it.
-    pub fn warning(&self) -> Option<String> {
-        match (self.rows, self.invalid.most_frequent()) {
-            (0, _) => Some("no row passes `where`".to_owned()),
-            (rows, Some((reason, row))) if self.invalid.count() == rows => {
-                Some(format!("none of the {rows} rows is valid; {row}: {reason}"))
-            }
-            _ => None,
         }
     }
 
@@ -155,7 +112,7 @@ impl<'s> Tally<'s> {
             return f64::NAN;
         }
         let between = |moments: &Moments| moments.count as f64 * (moments.mean - all.mean) * (moments.mean - all.mean);
-        let groups = self.effects[field].iter().map(|outputs| &outputs[output]).filter(|moments| moments.count > 0);
+        let groups = self.of_groups[field].iter().map(|outputs| &outputs[output]).filter(|moments| moments.count > 0);
         let (sum, count) = groups.fold((0.0, 0.0), |(sum, count), moments| (sum + between(moments), count + 1.0));
         let share = sum / all.squares;
         if !self.sweep.layout.is_drawn() || all.count as f64 <= count {
@@ -165,11 +122,7 @@ impl<'s> Tally<'s> {
         1.0 - (1.0 - share) * (all.count as f64 - 1.0) / (all.count as f64 - count)
     }
 
-    /// The tables, without that of the rows.
-    ///
-    /// # Errors
-    /// As [`Table::from_columns`].
-    pub fn tables(self) -> Result<Vec<Table>, TableError> {
+    fn made(self) -> Result<Vec<Table>, TableError> {
         let sweep = self.sweep;
         let (mut effects, mut shares, mut quantiles, mut bins) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
         for (output, asked) in sweep.asked.outputs.iter().enumerate() {
@@ -177,7 +130,7 @@ impl<'s> Tally<'s> {
             for (field, column) in sweep.layout.columns.iter().enumerate() {
                 shares.push(Share { field: &column.axis.name, output: name, explained: self.share(field, output) });
                 for group in 0..self.groups[field].len() {
-                    let moments = &self.effects[field][group][output];
+                    let moments = &self.of_groups[field][group][output];
                     if moments.count == 0 {
                         continue;
                     }
@@ -237,6 +190,50 @@ impl<'s> Tally<'s> {
     }
 }
 
+impl Tally for Effects<'_> {
+    fn add(&mut self, pass: usize, table: &Table) {
+        let sweep = self.sweep;
+        let fields: Vec<&Data> =
+            sweep.layout.columns.iter().filter_map(|column| table.column(&column.axis.name)).collect();
+        let outputs: Vec<&[f64]> = sweep.asked.outputs.iter().map(|output| table.floats(&output.column.name)).collect();
+        let reasons = table.texts(REASON);
+        let mut at = vec![0; fields.len()];
+        for (row, reason) in reasons.iter().enumerate() {
+            if !reason.is_empty() {
+                if pass == 0 {
+                    self.rows += 1;
+                    self.invalid.add(reason, || described(sweep, &fields, row));
+                }
+                continue;
+            }
+            for (slot, (group, data)) in at.iter_mut().zip(self.groups.iter().zip(&fields)) {
+                *slot = group.at(number(data, row));
+            }
+            if pass == 0 {
+                self.rows += 1;
+                self.add_row(&at, &fields, &outputs, row);
+            } else {
+                self.count_row(&at, &outputs, row);
+            }
+        }
+    }
+
+    /// What is told where nothing, or nothing valid, came of it.
+    fn warning(&self) -> Option<String> {
+        match (self.rows, self.invalid.most_frequent()) {
+            (0, _) => Some("no row passes `where`".to_owned()),
+            (rows, Some((reason, row))) if self.invalid.count() == rows => {
+                Some(format!("none of the {rows} rows is valid; {row}: {reason}"))
+            }
+            _ => None,
+        }
+    }
+
+    fn tables(self: Box<Self>) -> Result<Vec<Table>, TableError> {
+        self.made()
+    }
+}
+
 /// The schemas of these tables, in their order.
 pub fn schemas(sweep: &Sweep) -> Vec<Schema> {
     vec![
@@ -248,14 +245,6 @@ pub fn schemas(sweep: &Sweep) -> Vec<Schema> {
         tables::quantiles().schema(),
         invalid::columns().schema(),
     ]
-}
-
-/// Their tables without rows.
-///
-/// # Errors
-/// As [`Table::from_rows`].
-pub fn empty(sweep: &Sweep) -> Result<Vec<Table>, TableError> {
-    schemas(sweep).into_iter().map(|schema| Table::from_rows(schema, Vec::new())).collect()
 }
 
 /// How many rows they have, in the order of [`schemas`].

@@ -5,8 +5,10 @@
 
 use super::draw::{Draw, Span};
 use super::method::Method;
+use crate::stage::RowCount;
 use crate::stage::formula::{Formula, Names, Outcome};
 use crate::stage::quantity::Number;
+use crate::stage::rows::gathered::RowParts;
 use crate::stage::rows::values::{Level, RowSet, level};
 use crate::stage::rows::{Column, rows_of_part};
 use declare::digest::{Digest, Writer};
@@ -98,23 +100,9 @@ impl Layout {
         }
     }
 
-    pub fn parts(&self) -> usize {
-        self.parts.len()
-    }
-
     /// Rows of all parts before the filter.
     pub fn count(&self) -> usize {
         self.units() * self.of_unit()
-    }
-
-    /// Rows of a part before the filter.
-    pub fn count_of(&self, part: usize) -> usize {
-        self.parts[part].len() * self.of_unit()
-    }
-
-    /// Whether a filter may leave rows out.
-    pub fn is_filtered(&self) -> bool {
-        self.filter.is_some()
     }
 
     fn units(&self) -> usize {
@@ -155,8 +143,26 @@ impl Layout {
         }
     }
 
+    fn passes(&self, row: &[f64]) -> Result<bool, String> {
+        let Some(filter) = &self.filter else { return Ok(true) };
+        let value = |name: &str, _| {
+            let column = self.columns.iter().position(|column| column.axis.name == name)?;
+            Some(Number { si: row[column], dimension: self.columns[column].axis.dimension.unwrap_or(RATIO) })
+        };
+        match filter.evaluate(Names { value: &value, row: 0, rows: 1 })? {
+            Outcome::Truth(passes) => Ok(passes),
+            Outcome::Number(_) => Err("`where` is true or false, not a number".to_owned()),
+        }
+    }
+}
+
+impl RowParts for Layout {
+    fn parts(&self) -> usize {
+        self.parts.len()
+    }
+
     /// What is in a part: its rows, whatever others there are.
-    pub fn digest(&self, part: usize) -> Digest {
+    fn digest(&self, part: usize) -> Digest {
         let mut writer = Writer::new("gearstudy 1 sweep part");
         writer.text(self.filter.as_ref().map_or("", |filter| &filter.text));
         let range = self.parts[part].clone();
@@ -187,11 +193,8 @@ impl Layout {
         writer.finish()
     }
 
-    /// The rows of a part that pass the filter.
-    ///
-    /// # Errors
-    /// A filter that cannot be evaluated in some row.
-    pub fn rows(&self, part: usize, seed: &Seed) -> Result<RowSet, Failure> {
+    /// Those that pass the filter; an error where it cannot be evaluated.
+    fn rows(&self, part: usize, seed: &Seed) -> Result<RowSet, Failure> {
         let range = self.parts[part].clone();
         let mut rows = RowSet::new(usize::from(self.is_drawn()), self.columns.len());
         let kept = |rows: &mut RowSet| -> Result<(), Failure> {
@@ -232,16 +235,9 @@ impl Layout {
         Ok(rows)
     }
 
-    fn passes(&self, row: &[f64]) -> Result<bool, String> {
-        let Some(filter) = &self.filter else { return Ok(true) };
-        let value = |name: &str, _| {
-            let column = self.columns.iter().position(|column| column.axis.name == name)?;
-            Some(Number { si: row[column], dimension: self.columns[column].axis.dimension.unwrap_or(RATIO) })
-        };
-        match filter.evaluate(Names { value: &value, row: 0, rows: 1 })? {
-            Outcome::Truth(passes) => Ok(passes),
-            Outcome::Number(_) => Err("`where` is true or false, not a number".to_owned()),
-        }
+    fn row_count(&self, part: Option<usize>) -> RowCount {
+        let count = part.map_or_else(|| self.count(), |part| self.parts[part].len() * self.of_unit());
+        if self.filter.is_some() { RowCount::at_most(count) } else { RowCount::exact(count) }
     }
 }
 
