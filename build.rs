@@ -23,6 +23,11 @@ const ALL: [&str; 2] = ["crates", "src"];
 
 fn main() -> io::Result<()> {
     prefer_static_hdf5()?;
+    // At a fixed address, sixty thousand addresses need not be written anew at every start, which took half of it.
+    let target = |name: &str| env::var(format!("CARGO_CFG_TARGET_{name}")).unwrap_or_default();
+    if (&*target("OS"), &*target("ENV")) == ("linux", "gnu") {
+        println!("cargo:rustc-link-arg-bins=-no-pie");
+    }
     let rustc = Command::new(env::var_os("RUSTC").unwrap_or_else(|| "rustc".into())).arg("--version").output()?;
     println!("cargo:rustc-env=GEARSTUDY_RUSTC={}", String::from_utf8_lossy(&rustc.stdout).trim());
     println!("cargo:rustc-env=GEARSTUDY_PROFILE={}", env::var("PROFILE").unwrap_or_default());

@@ -49,6 +49,13 @@ fn run(folder: &Path, words: &[&str]) -> f64 {
     spent() - before
 }
 
+/// How many shards a plan has: at most as many as were asked for, since a part is never cut.
+fn shards(plan: &Path) -> usize {
+    let text = std::fs::read(plan.join("plan.json")).expect("a plan was made");
+    let plan: serde_json::Value = serde_json::from_slice(&text).expect("a plan is JSON");
+    plan["shards"].as_array().expect("it has shards").len()
+}
+
 fn bytes(folder: &Path) -> u64 {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.metadata().ok()).map(|metadata| metadata.len()).sum()
@@ -67,21 +74,26 @@ pub fn print() {
     };
     let [whole, ..] = fastest(&|| [run(fresh().path(), &["run", "pieces.yaml", "--jobs", "1"]), 0.0, 0.0]);
     println!("one run: {whole:.2} s");
-    println!("{:>8} {:>8} {:>8} {:>8} {:>12}", "shards", "all", "shards", "merge", "kB a curve");
+    println!("{:>8} {:>8} {:>8} {:>8} {:>8} {:>12}", "asked", "planned", "all", "shards", "merge", "kB a curve");
     for count in [1, 8, 32, 128] {
-        let size = std::cell::Cell::new(0);
+        let (size, made) = (std::cell::Cell::new(0), std::cell::Cell::new(0));
         let [planning, computing, merging] = fastest(&|| {
             let folder = fresh();
             let path = folder.path();
-            let planning =
-                run(path, &["shard", "plan", "pieces.yaml", "--shards", &count.to_string(), "--into", "plan"]);
+            let asked = count.to_string();
+            let planning = run(path, &["shard", "plan", "pieces.yaml", "--shards", &asked, "--into", "plan"]);
+            let planned = shards(&path.join("plan"));
             let computing =
-                (0..count).map(|shard| run(path, &["shard", "run", "plan", &shard.to_string(), "--jobs", "1"])).sum();
+                (0..planned).map(|shard| run(path, &["shard", "run", "plan", &shard.to_string(), "--jobs", "1"]));
+            let computing = computing.sum();
+            made.set(planned);
             size.set(bytes(&path.join("plan/shards")));
             [planning, computing, run(path, &["shard", "merge", "plan", "--jobs", "1"])]
         });
         let all = planning + computing + merging;
         let each = size.get() as f64 / 1e3 / (TORQUES * DESIGNS) as f64;
-        println!("{count:>8} {:>8.2} {:>8.2} {:>8.2} {each:>12.2}", all / whole, computing / whole, merging / whole);
+        let planned = made.get();
+        let [all, computing, merging] = [all, computing, merging].map(|seconds| seconds / whole);
+        println!("{count:>8} {planned:>8} {all:>8.2} {computing:>8.2} {merging:>8.2} {each:>12.2}");
     }
 }
