@@ -58,7 +58,7 @@ bench: packages  ## measure the kernels and the program
 
 bench-peers: release  ## measure the runner beside make, ninja and, where they can be had, Snakemake, doit, DVC, redun
 	scripts/setup peers
-	scripts/bench-peers
+	scripts/bench-peers $(PEERS)
 
 results: studies  ## refresh the results that are committed, and show what changed
 	@git status --short results
