@@ -188,7 +188,7 @@ pub enum Command {
         studies: Vec<PathBuf>,
         #[command(flatten)]
         changes: Changes,
-        /// Write nothing; end with code 4 where a verdict needs attention or the results are not those of the study.
+        /// Write nothing; end with code 4 where a verdict or a comparison needs attention or the results are not those of the study.
         #[arg(long)]
         check: bool,
         #[command(flatten)]

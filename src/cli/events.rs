@@ -8,7 +8,7 @@ use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
-use super::pages::{self, Count};
+use super::pages::{self, Counts};
 use super::progress::{left, tell};
 use super::{Ending, json};
 use crate::program::PROGRAM;
@@ -68,12 +68,13 @@ impl Lines {
         Self { study: study.to_owned(), running: Mutex::default() }
     }
 
-    /// A study has run; `verdicts` on its results as they are now.
-    pub(super) fn finished(&self, stages: usize, ran: usize, seconds: f64, folder: &Folder, verdicts: &[Count]) {
+    /// A study has run; `said` of its results as they are now.
+    pub(super) fn finished(&self, stages: usize, ran: usize, seconds: f64, folder: &Folder, said: &Counts) {
         line(&json!({
             "event": "finished", "study": self.study, "stages": stages, "ran": ran, "seconds": seconds,
             "results": folder.path().to_string_lossy(), "page": pages::path(folder).to_string_lossy(),
-            "verdicts": json::verdicts(verdicts), "needs_attention": pages::attention(verdicts),
+            "verdicts": json::verdicts(&said.verdicts), "comparisons": json::verdicts(&said.comparisons),
+            "needs_attention": said.attention(),
         }));
     }
 

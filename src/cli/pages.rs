@@ -6,7 +6,7 @@ use std::path::PathBuf;
 
 use super::progress::plain;
 use crate::report;
-use crate::report::text as as_text;
+use crate::report::{comparison, text as as_text};
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Drawn, FIGURES, Folder, MEASURED, PAGE, Tables};
 use studygraph::table::data::{Data, Table};
@@ -43,15 +43,77 @@ fn of_reports(manifest: &Manifest, tables: Tables<'_>, name: &str) -> Vec<Table>
     reports.filter_map(|stage| tables(&format!("{}.{name}", stage.name))).collect()
 }
 
-/// How many verdicts there are of one word.
+/// How many verdicts or comparisons there are of one word.
 pub(super) struct Count {
     pub(super) verdict: String,
     pub(super) entries: i64,
     pub(super) needs_attention: bool,
 }
 
-/// How many verdicts there are of each word, of all reports together; what needs attention first.
-pub(super) fn counts(manifest: &Manifest, tables: Tables<'_>) -> Vec<Count> {
+/// What all reports of a study say together, by words.
+#[derive(Default)]
+pub(super) struct Counts {
+    /// What needs attention first.
+    pub(super) verdicts: Vec<Count>,
+    /// Results beside others.
+    pub(super) comparisons: Vec<Count>,
+}
+
+impl Counts {
+    #[must_use]
+    pub(super) fn of(manifest: &Manifest, tables: Tables<'_>) -> Self {
+        Self { verdicts: verdict_counts(manifest, tables), comparisons: comparison_counts(manifest, tables) }
+    }
+
+    /// The number of verdicts and comparisons that somebody has to look at.
+    #[must_use]
+    pub(super) fn attention(&self) -> i64 {
+        attention(&self.verdicts) + attention(&self.comparisons)
+    }
+
+    /// A sentence for verdicts and one for comparisons, where some need attention.
+    #[must_use]
+    pub(super) fn complaints(&self) -> Vec<String> {
+        let both = [(attention(&self.verdicts), "verdict"), (attention(&self.comparisons), "comparison")];
+        let some = both.into_iter().filter(|(count, _)| *count > 0);
+        some.map(|(count, what)| match count {
+            1 => format!("1 {what} needs attention"),
+            _ => format!("{count} {what}s need attention"),
+        })
+        .collect()
+    }
+
+    /// One sentence about them; empty where there are none.
+    #[must_use]
+    pub(super) fn summary(&self) -> String {
+        let both = [sentence(&self.verdicts, "verdict"), sentence(&self.comparisons, "comparison")];
+        both.into_iter().filter(|part| !part.is_empty()).collect::<Vec<_>>().join("; ")
+    }
+}
+
+fn attention(counts: &[Count]) -> i64 {
+    counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum()
+}
+
+fn comparison_counts(manifest: &Manifest, tables: Tables<'_>) -> Vec<Count> {
+    let mut all: Vec<Count> = Vec::new();
+    for table in of_reports(manifest, tables, "comparisons") {
+        let Some(Data::Text(words)) = table.column("verdict") else { continue };
+        for word in words {
+            match all.iter_mut().find(|count| count.verdict == *word) {
+                Some(count) => count.entries += 1,
+                None => {
+                    let needs_attention = comparison::needs_attention(word);
+                    all.push(Count { verdict: word.clone(), entries: 1, needs_attention });
+                }
+            }
+        }
+    }
+    all.sort_by_key(|count| !count.needs_attention);
+    all
+}
+
+fn verdict_counts(manifest: &Manifest, tables: Tables<'_>) -> Vec<Count> {
     let mut all: Vec<Count> = Vec::new();
     for table in of_reports(manifest, tables, "verdict_counts") {
         let columns = ["verdict", "count", "needs_attention"].map(|name| table.column(name));
@@ -68,13 +130,7 @@ pub(super) fn counts(manifest: &Manifest, tables: Tables<'_>) -> Vec<Count> {
     all
 }
 
-/// The number of verdicts that somebody has to look at.
-pub(super) fn attention(counts: &[Count]) -> i64 {
-    counts.iter().filter(|count| count.needs_attention).map(|count| count.entries).sum()
-}
-
-/// One sentence about the verdicts; empty where there are none.
-pub(super) fn summary(counts: &[Count]) -> String {
+fn sentence(counts: &[Count], what: &str) -> String {
     let parts: Vec<String> = counts
         .iter()
         .filter(|count| count.entries > 0)
@@ -82,8 +138,8 @@ pub(super) fn summary(counts: &[Count]) -> String {
         .collect();
     match counts.iter().map(|count| count.entries).sum() {
         0 => String::new(),
-        1 => format!("1 verdict: {}", parts.join(", ")),
-        all => format!("{all} verdicts: {}", parts.join(", ")),
+        1 => format!("1 {what}: {}", parts.join(", ")),
+        all => format!("{all} {what}s: {}", parts.join(", ")),
     }
 }
 
@@ -95,21 +151,22 @@ pub(super) fn read<'a>(folder: &'a Folder, manifest: &'a Manifest) -> impl Fn(&s
     }
 }
 
-/// The tables of verdicts of a run.
-pub(super) fn verdict_tables(manifest: &Manifest, tables: Tables<'_>) -> Vec<Table> {
-    of_reports(manifest, tables, "verdicts")
+/// The tables of verdicts and of comparisons of a run.
+pub(super) fn verdict_tables(manifest: &Manifest, tables: Tables<'_>) -> [Vec<Table>; 2] {
+    ["verdicts", "comparisons"].map(|name| of_reports(manifest, tables, name))
 }
 
-/// The verdicts of a run as text.
+/// The verdicts and comparisons of a run as text.
 ///
 /// # Errors
-/// When the table of verdicts is not one.
+/// When one of the tables is of another shape.
 pub(super) fn verdicts(manifest: &Manifest, tables: Tables<'_>) -> Result<String, String> {
     let width = terminal_width();
-    let tables = of_reports(manifest, tables, "verdicts");
-    let shown: Result<Vec<String>, String> =
-        tables.iter().map(|table| as_text::verdicts(table, width).map_err(|error| error.to_string())).collect();
-    Ok(shown?.concat())
+    let [verdicts, comparisons] = verdict_tables(manifest, tables);
+    let verdicts = verdicts.iter().filter(|table| table.rows() > 0).map(|table| as_text::verdicts(table, width));
+    let comparisons = comparisons.iter().map(|table| as_text::comparisons(table, width));
+    let shown = verdicts.chain(comparisons).map(|text| text.map_err(|error| error.to_string()));
+    Ok(shown.collect::<Result<Vec<String>, String>>()?.concat())
 }
 
 /// Columns of the terminal; of a page of text where there is none.

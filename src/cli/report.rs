@@ -7,7 +7,7 @@ use std::cell::RefCell;
 use serde_json::{Value, json};
 
 use super::arguments::Places;
-use super::pages::{self, Count};
+use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
 use super::show::none_yet;
@@ -21,16 +21,17 @@ use studygraph::table::data::Table;
 
 /// What a report says.
 struct Said {
-    counts: Vec<Count>,
-    tables: Vec<Table>,
-    /// The verdicts and their reasons.
+    counts: Counts,
+    /// Of verdicts, and of comparisons.
+    tables: [Vec<Table>; 2],
+    /// Both with their reasons.
     text: String,
 }
 
 impl Said {
     fn of(manifest: &Manifest, tables: Tables<'_>) -> Result<Self, String> {
         Ok(Self {
-            counts: pages::counts(manifest, tables),
+            counts: Counts::of(manifest, tables),
             tables: pages::verdict_tables(manifest, tables),
             text: pages::verdicts(manifest, tables)?,
         })
@@ -50,17 +51,15 @@ pub(super) fn report(
         let folder = Folder::new(&places.results, &study.name).telling(progress::told);
         let said = if check { looked_at(study, &folder)? } else { drawn(study, &folder)? };
         let stale = if check { stale(study, &folder)? } else { None };
-        let attention = pages::attention(&said.counts);
         if as_json {
             values.push(value(study, &folder, &said, stale.as_deref(), check));
         } else if !quiet {
-            let summary = pages::summary(&said.counts);
+            let summary = said.counts.summary();
             let summary = if summary.is_empty() { "no verdicts" } else { &summary };
             out(&format!("{}{}: {summary}; {}\n", said.text, study.name, pages::path(&folder).display()));
         }
-        if check && attention > 0 {
-            let verb = if attention == 1 { "verdict needs" } else { "verdicts need" };
-            problems.push(format!("{}: {attention} {verb} attention", study.name));
+        if check {
+            problems.extend(said.counts.complaints().into_iter().map(|words| format!("{}: {words}", study.name)));
         }
         problems.extend(
             stale.map(|problem| format!("{}: {problem}; first: gearstudy run {}", study.name, study.path.display())),
@@ -106,11 +105,12 @@ fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
 }
 
 fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {
-    let verdicts: Vec<Value> = said.tables.iter().flat_map(objects).collect();
+    let [entries, comparisons] =
+        said.tables.each_ref().map(|tables| tables.iter().flat_map(objects).collect::<Vec<Value>>());
     let mut value = json!({
         "study": study.name, "file": study.path.to_string_lossy(), "page": pages::path(folder).to_string_lossy(),
-        "verdicts": shapes::verdicts(&said.counts), "needs_attention": pages::attention(&said.counts),
-        "entries": verdicts,
+        "verdicts": shapes::verdicts(&said.counts.verdicts), "needs_attention": said.counts.attention(),
+        "entries": entries, "comparisons": comparisons,
     });
     if check {
         value["stale"] = json!(stale);

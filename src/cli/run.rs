@@ -12,7 +12,7 @@ use serde_json::{Value, json};
 
 use super::arguments::{self, Places, Selection};
 use super::events::{self, Lines};
-use super::pages::{self, Count};
+use super::pages::{self, Counts};
 use super::plan::{plan_json, plan_text};
 use super::progress::{self, Watcher, duration, out, tell};
 use super::signals::stop_flag;
@@ -168,7 +168,7 @@ pub(super) fn run_one(
     let verdicts = RefCell::new(None);
     let draw = |manifest: &Manifest, tables: Tables<'_>| {
         let drawn = pages::draw(manifest, tables)?;
-        verdicts.replace(Some(pages::counts(manifest, tables)));
+        verdicts.replace(Some(Counts::of(manifest, tables)));
         Ok(drawn)
     };
     let run = || execute::run(study, &cache, &options, observer, stop, &folder, Some(&draw));
@@ -195,11 +195,11 @@ pub(super) fn run_one(
     match &lines {
         Some(lines) => {
             let manifest = &published.manifest;
-            let counts = verdicts.unwrap_or_else(|| pages::counts(manifest, &pages::read(&folder, manifest)));
+            let counts = verdicts.unwrap_or_else(|| Counts::of(manifest, &pages::read(&folder, manifest)));
             lines.finished(outcome.stages.len(), outcome.ran(), outcome.seconds, &folder, &counts);
         }
         None if how.quiet => {}
-        None => tell(&summed_up(study, &outcome, &folder, verdicts.as_deref())),
+        None => tell(&summed_up(study, &outcome, &folder, verdicts.as_ref())),
     }
     Ok(())
 }
@@ -222,13 +222,13 @@ fn succeeded(study: &Study, outcome: &Outcome) -> Result<(), Ending> {
     Ok(())
 }
 
-fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&[Count]>) -> String {
+fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option<&Counts>) -> String {
     let work = match (outcome.ran(), verdicts) {
         (0, None) => return nothing_to_do(&study.name, outcome.stages.len(), folder),
         (0, Some(_)) => "nothing to compute, results brought up to date".to_owned(),
         (ran, _) => format!("{} ran in {}", count(ran), duration(outcome.seconds)),
     };
-    let verdicts = verdicts.map(pages::summary).filter(|text| !text.is_empty()).map(|text| format!("; {text}"));
+    let verdicts = verdicts.map(Counts::summary).filter(|text| !text.is_empty()).map(|text| format!("; {text}"));
     format!("{}: {work}{}; {}\n", study.name, verdicts.unwrap_or_default(), pages::path(folder).display())
 }
 

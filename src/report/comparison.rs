@@ -9,24 +9,30 @@ use super::{ReportError, floats, integers, texts};
 use declare::number::{significant, with_unit};
 use studygraph::table::data::Table;
 
+/// Whether somebody has to look at a comparison of this verdict.
+#[must_use]
+pub fn needs_attention(verdict: &str) -> bool {
+    !["agrees", "explained", "stated"].contains(&verdict)
+}
+
 #[derive(Debug, Serialize)]
 pub struct Row {
-    label: String,
-    cell: String,
+    pub label: String,
+    pub cell: String,
     against: String,
     /// The row that is furthest apart.
     furthest: String,
     rows: i64,
-    value: String,
-    reference: String,
-    relative: String,
-    difference: String,
-    tolerance: String,
-    verdict: String,
+    pub value: String,
+    pub reference: String,
+    pub relative: String,
+    pub difference: String,
+    pub tolerance: String,
+    pub verdict: String,
     /// The class of a verdict on a published value that looks like it.
     class: &'static str,
-    sign: &'static str,
-    because: String,
+    pub sign: &'static str,
+    pub because: String,
     note: String,
 }
 

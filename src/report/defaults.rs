@@ -67,7 +67,7 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
             let mesh =
                 draw("teeth", "The pair in mesh, with its path of contact", Kind::Drawing, "mesh_drawing", "x", "y");
             let curves =
-                ["pinion", "gear", "path of contact", "line of action", "pitch circles", "base circles", "tip circles"];
+                ["pinion", "gear", "line of action", "path of contact", "pitch circles", "base circles", "tip circles"];
             let labels = curves.map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
             vec![Spec { segments: "run".to_owned(), labels, ..by(labelled(mesh, "x", "y"), "curve") }]
         }

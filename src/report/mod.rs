@@ -6,7 +6,7 @@
 mod axes;
 mod cells;
 mod choice;
-mod comparison;
+pub mod comparison;
 mod data;
 mod defaults;
 mod drawing;

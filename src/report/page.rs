@@ -50,7 +50,7 @@ struct View<'a> {
     attention: i64,
     parts: Vec<PartView>,
     comparisons: Vec<&'a comparison::Row>,
-    /// How many differ without a reason.
+    /// How many of them need attention.
     differing: usize,
     figures: Vec<FigureView>,
     /// Whether figures show what differs from run to run.
@@ -202,7 +202,7 @@ pub fn html(
         total,
         attention,
         is_plain: total == 0,
-        differing: comparisons.iter().filter(|row| row.rank() == 0).count(),
+        differing: comparisons.iter().filter(|row| comparison::needs_attention(&row.verdict)).count(),
         comparisons,
         parts,
         varies: figures.iter().any(|figure| figure.varies),

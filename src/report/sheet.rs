@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::figure::Tables;
 use declare::number::{significant, with_unit};
 use studygraph::store::manifest::Manifest;
-use studygraph::table::data::{Cell, Table};
+use studygraph::table::data::{Cell, Data, Table};
 
 /// A pair and its loads.
 #[derive(Serialize)]
@@ -53,12 +53,11 @@ const GEARS: [(&str, &str, &str); 18] = [
     ("Poisson's ratio", "ν", "poisson_ratio"),
 ];
 
-const PAIR: [(&str, &str, &str); 5] = [
+const PAIR: [(&str, &str, &str); 4] = [
     ("Centre distance", "a", "centre_distance"),
     ("Working pressure angle", "α_w", "working_pressure_angle"),
     ("Transverse contact ratio", "ε_α", "contact_ratio"),
     ("Base pitch", "p_b", "base_pitch"),
-    ("Path of contact, from T₁ to E", "", "end_of_contact"),
 ];
 
 #[must_use]
@@ -96,11 +95,27 @@ pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
                 // By name: the gear stands first in the table.
                 gears: (0..gears.rows()).rev().map(|row| cell(&gears, "gear", row)).collect(),
                 rows: lines(&gears, &GEARS),
-                pair: pair.map_or_else(Vec::new, |pair| lines(&pair, &PAIR)),
+                pair: pair.map_or_else(Vec::new, |pair| {
+                    let mut all = lines(&pair, &PAIR);
+                    all.extend(path_of_contact(&pair));
+                    all
+                }),
                 loads: loads.take().unwrap_or_default(),
             })
         })
         .collect()
+}
+
+/// From A to E.
+fn path_of_contact(pair: &Table) -> Option<Line> {
+    let ends = ["start_of_contact", "end_of_contact"].map(|name| match pair.column(name) {
+        Some(Data::Float(values)) => values.first().copied(),
+        _ => None,
+    });
+    let [Some(start), Some(end)] = ends else { return None };
+    let unit = pair.schema().column("end_of_contact").map_or("", |column| column.unit.as_str());
+    let length = with_unit(&significant(end - start, 6), unit);
+    Some(Line { what: "Length of path of contact", symbol: "g_α", of: String::new(), values: vec![length] })
 }
 
 /// A cell with its unit; empty where there is none.

@@ -7,6 +7,7 @@ use std::fmt::Write;
 use comfy_table::{CellAlignment, ColumnConstraint, ContentArrangement, LineStyle, Table as Drawn, presets};
 
 use super::ReportError;
+use super::comparison;
 use super::verdict::{self, Row};
 use studygraph::table::data::Table;
 
@@ -29,6 +30,29 @@ pub fn verdicts(table: &Table, width: u16) -> Result<String, ReportError> {
         for (index, part) in parts.into_iter().filter(|part| !part.is_empty()).enumerate() {
             let lead = if index == 0 { format!("{:>4}  ", row.number) } else { " ".repeat(6) };
             wrap(&mut text, &lead, part, usize::from(width));
+        }
+    }
+    Ok(text)
+}
+
+/// The comparisons as a list, each with its reason; what needs attention first.
+///
+/// No line is longer than `width`, 60 at least.
+///
+/// # Errors
+/// When the table is of another shape.
+pub fn comparisons(table: &Table, width: u16) -> Result<String, ReportError> {
+    let mut rows = comparison::rows(table)?;
+    rows.sort_by_key(comparison::Row::rank);
+    let (mut text, width) = (String::new(), usize::from(width.max(60)));
+    for row in &rows {
+        let what = if row.label.is_empty() { &row.cell } else { &row.label };
+        let apart = if row.relative.is_empty() { &row.difference } else { &row.relative };
+        let allowed = if row.tolerance.is_empty() { String::new() } else { format!("; {}", row.tolerance) };
+        let words = format!("{}: {what}: {} beside {}, {apart}{allowed}", row.verdict, row.value, row.reference);
+        wrap(&mut text, &format!("{:>4}  ", row.sign), &words, width);
+        if !row.because.is_empty() {
+            wrap(&mut text, "      ", &row.because, width);
         }
     }
     Ok(text)

@@ -8,6 +8,7 @@ mod contact;
 mod flanks;
 mod press;
 mod program;
+mod recorded;
 mod reference;
 mod root_stress;
 mod tooth;

@@ -125,7 +125,13 @@ fn results_stand_beside_results() {
     let expected = mean("relieved") / mean("unmodified") - 1.0;
     assert!((rows[0]["relative_difference"].as_f64().unwrap() / expected - 1.0).abs() < 1e-9);
     let page = fs::read_to_string(desk.path("results/plain/report.html")).unwrap();
-    assert!(page.contains("1 comparison differs without a reason"));
+    assert!(page.contains("1 comparison needs attention"));
+    let (said, error) = desk.run(&["report", "plain.yaml", "--check"], 4);
+    assert!(said.contains("!  differs: ") && said.contains("4 comparisons: 1 differs, 1 stated, 1 agrees"), "{said}");
+    assert_eq!(error, "gearstudy: plain: 1 comparison needs attention\n");
+    let (json, _) = desk.run(&["report", "plain.yaml", "--format", "json"], 0);
+    let told: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert_eq!((&told[0]["needs_attention"], told[0]["comparisons"].as_array().map(Vec::len)), (&1.into(), Some(4)));
     let section = between(&page, "<section id=\"comparisons\">", "</section>");
     let places: Vec<usize> =
         ["> differs<", "> explained<", "> stated<"].iter().map(|word| section.find(word).unwrap()).collect();

@@ -7,7 +7,7 @@
 use std::env;
 
 use super::contact::pair;
-use super::press::{Case, Fineness, PENALTY, Pressed, press};
+use super::press::{Case, Fineness, PENALTY, Pressed, press_once};
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::contact::CornerContact;
@@ -67,7 +67,7 @@ impl Situation<'_> {
     /// Presses the pair and prints a row.
     fn press(&self, case: &Case, level: usize) -> Option<Pressed> {
         let fineness = Fineness { level, edge: self.edge * 4.0 / level as f64, penalty: self.penalty };
-        let found = press(case, fineness)?;
+        let found = press_once(case, fineness)?;
         let Pressed { torques, loads, peaks, edges, nearest, .. } = &found;
         let [pinion, gear] =
             [Side::Pinion, Side::Gear].map(|side| torques[side as usize] / case.pair.side(side).base_radius);

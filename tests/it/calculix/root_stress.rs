@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 use super::contact::pair;
-use super::press::{Case, Fineness, PENALTY, press};
+use super::press::{Case, Fineness, PENALTY, press_once};
 use super::program;
 use super::tooth::on_surface;
 use super::wheel::Wheel;
@@ -114,7 +114,7 @@ fn pressed(path: &[f64], approach: f64, edge: f64) -> Option<[f64; 2]> {
     // All of the turn: a share of it would move the slave's fillets with its flanks.
     let case =
         Case { pair: &pair, design: &design, path, approach, plane: Plane::Strain, slave: Side::Pinion, share: 1.0 };
-    let theirs = press(&case, Fineness { level: LEVEL, edge, penalty: PENALTY })?;
+    let theirs = press_once(&case, Fineness { level: LEVEL, edge, penalty: PENALTY })?;
     let method = FiniteElement { plane: Plane::Strain, elements_across: 24 };
     let assumptions = Assumptions { contact: ContactLaw::Resolved, ..Assumptions::default() };
     let (tabulated, roots) = method.tabulate_with_roots(&pair, assumptions).unwrap();

@@ -4,7 +4,7 @@
 //! what they are ([`Case::share`]), so that displacements are small and the contact is as wide as it would be.
 
 use super::contact::pair;
-use super::press::{Case, Fineness, PENALTY, press};
+use super::press::{Case, Fineness, PENALTY, press_once};
 use gearmesh::gear::compliance::finite_element::FiniteElement;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, Method};
 use gearmesh::gear::geometry::{GearPair, Side, Specification};
@@ -48,7 +48,7 @@ fn off(pair: &GearPair, plane: Plane, s: f64, approach: f64) -> Option<[f64; 2]>
         share: (0.25 * part).max(0.06),
     };
     let edge = 0.015 * 4.0 / level as f64 / part.sqrt();
-    let found = press(&case, Fineness { level, edge, penalty: PENALTY })?;
+    let found = press_once(&case, Fineness { level, edge, penalty: PENALTY })?;
     // Where loaded teeth tilt, the flanks touch off the line of action: a force turned by ψ has the arms r_b (1 ± ψ u), so that
     // each torque counts by the other gear's roll angle.
     let [one, other] =

@@ -5,6 +5,7 @@
 
 use super::document::{Content, Node};
 use super::notation;
+use super::unknown;
 use super::words::{self, quote};
 use declare::error::{Diagnostic, suggest};
 use declare::parameter::Span;
@@ -184,9 +185,8 @@ impl Measure<'_> {
             return self.single(node).map(|value| Value::Axis(vec![value]));
         };
         let names = ["from", "to", "count"];
-        if let Some(pair) = pairs.iter().find(|pair| !names.contains(&pair.key.as_str())) {
-            let message = format!("unknown field {} of {}", quote(&pair.key), quote(self.name));
-            return Err(Diagnostic::new(message).at(pair.place).help(suggest(&pair.key, names)));
+        if let Some(wrong) = unknown::fields(pairs, &names, &quote(self.name), &[]).into_iter().next() {
+            return Err(wrong);
         }
         let part = |name: &str| {
             let found = pairs.iter().find(|pair| pair.key == name && !pair.node.is_null());

@@ -15,7 +15,13 @@ pub fn fields(pairs: &[KeyValue], known: &[&str], label: &str, foreign: &[Foreig
         let before = at.checked_sub(1).map(|before| &pairs[before]);
         wrong.push(before.and_then(|before| decimal_comma(before, pair)).unwrap_or_else(|| {
             let message = format!("unknown field {} of {label}", quote(&pair.key));
-            let help = called(&pair.key, known, foreign).unwrap_or_else(|| suggest(&pair.key, known.iter().copied()));
+            let help = called(&pair.key, known, foreign).unwrap_or_else(|| {
+                let help = suggest(&pair.key, known.iter().copied());
+                match elsewhere(&pair.key, foreign) {
+                    Some(lead) if help.starts_with("known here") => format!("{lead}; {help}"),
+                    _ => help,
+                }
+            });
             Diagnostic::new(message).at(pair.place).help(help)
         }));
     }
@@ -32,6 +38,13 @@ fn called(word: &str, known: &[&str], foreign: &[Foreign]) -> Option<String> {
     };
     let mut words = foreign.iter().filter(same);
     words.find(|other| other.field.is_none_or(|field| known.contains(&field))).map(said)
+}
+
+/// What a word of others is called where there is such a field.
+fn elsewhere(word: &str, foreign: &[Foreign]) -> Option<String> {
+    let mut words = foreign.iter().filter(|other| other.word.eq_ignore_ascii_case(word));
+    let field = words.find_map(|other| other.field)?;
+    Some(format!("a study calls it `{field}`, in another place"))
 }
 
 /// `{ amount: 0,012 mm }` is `amount: 0` and a key `012 mm` to YAML.

@@ -10,8 +10,9 @@ use super::overrides::Stages;
 use super::path::FieldPath;
 use super::quantity::Measure;
 use super::spread;
+use super::unknown;
 use super::words::{alternatives, expected, quote};
-use declare::error::{Diagnostic, Place, suggest};
+use declare::error::{Diagnostic, Place};
 use declare::parameter::Shape;
 use declare::record::Record;
 use declare::record::varied::{Axis, Slot, Stage, Values, Varied};
@@ -137,9 +138,8 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         let message = format!("{} is {}; `{{ field: …, values: […] }}` is expected", quote(name), pair.node.describe());
         return Err(Diagnostic::new(message).at(pair.node.place));
     };
-    if let Some(unknown) = fields.iter().find(|field| !FIELDS.contains(&field.key.as_str())) {
-        let message = format!("unknown field {} of {}", quote(&unknown.key), quote(name));
-        return Err(Diagnostic::new(message).at(unknown.place).help(suggest(&unknown.key, FIELDS)));
+    if let Some(wrong) = unknown::fields(fields, &FIELDS, &quote(name), &[]).into_iter().next() {
+        return Err(wrong);
     }
     let given = |field: &str| fields.iter().find(|given| given.key == field && !given.node.is_null());
     let Some(written) = given("field") else {

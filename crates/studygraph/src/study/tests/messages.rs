@@ -246,6 +246,11 @@ const CHANGES: &[(&str, &str, &str)] = &[
     ),
     (
         "{ from: 25 N m, to: 100 N m, count: 16 }",
+        "{ from: 25,5 N m, to: 100 N m, count: 16 }",
+        "30:21: `25,5 N m` is two values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `25.5 N m`",
+    ),
+    (
+        "{ from: 25 N m, to: 100 N m, count: 16 }",
         "{ from: 25 N m, to: 10 N m, count: 16 }",
         "30:33: `to` (`10 N m`) must be above `from` (`25 N m`)",
     ),

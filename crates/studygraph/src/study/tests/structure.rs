@@ -104,7 +104,7 @@ fn words_of_others_lead_to_the_field() {
             "teeth: 19, helix_angle: 3 deg",
             "10:26: unknown field `helix_angle` of `pinion`\n  help: spur gears only",
         ),
-        // Not where there is no such field.
+        // Not at the top of a study, where there are no fields of stages.
         (
             "seed: 7",
             "bore_diameter: 7",
