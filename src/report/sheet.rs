@@ -27,8 +27,18 @@ pub struct Sheet {
 struct Line {
     what: &'static str,
     symbol: &'static str,
+    /// Its index.
+    below: &'static str,
     of: String,
     values: Vec<String>,
+}
+
+impl Line {
+    /// `symbol` has its index behind `_`.
+    fn new(what: &'static str, symbol: &'static str, values: Vec<String>) -> Self {
+        let (symbol, below) = symbol.split_once('_').unwrap_or((symbol, ""));
+        Self { what, symbol, below, of: String::new(), values }
+    }
 }
 
 /// What of `gears` is shown: words, symbol by ISO 21771, column.
@@ -37,9 +47,9 @@ const GEARS: [(&str, &str, &str); 18] = [
     ("Module", "m", "module"),
     ("Pressure angle", "α", "pressure_angle"),
     ("Profile shift coefficient", "x", "profile_shift"),
-    ("Addendum of the rack", "h*aP", "rack_addendum"),
-    ("Dedendum of the rack", "h*fP", "rack_dedendum"),
-    ("Rounding of the rack", "ρ*fP", "rack_tip_radius"),
+    ("Addendum of the rack", "h*_aP", "rack_addendum"),
+    ("Dedendum of the rack", "h*_fP", "rack_dedendum"),
+    ("Rounding of the rack", "ρ*_fP", "rack_tip_radius"),
     ("Face width", "b", "face_width"),
     ("Reference circle, radius", "r", "reference_radius"),
     ("Base circle, radius", "r_b", "base_radius"),
@@ -74,7 +84,7 @@ pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
                 [first, .., last] if torques.len() > 4 => format!("{} from {first} to {last}", torques.len()),
                 few => few.join(", "),
             };
-            Some(Line { what: "Torque on the pinion", symbol: "T", of: stage.name.clone(), values: vec![said] })
+            Some(Line { of: stage.name.clone(), ..Line::new("Torque on the pinion", "T", vec![said]) })
         })
         .collect();
     let geometries = manifest.stages.iter().filter(|stage| stage.kind == "geometry");
@@ -86,7 +96,7 @@ pub fn sheets(manifest: &Manifest, tables: Tables<'_>) -> Vec<Sheet> {
             let lines = |table: &Table, shown: &[(&'static str, &'static str, &'static str)]| -> Vec<Line> {
                 let line = |&(what, symbol, column): &(&'static str, &'static str, &'static str)| {
                     let values: Vec<String> = (0..table.rows()).rev().map(|row| cell(table, column, row)).collect();
-                    (!values.iter().all(String::is_empty)).then(|| Line { what, symbol, of: String::new(), values })
+                    (!values.iter().all(String::is_empty)).then(|| Line::new(what, symbol, values))
                 };
                 shown.iter().filter_map(line).collect()
             };
@@ -115,7 +125,7 @@ fn path_of_contact(pair: &Table) -> Option<Line> {
     let [Some(start), Some(end)] = ends else { return None };
     let unit = pair.schema().column("end_of_contact").map_or("", |column| column.unit.as_str());
     let length = with_unit(&significant(end - start, 6), unit);
-    Some(Line { what: "Length of path of contact", symbol: "g_α", of: String::new(), values: vec![length] })
+    Some(Line::new("Length of path of contact", "g_α", vec![length]))
 }
 
 /// A cell with its unit; empty where there is none.

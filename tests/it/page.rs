@@ -84,7 +84,9 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
         assert!(read(&format!("figures/{figure}.svg")).starts_with("<svg"), "{figure}");
     }
     let sheet = between(&page, "<section id=\"pair\">", "</section>");
-    for cell in ["3\u{202f}mm", ">24<", ">36<", "ε_α", "206\u{202f}GPa", "5 from 50\u{202f}N·m to 250\u{202f}N·m"] {
+    for cell in
+        ["3\u{202f}mm", ">24<", ">36<", "ε<sub>α</sub>", "206\u{202f}GPa", "5 from 50\u{202f}N·m to 250\u{202f}N·m"]
+    {
         assert!(sheet.contains(cell), "{cell}: {sheet}");
     }
     // Altair reads every figure, by the schema of Vega-Lite.
@@ -96,6 +98,8 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
     let reach = |z: f64| (tip(z).powi(2) - (1.5 * z * base).powi(2)).sqrt();
     let ratio = (reach(24.0) + reach(36.0) - 90.0 * 20f64.to_radians().sin()) / pitch;
     assert!(sheet.contains(&format!(">{ratio:.5}")), "{ratio}: {sheet}");
+    let length = between(sheet, "<td>g<sub>α</sub></td>", "</td>");
+    assert!(length.contains(&format!(">{:.3}\u{202f}mm", ratio * pitch)), "{}: {length}", ratio * pitch);
     // The order of the study, not of the alphabet.
     let legend = between(&page, "id=\"figure-ste_torque\"", "<div class=\"canvas\">");
     assert!(legend.find("unmodified").unwrap() < legend.find("relieved").unwrap(), "{legend}");

@@ -9,27 +9,24 @@ mod layout;
 mod results;
 mod tables;
 
-use std::sync::Arc;
-
 use self::correlation::{Copula, Correlation};
 use self::layout::{Layout, Method};
 use self::results::{Results, SHARES};
 use crate::stage::limit::Limit;
 use crate::stage::rows::computed::REASON;
-use crate::stage::rows::gathered::{self, Gathered, RowParts, Tally};
+use crate::stage::rows::gathered::{Gathered, RowParts, Rows, Tally};
 use crate::stage::rows::{Asked, Column as Field, Question};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Others, Parts, Port, RowCount, Stage};
+use crate::stage::{Kind, Omission, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
-use declare::digest::{Digest, Writer};
-use declare::error::{Diagnostic, Failure};
+use declare::digest::Writer;
+use declare::error::Diagnostic;
 use declare::record::Record;
 use declare::record::varied::Varied;
 use declare::units::RATIO;
 use gearmesh::numeric::distribution::Distribution;
 use gearmesh::numeric::replicates::REPLICATES;
 use gearmesh::optimize::sobol::MOST_VARIABLES;
-use studygraph::table::data::Table;
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -110,7 +107,6 @@ pub struct Scatter {
     shares: Vec<f64>,
     /// Whether indices were wanted and cannot be.
     is_correlated: bool,
-    parts: Arc<Parts>,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
@@ -172,10 +168,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let limits = limits.collect::<Result<Vec<_>, _>>()?;
     let shares = stated.quantiles.clone().unwrap_or_else(|| SHARES.to_vec());
     let is_correlated = copula.is_some() && stated.indices > 0;
-    let parts = Parts { fields: OF_ROWS, shared: Digest([0; 32]), each: Vec::new(), last_is_of_all: true };
-    let mut scatter = Scatter { asked, layout, limits, shares, is_correlated, parts: Arc::new(parts) };
-    scatter.parts = Arc::new(scatter.cut(&varied));
-    Ok(Box::new(scatter))
+    let scatter = Scatter { asked, layout, limits, shares, is_correlated };
+    Ok(Box::new(scatter.cut(&varied)))
 }
 
 impl Scatter {
@@ -188,7 +182,7 @@ impl Scatter {
         self.asked.columns.iter().enumerate().filter(|(at, _)| self.layout.is_crossed(*at)).map(|(_, column)| column)
     }
 
-    fn cut(&self, varied: &Varied) -> Parts {
+    fn cut(self, varied: &Varied) -> Rows<Self> {
         let mut shared = Writer::new("gearstudy 1 scatter rows");
         varied.write_shared(&mut shared);
         for column in &self.asked.columns {
@@ -199,7 +193,7 @@ impl Scatter {
         for limit in &self.limits {
             all.text(&limit.text);
         }
-        gathered::parts(&self.layout, OF_ROWS, &shared, all)
+        Rows::new(self, OF_ROWS, &shared, all)
     }
 }
 
@@ -215,6 +209,10 @@ impl Gathered for Scatter {
         &self.layout
     }
 
+    fn is_random(&self) -> bool {
+        true
+    }
+
     fn schemas(&self) -> Vec<Schema> {
         results::schemas(self)
     }
@@ -227,56 +225,12 @@ impl Gathered for Scatter {
         results::held(self)
     }
 
+    fn not_made(&self) -> Option<Omission> {
+        let why = "fields are correlated, and what one of them explains by itself is then not defined";
+        self.is_correlated.then(|| Omission::new("Sobol' indices", why))
+    }
+
     fn tally(&self) -> Box<dyn Tally + '_> {
         Box::new(Results::new(self))
-    }
-}
-
-impl Stage for Scatter {
-    fn inputs(&self) -> Vec<Port> {
-        self.asked.ports().to_vec()
-    }
-
-    fn outputs(&self) -> Vec<Schema> {
-        gathered::outputs(self)
-    }
-
-    fn uses_seed(&self) -> bool {
-        true
-    }
-
-    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        gathered::estimate(self, demand)
-    }
-
-    fn estimate_part(&self, part: usize, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        gathered::estimate_part(self, part, demand)
-    }
-
-    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        let mut omissions: Vec<Omission> = self.asked.left_out().into_iter().collect();
-        if self.is_correlated {
-            let why = "fields are correlated, and what one of them explains by itself is then not defined";
-            omissions.push(Omission::new("Sobol' indices", why));
-        }
-        omissions
-    }
-
-    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        gathered::run(self, context, inputs)
-    }
-
-    fn parts(&self) -> Option<Parts> {
-        Some(Parts::clone(&self.parts))
-    }
-
-    fn run_part(
-        &self,
-        part: usize,
-        context: &Context,
-        inputs: &Inputs,
-        others: &dyn Others,
-    ) -> Result<Vec<Table>, Failure> {
-        gathered::run_part(self, part, (context, inputs), others)
     }
 }

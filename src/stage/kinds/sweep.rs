@@ -10,23 +10,20 @@ mod layout;
 mod method;
 mod tables;
 
-use std::sync::Arc;
-
 use self::effects::Effects;
 use self::layout::Layout;
 use self::method::Method;
 use crate::stage::formula::Formula;
 use crate::stage::rows::computed::REASON;
-use crate::stage::rows::gathered::{self, Gathered, RowParts, Tally};
+use crate::stage::rows::gathered::{Gathered, RowParts, Rows, Tally};
 use crate::stage::rows::{Asked, Question};
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Omission, Others, Parts, Port, RowCount, Stage};
+use crate::stage::{Kind, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
-use declare::digest::{Digest, Writer};
-use declare::error::{Diagnostic, Failure, suggest};
+use declare::digest::Writer;
+use declare::error::{Diagnostic, suggest};
 use declare::record::Record;
 use declare::record::varied::Varied;
-use studygraph::table::data::Table;
 use studygraph::table::schema::{Column, Schema};
 
 pub const KIND: Kind = Kind {
@@ -89,7 +86,6 @@ pub struct Sweep {
     /// Index of the output that is to be small.
     objective: usize,
     best: usize,
-    parts: Arc<Parts>,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
@@ -124,10 +120,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             })?
         }
     };
-    let parts = Parts { fields: OF_ROWS, shared: Digest([0; 32]), each: Vec::new(), last_is_of_all: true };
-    let mut sweep = Sweep { asked, layout, objective, best: stated.best, parts: Arc::new(parts) };
-    sweep.parts = Arc::new(sweep.cut(&varied));
-    Ok(Box::new(sweep))
+    let sweep = Sweep { asked, layout, objective, best: stated.best };
+    Ok(Box::new(sweep.cut(&varied)))
 }
 
 fn filter(stated: &Stated) -> Result<Option<(Formula, declare::error::Place)>, Diagnostic> {
@@ -142,7 +136,7 @@ fn filter(stated: &Stated) -> Result<Option<(Formula, declare::error::Place)>, D
 }
 
 impl Sweep {
-    fn cut(&self, varied: &Varied) -> Parts {
+    fn cut(self, varied: &Varied) -> Rows<Self> {
         let mut shared = Writer::new("gearstudy 1 sweep rows");
         varied.write_shared(&mut shared);
         shared.flag(self.layout.is_drawn()).count(self.layout.columns.len());
@@ -151,7 +145,7 @@ impl Sweep {
         }
         let mut all = Writer::new("gearstudy 1 sweep of all");
         all.count(self.objective).count(self.best);
-        gathered::parts(&self.layout, OF_ROWS, &shared, all)
+        Rows::new(self, OF_ROWS, &shared, all)
     }
 }
 
@@ -165,6 +159,10 @@ impl Gathered for Sweep {
 
     fn layout(&self) -> &impl RowParts {
         &self.layout
+    }
+
+    fn is_random(&self) -> bool {
+        self.layout.uses_seed()
     }
 
     fn schemas(&self) -> Vec<Schema> {
@@ -181,49 +179,5 @@ impl Gathered for Sweep {
 
     fn tally(&self) -> Box<dyn Tally + '_> {
         Box::new(Effects::new(self))
-    }
-}
-
-impl Stage for Sweep {
-    fn inputs(&self) -> Vec<Port> {
-        self.asked.ports().to_vec()
-    }
-
-    fn outputs(&self) -> Vec<Schema> {
-        gathered::outputs(self)
-    }
-
-    fn uses_seed(&self) -> bool {
-        self.layout.uses_seed() || self.asked.uses_seed()
-    }
-
-    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        gathered::estimate(self, demand)
-    }
-
-    fn estimate_part(&self, part: usize, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        gathered::estimate_part(self, part, demand)
-    }
-
-    fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
-        self.asked.left_out().into_iter().collect()
-    }
-
-    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        gathered::run(self, context, inputs)
-    }
-
-    fn parts(&self) -> Option<Parts> {
-        Some(Parts::clone(&self.parts))
-    }
-
-    fn run_part(
-        &self,
-        part: usize,
-        context: &Context,
-        inputs: &Inputs,
-        others: &dyn Others,
-    ) -> Result<Vec<Table>, Failure> {
-        gathered::run_part(self, part, (context, inputs), others)
     }
 }

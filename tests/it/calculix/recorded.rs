@@ -2,7 +2,7 @@
 //!
 //! An answer is kept under the digest of its deck and of the code that reads it out, one file each in
 //! `tests/reference/calculix`; any other deck is computed. `GEARSTUDY_CALCULIX=anew` computes all of them and keeps what came
-//! out. Decks that take seconds are never kept, so that the program itself is asked in every run of the tests. Must not know:
+//! out; empty the folder before, or what no test asks for any more stays. Decks that take seconds are never kept, so that the program itself is asked in every run of the tests. Must not know:
 //! what is in a deck.
 
 use std::env;

@@ -104,6 +104,11 @@ fn words_of_others_lead_to_the_field() {
             "teeth: 19, helix_angle: 3 deg",
             "10:26: unknown field `helix_angle` of `pinion`\n  help: spur gears only",
         ),
+        (
+            "module: 3 mm",
+            "module: 3 mm\n    z: 19",
+            "9:5: unknown field `z` of `pair`\n  help: a study calls it `teeth`, in another place; known here: `kind`, `module`, `pressure_angle`, `rack`, `youngs_modulus`, `pinion`, `overlap`, `ground`, `side`, `note`, `bolts`",
+        ),
         // Not at the top of a study, where there are no fields of stages.
         (
             "seed: 7",
