@@ -11,7 +11,7 @@ use declare::work::Counter;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
 use studygraph::program::{Pictures, Program};
-use studygraph::study::{self, LoadError, Settings, Study};
+use studygraph::study::{self, LoadError, Refused, Settings, Study};
 
 /// What studies are run with.
 pub static PROGRAM: Program = Program {
@@ -68,6 +68,22 @@ pub fn load(path: &Path) -> Result<Study, LoadError> {
 /// As [`study::load_changed`].
 pub fn load_changed(path: &Path, settings: &Settings) -> Result<Study, LoadError> {
     study::load_changed(path, &PROGRAM, settings)
+}
+
+/// The same, with what is sound of a study that is refused.
+///
+/// # Errors
+/// As [`study::examine`].
+pub fn examine(path: &Path, settings: &Settings) -> Result<Study, Refused> {
+    study::examine(path, &PROGRAM, settings)
+}
+
+/// The same of a text that was read from `path`.
+///
+/// # Errors
+/// As [`study::examine`].
+pub fn examine_text(text: &str, path: &Path) -> Result<Study, Refused> {
+    study::examine_text(text, path, &PROGRAM)
 }
 
 /// Checks a study of this program, whose text was read from `path`.

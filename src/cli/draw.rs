@@ -9,7 +9,7 @@ use miette::{GraphicalReportHandler, LabeledSpan, MietteDiagnostic, NamedSource,
 
 use super::progress::{is_hidden, plain};
 use declare::error::Diagnostic;
-use studygraph::study::{LoadError, MOST_TOLD};
+use studygraph::study::LoadError;
 
 /// Writes the message to standard error.
 pub fn invalid_study(error: &LoadError) {
@@ -23,12 +23,8 @@ pub fn invalid_study(error: &LoadError) {
 }
 
 fn framed(error: &LoadError) -> String {
-    let told: Vec<String> = error.each().take(MOST_TOLD).map(|found| framed_one(error, found)).collect();
-    let more = match error.others.len().saturating_sub(MOST_TOLD - 1) {
-        0 => String::new(),
-        more => format!("and {more} more\n"),
-    };
-    told.concat() + &more
+    let told: String = error.told().map(|found| framed_one(error, found)).collect();
+    told + &error.more().map_or_else(String::new, |more| more + "\n")
 }
 
 fn framed_one(error: &LoadError, diagnostic: &Diagnostic) -> String {

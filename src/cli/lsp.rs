@@ -10,7 +10,7 @@ use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response
 use serde_json::{Value, json};
 
 use super::{Ending, show};
-use crate::program::{PROGRAM, load_text};
+use crate::program::{PROGRAM, examine_text};
 use declare::error::{Diagnostic, Place};
 use studygraph::study::cursor;
 
@@ -77,7 +77,7 @@ fn diagnostics(uri: &str, all: &Value) -> Notification {
 
 fn mistakes(uri: &str, text: &str) -> Value {
     let path = PathBuf::from(uri.strip_prefix("file://").unwrap_or(uri));
-    let Err(error) = load_text(text, &path).and_then(show::rehearsed) else { return json!([]) };
+    let Err(error) = show::rehearsed(examine_text(text, &path)) else { return json!([]) };
     let one = |found: &Diagnostic| {
         let help = found.help.as_ref().map_or_else(String::new, |help| format!("\n{help}"));
         let message = found.message.clone() + &help;

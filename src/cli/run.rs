@@ -212,7 +212,7 @@ fn succeeded(study: &Study, outcome: &Outcome) -> Result<(), Ending> {
     }
     for (_, fault) in outcome.faults() {
         if let Fault::Study(wrong) = fault {
-            draw::invalid_study(&study.refused((**wrong).clone()));
+            draw::invalid_study(&study.refused(wrong.clone()));
         }
     }
     let failed: Vec<&str> = outcome.faults().map(|(stage, _)| stage).collect();

@@ -11,14 +11,14 @@ use serde_json::{Value, json};
 use super::arguments::{Changes, Format, Places};
 use super::progress::out;
 use super::{Ending, draw, json, print, studies};
-use crate::program::{load_changed, load_text};
+use crate::program::{examine, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
-use declare::error::suggest;
+use declare::error::{Faults, suggest};
 use studygraph::runner::rehearse::rehearse;
 use studygraph::store::manifest::{ColumnRecord, TableRecord};
 use studygraph::store::results::Folder;
-use studygraph::study::{LoadError, Study, describe, described, schema as schemas};
+use studygraph::study::{LoadError, Refused, Study, describe, described, schema as schemas};
 use studygraph::table::data::Table;
 
 /// Studies to start from: what they are asked for by, how they are called, their texts.
@@ -81,10 +81,19 @@ pub(super) fn import(file: &Path, stage: Option<&str>, as_json: bool) -> Result<
     Ok(())
 }
 
-/// A study with which nothing is wrong that its quick stages can tell.
-pub(super) fn rehearsed(study: Study) -> Result<Study, LoadError> {
-    study.accepted(rehearse(&study).unwrap_or_else(|wrong| vec![wrong]))?;
-    Ok(study)
+/// A study with which nothing is wrong that its quick stages can tell, those of what is sound of it.
+pub(super) fn rehearsed(examined: Result<Study, Refused>) -> Result<Study, LoadError> {
+    let found = |study: &Study| rehearse(study).unwrap_or_else(|wrong| vec![wrong]);
+    match examined {
+        Ok(study) => match Faults::all(found(&study)) {
+            Ok(()) => Ok(study),
+            Err(wrong) => Err(study.refused(wrong)),
+        },
+        Err(refused) => {
+            let found = refused.sound.as_deref().map_or_else(Vec::new, found);
+            Err(refused.with(found))
+        }
+    }
 }
 
 /// Says of every file whether it is a valid study.
@@ -92,7 +101,7 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
     let settings = studies::settings(changes);
     let (mut last, mut values) = (None, Vec::new());
     for file in files {
-        let checked = load_changed(file, &settings).and_then(rehearsed);
+        let checked = rehearsed(examine(file, &settings)).map_err(LoadError::in_full);
         if as_json {
             values.push(checked_value(file, &checked));
         }

@@ -18,7 +18,7 @@ use super::run::{self, How};
 use super::serve::Server;
 use super::signals::stop_flag;
 use super::{Ending, draw, events, pages, show, studies};
-use crate::program::load_changed;
+use crate::program::examine;
 use studygraph::store::results::Folder;
 
 /// How often it is looked whether somebody asked to stop.
@@ -134,7 +134,7 @@ fn renew(
     stop: &AtomicBool,
     board: &Board,
 ) -> Result<(), Ending> {
-    let study = match load_changed(file, &studies::settings(changes)).and_then(show::rehearsed) {
+    let study = match show::rehearsed(examine(file, &studies::settings(changes))) {
         Ok(study) => study,
         Err(error) => {
             board.show(error.to_string(), None);

@@ -20,8 +20,8 @@ pub mod root_influences;
 pub mod rows;
 
 pub use studygraph::stage::{
-    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Others, Parts, Port, RowCount, Saved,
-    Stage, Want, omission,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Named, Omission, Others, Parts, Port, RowCount,
+    Saved, Stage, Want, omission,
 };
 
 /// The kind called `name`.

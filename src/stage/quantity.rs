@@ -5,6 +5,8 @@
 use declare::number::{significant, with_unit};
 use declare::units::{Dimension, FORCE, LENGTH, RATIO, STIFFNESS, STRESS, TORQUE, in_unit, parse_unit};
 
+pub use declare::units::{described, same_dimension};
+
 /// A number in SI and its dimension.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Number {
@@ -22,12 +24,6 @@ impl Number {
         let is_zero = |number: Self| number.si == 0.0 && number.dimension == RATIO;
         same_dimension(self.dimension, other.dimension) || is_zero(self) || is_zero(other)
     }
-}
-
-/// Whether two dimensions are the same when radians count as plain numbers.
-#[must_use]
-pub fn same_dimension(a: Dimension, b: Dimension) -> bool {
-    (a.length, a.mass, a.time) == (b.length, b.mass, b.time)
 }
 
 /// The dimension of a sum, where a plain zero may stand for any.
@@ -65,22 +61,6 @@ pub fn power(base: Dimension, exponent: Number) -> Result<Dimension, String> {
         return Err(format!("{} to the power {} has no unit", described(base), exponent.si));
     };
     Ok(Dimension { length, mass, time, angle: 0 })
-}
-
-/// The words for a dimension in a message.
-#[must_use]
-pub fn described(dimension: Dimension) -> String {
-    match dimension.describe() {
-        (_, []) => {
-            let parts = [("m", dimension.length), ("kg", dimension.mass), ("s", dimension.time)];
-            let parts = parts.iter().filter(|(_, power)| *power != 0).map(|(unit, power)| match power {
-                1 => (*unit).to_owned(),
-                power => format!("{unit}^{power}"),
-            });
-            format!("a quantity in {}", parts.collect::<Vec<_>>().join(" "))
-        }
-        (name, _) => name.to_owned(),
-    }
 }
 
 /// `number` in `unit` when that fits, otherwise in the field's usual unit.

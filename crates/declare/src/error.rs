@@ -58,15 +58,67 @@ impl Diagnostic {
     }
 }
 
+/// What is wrong with something that was stated: one thing, and whatever else was found with it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{first}")]
+pub struct Faults {
+    pub first: Box<Diagnostic>,
+    pub others: Vec<Diagnostic>,
+}
+
+impl From<Diagnostic> for Faults {
+    fn from(first: Diagnostic) -> Self {
+        Self { first: Box::new(first), others: Vec::new() }
+    }
+}
+
+impl Faults {
+    /// Nothing, or all of them.
+    ///
+    /// # Errors
+    /// When something was found.
+    pub fn all(found: Vec<Diagnostic>) -> Result<(), Self> {
+        let mut found = found.into_iter();
+        match found.next() {
+            Some(first) => Err(Self { first: Box::new(first), others: found.collect() }),
+            None => Ok(()),
+        }
+    }
+
+    /// What each gave, or everything that is wrong with any.
+    ///
+    /// # Errors
+    /// When anything was wrong.
+    pub fn collect<T, E: Into<Self>>(each: impl IntoIterator<Item = Result<T, E>>) -> Result<Vec<T>, Self> {
+        let (mut read, mut wrong) = (Vec::new(), Vec::new());
+        for one in each {
+            match one {
+                Ok(one) => read.push(one),
+                Err(found) => wrong.extend(found.into()),
+            }
+        }
+        Self::all(wrong).map(|()| read)
+    }
+}
+
+impl IntoIterator for Faults {
+    type Item = Diagnostic;
+    type IntoIter = std::iter::Chain<std::iter::Once<Diagnostic>, std::vec::IntoIter<Diagnostic>>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        std::iter::once(*self.first).chain(self.others)
+    }
+}
+
 /// Why a stage that ran could not give its tables (exit code 3).
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Failure {
     /// The stage's own finding: the message says what, with the values and the admissible range.
     #[error("{0}")]
     Failed(String),
-    /// The same about a place in the study, which no check could find before it ran.
+    /// The same about places in the study, which no check could find before it ran.
     #[error("{0}")]
-    Study(Box<Diagnostic>),
+    Study(Faults),
     /// The user asked to stop; nothing of this stage is kept.
     #[error("stopped before it finished")]
     Stopped,
@@ -82,7 +134,13 @@ impl Failure {
     #[must_use]
     pub fn of(wrong: Diagnostic) -> Self {
         let is_known = wrong.place.is_some_and(|place| place != Place::default());
-        if is_known { Self::Study(Box::new(wrong)) } else { Self::Failed(wrong.message) }
+        if is_known { Self::Study(wrong.into()) } else { Self::Failed(wrong.message) }
+    }
+}
+
+impl From<Faults> for Failure {
+    fn from(wrong: Faults) -> Self {
+        Self::Study(wrong)
     }
 }
 

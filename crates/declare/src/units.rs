@@ -113,6 +113,28 @@ const UNITS: &[(&str, i32, f64, Dimension)] = &[
     ("1", 0, 1.0, RATIO),
 ];
 
+/// Whether two dimensions are the same when radians count as plain numbers.
+#[must_use]
+pub fn same_dimension(a: Dimension, b: Dimension) -> bool {
+    (a.length, a.mass, a.time) == (b.length, b.mass, b.time)
+}
+
+/// The words for a dimension in a message.
+#[must_use]
+pub fn described(dimension: Dimension) -> String {
+    match dimension.describe() {
+        (_, []) => {
+            let parts = [("m", dimension.length), ("kg", dimension.mass), ("s", dimension.time)];
+            let parts = parts.iter().filter(|(_, power)| *power != 0).map(|(unit, power)| match power {
+                1 => (*unit).to_owned(),
+                power => format!("{unit}^{power}"),
+            });
+            format!("a quantity in {}", parts.collect::<Vec<_>>().join(" "))
+        }
+        (name, _) => name.to_owned(),
+    }
+}
+
 /// The symbols that [`parse_unit`] knows.
 pub fn symbols() -> impl Iterator<Item = &'static str> + Clone {
     UNITS.iter().map(|unit| unit.0)

@@ -12,7 +12,7 @@ mod variant;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::{self, Record};
 use declare::units::RATIO;
 use quantity::Quantity;
@@ -83,7 +83,7 @@ struct Ladder {
     steps: Vec<Variant>,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let reference = Variant::build("reference".to_owned(), &stated.reference)?;
     let mut ladders = Vec::new();
@@ -93,7 +93,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         ladders.push(Ladder { name, steps });
     }
     if ladders.iter().all(|ladder| ladder.steps.is_empty()) {
-        return Err(Diagnostic::new("the ladders are empty").at(record.place_of(Stated::NAMES.ladders)));
+        return Err(Diagnostic::new("the ladders are empty").at(record.place_of(Stated::NAMES.ladders)).into());
     }
     let variants = || ladders.iter().flat_map(|ladder| &ladder.steps).chain([&reference]);
     let read = |text: &Placed<String>| {
@@ -101,18 +101,18 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         for variant in variants() {
             quantity.check(&variant.stage.outputs()).map_err(|found| found.at(text.place))?;
         }
-        Ok(quantity)
+        Ok::<_, Diagnostic>(quantity)
     };
     let mut quantities: Vec<Quantity> = Vec::new();
     for text in &stated.quantities {
         let quantity = read(text)?;
         if quantities.iter().any(|other| other.name == quantity.name) {
-            return Err(Diagnostic::new(format!("`{}` is listed twice", quantity.name)).at(text.place));
+            return Err(Diagnostic::new(format!("`{}` is listed twice", quantity.name)).at(text.place).into());
         }
         quantities.push(quantity);
     }
     if quantities.is_empty() {
-        return Err(Diagnostic::new("no quantities are given").at(record.place_of(Stated::NAMES.quantities)));
+        return Err(Diagnostic::new("no quantities are given").at(record.place_of(Stated::NAMES.quantities)).into());
     }
     let evaluations = stated.evaluations.as_ref().map(read).transpose()?;
     let mut wanted = stated.wanted;

@@ -16,7 +16,7 @@ mod tests;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, names};
 use contour::{Contour, contours};
 use declare::declared::{Declared, Placed, Words};
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use declare::{Declared, Words};
 use studygraph::table::columns::Columns;
@@ -91,17 +91,18 @@ const HEAD: usize = 200;
 const CONTOUR_POINT: u64 = 160;
 const LINE: u64 = 80;
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let export = Export::checked(record)?;
     for (index, Placed { value: format, place }) in export.formats.iter().enumerate() {
         if export.formats[..index].iter().any(|other| other.value == *format) {
-            return Err(Diagnostic::new(format!("the format `{}` is named twice", format.word())).at(*place));
+            return Err(Diagnostic::new(format!("the format `{}` is named twice", format.word())).at(*place).into());
         }
     }
     if export.formats.is_empty() {
         return Err(Diagnostic::new("no format is named")
             .at(record.place_of(Export::NAMES.formats))
-            .help("name at least one of dxf, svg, csv"));
+            .help("name at least one of dxf, svg, csv")
+            .into());
     }
     Ok(Box::new(export))
 }

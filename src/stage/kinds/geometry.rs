@@ -14,7 +14,7 @@ use std::f64::consts::FRAC_PI_4;
 use crate::stage::designs::Elements;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure, Place};
+use declare::error::{Diagnostic, Failure, Faults, Place};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH};
 use declare::work::Work;
@@ -175,7 +175,7 @@ fn place_of(error: &GeometryError, record: &Record) -> Place {
     }
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let refused = |error: &GeometryError| Diagnostic::new(error.to_string()).at(place_of(error, record));
     let given = [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())];
@@ -184,7 +184,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
         if gear.tip_radius.is_some() && gear.tip_shortening.is_some() {
             return Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
                 .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
-                .help("give one of them"));
+                .help("give one of them")
+                .into());
         }
     }
     let pinion = stated.specification(&stated.pinion);

@@ -11,7 +11,7 @@ use crate::stage::{
 };
 use declare::Declared;
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::modification::{self, Design};
@@ -58,15 +58,14 @@ struct Modification {
     designs: Vec<NamedDesign>,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let Stated { pair, designs } = Stated::checked(record)?;
-    for (_, design) in &designs {
-        design.template()?;
-    }
+    Faults::collect(designs.iter().map(|(_, design)| design.template()))?;
     if designs.is_empty() {
         return Err(Diagnostic::new("no designs are given")
             .at(record.place_of(Stated::NAMES.designs))
-            .help("an empty list is the unmodified pair: `designs: { unmodified: [] }`"));
+            .help("an empty list is the unmodified pair: `designs: { unmodified: [] }`")
+            .into());
     }
     let named = |(name, design): (String, Elements)| NamedDesign { name, elements: design.elements() };
     Ok(Box::new(Modification { pair, designs: designs.into_iter().map(named).collect() }))

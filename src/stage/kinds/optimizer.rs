@@ -20,7 +20,7 @@ use crate::stage::{
     Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Stage, common, names, root_influences,
 };
 use declare::declared::{Declared, Placed};
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::{Record, Value};
 use declare::units::RATIO;
 use declare::{Declared, Words};
@@ -141,23 +141,28 @@ struct Optimizer {
     settings: Settings,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let template = stated.design.template()?;
     if template.variables().is_empty() {
         return Err(Diagnostic::new("nothing is left open for the search")
             .at(record.place_of(Stated::NAMES.design))
-            .help("give at least one value as a range, for example `amount: [0 um, 8 um]`"));
+            .help("give at least one value as a range, for example `amount: [0 um, 8 um]`")
+            .into());
     }
     let name = &stated.name;
     if name.is_empty() || name.chars().count() > 64 || !name.chars().all(|c| c.is_alphanumeric() || "-_.".contains(c)) {
         return Err(Diagnostic::new(format!("`{}` cannot be the name of a design", name.escape_debug()))
             .at(record.place_of(Stated::NAMES.name))
-            .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"));
+            .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them")
+            .into());
     }
     if stated.minimize.is_empty() {
         let place = record.place_of(Stated::NAMES.minimize);
-        return Err(Diagnostic::new("nothing is to be small").at(place).help("for example `minimize: peak_to_peak`"));
+        return Err(Diagnostic::new("nothing is to be small")
+            .at(place)
+            .help("for example `minimize: peak_to_peak`")
+            .into());
     }
     let goal = Goal::read(&stated.minimize, stated.subject_to.as_deref().unwrap_or_default())?;
     if goal.has_front() && !stated.method.finds_fronts() {
@@ -165,7 +170,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             format!("`{}` takes one objective, and there are {}", stated.method.name(), goal.objectives().len());
         return Err(Diagnostic::new(message)
             .at(record.place_of(Stated::NAMES.method))
-            .help("take `nsga2`, or a sample: `grid`, `latin_hypercube` or `sobol`"));
+            .help("take `nsga2`, or a sample: `grid`, `latin_hypercube` or `sobol`")
+            .into());
     }
     let settings = common::settings(stated.positions, stated.slices, stated.contact);
     common::check_slices(settings, record)?;

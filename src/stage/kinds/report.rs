@@ -16,20 +16,20 @@ mod verdict;
 
 use std::collections::BTreeSet;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, RowCount, Stage, Want};
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure, Place};
+use declare::error::{Failure, Faults};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
+use operand::Operand;
 use stated::Published;
 use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
-use studygraph::table::select::CellName;
 use verdict::Verdict;
 
 pub const KIND: Kind = Kind {
@@ -88,28 +88,39 @@ struct Report {
     figures: Vec<Figure>,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
     let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
-    let entries = entries.collect::<Result<_, _>>()?;
+    let entries = Faults::collect(entries);
     let compared = (1..).zip(stated.compare.iter().flatten()).zip(record.each_inside(Stated::NAMES.compare));
     let comparisons = compared.map(|((number, stated), record)| Comparison::read(number, stated, record));
-    let comparisons = comparisons.collect::<Result<_, _>>()?;
+    let comparisons = Faults::collect(comparisons);
     let drawn: Vec<&Record> = record.each_inside(Stated::NAMES.figures).collect();
     let figures = (1..).zip(stated.figures.iter().flatten()).zip(&drawn);
     let figures = figures.map(|((number, stated), record)| Figure::read(number, stated, record));
-    let figures: Vec<Figure> = figures.collect::<Result<_, _>>()?;
-    figure::check_names(&figures, &drawn)?;
-    Ok(Box::new(Report { entries, comparisons, figures }))
+    let figures = Faults::collect(figures).and_then(|figures| {
+        figure::check_names(&figures, &drawn)?;
+        Ok(figures)
+    });
+    // Somebody who mends a report wants to be told of all that is wrong with it.
+    let wrong = [entries.as_ref().err(), comparisons.as_ref().err(), figures.as_ref().err()];
+    Faults::all(wrong.into_iter().flatten().cloned().flatten().collect())?;
+    Ok(Box::new(Report { entries: entries?, comparisons: comparisons?, figures: figures? }))
+}
+
+impl Report {
+    /// All that names cells, and whether it must be one.
+    fn operands(&self) -> impl Iterator<Item = (&Operand, bool)> {
+        let compared = self.comparisons.iter().flat_map(Comparison::operands);
+        self.entries.iter().flat_map(ReportEntry::operands).chain(compared.map(|operand| (operand, false)))
+    }
 }
 
 impl Stage for Report {
     fn inputs(&self) -> Vec<Port> {
         let mut ports: Vec<Port> = Vec::new();
-        let operands = self.entries.iter().flat_map(ReportEntry::operands);
-        let operands = operands.chain(self.comparisons.iter().flat_map(Comparison::operands));
-        let cells = operands.filter_map(operand::Operand::cell).map(|cell| {
+        let cells = self.operands().filter_map(|(operand, _)| operand.cell()).map(|cell| {
             let columns = cell.conditions.iter().map(|(column, _)| column.as_str()).chain([cell.column.as_str()]);
             (cell.stage.as_str(), cell.table.as_str(), columns.collect())
         });
@@ -119,13 +130,17 @@ impl Stage for Report {
         ports
     }
 
-    fn cells(&self) -> Vec<CellName> {
-        let operands = self.entries.iter().flat_map(ReportEntry::operands);
-        operands.filter_map(operand::Operand::cell).cloned().collect()
-    }
-
-    fn conditions(&self) -> Vec<(CellName, Place)> {
-        self.figures.iter().flat_map(Figure::rows_needed).collect()
+    fn named(&self) -> Vec<Named> {
+        let of_operand = |(operand, is_one): (&Operand, bool), beside| {
+            Some(Named { cell: operand.cell()?.clone(), place: operand.place, is_one, beside })
+        };
+        let entries = self.entries.iter().flat_map(|entry| {
+            let subject = entry.operands().filter_map(move |named| of_operand(named, entry.beside(named.0)));
+            subject.collect::<Vec<_>>()
+        });
+        let compared = self.comparisons.iter().flat_map(Comparison::operands);
+        let compared = compared.filter_map(|operand| of_operand((operand, false), None));
+        entries.chain(compared).chain(self.figures.iter().flat_map(Figure::named)).collect()
     }
 
     fn outputs(&self) -> Vec<Schema> {
@@ -148,22 +163,34 @@ impl Stage for Report {
             .rows(demand, marks().schema(), RowCount::exact(self.figures.iter().map(Figure::marks).sum()))
     }
 
+    fn refuses(&self, inputs: &Inputs) -> Result<(), Failure> {
+        let is_there = |(stage, table): (&str, &str)| inputs.table(stage, table).is_ok();
+        let are_there = |operands: &mut dyn Iterator<Item = &Operand>| {
+            operands.filter_map(Operand::cell).all(|cell| is_there((&cell.stage, &cell.table)))
+        };
+        let entries = self.entries.iter().filter(|entry| are_there(&mut entry.operands().map(|(operand, _)| operand)));
+        let comparisons = self.comparisons.iter().filter(|comparison| are_there(&mut comparison.operands()));
+        let figures =
+            self.figures.iter().filter(|figure| figure.wants().all(|(stage, table, _)| is_there((stage, table))));
+        let wrong = entries.filter_map(|entry| entry.find(inputs).err());
+        let wrong = wrong.chain(comparisons.filter_map(|comparison| comparison.find(inputs).err()));
+        let wrong = wrong.chain(figures.filter_map(|figure| figure.marked(inputs).err()));
+        Ok(Faults::all(wrong.collect())?)
+    }
+
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
-        let (mut found, mut marked) = (Vec::new(), Vec::new());
-        for entry in &self.entries {
-            context.check_stop()?;
-            found.push(entry.find(inputs).map_err(Failure::Failed)?);
-        }
-        let mut compared = Vec::new();
-        for comparison in &self.comparisons {
-            compared.push(comparison.find(inputs).map_err(Failure::Failed)?);
-        }
+        context.check_stop()?;
+        let found = Faults::collect(self.entries.iter().map(|entry| entry.find(inputs)));
+        context.check_stop()?;
+        let compared = Faults::collect(self.comparisons.iter().map(|comparison| comparison.find(inputs)));
+        let marked = Faults::collect(self.figures.iter().map(|figure| figure.marked(inputs)));
+        let wrong = [found.as_ref().err(), compared.as_ref().err(), marked.as_ref().err()];
+        Faults::all(wrong.into_iter().flatten().cloned().flatten().collect())?;
+        let (found, compared) = (found?, compared?);
+        let marked: Vec<_> = marked?.into_iter().flatten().collect();
         let count = |verdict| found.iter().filter(|finding| finding.verdict == verdict).count();
         let counts = (1..).zip(Verdict::ALL).map(|(order, verdict)| CountRow { order, verdict, count: count(verdict) });
         let counts: Vec<_> = counts.collect();
-        for figure in &self.figures {
-            marked.extend(figure.marked(inputs).map_err(Failure::Failed)?);
-        }
         let drawn: Vec<&Figure> = self.figures.iter().collect();
         let table = |name: &str| match name {
             "verdicts" => verdicts().table(&found),

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, pair};
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use declare::seed::Seed;
 use declare::units::LENGTH;
@@ -69,7 +69,7 @@ struct RootOptimizer {
     how: Record,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let how = record.inside(Stated::NAMES.method).clone();
     Ok(Box::new(RootOptimizer { stated: Stated::checked(record)?, how }))
 }

@@ -20,7 +20,7 @@ use crate::stage::{Kind, Omission, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::digest::Writer;
-use declare::error::Diagnostic;
+use declare::error::{Diagnostic, Faults};
 use declare::record::Record;
 use declare::record::varied::Varied;
 use declare::units::RATIO;
@@ -109,9 +109,9 @@ pub struct Scatter {
     is_correlated: bool,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)));
+    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)).into());
     if stated.vary.axes.is_empty() {
         return nothing(Stated::NAMES.vary);
     }
@@ -136,7 +136,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     if drawn.is_empty() {
         return Err(Diagnostic::new("nothing is distributed: all that is varied has values")
             .at(record.place_of(Stated::NAMES.vary))
-            .help("write for example `within: ± 2 um`; combinations of values are `kind: sweep`"));
+            .help("write for example `within: ± 2 um`; combinations of values are `kind: sweep`")
+            .into());
     }
     let correlations = stated.correlations.as_deref().unwrap_or_default();
     let copula = Copula::new(correlations, &drawn)?;
@@ -144,14 +145,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     if pairs > 0 && pairs < 2 * REPLICATES {
         let message = format!("`indices` is {pairs}; with fewer than {} they have no errors", 2 * REPLICATES);
         let help = "take more, or 0 for none";
-        return Err(Diagnostic::new(message).at(record.place_of(Stated::NAMES.indices)).help(help));
+        return Err(Diagnostic::new(message).at(record.place_of(Stated::NAMES.indices)).help(help).into());
     }
     // Pairs of points have twice as many coordinates.
     if stated.method == Method::Sobol && 2 * drawn.len() > MOST_VARIABLES {
         let message =
             format!("Sobol points are tabulated for at most {} fields here, not {}", MOST_VARIABLES / 2, drawn.len());
         let place = record.place_of(Stated::NAMES.vary);
-        return Err(Diagnostic::new(message).at(place).help("use `method: latin_hypercube`"));
+        return Err(Diagnostic::new(message).at(place).help("use `method: latin_hypercube`").into());
     }
     let layout = Layout::new(&prepared.columns, &distributions, stated.method, [stated.samples, pairs], copula.clone());
     let number = Column::integer(NUMBER, "Counts the samples in the order in which they are drawn, from 1.").key();
@@ -165,7 +166,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
     let columns: Vec<(&str, &str)> =
         asked.outputs.iter().map(|output| (output.column.name.as_str(), output.column.unit.as_str())).collect();
     let limits = stated.limits.iter().flatten().map(|text| Limit::read(&text.value, text.place, &columns));
-    let limits = limits.collect::<Result<Vec<_>, _>>()?;
+    let limits = Faults::collect(limits)?;
     let shares = stated.quantiles.clone().unwrap_or_else(|| SHARES.to_vec());
     let is_correlated = copula.is_some() && stated.indices > 0;
     let scatter = Scatter { asked, layout, limits, shares, is_correlated };

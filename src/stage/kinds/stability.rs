@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use crate::stage::common::{Contact, Slices, Teeth};
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Stage, common, pair};
 use declare::declared::Declared;
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Failure, Faults};
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH, STRESS, TORQUE, in_unit};
 use declare::{Declared, Words};
@@ -189,7 +189,7 @@ struct Stability {
     samples: usize,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     stated.teeth.check(record)?;
     let assumptions = stated.teeth.assumptions(stated.coupling == Coupling::Body);

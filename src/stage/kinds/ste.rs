@@ -28,7 +28,7 @@ use crate::stage::{
 };
 use declare::Declared;
 use declare::declared::{Declared, Placed};
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use declare::units::{ANGLE, RATIO, TORQUE, in_unit};
 use gearmesh::gear::contact::SliceCoupling;
@@ -109,14 +109,14 @@ const PER_SLICE: f64 = 0.01;
 /// Solves that a curve takes for each of its positions, with its extrema and first touches.
 const SOLVES_PER_POSITION: f64 = 4.0;
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let ste = Ste::checked(record)?;
     if ste.designs.is_empty() {
-        return Err(Diagnostic::new("no designs are given").at(record.place_of(Ste::NAMES.designs)));
+        return Err(Diagnostic::new("no designs are given").at(record.place_of(Ste::NAMES.designs)).into());
     }
     for (index, Placed { value: name, place }) in ste.designs.iter().enumerate() {
         if ste.designs[..index].iter().any(|other| other.value == *name) {
-            return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(*place));
+            return Err(Diagnostic::new(format!("the designs of `{name}` are listed twice")).at(*place).into());
         }
     }
     ste.deviations.check(record)?;
@@ -258,8 +258,9 @@ impl Stage for Ste {
         ]
     }
 
-    fn keys(&self, _table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
+    fn keys(&self, table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
         match column {
+            "order" if table == tables::HARMONICS => Some((1..=self.harmonics).map(Cell::from).collect()),
             "torque" => Some(self.torque.iter().map(|torque| in_unit(*torque, "N m").into()).collect()),
             "design" => {
                 let names = |giver: &Placed<String>| of(&giver.value, names::designs::TABLE, names::designs::DESIGN);
@@ -270,6 +271,10 @@ impl Stage for Ste {
                 Some(self.deviations.values(field).iter().map(|value| in_unit(*value, "um").into()).collect())
             }
         }
+    }
+
+    fn combines(&self, _table: &str) -> bool {
+        true
     }
 
     fn estimate(&self, demand: &Demand, ahead: &Ahead) -> Estimate {

@@ -12,7 +12,7 @@ use crate::stage::{
     pair, root_influences,
 };
 use declare::declared::{Declared, Words};
-use declare::error::{Diagnostic, Failure};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use declare::units::{RATIO, TORQUE};
 use declare::work::Work;
@@ -91,7 +91,7 @@ const USUAL_FACTORISATIONS: f64 = 4.0;
 /// The torque that stands for "any" where the contact is linear, so that stiffness does not depend on load.
 const ANY_TORQUE: f64 = 1.0;
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stiffness = Stiffness::checked(record)?;
     stiffness.teeth.check(record)?;
     let contact = stiffness.teeth.contact();
@@ -102,7 +102,8 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
             contact.word()
         ))
         .at(record.place_of(Teeth::NAMES.contact))
-        .help("add for example `torque: 50 N m`"));
+        .help("add for example `torque: 50 N m`")
+        .into());
     }
     Ok(Box::new(stiffness))
 }

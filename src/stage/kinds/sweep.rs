@@ -21,7 +21,7 @@ use crate::stage::{Kind, RowCount, Stage};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::digest::Writer;
-use declare::error::{Diagnostic, suggest};
+use declare::error::{Diagnostic, Faults, suggest};
 use declare::record::Record;
 use declare::record::varied::Varied;
 use studygraph::table::schema::{Column, Schema};
@@ -88,9 +88,9 @@ pub struct Sweep {
     best: usize,
 }
 
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)));
+    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)).into());
     if stated.vary.axes.is_empty() {
         return nothing(Stated::NAMES.vary);
     }

@@ -25,7 +25,7 @@ impl Trouble {
     pub fn of(kind: &str, failure: Failure) -> Self {
         match failure {
             Failure::Failed(message) => Self::Invalid(format!("{kind}: {message}")),
-            Failure::Study(wrong) => Self::Invalid(format!("{kind}: {}", wrong.message)),
+            Failure::Study(wrong) => Self::Invalid(format!("{kind}: {}", wrong.first.message)),
             Failure::Stopped => Self::Failed(Failure::Stopped),
         }
     }
@@ -176,7 +176,7 @@ impl Chain {
     ) -> Result<Vec<Table>, Trouble> {
         let link = &self.links[index];
         let stage = (link.kind.build)(&self.record(index, columns, row))
-            .map_err(|wrong| Trouble::Invalid(format!("{}: {}", link.kind.name, wrong.message)))?;
+            .map_err(|wrong| Trouble::Invalid(format!("{}: {}", link.kind.name, wrong.first.message)))?;
         // What a stage warns of in one of a million rows nobody reads.
         let inner = Context { demand: &link.demand, progress: &|_| (), warn: &|_| (), ..*context };
         stage.run(&inner, &self.inputs(index, tables, outer)).map_err(|failure| Trouble::of(link.kind.name, failure))
@@ -196,5 +196,5 @@ pub fn kind(stage: &varied::Stage) -> Result<&'static Kind, Diagnostic> {
 /// # Errors
 /// What its kind refuses.
 pub fn built(stage: &varied::Stage) -> Result<Box<dyn Stage>, Diagnostic> {
-    (kind(stage)?.build)(&stage.record)
+    (kind(stage)?.build)(&stage.record).map_err(|wrong| *wrong.first)
 }

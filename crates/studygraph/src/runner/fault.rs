@@ -3,7 +3,7 @@
 //! Must not know: what becomes of the others.
 
 use crate::store::error::StoreError;
-use declare::error::Diagnostic;
+use declare::error::Faults;
 
 /// Why a stage gave no tables.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
@@ -13,7 +13,7 @@ pub enum Fault {
     Failed(String),
     /// The same about a place in the study.
     #[error("{0}")]
-    Study(Box<Diagnostic>),
+    Study(Faults),
     /// A mistake of this program.
     #[error("this is a bug: {0}")]
     Bug(String),

@@ -61,7 +61,7 @@ pub fn rehearse(study: &Study) -> Result<Vec<Diagnostic>, Diagnostic> {
             Ok(tables) => {
                 known.extend(tables.into_iter().map(|table| ((node, table.name().to_owned()), Arc::new(table))));
             }
-            Err(Failure::Study(found)) => wrong.push(*found),
+            Err(Failure::Study(found)) => wrong.extend(found),
             Err(Failure::Failed(message)) => {
                 let place = place_of(of_study, &message);
                 wrong.push(Diagnostic::new(format!("`{}`: {message}", of_study.name)).at(place));

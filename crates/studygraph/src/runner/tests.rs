@@ -81,7 +81,7 @@ static CUT: Kind = kind("cut", &[axis(1)]);
 static CUT_BY_FOUR: Kind = kind("cut_by_four", &[axis(4)]);
 
 #[allow(clippy::unnecessary_wraps)] // the type of `Kind::build`
-fn build(record: &Record) -> Result<Box<dyn Stage>, Diagnostic> {
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     Ok(Box::new(Probe { record: record.clone() }))
 }
 

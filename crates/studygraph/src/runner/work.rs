@@ -229,7 +229,7 @@ impl Run<'_> {
 const NEARLY: f64 = 0.99;
 
 fn built(kind: &Kind, record: &Record) -> Result<Box<dyn Stage>, Failure> {
-    (kind.build)(record).map_err(|diagnostic| Failure::new(diagnostic.message))
+    (kind.build)(record).map_err(|wrong| Failure::new(wrong.first.message))
 }
 
 /// A table without the columns on demand that its reader did not ask for: its key says nothing of them.

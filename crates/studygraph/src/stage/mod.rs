@@ -16,10 +16,11 @@ use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
 use crate::warning::Warning;
-use declare::error::{Diagnostic, Failure, Place};
+use declare::error::{Failure, Faults, Place};
 use declare::parameter::Field;
 use declare::record::Record;
 use declare::seed::Seed;
+use declare::units::Dimension;
 use declare::work::Tally;
 
 pub use self::estimate::{Ahead, Estimate, RowCount};
@@ -39,7 +40,7 @@ pub struct Kind {
     /// A complete stage of this kind, as YAML, with the stages it refers to named after their kinds.
     pub example: &'static str,
     /// Builds a stage from a checked record; refuses what no declaration can express (interference, an empty range).
-    pub build: fn(&Record) -> Result<Box<dyn Stage>, Diagnostic>,
+    pub build: fn(&Record) -> Result<Box<dyn Stage>, Faults>,
 }
 
 /// A table whose rows are points of curves. Its last key counts the points of a curve, unless that is the column over which
@@ -85,14 +86,8 @@ pub trait Stage: Send + Sync {
         false
     }
 
-    /// The cells of other stages' tables that it names.
-    fn cells(&self) -> Vec<CellName> {
-        Vec::new()
-    }
-
-    /// Conditions on rows of other stages' tables that it needs some of, each with its place in the study; the column of the
-    /// cell is none.
-    fn conditions(&self) -> Vec<(CellName, Place)> {
+    /// What it names of other stages' tables: cells, or rows.
+    fn named(&self) -> Vec<Named> {
         Vec::new()
     }
 
@@ -100,6 +95,11 @@ pub trait Stage: Send + Sync {
     /// stage that it reads.
     fn keys(&self, _table: &str, _column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
         None
+    }
+
+    /// Whether a table has rows for every combination of the values that its key columns are known to have.
+    fn combines(&self, _table: &str) -> bool {
+        false
     }
 
     /// What it will take, as far as that is known before it runs.
@@ -153,6 +153,18 @@ pub trait Stage: Send + Sync {
     fn estimate_part(&self, _part: usize, demand: &Demand, ahead: &Ahead) -> Estimate {
         self.estimate(demand, ahead)
     }
+}
+
+/// Rows of another stage's table that a stage needs some of, or a cell in each of them.
+pub struct Named {
+    /// Its column is empty where only rows are meant.
+    pub cell: CellName,
+    /// Where the study names it.
+    pub place: Place,
+    /// Whether it must be one row.
+    pub is_one: bool,
+    /// The dimension of what the cell is compared with, how that is written, and where.
+    pub beside: Option<(Dimension, String, Place)>,
 }
 
 /// One thing a stage reads: tables of another stage.

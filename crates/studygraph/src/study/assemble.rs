@@ -4,19 +4,20 @@
 
 use std::path::Path;
 
+use super::blame::Blame;
 use super::decode::Decoder;
 use super::document::{Content, KeyValue, Node as Tree, parse};
 use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Faults, Node, Source, Study, cells, links, settings};
+use super::{Changes, Node, Source, Study, cells, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
 use declare::error::{Diagnostic, Place, suggest};
 use declare::parameter::{Field, Shape};
-use declare::record::{PlacedValue, Record, Value};
+use declare::record::{Record, Value};
 use declare::text;
 
 /// Characters of a name.
@@ -52,11 +53,22 @@ pub static KEYS: &[Field] = &[
 /// The key of a study under which paths are given other values.
 pub const SET: &str = "set";
 
-/// Makes a study of a text.
-///
-/// # Errors
-/// What is wrong with it.
-pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study, Faults> {
+/// A study of what is sound in a text, and everything that is wrong with the rest.
+pub fn examine(text: &str, path: &Path, program: &'static Program) -> (Option<Study>, Vec<Diagnostic>) {
+    let mut wrong = Vec::new();
+    let sound = sound(text, path, program, &mut wrong).unwrap_or_else(|found| {
+        wrong.push(found);
+        None
+    });
+    (sound, wrong)
+}
+
+fn sound(
+    text: &str,
+    path: &Path,
+    program: &'static Program,
+    wrong: &mut Vec<Diagnostic>,
+) -> Result<Option<Study>, Diagnostic> {
     let start = Place { line: 1, column: 1, ..Place::default() };
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
@@ -64,43 +76,55 @@ pub fn study(text: &str, path: &Path, program: &'static Program) -> Result<Study
     let root = with_what_is_set(root, program.kinds)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
-        return Err(Diagnostic::new(message).at(root.place).into());
+        return Err(Diagnostic::new(message).at(root.place));
     };
     let start = pairs.first().map_or(root.place, |pair| pair.place);
     let belong = ranges_belong(program.kinds);
-    let keys = Decoder::new(&belong, Stages::default()).record(&root, KEYS, &["stages", SET], "the study", start)?;
-    let name = keys.text("study").to_owned();
-    check_name("study", &name, keys.place_of("study"))?;
-
+    let mut decoder = Decoder::new(&belong, Stages::default());
+    let keys = decoder.record(&root, KEYS, &["stages", SET], "the study", start);
+    wrong.append(&mut decoder.faults);
+    let keys = keys.map_err(|found| wrong.push(found)).ok();
+    if let Some(keys) = &keys {
+        wrong.extend(check_name("study", keys.text("study"), keys.place_of("study")).err());
+    }
     let stages = pairs.iter().find(|pair| pair.key == "stages").ok_or_else(|| {
         Diagnostic::new("the study has no `stages`").at(start).help("stages are written `NAME: { kind: KIND, … }`")
     })?;
-    let drafts = drafts(stages, program, &belong)?;
-    links::check_references(&drafts)?;
-    let (mut nodes, mut wrong) = (Vec::with_capacity(drafts.len()), Vec::new());
-    for Draft { name, place, kind, record, .. } in drafts {
-        match (kind.build)(&record) {
-            Ok(stage) => nodes.push(Node { name, place, kind, record, stage }),
-            Err(found) => wrong.push(found.or_at(place)),
-        }
+    let mut blame = Blame::default();
+    let drafts = drafts(stages, program, &belong, &mut blame)?;
+    links::check_references(&drafts, &mut blame);
+    let mut built = Vec::with_capacity(drafts.len());
+    for (index, Draft { name, place, kind, record, .. }) in drafts.into_iter().enumerate() {
+        let stage = kind.zip(record).map(|(kind, record)| ((kind.build)(&record), kind, record));
+        let stage = match stage {
+            Some((Ok(stage), kind, record)) => Ok(Node { name, place, kind, record, stage }),
+            Some((Err(found), ..)) => {
+                found.into_iter().for_each(|found| blame.put(index, found.or_at(place)));
+                Err(name)
+            }
+            None => Err(name),
+        };
+        built.push(stage);
     }
-    Faults::all(wrong)?;
-    links::check_ports(&nodes)?;
-    Faults::all(cells::check(&nodes))?;
-    let tolerances = tolerances(&keys)?;
-    links::check_tolerances(&tolerances, &nodes)?;
-    Ok(Study {
+    links::check_ports(&built, &mut blame);
+    cells::check(&built, &mut blame);
+    let is_whole = built.iter().all(Result::is_ok);
+    let tolerances = keys.as_ref().map_or_else(Vec::new, |keys| tolerances(keys, wrong));
+    let nodes = blame.sound(built);
+    wrong.extend(blame.wrong);
+    wrong.extend(links::check_tolerances(&tolerances, &nodes, is_whole));
+    Ok(keys.map(|keys| Study {
         tolerances: tolerances.into_iter().map(|(allowance, _)| allowance).collect(),
-        title: keys.maybe_text("title").unwrap_or(&name).to_owned(),
+        title: keys.maybe_text("title").unwrap_or(keys.text("study")).to_owned(),
         source: keys.maybe_group("source").map(source),
         seed: keys.integer("seed").unsigned_abs(),
         path: path.to_owned(),
         text: text.to_owned(),
         changes: Changes::default(),
-        name,
+        name: keys.text("study").to_owned(),
         nodes,
         program,
-    })
+    }))
 }
 
 /// The tree with the values that the key `set` gives in the places of those that stand there.
@@ -136,60 +160,74 @@ fn source(record: &Record) -> Source {
     Source { paper: record.text("paper").to_owned(), tables: numbers("tables"), figures: numbers("figures") }
 }
 
-fn tolerances(keys: &Record) -> Result<Vec<(Allowance, Place)>, Diagnostic> {
-    let read = |(name, entry): &(String, PlacedValue)| {
-        let allowance = Allowance::new(name, &settings::any_quantity(&entry.value));
-        Ok((allowance.map_err(|problem| Diagnostic::new(problem).at(entry.place))?, entry.place))
-    };
-    keys.maybe_map("tolerances").unwrap_or_default().iter().map(read).collect()
+fn tolerances(keys: &Record, wrong: &mut Vec<Diagnostic>) -> Vec<(Allowance, Place)> {
+    let mut read = Vec::new();
+    for (name, entry) in keys.maybe_map("tolerances").unwrap_or_default() {
+        match Allowance::new(name, &settings::any_quantity(&entry.value)) {
+            Ok(allowance) => read.push((allowance, entry.place)),
+            Err(problem) => wrong.push(Diagnostic::new(problem).at(entry.place)),
+        }
+    }
+    read
 }
 
-fn drafts(stages: &KeyValue, program: &'static Program, belong: &str) -> Result<Vec<Draft>, Faults> {
+fn drafts(
+    stages: &KeyValue,
+    program: &'static Program,
+    belong: &str,
+    blame: &mut Blame,
+) -> Result<Vec<Draft>, Diagnostic> {
     let written = "stages are written `NAME: { kind: KIND, … }`";
     let pairs = match &stages.node.content {
         Content::Mapping(pairs) if !pairs.is_empty() => pairs,
         Content::Mapping(_) => {
-            return Err(Diagnostic::new("a study has at least one stage").at(stages.node.place).help(written).into());
+            return Err(Diagnostic::new("a study has at least one stage").at(stages.node.place).help(written));
         }
         _ => {
             let message = format!("`stages` is {}; a mapping from names to stages is expected", stages.node.describe());
-            return Err(Diagnostic::new(message).at(stages.node.place).help(written).into());
+            return Err(Diagnostic::new(message).at(stages.node.place).help(written));
         }
     };
     let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
-    let (mut drafts, mut wrong) = (Vec::with_capacity(pairs.len()), Vec::new());
-    for pair in pairs {
-        match draft(pair, stages, belong, &mut wrong) {
-            Ok(draft) => drafts.push(draft),
-            Err(found) => wrong.push(found),
-        }
-    }
-    Faults::all(wrong)?;
-    Ok(drafts)
+    let drafted =
+        pairs.iter().enumerate().map(|(index, pair)| draft(pair, stages, belong, |found| blame.put(index, found)));
+    Ok(drafted.collect())
 }
 
-/// One stage; what is wrong besides the error goes to `wrong`.
-fn draft(pair: &KeyValue, stages: Stages, belong: &str, wrong: &mut Vec<Diagnostic>) -> Result<Draft, Diagnostic> {
-    let kinds = stages.kinds;
-    let (name, place) = (&pair.key, pair.place);
-    check_name("stage", name, place)?;
-    let known = || kinds.iter().map(|kind| kind.name);
+/// One stage, as far as it can be read; what is wrong with it goes to `blame`.
+fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMut(Diagnostic)) -> Draft {
+    let mut draft =
+        Draft { name: pair.key.clone(), place: pair.place, kind: None, record: None, references: Vec::new() };
+    if let Err(found) = check_name("stage", &draft.name, draft.place) {
+        blame(found);
+    }
+    match kind_of(pair, stages.kinds) {
+        Err(found) => blame(found),
+        Ok(kind) => {
+            let mut decoder = Decoder::new(belong, stages);
+            let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(&draft.name), draft.place);
+            decoder.faults.into_iter().for_each(&mut blame);
+            draft.kind = Some(kind);
+            draft.record = record.map_err(blame).ok();
+            draft.references = decoder.references;
+        }
+    }
+    draft
+}
+
+fn kind_of(pair: &KeyValue, kinds: &[&'static Kind]) -> Result<&'static Kind, Diagnostic> {
+    let known = || format!("kinds are {}", alternatives(kinds.iter().map(|kind| kind.name)));
+    let name = &pair.key;
     let Content::Mapping(fields) = &pair.node.content else {
         let message =
             format!("stage {} is {}; a mapping with its `kind` is expected", quote(name), pair.node.describe());
-        return Err(Diagnostic::new(message).at(pair.node.place).help(format!("kinds are {}", alternatives(known()))));
+        return Err(Diagnostic::new(message).at(pair.node.place).help(known()));
     };
     let Some(KeyValue { node: wanted, .. }) = fields.iter().find(|field| field.key == "kind" && !field.node.is_null())
     else {
-        let message = format!("stage {} has no `kind`", quote(name));
-        return Err(Diagnostic::new(message).at(place).help(format!("kinds are {}", alternatives(known()))));
+        return Err(Diagnostic::new(format!("stage {} has no `kind`", quote(name))).at(pair.place).help(known()));
     };
-    let kind = kind_named(wanted, kinds)?;
-    let mut decoder = Decoder::new(belong, stages);
-    let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(name), place);
-    wrong.append(&mut decoder.faults);
-    let record = record?;
-    Ok(Draft { name: name.clone(), place, kind, record, references: decoder.references })
+    kind_named(wanted, kinds)
 }
 
 fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Diagnostic> {

@@ -1,4 +1,5 @@
-//! Cells that stages name of each other's tables: whether a row will be there that they mean.
+//! Cells that stages name of each other's tables: whether a row will be there that they mean, and one only, and a number in
+//! it that can be compared with what it is compared with.
 //!
 //! Which values a key column is going to have often follows from the study alone: names of designs, torques of an axis. A
 //! condition on another value is refused before anything runs. Must not know: which columns these are, or what they mean.
@@ -6,12 +7,14 @@
 use std::collections::BTreeMap;
 
 use super::Node;
-use super::links::{begins, find};
+use super::blame::{Blame, Built};
 use super::words::quote;
+use crate::stage::Named;
 use crate::table::data::Cell;
-use crate::table::select::{self, CellName};
-use declare::error::{Diagnostic, Place};
-use declare::record::{Record, Value};
+use crate::table::schema::{Column, Schema, Type};
+use crate::table::select;
+use declare::error::Diagnostic;
+use declare::units::{described, parse_unit, same_dimension};
 
 /// Values of the key columns, by stage, table and column; nothing where they are not known.
 struct Keys<'a> {
@@ -20,49 +23,87 @@ struct Keys<'a> {
 
 impl Keys<'_> {
     fn of(&self, stage: &str, table: &str, column: &str) -> Option<Vec<Cell>> {
-        // No stage reads from itself: that was refused.
-        self.nodes.get(stage)?.stage.keys(table, column, &|stage, table, column| self.of(stage, table, column))
+        self.within(stage, table, column, self.nodes.len())
+    }
+
+    /// Stages that read from each other in a circle, which was told, know nothing.
+    fn within(&self, stage: &str, table: &str, column: &str, steps: usize) -> Option<Vec<Cell>> {
+        let left = steps.checked_sub(1)?;
+        self.nodes
+            .get(stage)?
+            .stage
+            .keys(table, column, &|stage, table, column| self.within(stage, table, column, left))
     }
 }
 
-/// What is wrong with the conditions of all cells that are named.
-pub fn check(nodes: &[Node]) -> Vec<Diagnostic> {
-    let keys = Keys { nodes: nodes.iter().map(|node| (node.name.as_str(), node)).collect() };
-    let mut wrong = Vec::new();
-    for node in nodes {
-        for cell in node.stage.cells() {
-            if let Some(found) = missing(&keys, &cell) {
-                wrong.push(found.at(place_of(&node.record, &cell)));
+/// Checks all cells that are named.
+pub fn check(built: &[Built], blame: &mut Blame) {
+    let keys = Keys { nodes: built.iter().flatten().map(|node| (node.name.as_str(), node)).collect() };
+    for (at, node) in built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?))) {
+        for named in node.stage.named() {
+            if let Some(found) = wrong(&keys, &named) {
+                blame.put(at, found.or_at(named.place));
             }
         }
-        let placed = node.stage.conditions().into_iter();
-        wrong.extend(placed.filter_map(|(rows, place)| Some(missing(&keys, &rows)?.at(place))));
     }
-    wrong
 }
 
-/// The first condition of a cell that no row is going to meet.
-fn missing(keys: &Keys, cell: &CellName) -> Option<Diagnostic> {
-    let schemas = keys.nodes.get(cell.stage.as_str())?.stage.outputs();
+/// What is wrong with a cell, where its stage and table are there.
+fn wrong(keys: &Keys, named: &Named) -> Option<Diagnostic> {
+    let cell = &named.cell;
+    let node = keys.nodes.get(cell.stage.as_str())?;
+    let schemas = node.stage.outputs();
     let schema = schemas.iter().find(|schema| schema.name == cell.table)?;
-    cell.conditions.iter().find_map(|(name, value)| {
+    unmet(keys, named, schema)
+        .or_else(|| several(keys, named, schema).filter(|_| node.stage.combines(&cell.table)))
+        .or_else(|| incomparable(named, schema.column(&cell.column)?))
+}
+
+/// The first condition that fits no column, or that no row is going to meet.
+fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
+    cell.conditions.iter().find_map(|condition| {
+        let (name, value) = condition;
+        // That the column is missing is told of all that a stage reads.
+        let column = schema.column(name)?;
+        if let Err(message) = select::check_conditions(schema, std::slice::from_ref(condition)) {
+            return Some(Diagnostic::new(message));
+        }
         let known = keys.of(&cell.stage, &cell.table, name)?;
-        let there = select::unmet(schema.column(name)?, value, &known)?;
-        let message = format!(
-            "no row of {} will have {}",
-            quote(&format!("{}.{}", cell.stage, cell.table)),
-            quote(&format!("{name}={value}"))
-        );
+        let there = select::unmet(column, value, &known)?;
+        let table = quote(&format!("{}.{}", cell.stage, cell.table));
+        let message = format!("no row of {table} will have {}", quote(&format!("{name}={value}")));
         Some(Diagnostic::new(message).help(there))
     })
 }
 
-/// Where a record names a cell: the text that begins as it does and has its conditions.
-fn place_of(record: &Record, cell: &CellName) -> Place {
-    let table = format!("{}.{}", cell.stage, cell.table);
-    let names_it = |value: &Value| {
-        let Value::Text(text) = value else { return false };
-        begins(text, &table) && CellName::parse(text).is_ok_and(|named| named.conditions == cell.conditions)
-    };
-    find(record, &names_it).unwrap_or(record.place)
+/// The keys that tell rows apart where one is meant.
+fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
+    if !is_one {
+        return None;
+    }
+    let is_free = |column: &&Column| cell.conditions.iter().all(|(name, _)| *name != column.name);
+    let free = schema.key_columns().map(|at| &schema.columns[at]).filter(is_free);
+    let open: Vec<(&Column, Vec<Cell>)> = free
+        .filter_map(|column| Some((column, keys.of(&cell.stage, &cell.table, &column.name)?)))
+        .filter(|(_, values)| values.len() > 1)
+        .collect();
+    let (column, values) = open.first()?;
+    let rows: usize = open.iter().map(|(_, values)| values.len()).product();
+    let table = quote(&format!("{}.{}", cell.stage, cell.table));
+    let message = format!("one row of {table} is meant, and there will be {rows} or more");
+    let names: Vec<String> = open.iter().map(|(column, _)| quote(&column.name)).collect();
+    let example = select::condition(column, &values[0]);
+    Some(Diagnostic::new(message).help(format!("say which by {}, for example `{example}`", names.join(" and "))))
+}
+
+/// A column without numbers, or in another unit than what it is compared with.
+fn incomparable(named: &Named, column: &Column) -> Option<Diagnostic> {
+    let name = quote(&column.name);
+    if !matches!(column.kind, Type::Float | Type::Integer) {
+        return Some(Diagnostic::new(format!("column {name} holds {}s, not numbers", column.kind.name())));
+    }
+    let (dimension, text, place) = named.beside.as_ref()?;
+    let own = parse_unit(&column.unit).ok()?.dimension;
+    let message = format!("column {name} is {}, and {} is {}", described(own), quote(text), described(*dimension));
+    (!same_dimension(own, *dimension)).then(|| Diagnostic::new(message).at(*place))
 }

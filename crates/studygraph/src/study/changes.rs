@@ -13,7 +13,7 @@ use super::words::quote;
 use super::{LoadError, Study};
 use crate::program::Program;
 use declare::digest::Writer;
-use declare::error::{Diagnostic, Place};
+use declare::error::{Diagnostic, Faults, Place};
 
 /// What is to be set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -50,16 +50,52 @@ struct Change {
 /// Digits of the digest in a name.
 const DIGITS: usize = 8;
 
+/// A study that is refused.
+pub struct Refused {
+    error: LoadError,
+    changes: Changes,
+    /// The stages with which nothing is wrong, nor with any that they read from; none where that cannot be told.
+    pub sound: Option<Box<Study>>,
+}
+
+impl From<LoadError> for Refused {
+    fn from(error: LoadError) -> Self {
+        Self { error, changes: Changes::default(), sound: None }
+    }
+}
+
+impl Refused {
+    /// Everything that is wrong with it.
+    #[must_use]
+    pub fn error(self) -> LoadError {
+        self.changes.placed(self.error)
+    }
+
+    /// The same with what was found out about what is sound of it.
+    #[must_use]
+    pub fn with(self, found: Vec<Diagnostic>) -> LoadError {
+        let LoadError { path, text, diagnostic, mut others, .. } = self.error;
+        others.extend(found);
+        self.changes.placed(LoadError::new(&path, text, Faults { first: diagnostic, others }))
+    }
+}
+
 /// Makes a study of a text and what is set.
 ///
 /// # Errors
-/// The first thing that is wrong.
-pub fn load(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, LoadError> {
+/// All that is wrong with it.
+pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, Refused> {
     let (text, changes) =
         if settings.is_empty() { (text.to_owned(), Changes::default()) } else { changed(text, path, settings)? };
-    match assemble::study(&text, path, program) {
-        Ok(study) => Ok(Study { changes, ..study }),
-        Err(wrong) => Err(changes.placed(LoadError::new(path, text, wrong))),
+    let (study, wrong) = assemble::examine(&text, path, program);
+    let study = study.map(|study| Study { changes: changes.clone(), ..study });
+    match (Faults::all(wrong), study) {
+        (Ok(()), Some(study)) => Ok(study),
+        (Err(wrong), sound) => {
+            Err(Refused { error: LoadError::new(path, text, wrong), changes, sound: sound.map(Box::new) })
+        }
+        // What is no study has something wrong with it.
+        (Ok(()), None) => Err(LoadError::new(path, text, Diagnostic::new("this is not a study")).into()),
     }
 }
 

@@ -6,6 +6,7 @@ use std::cell::OnceCell;
 use std::collections::BTreeMap;
 
 use super::Node;
+use super::blame::{Blame, Built};
 use super::decode::Reference;
 use super::words::{alternatives, article, quote, stage_of};
 use crate::stage::{Kind, Port, Want};
@@ -17,45 +18,46 @@ use declare::record::{Record, Value};
 /// An edge of the graph: the stage that is read, and where that is said.
 type Edge = (usize, Place);
 
-/// Checks the fields that name a stage.
-///
-/// A stage whose fields are read but which is not built yet.
+/// A stage whose fields are read, as far as they can be, but which is not built yet.
 pub struct Draft {
     pub name: String,
     pub place: Place,
-    pub kind: &'static Kind,
-    pub record: Record,
+    pub kind: Option<&'static Kind>,
+    pub record: Option<Record>,
     pub references: Vec<Reference>,
 }
 
-/// # Errors
-/// When the stage is missing or of a wrong kind, or the stages read each other in a circle.
-pub fn check_references(drafts: &[Draft]) -> Result<(), Diagnostic> {
+/// Checks the fields that name a stage: that there is one, of a kind that fits, and no circle of them.
+pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
     let index = by_name(drafts.iter().map(|draft| draft.name.as_str()));
     let mut edges = Vec::with_capacity(drafts.len());
-    for draft in drafts {
+    for (at, draft) in drafts.iter().enumerate() {
         let mut own = Vec::new();
         for reference in &draft.references {
-            let fits = |kind: &str| reference.kinds.is_empty() || reference.kinds.contains(&kind);
-            let target = index.get(reference.stage.as_str()).copied();
-            let Some(target) = target.filter(|target| fits(drafts[*target].kind.name)) else {
-                let found = target.map(|target| drafts[target].kind.name);
-                let others = drafts.iter().filter(|other| fits(other.kind.name) && other.name != draft.name);
-                return Err(does_not_fit(reference, found, others.map(|other| other.name.as_str()).collect()));
+            // A stage whose kind cannot be read may be of any.
+            let fits = |other: &Draft| {
+                reference.kinds.is_empty() || other.kind.is_none_or(|kind| reference.kinds.contains(&kind.name))
             };
-            own.push((target, reference.place));
+            let target = index.get(reference.stage.as_str()).copied();
+            if let Some(target) = target.filter(|target| fits(&drafts[*target])) {
+                own.push((target, reference.place));
+            } else {
+                let found = target.and_then(|target| drafts[target].kind).map(|kind| kind.name);
+                let others = drafts.iter().filter(|other| fits(other) && other.name != draft.name);
+                let others = others.map(|other| other.name.as_str()).collect();
+                blame.put(at, does_not_fit(reference, found, others));
+            }
         }
         edges.push(own);
     }
     let names: Vec<_> = drafts.iter().map(|draft| draft.name.as_str()).collect();
-    check_circles(&names, &edges)
+    check_circles(&names, &edges, blame);
 }
 
-/// Checks that every tolerance is meant for a column that is there, and fits it.
-///
-/// # Errors
-/// When there is no such column, or one holds no numbers or numbers in another unit.
-pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node]) -> Result<(), Diagnostic> {
+/// Checks that every tolerance is meant for a column that is there, and fits it. Unless all stages are there, it may be meant
+/// for one that is not.
+pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node], are_all: bool) -> Vec<Diagnostic> {
+    let mut wrong = Vec::new();
     for (allowance, place) in tolerances {
         let mut known = Vec::new();
         let mut found = false;
@@ -65,20 +67,20 @@ pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node]) -> Re
                     known.push(format!("{}.{}.{}", node.name, schema.name, column.name));
                     if allowance.means(&node.name, &schema.name, &column.name) {
                         found = true;
-                        allowance.of(column).map_err(|problem| Diagnostic::new(problem).at(*place))?;
+                        wrong.extend(allowance.of(column).err().map(|problem| Diagnostic::new(problem).at(*place)));
                     }
                 }
             }
         }
-        if !found {
+        if !found && are_all {
             let parts = allowance.name.split('.').count();
             let same = known.iter().map(|full| full.splitn(4 - parts, '.').last().unwrap_or(full));
             let help = suggest(&allowance.name, same.collect::<Vec<_>>());
             let message = format!("there is no column {}", quote(&allowance.name));
-            return Err(Diagnostic::new(message).at(*place).help(help));
+            wrong.push(Diagnostic::new(message).at(*place).help(help));
         }
     }
-    Ok(())
+    wrong
 }
 
 /// A reference to no stage, or to one of the kind `found`; `fitting` are the stages that would do.
@@ -99,55 +101,69 @@ fn does_not_fit(reference: &Reference, found: Option<&str>, fitting: Vec<&str>) 
     Diagnostic::new(message).at(reference.place).help(help)
 }
 
-/// Checks what built stages read from each other.
-///
-/// # Errors
-/// When a stage, table or column is missing, or the stages read each other in a circle.
-pub fn check_ports(nodes: &[Node]) -> Result<(), Diagnostic> {
-    let index = by_name(nodes.iter().map(|node| node.name.as_str()));
-    let ports: Vec<Vec<Port>> = nodes.iter().map(|node| node.stage.inputs()).collect();
-    // Of stages that others read; they may be many, and those that are read few.
-    let outputs: Vec<OnceCell<Vec<Schema>>> = nodes.iter().map(|_| OnceCell::new()).collect();
-    let outputs = |node: usize| outputs[node].get_or_init(|| nodes[node].stage.outputs()).as_slice();
-    let mut edges = Vec::with_capacity(nodes.len());
-    for (node, own) in nodes.iter().zip(&ports) {
-        let edge = |port: &Port| {
-            let place = place_of(&node.record, port, None);
-            let target = index.get(port.stage.as_str()).copied();
-            target.map(|target| (target, place)).ok_or_else(|| {
-                let help =
-                    suggest(&port.stage, index.keys().copied().filter(|name| *name != node.name).collect::<Vec<_>>());
-                no_stage(&port.stage).at(place).help(help)
-            })
-        };
-        edges.push(own.iter().map(edge).collect::<Result<Vec<_>, _>>()?);
+/// Checks what built stages read from each other: that stage, table and column are there, and no circle of stages. What is
+/// read from a stage that could not be built is not known.
+pub fn check_ports(built: &[Built], blame: &mut Blame) {
+    let name = |one: &Built| one.as_ref().map_or_else(Clone::clone, |node| node.name.clone());
+    let names: Vec<String> = built.iter().map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let index = by_name(names.iter().copied());
+    let ports: Vec<Vec<Port>> =
+        built.iter().map(|one| one.as_ref().map_or_else(|_| Vec::new(), |node| node.stage.inputs())).collect();
+    let nodes = || built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?)));
+    let mut edges = vec![Vec::new(); built.len()];
+    for (at, node) in nodes() {
+        for port in &ports[at] {
+            let place = place_of(&node.record, port);
+            if let Some(target) = index.get(port.stage.as_str()) {
+                edges[at].push((*target, place));
+            } else {
+                let others = names.iter().copied().filter(|name| *name != node.name);
+                let help = suggest(&port.stage, others.collect::<Vec<_>>());
+                blame.put(at, no_stage(&port.stage).at(place).help(help));
+            }
+        }
     }
-    let names: Vec<_> = nodes.iter().map(|node| node.name.as_str()).collect();
-    check_circles(&names, &edges)?;
+    check_circles(&names, &edges, blame);
 
-    for (node, own) in nodes.iter().zip(&ports) {
-        for port in own.iter().filter(|port| port.only_for.is_empty()) {
-            let target = source(port, &index, &ports).map_err(|found| found.at(place_of(&node.record, port, None)))?;
+    // Of stages that others read; they may be many, and those that are read few.
+    let outputs: Vec<OnceCell<Vec<Schema>>> = built.iter().map(|_| OnceCell::new()).collect();
+    let given = |at: usize| {
+        let node = built[at].as_ref().ok()?;
+        Some((node, outputs[at].get_or_init(|| node.stage.outputs()).as_slice()))
+    };
+    for (at, node) in nodes() {
+        for port in ports[at].iter().filter(|port| port.only_for.is_empty()) {
+            let target = match source(port, &index, &ports) {
+                Ok(target) => target,
+                Err(found) => {
+                    blame.put(at, found.at(place_of(&node.record, port)));
+                    continue;
+                }
+            };
+            let Some((read, schemas)) = target.and_then(given) else { continue };
             for want in &port.wants {
-                check_want(&nodes[target], want, outputs(target))
-                    .map_err(|(found, column)| found.at(place_of(&node.record, port, Some((&want.table, column)))))?;
-                // What that takes in turn, since it is wanted.
-                for needed in &ports[target] {
-                    let Some(column) = asked(needed, want) else { continue };
-                    let from = source(needed, &index, &ports)?;
-                    for missing in &needed.wants {
-                        check_want(&nodes[from], missing, outputs(from)).map_err(|(found, _)| {
-                            let whole = format!("{}.{}.{column}", nodes[target].name, want.table);
-                            let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
-                            let place = place_of(&node.record, port, Some((&want.table, Some(column))));
-                            Diagnostic { message, ..found }.at(place)
-                        })?;
+                for (found, column) in missing(read, want, schemas) {
+                    for place in places_of(&node.record, port, &want.table, column) {
+                        blame.put(at, found.clone().at(place));
+                    }
+                }
+                let needed = target.into_iter().flat_map(|target| &ports[target]);
+                for (needed, column) in needed.filter_map(|needed| Some((needed, asked(needed, want)?))) {
+                    // What that takes in turn, since it is wanted.
+                    let from = source(needed, &index, &ports).ok().flatten().and_then(given);
+                    let Some((from, schemas)) = from else { continue };
+                    for (found, _) in needed.wants.iter().flat_map(|want| missing(from, want, schemas)) {
+                        let whole = format!("{}.{}.{column}", read.name, want.table);
+                        let message = format!("{} cannot be computed: {}", quote(&whole), found.message);
+                        for place in places_of(&node.record, port, &want.table, Some(column)) {
+                            blame.put(at, Diagnostic { message: message.clone(), ..found.clone() }.at(place));
+                        }
                     }
                 }
             }
         }
     }
-    Ok(())
 }
 
 /// The column on demand among those that are wanted for which a port is read.
@@ -164,20 +180,26 @@ fn no_stage(name: &str) -> Diagnostic {
     Diagnostic::new(format!("there is no stage {}", quote(name)))
 }
 
-/// The stage whose tables a port reads: the one it names, or what that one reads through a port of its own.
-fn source(port: &Port, index: &BTreeMap<&str, usize>, ports: &[Vec<Port>]) -> Result<usize, Diagnostic> {
+/// The stage whose tables a port reads: the one it names, or what that one reads through a port of its own; none where that
+/// is not known.
+fn source(port: &Port, index: &BTreeMap<&str, usize>, ports: &[Vec<Port>]) -> Result<Option<usize>, Diagnostic> {
     let mut port = port;
-    loop {
-        let target = *index.get(port.stage.as_str()).ok_or_else(|| no_stage(&port.stage))?;
-        let Some(through) = port.through else { return Ok(target) };
-        port = ports[target].iter().find(|other| other.name == through).ok_or_else(|| {
-            Diagnostic::new(format!("stage {} reads nothing as {}", quote(&port.stage), quote(through)))
-        })?;
+    // More steps than stages are a circle, which was told.
+    for _ in 0..=ports.len() {
+        let Some(&target) = index.get(port.stage.as_str()) else { return Ok(None) };
+        let Some(through) = port.through else { return Ok(Some(target)) };
+        let Some(next) = ports[target].iter().find(|other| other.name == through) else {
+            let is_unknown = ports[target].is_empty();
+            let message = format!("stage {} reads nothing as {}", quote(&port.stage), quote(through));
+            return if is_unknown { Ok(None) } else { Err(Diagnostic::new(message)) };
+        };
+        port = next;
     }
+    Ok(None)
 }
 
-/// Says with the error which column is missing, if it is not the table.
-fn check_want<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Result<(), (Diagnostic, Option<&'a str>)> {
+/// What is missing of a table that is wanted: itself, or columns, each with its name.
+fn missing<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Vec<(Diagnostic, Option<&'a str>)> {
     let stage = node.name.as_str();
     let Some(schema) = outputs.iter().find(|schema| schema.name == want.table) else {
         let message = format!("stage {} has no table {}", quote(stage), quote(&want.table));
@@ -185,36 +207,51 @@ fn check_want<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Result<(),
             Some(why) => why.to_owned(),
             None => suggest(&want.table, outputs.iter().map(|schema| schema.name.as_str())),
         };
-        return Err((Diagnostic::new(message).help(help), None));
+        return vec![(Diagnostic::new(message).help(help), None)];
     };
-    let missing = want.columns.iter().find(|column| schema.column(column).is_none());
-    missing.map_or(Ok(()), |column| {
+    let missing = want.columns.iter().filter(|column| schema.column(column).is_none());
+    let told = missing.map(|column| {
         let table = format!("{stage}.{}", want.table);
         let message = format!("table {} has no column {}", quote(&table), quote(column));
         let help = suggest(column, schema.columns.iter().map(|column| column.name.as_str()));
-        Err((Diagnostic::new(message).help(help), Some(column)))
-    })
+        (Diagnostic::new(message).help(help), Some(column.as_str()))
+    });
+    told.collect()
 }
 
-/// Where a record says what a port reads: a text that begins with `stage.table` (and has the column in it), a
-/// reference to the stage, a text that begins with the stage, or the record itself.
-fn place_of(record: &Record, port: &Port, wanted: Option<(&str, Option<&str>)>) -> Place {
-    let text = |test: &dyn Fn(&str) -> bool| find(record, &|value| matches!(value, Value::Text(text) if test(text)));
-    let cell = wanted.and_then(|(table, column)| {
-        let table = format!("{}.{table}", port.stage);
-        let with_column = column.and_then(|column| text(&|cell| begins(cell, &table) && has_word(cell, column)));
-        with_column.or_else(|| text(&|cell| begins(cell, &table)))
-    });
-    cell.or_else(|| find(record, &|value| matches!(value, Value::Reference(name) if *name == port.stage)))
-        .or_else(|| text(&|cell| begins(cell, &port.stage)))
-        .unwrap_or(record.place)
+/// Where a record says that a port is read: a reference to the stage, a text that begins with the stage, or the record itself.
+fn place_of(record: &Record, port: &Port) -> Place {
+    let is_it = |value: &Value| matches!(value, Value::Reference(name) if *name == port.stage);
+    let begins_so = |value: &Value| matches!(value, Value::Text(text) if begins(text, &port.stage));
+    let found = find(record, &is_it).first().copied();
+    found.or_else(|| find(record, &begins_so).first().copied()).unwrap_or(record.place)
+}
+
+/// Where a record says that a table is read, or a column of it: in every text that begins with `stage.table` and has the
+/// column in it, else in the first that begins so, else as [`place_of`].
+fn places_of(record: &Record, port: &Port, table: &str, column: Option<&str>) -> Vec<Place> {
+    let table = format!("{}.{table}", port.stage);
+    let texts = |test: &dyn Fn(&str) -> bool| {
+        find(record, &|value| matches!(value, Value::Text(text) if begins(text, &table) && test(text)))
+    };
+    let with_column = column.map_or_else(Vec::new, |column| texts(&|text| has_word(text, column)));
+    if !with_column.is_empty() {
+        return with_column;
+    }
+    let places = texts(&|_| true);
+    match (column, places.first()) {
+        (_, None) => vec![place_of(record, port)],
+        // The column stands somewhere else, as in a figure.
+        (Some(_), Some(first)) => vec![*first],
+        (None, Some(_)) => places,
+    }
 }
 
 fn in_name(character: char) -> bool {
     character.is_alphanumeric() || character == '_' || character == '-'
 }
 
-pub(super) fn begins(text: &str, with: &str) -> bool {
+fn begins(text: &str, with: &str) -> bool {
     text.strip_prefix(with).is_some_and(|rest| !rest.starts_with(in_name))
 }
 
@@ -222,24 +259,24 @@ fn has_word(text: &str, word: &str) -> bool {
     text.split(|character| !in_name(character)).any(|part| part == word)
 }
 
-/// The first value that passes the test, in the order of the record.
-pub(super) fn find(record: &Record, test: &dyn Fn(&Value) -> bool) -> Option<Place> {
-    record.fields.iter().find_map(|(_, entry)| find_in(&entry.value, entry.place, test))
+/// The places of all values that pass the test, in the order of the record.
+fn find(record: &Record, test: &dyn Fn(&Value) -> bool) -> Vec<Place> {
+    record.fields.iter().flat_map(|(_, entry)| find_in(&entry.value, entry.place, test)).collect()
 }
 
-fn find_in(value: &Value, place: Place, test: &dyn Fn(&Value) -> bool) -> Option<Place> {
+fn find_in(value: &Value, place: Place, test: &dyn Fn(&Value) -> bool) -> Vec<Place> {
     if test(value) {
-        return Some(place);
+        return vec![place];
     }
     match value {
-        Value::List(entries) => entries.iter().find_map(|entry| find_in(&entry.value, entry.place, test)),
-        Value::Map(entries) => entries.iter().find_map(|(_, entry)| find_in(&entry.value, entry.place, test)),
-        other => other.record().and_then(|record| find(record, test)),
+        Value::List(entries) => entries.iter().flat_map(|entry| find_in(&entry.value, entry.place, test)).collect(),
+        Value::Map(entries) => entries.iter().flat_map(|(_, entry)| find_in(&entry.value, entry.place, test)).collect(),
+        other => other.record().map_or_else(Vec::new, |record| find(record, test)),
     }
 }
 
-/// Walks the graph depth first, without recursion: a study may have very many stages.
-fn check_circles(names: &[&str], edges: &[Vec<Edge>]) -> Result<(), Diagnostic> {
+/// Walks the graph depth first, without recursion: a study may have very many stages. The first circle is told.
+fn check_circles(names: &[&str], edges: &[Vec<Edge>], blame: &mut Blame) {
     #[derive(Clone, Copy, PartialEq)]
     enum Mark {
         New,
@@ -268,12 +305,14 @@ fn check_circles(names: &[&str], edges: &[Vec<Edge>]) -> Result<(), Diagnostic> 
                 }
                 Mark::Open => {
                     let circle = path.iter().map(|(stage, _)| *stage).skip_while(|stage| *stage != target);
-                    return Err(circle_found(circle.map(|stage| names[stage]).collect()).at(place));
+                    let circle: Vec<usize> = circle.collect();
+                    let found = circle_found(circle.iter().map(|&stage| names[stage]).collect()).at(place);
+                    blame.put_on_all(circle, found);
+                    return;
                 }
             }
         }
     }
-    Ok(())
 }
 
 fn circle_found(mut circle: Vec<&str>) -> Diagnostic {

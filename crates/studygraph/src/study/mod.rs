@@ -4,6 +4,7 @@
 //! `links` checks what they say of each other. Must not know: execution, the store.
 
 mod assemble;
+mod blame;
 mod cells;
 mod changes;
 mod characters;
@@ -34,12 +35,12 @@ mod words;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-pub use changes::{Changes, Settings};
+pub use changes::{Changes, Refused, Settings};
 
 use crate::program::Program;
 use crate::stage::{Kind, Stage};
 use crate::table::tolerance::Allowance;
-use declare::error::{Diagnostic, Place};
+use declare::error::{Diagnostic, Faults, Place};
 use declare::record::Record;
 
 /// What a study reproduces.
@@ -83,8 +84,8 @@ pub struct Node {
     pub stage: Box<dyn Stage>,
 }
 
-/// Mistakes that are told at once.
-pub const MOST_TOLD: usize = 10;
+/// Mistakes that are told at once, except to somebody who asks for all.
+const MOST_TOLD: usize = 10;
 
 /// Why a file is not a study. Shown as `file:line:column: message`, with the help on a line of its own.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -95,29 +96,20 @@ pub struct LoadError {
     pub diagnostic: Box<Diagnostic>,
     /// What else is wrong, as far as that can be told, in the order of the text.
     pub others: Vec<Diagnostic>,
+    /// How many are told at most.
+    told: usize,
 }
 
 impl Study {
     /// What is wrong with it, found after it was read.
     #[must_use]
-    pub fn refused(&self, wrong: Diagnostic) -> LoadError {
-        self.refused_for(wrong)
-    }
-
-    /// The same of several findings, if any.
-    ///
-    /// # Errors
-    /// All of them.
-    pub fn accepted(&self, findings: Vec<Diagnostic>) -> Result<(), LoadError> {
-        Faults::all(findings).map_err(|faults| self.refused_for(faults))
-    }
-
-    fn refused_for(&self, wrong: impl Into<Faults>) -> LoadError {
+    pub fn refused(&self, wrong: impl Into<Faults>) -> LoadError {
         self.changes.placed(LoadError::new(&self.path, self.text.clone(), wrong))
     }
 }
 
 impl LoadError {
+    /// In the order of the text; what two found is told once.
     fn new(path: &Path, text: String, wrong: impl Into<Faults>) -> Self {
         let Faults { mut first, mut others } = wrong.into();
         let at = |found: &Diagnostic| found.place.map_or(0, |place| place.offset);
@@ -126,7 +118,34 @@ impl LoadError {
             std::mem::swap(earlier, first.as_mut());
             others.sort_by_key(at);
         }
-        Self { path: path.to_owned(), text, diagnostic: first, others }
+        let mut told = vec![(at(&first), first.message.clone())];
+        others.retain(|found| {
+            let found = (at(found), found.message.clone());
+            let is_new = !told.contains(&found);
+            if is_new {
+                told.push(found);
+            }
+            is_new
+        });
+        Self { path: path.to_owned(), text, diagnostic: first, others, told: MOST_TOLD }
+    }
+
+    /// For somebody who wants to know of all.
+    #[must_use]
+    pub fn in_full(self) -> Self {
+        Self { told: usize::MAX, ..self }
+    }
+
+    /// What is told of it.
+    pub fn told(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.each().take(self.told)
+    }
+
+    /// Says that there is more than is told; nothing where there is not.
+    #[must_use]
+    pub fn more(&self) -> Option<String> {
+        let more = (self.others.len() + 1).saturating_sub(self.told);
+        (more > 0).then(|| format!("and {more} more; `gearstudy check` tells all"))
     }
 
     /// Everything that is wrong.
@@ -135,32 +154,9 @@ impl LoadError {
     }
 }
 
-/// What is wrong with a study: something, and whatever else was found with it.
-struct Faults {
-    first: Box<Diagnostic>,
-    others: Vec<Diagnostic>,
-}
-
-impl From<Diagnostic> for Faults {
-    fn from(first: Diagnostic) -> Self {
-        Self { first: Box::new(first), others: Vec::new() }
-    }
-}
-
-impl Faults {
-    /// Nothing, or all of them.
-    fn all(found: Vec<Diagnostic>) -> Result<(), Self> {
-        let mut found = found.into_iter();
-        match found.next() {
-            Some(first) => Err(Self { first: Box::new(first), others: found.collect() }),
-            None => Ok(()),
-        }
-    }
-}
-
 impl fmt::Display for LoadError {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (at, found) in self.each().take(MOST_TOLD).enumerate() {
+        for (at, found) in self.told().enumerate() {
             let line = if at == 0 { "" } else { "\n" };
             write!(formatter, "{line}{}:", self.path.display())?;
             if let Some(place) = found.place {
@@ -171,10 +167,7 @@ impl fmt::Display for LoadError {
                 write!(formatter, "\n  help: {help}")?;
             }
         }
-        match self.others.len().saturating_sub(MOST_TOLD - 1) {
-            0 => Ok(()),
-            more => write!(formatter, "\n{}: and {more} more", self.path.display()),
-        }
+        self.more().map_or(Ok(()), |more| write!(formatter, "\n{}: {more}", self.path.display()))
     }
 }
 
@@ -183,7 +176,7 @@ impl std::error::Error for LoadError {}
 /// Reads and checks a study of this program.
 ///
 /// # Errors
-/// What is wrong with it: of its fields and stages all that can be told by itself, else the first thing.
+/// What is wrong with it: all that can be told of its parts, each by itself.
 pub fn load(path: &Path, program: &'static Program) -> Result<Study, LoadError> {
     load_text(&read::read(path)?, path, program)
 }
@@ -193,7 +186,15 @@ pub fn load(path: &Path, program: &'static Program) -> Result<Study, LoadError> 
 /// # Errors
 /// As [`load`]; what is wrong with what is set has that for its place.
 pub fn load_changed(path: &Path, program: &'static Program, set: &Settings) -> Result<Study, LoadError> {
-    changes::load(&read::read(path)?, path, program, set)
+    examine(path, program, set).map_err(Refused::error)
+}
+
+/// The same, with what is sound of a study that is refused: more can be found out about that.
+///
+/// # Errors
+/// As [`load_changed`].
+pub fn examine(path: &Path, program: &'static Program, set: &Settings) -> Result<Study, Refused> {
+    changes::examine(&read::read(path)?, path, program, set)
 }
 
 /// Checks a study whose text was read from `path`.
@@ -201,5 +202,13 @@ pub fn load_changed(path: &Path, program: &'static Program, set: &Settings) -> R
 /// # Errors
 /// As [`load`].
 pub fn load_text(text: &str, path: &Path, program: &'static Program) -> Result<Study, LoadError> {
-    changes::load(text, path, program, &Settings::default())
+    examine_text(text, path, program).map_err(Refused::error)
+}
+
+/// The same as [`examine`] of a text.
+///
+/// # Errors
+/// As [`load`].
+pub fn examine_text(text: &str, path: &Path, program: &'static Program) -> Result<Study, Refused> {
+    changes::examine(text, path, program, &Settings::default())
 }

@@ -182,12 +182,24 @@ pub fn unmet(column: &Column, value: &str, values: &[Cell]) -> Option<String> {
     (!values.iter().any(|cell| test.is_met(cell))).then(|| there(column, value, values.iter().cloned()))
 }
 
+/// The condition that a value of a column meets.
+#[must_use]
+pub fn condition(column: &Column, value: &Cell) -> String {
+    format!("{}={}", column.name, written(column, value))
+}
+
+/// A value as conditions have it.
+fn written(column: &Column, value: &Cell) -> String {
+    match value {
+        Cell::Float(value) if !column.unit.is_empty() => format!("{value} {}", column.unit),
+        value => value.to_string(),
+    }
+}
+
 /// The values of a column, as conditions have them, in the order in which they come; the nearest first.
 fn there(column: &Column, value: &str, cells: impl Iterator<Item = Cell>) -> String {
     let mut seen = BTreeSet::new();
-    let unit = if column.unit.is_empty() { String::new() } else { format!(" {}", column.unit) };
-    let texts =
-        cells.map(|cell| if let Cell::Float(value) = cell { format!("{value}{unit}") } else { cell.to_string() });
+    let texts = cells.map(|cell| written(column, &cell));
     let values: Vec<String> = texts.filter(|text| seen.insert(text.clone())).collect();
     let names = values.iter().map(String::as_str);
     let near = nearest(value, names.clone()).filter(|_| column.kind == Type::Text);

@@ -66,7 +66,7 @@ pub fn run(
             bytes = bytes.max(held);
             let tables = result.map_err(|failure| match failure {
                 Failure::Failed(message) => failed(message),
-                Failure::Study(wrong) => failed(wrong.message),
+                Failure::Study(wrong) => failed(wrong.first.message),
                 Failure::Stopped => Failure::Stopped,
             })?;
             let found: Vec<_> =

@@ -23,7 +23,8 @@ impl Variant {
     /// What the stage's kind refuses.
     pub fn build(label: String, variant: &record::Variant) -> Result<Self, Diagnostic> {
         let unknown = || Diagnostic::new(format!("there is no kind `{}`", variant.kind));
-        let stage = (stage::kind(variant.kind).ok_or_else(unknown)?.build)(&variant.record)?;
+        let stage =
+            (stage::kind(variant.kind).ok_or_else(unknown)?.build)(&variant.record).map_err(|wrong| *wrong.first)?;
         Ok(Self { label, written: variant.written.clone(), stage, record: variant.record.clone() })
     }
 

@@ -8,7 +8,7 @@ use crate::stage::Inputs;
 use crate::stage::quantity::{Number, described, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;
-use declare::error::{Diagnostic, Place};
+use declare::error::Diagnostic;
 use declare::record::Record;
 use declare::units::{RATIO, in_unit, parse_quantity};
 use studygraph::table::columns::Columns;
@@ -46,7 +46,6 @@ enum Tolerance {
 pub struct Comparison {
     /// From 1, in the order of the study.
     number: usize,
-    place: Place,
     label: String,
     /// Cells, and what they are compared with.
     operands: Vec<(String, Operand)>,
@@ -96,13 +95,9 @@ impl Comparison {
     /// What is wrong with it, at the place of the field.
     pub fn read(number: usize, stated: &Compared, record: &Record) -> Result<Self, Diagnostic> {
         let operand = |given: &Placed<String>| {
-            let wrong = |message: String| Diagnostic::new(message).at(given.place);
-            let operand = Operand::parse(&given.value).map_err(wrong)?;
-            let text = &given.value;
-            match operand.cell() {
-                Some(_) => Ok(operand),
-                None => Err(wrong(format!("`{text}` is not a cell; write `stage.table[key=value, …].column`"))),
-            }
+            let operand = Operand::read(given)?;
+            let message = format!("`{}` is not a cell; write `stage.table[key=value, …].column`", operand.text);
+            if operand.cell().is_some() { Ok(operand) } else { Err(operand.refused(message)) }
         };
         let operands =
             vec![("cell".to_owned(), operand(&stated.cell)?), ("against".to_owned(), operand(&stated.against)?)];
@@ -113,29 +108,18 @@ impl Comparison {
             let message = "a reason is given, but no `tolerance` beyond which it is needed";
             return Err(Diagnostic::new(message).at(record.place_of(Compared::NAMES.because)));
         }
-        Ok(Self {
-            number,
-            place: record.place,
-            label: text(&stated.label),
-            operands,
-            tolerance,
-            because,
-            note: text(&stated.note),
-        })
+        Ok(Self { number, label: text(&stated.label), operands, tolerance, because, note: text(&stated.note) })
     }
 
     pub fn operands(&self) -> impl Iterator<Item = &Operand> {
         self.operands.iter().map(|(_, operand)| operand)
     }
 
+    /// Compares.
+    ///
     /// # Errors
-    /// A sentence that names the entry.
-    pub fn find(&self, inputs: &Inputs) -> Result<Compare<'_>, String> {
-        let named = |problem: String| format!("`compare` entry {} (line {}): {problem}", self.number, self.place.line);
-        self.compare(inputs).map_err(named)
-    }
-
-    fn compare(&self, inputs: &Inputs) -> Result<Compare<'_>, String> {
+    /// What is wrong with it, at its place.
+    pub fn find(&self, inputs: &Inputs) -> Result<Compare<'_>, Diagnostic> {
         let rows = OperandRows::of(inputs, &self.operands)?;
         let unit = self.operands[0].1.resolve(inputs)?.unit;
         let apart = |row: usize| {
@@ -150,7 +134,7 @@ impl Comparison {
         }) {
             if !same_dimension(first.dimension, number.dimension) {
                 let (one, other) = (described(first.dimension), described(number.dimension));
-                return Err(format!("{one} is compared with {other}"));
+                return Err(self.operands[1].1.refused(format!("{one} is compared with {other}")));
             }
         }
         // By relative distance, unless a reference is 0 somewhere: then all by their absolute one.

@@ -4,7 +4,7 @@
 
 use super::operand::{Operand, in_si};
 use super::rows::OperandRows;
-use super::stated::{Expected, Published, StatedProof, Target, convert, read_target};
+use super::stated::{Expected, Published, StatedProof, Target, read_target};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
 use crate::stage::formula::{Formula, Outcome};
@@ -12,7 +12,7 @@ use crate::stage::quantity::Number;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
-use declare::units::{RATIO, in_unit};
+use declare::units::{Dimension, RATIO, in_unit};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -31,12 +31,15 @@ enum Subject {
 
 struct Proof {
     claim: Formula,
+    /// Where it stands.
+    place: Place,
     with: Operands,
 }
 
 pub struct ReportEntry {
     /// From 1, in the order of the study.
     pub number: usize,
+    /// Where cell, formula or claim stands.
     place: Place,
     label: String,
     location: String,
@@ -154,7 +157,7 @@ impl ReportEntry {
         }
         let entry = Self {
             number,
-            place: record.place,
+            place: given(stated).next().map_or(record.place, |(_, text)| text.place),
             label: trimmed(stated.label.as_deref()),
             location: trimmed(stated.location.as_deref()),
             subject,
@@ -176,62 +179,70 @@ impl ReportEntry {
             let given = if formula.is_claim() { &stated.claim } else { &stated.formula };
             let place = given.as_ref().map_or(self.place, |given| given.place);
             let wrong = |message: String| Diagnostic::new(message).at(place);
-            let outcome = OperandRows::of(&Inputs::default(), with)
-                .and_then(|rows| formula.evaluate(rows.names(0, &rows.lookup(None))))
-                .map_err(wrong)?;
+            let rows = OperandRows::of(&Inputs::default(), with)?;
+            let outcome = formula.evaluate(rows.names(0, &rows.lookup(None))).map_err(wrong)?;
             if let (Outcome::Number(number), Some(target)) = (outcome, &self.published) {
                 target.stated.check_dimension(number).map_err(wrong)?;
             }
         }
-        if let Some(Proof { claim, with }) = &self.proof
+        if let Some(Proof { claim, with, .. }) = &self.proof
             && with.iter().all(|(_, operand)| operand.cell().is_none())
             && claim.names().all(|name| name != "computed" && (name != "published" || self.published.is_some()))
         {
-            let place = stated.proof.as_ref().map_or(self.place, |proof| proof.claim.place);
             self.prove(
                 &Inputs::default(),
                 self.published.as_ref().map_or(f64::NAN, |target| target.stated.number),
                 f64::NAN,
-            )
-            .map_err(|message| Diagnostic::new(message).at(place))?;
+            )?;
         }
         Ok(())
     }
 
-    /// Every operand that names cells.
-    pub fn operands(&self) -> impl Iterator<Item = &Operand> {
-        let (cell, with) = match &self.subject {
-            Subject::Cell(operand) => (Some(operand), [].as_slice()),
-            Subject::Formula(_, with) | Subject::Claim(_, with) => (None, with.as_slice()),
+    /// Every operand that names cells, and whether it must be one.
+    pub fn operands(&self) -> impl Iterator<Item = (&Operand, bool)> {
+        let (cell, formula, with) = match &self.subject {
+            Subject::Cell(operand) => (Some((operand, true)), None, [].as_slice()),
+            Subject::Formula(formula, with) => (None, Some(formula), with.as_slice()),
+            // Judged in every row.
+            Subject::Claim(_, with) => (None, None, with.as_slice()),
         };
-        let proof = self.proof.as_ref().map_or([].as_slice(), |proof| proof.with.as_slice());
-        cell.into_iter().chain(with.iter().chain(proof).map(|(_, operand)| operand))
+        let with =
+            with.iter().map(move |named| (&named.1, formula.is_some_and(|formula| formula.row_by_row(&named.0))));
+        let proof = self
+            .proof
+            .iter()
+            .flat_map(|Proof { claim, with, .. }| with.iter().map(move |named| (&named.1, claim.row_by_row(&named.0))));
+        cell.into_iter().chain(with).chain(proof)
+    }
+
+    /// What a cell is compared with by itself: its dimension, its text, and its place.
+    pub fn beside(&self, operand: &Operand) -> Option<(Dimension, String, Place)> {
+        let is_it = matches!(&self.subject, Subject::Cell(cell) if cell.place == operand.place);
+        let target = self.published.as_ref().filter(|_| is_it)?;
+        Some((target.stated.dimension, target.stated.text.clone(), target.place))
     }
 
     /// Compares.
     ///
     /// # Errors
-    /// A sentence that names the entry.
-    pub fn find(&self, inputs: &Inputs) -> Result<Finding<'_>, String> {
-        self.compare(inputs).map_err(|problem| {
-            let location = if self.location.is_empty() { String::new() } else { format!(", {}", self.location) };
-            format!("`published` entry {} (line {}{location}): {problem}", self.number, self.place.line)
-        })
+    /// What is wrong with it, at its place.
+    pub fn find(&self, inputs: &Inputs) -> Result<Finding<'_>, Diagnostic> {
+        self.compare(inputs).map_err(|found| found.or_at(self.place))
     }
 
-    fn compare(&self, inputs: &Inputs) -> Result<Finding<'_>, String> {
+    fn compare(&self, inputs: &Inputs) -> Result<Finding<'_>, Diagnostic> {
         let unit = self.unit();
         let (computed, total, numbers, failing) = match &self.subject {
             Subject::Cell(operand) => {
                 let values = operand.resolve(inputs)?;
-                (self.in_published_unit(values.single(&operand.text)?)?, 0.0, String::new(), String::new())
+                (self.in_published_unit(values.single(operand)?)?, 0.0, String::new(), String::new())
             }
             Subject::Formula(formula, with) => {
                 let rows = OperandRows::of(inputs, with)?;
                 rows.single(formula)?;
-                match formula.evaluate(rows.names(0, &rows.lookup(None)))? {
+                match formula.evaluate(rows.names(0, &rows.lookup(None))).map_err(Diagnostic::new)? {
                     Outcome::Number(number) => (self.in_published_unit(number)?, 0.0, rows.written(0), String::new()),
-                    Outcome::Truth(_) => return Err("a formula gives a number".to_owned()),
+                    Outcome::Truth(_) => return Err(Diagnostic::new("a formula gives a number")),
                 }
             }
             Subject::Claim(formula, with) => {
@@ -239,11 +250,11 @@ impl ReportEntry {
                 let (value, count) = (rows.lookup(None), rows.judged(formula));
                 let mut failing = Vec::new();
                 for row in 0..count {
-                    if formula.evaluate(rows.names(row, &value))? == Outcome::Truth(false) {
+                    if formula.evaluate(rows.names(row, &value)).map_err(Diagnostic::new)? == Outcome::Truth(false) {
                         failing.push(row);
                     }
                 }
-                let remark = rows.remark(&failing, formula)?;
+                let remark = rows.remark(&failing, formula).map_err(Diagnostic::new)?;
                 let held = (count - failing.len()) as f64;
                 (held, count as f64, if count == 1 { rows.written(0) } else { String::new() }, remark)
             }
@@ -251,7 +262,7 @@ impl ReportEntry {
         let published = self.published.as_ref().map_or(total, |target| target.stated.number);
         let tolerance = self.published.as_ref().map_or(0.0, |target| target.tolerance);
         let expected = match &self.expected {
-            Some(target) => Some((target.stated.in_unit(unit)?, convert(target.tolerance, &target.stated.unit, unit)?)),
+            Some(target) => Some(target.within(unit).map_err(Diagnostic::new)?),
             None => None,
         };
         let (proof_holds, proof) = match self.prove(inputs, published, computed)? {
@@ -261,7 +272,7 @@ impl ReportEntry {
         let has_reason = !self.because.is_empty();
         let is_claim = self.published.is_none();
         let comparison = Comparison { published, computed, tolerance, expected, has_reason, proof_holds, is_claim };
-        let verdict = comparison.judge()?;
+        let verdict = comparison.judge().map_err(Diagnostic::new)?;
         let found = match (is_claim, total > 1.0) {
             (false, _) => String::new(),
             (true, true) => format!("holds in {computed} of {total}"),
@@ -275,25 +286,26 @@ impl ReportEntry {
         self.published.as_ref().map_or("", |target| target.stated.unit.as_str())
     }
 
-    fn in_published_unit(&self, number: Number) -> Result<f64, String> {
+    fn in_published_unit(&self, number: Number) -> Result<f64, Diagnostic> {
         let Some(target) = &self.published else { return Ok(number.si) };
-        target.stated.check_dimension(number)?;
+        target.stated.check_dimension(number).map_err(|message| Diagnostic::new(message).at(target.place))?;
         Ok(in_unit(number.si, &target.stated.unit))
     }
 
     /// Whether the proof holds, and its text with the numbers put in.
-    fn prove(&self, inputs: &Inputs, published: f64, computed: f64) -> Result<Option<(bool, String)>, String> {
-        let Some(Proof { claim, with }) = &self.proof else { return Ok(None) };
-        let rows = OperandRows::of(inputs, with).map_err(|problem| format!("proof: {problem}"))?;
-        rows.single(claim).map_err(|problem| format!("proof: {problem}"))?;
+    fn prove(&self, inputs: &Inputs, published: f64, computed: f64) -> Result<Option<(bool, String)>, Diagnostic> {
+        let Some(Proof { claim, place, with }) = &self.proof else { return Ok(None) };
+        let rows = OperandRows::of(inputs, with)?;
+        rows.single(claim)?;
+        let wrong = |problem: String| Diagnostic::new(format!("proof: {problem}")).at(*place);
         let unit = self.unit();
         // A value that is not known yet is NaN, which no formula lets pass.
         let number = |value: f64| if value.is_nan() { Ok(Number::plain(value)) } else { in_si(value, unit) };
-        let given = (number(published)?, number(computed)?);
+        let given = (number(published).map_err(wrong)?, number(computed).map_err(wrong)?);
         let value = rows.lookup(Some(given));
         let names = rows.names(0, &value);
-        let outcome = claim.evaluate(names).map_err(|problem| format!("proof: {problem}"))?;
-        let numbers = claim.with_numbers(names, unit).map_err(|problem| format!("proof: {problem}"))?;
+        let outcome = claim.evaluate(names).map_err(wrong)?;
+        let numbers = claim.with_numbers(names, unit).map_err(wrong)?;
         let written = rows.written(0);
         let written = if written.is_empty() { written } else { format!(", with {written}") };
         let holds = outcome == Outcome::Truth(true);
@@ -328,11 +340,16 @@ fn trimmed(text: Option<&str>) -> String {
     text.unwrap_or_default().trim().to_owned()
 }
 
-fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnostic> {
+/// What an entry is about, by the name of its field.
+fn given(stated: &Published) -> impl Iterator<Item = (&'static str, &Placed<String>)> {
     let names = Published::NAMES;
     let all = [(names.cell, &stated.cell), (names.formula, &stated.formula), (names.claim, &stated.claim)];
-    let given: Vec<_> = all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?))).collect();
-    let [(_, Placed { value: text, place })] = given[..] else {
+    all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?)))
+}
+
+fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnostic> {
+    let given: Vec<_> = given(stated).collect();
+    let [(_, written @ Placed { value: text, place })] = given[..] else {
         let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
         let found = if fields.is_empty() { "none".to_owned() } else { format!("`{}`", fields.join("` and `")) };
         let message = format!("an entry has one of `cell`, `formula` and `claim`; found {found}");
@@ -342,9 +359,9 @@ fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnost
     if stated.cell.is_some() {
         if stated.with.is_some() {
             return Err(Diagnostic::new("`with` gives names to a `formula` or `claim`, not to a `cell`")
-                .at(record.place_of(names.with)));
+                .at(record.place_of(Published::NAMES.with)));
         }
-        let operand = Operand::parse(text).map_err(wrong)?;
+        let operand = Operand::read(written)?;
         return if operand.cell().is_some() {
             Ok(Subject::Cell(operand))
         } else {
@@ -366,7 +383,7 @@ fn read_proof(StatedProof { claim, with }: &StatedProof) -> Result<Proof, Diagno
     let place = claim.place;
     let claim = read_formula(&claim.value, &with, &GIVEN, place)?;
     if claim.is_claim() {
-        Ok(Proof { claim, with })
+        Ok(Proof { claim, place, with })
     } else {
         Err(Diagnostic::new(format!("`{}` is a number; a proof compares, for example `{0} > published`", claim.text))
             .at(place))
@@ -376,12 +393,12 @@ fn read_proof(StatedProof { claim, with }: &StatedProof) -> Result<Proof, Diagno
 /// Reads what names stand for; refuses those that stand for something already.
 fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
     let mut operands = Operands::new();
-    for (name, Placed { value: text, place }) in with {
-        let wrong = |message: String| Diagnostic::new(message).at(*place);
+    for (name, given) in with {
         if taken.contains(&name.as_str()) {
-            return Err(wrong(format!("`{name}` stands for the {name} value already; choose another name")));
+            let message = format!("`{name}` stands for the {name} value already; choose another name");
+            return Err(Diagnostic::new(message).at(given.place));
         }
-        operands.push((name.clone(), Operand::parse(text).map_err(wrong)?));
+        operands.push((name.clone(), Operand::read(given)?));
     }
     Ok(operands)
 }

@@ -3,19 +3,19 @@
 //! Only the declaration is kept (and checked against the tables); the points are drawn from the tables themselves. Must
 //! not know: how anything is drawn.
 
-use super::operand::{in_si, no_rows, table};
+use super::operand::{in_si, table};
 use super::stated_figure::{Best, How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
 use crate::stage::quantity::{described, same_dimension};
-use crate::stage::{Ahead, Inputs};
+use crate::stage::{Ahead, Inputs, Named};
 use declare::declared::{Placed, Words};
-use declare::error::{self, Diagnostic};
+use declare::error::Diagnostic;
 use declare::record::{Record, Value};
 use declare::text::is_device;
 use declare::units::{Dimension, in_unit, parse_quantity, parse_unit, split_quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::{Column, Type};
-use studygraph::table::select::{CellName, rows_where, unknown_column};
+use studygraph::table::select::{CellName, rows_where, unknown_column, why_none};
 
 /// The column with the names of points.
 const DESIGN: &str = "design";
@@ -34,8 +34,9 @@ struct Place {
 
 pub struct Figure {
     number: usize,
-    line: usize,
     name: String,
+    /// As stated, for the places of its fields.
+    record: Record,
     title: String,
     kind: How,
     /// Stage and table.
@@ -56,8 +57,6 @@ pub struct Figure {
     /// Stage and table.
     reference: Option<(String, String)>,
     conditions: Vec<(String, String)>,
-    /// Where they stand in the study.
-    condition_places: Vec<error::Place>,
     x_label: String,
     y_label: String,
     log: Logarithmic,
@@ -91,10 +90,6 @@ impl Figure {
             }
         }
         let conditions = stated.conditions.iter().flatten();
-        let condition_places = match record.entry(NAMES.conditions).map(|entry| &entry.value) {
-            Some(Value::Map(placed)) => placed.iter().map(|(_, value)| value.place).collect(),
-            _ => Vec::new(),
-        };
         let marks = stated.published.iter().flatten().zip(record.each_inside(NAMES.published));
         let published = marks.map(|(mark, record)| read_mark(mark, record)).collect::<Result<_, _>>()?;
         if stated.kind == How::Drawing && stated.log != Logarithmic::None {
@@ -104,8 +99,8 @@ impl Figure {
         check_map(stated, record)?;
         Ok(Self {
             number,
-            line: record.place.line,
             name,
+            record: record.clone(),
             title: text(&stated.title),
             kind: stated.kind,
             tables,
@@ -126,7 +121,6 @@ impl Figure {
             width: stated.width,
             reference,
             conditions: conditions.map(|(column, value)| (column.clone(), text(value))).collect(),
-            condition_places,
             x_label: maybe(&stated.x_label),
             y_label: maybe(&stated.y_label),
             log: stated.log,
@@ -154,19 +148,32 @@ impl Figure {
             .chain(self.marked.iter().map(move |(stage, table)| (stage.as_str(), table.as_str(), marked())))
     }
 
-    /// The conditions that some rows of each of its tables must meet, one by one.
-    pub fn rows_needed(&self) -> Vec<(CellName, error::Place)> {
+    /// What it names of its tables: conditions that some rows must meet, one by one, and columns of numbers.
+    pub fn named(&self) -> Vec<Named> {
+        const NAMES: StatedFigureNames = StatedFigure::NAMES;
+        let listed = |field: &str| match self.record.entry(field).map(|entry| &entry.value) {
+            Some(Value::Map(placed)) => placed.iter().map(|(_, value)| value.place).collect(),
+            Some(Value::List(placed)) => placed.iter().map(|value| value.place).collect(),
+            _ => Vec::new(),
+        };
+        let conditions = self.conditions.iter().zip(listed(NAMES.conditions));
+        let conditions = conditions.map(|(condition, place)| (vec![condition.clone()], String::new(), place));
+        let x = (!self.has_words()).then(|| (self.x.clone(), self.record.place_of(NAMES.x)));
+        let axes = x.into_iter().chain(self.y.iter().cloned().zip(listed(NAMES.y)));
+        let all: Vec<_> = conditions.chain(axes.map(|(column, place)| (Vec::new(), column, place))).collect();
         let of_table = |(stage, table): &(String, String)| {
-            let conditions = self.conditions.iter().zip(&self.condition_places);
             let (stage, table) = (stage.clone(), table.clone());
-            let named = move |(condition, place): (&(String, String), &error::Place)| {
-                let conditions = vec![condition.clone()];
-                let (stage, table) = (stage.clone(), table.clone());
-                (CellName { stage, table, conditions, column: String::new() }, *place)
-            };
-            conditions.map(named).collect::<Vec<_>>()
+            all.clone().into_iter().map(move |(conditions, column, place)| {
+                let cell = CellName { stage: stage.clone(), table: table.clone(), conditions, column };
+                Named { cell, place, is_one: false, beside: None }
+            })
         };
         self.tables.iter().flat_map(of_table).collect()
+    }
+
+    /// Whether its x axis may show words.
+    fn has_words(&self) -> bool {
+        matches!(self.kind, How::Bar | How::Tornado)
     }
 
     /// How many points it is drawn from, at most: which rows meet its conditions is not known.
@@ -184,36 +191,45 @@ impl Figure {
     ///
     /// # Errors
     /// When a column is missing, holds no numbers, or no row meets the conditions.
-    pub fn marked(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, String> {
-        self.resolve(inputs).map_err(|problem| format!("figure `{}` (line {}): {problem}", self.name, self.line))
+    pub fn marked(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, Diagnostic> {
+        let named = |found: Diagnostic| {
+            let message = format!("figure `{}`: {}", self.name, found.message);
+            self.record.locate(Diagnostic { message, ..found })
+        };
+        self.resolve(inputs).map_err(named)
     }
 
-    fn resolve(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, String> {
+    fn resolve(&self, inputs: &Inputs) -> Result<Vec<MarkRow<'_>>, Diagnostic> {
+        const NAMES: StatedFigureNames = StatedFigure::NAMES;
         let mut units: Option<(String, String)> = None;
         for (stage, name) in &self.tables {
-            let table = table(stage, name, inputs)?;
+            let table = table(stage, name, inputs).map_err(of(NAMES.table))?;
             let found = self.check(table)?;
             match &units {
                 None => units = Some(found),
                 Some(first) if *first == found => {}
                 Some(first) => {
                     let message = "the tables have different units on an axis";
-                    return Err(format!("{message}: {} and {}, {} and {}", first.0, found.0, first.1, found.1));
+                    let message = format!("{message}: {} and {}, {} and {}", first.0, found.0, first.1, found.1);
+                    return Err(Diagnostic::new(message).of(NAMES.table));
                 }
             }
         }
         let (x_unit, mut y_unit) = units.unwrap_or_default();
         if let Some((stage, name)) = &self.reference {
-            self.check_reference(table(stage, name, inputs)?, &y_unit)?;
+            let table = table(stage, name, inputs).map_err(of(NAMES.reference))?;
+            self.check_reference(table, &y_unit).map_err(of(NAMES.reference))?;
             y_unit.clear();
         }
         if let Some((stage, name)) = &self.marked {
-            self.check_marked(table(stage, name, inputs)?, [&x_unit, &y_unit])?;
+            let table = table(stage, name, inputs).map_err(of(NAMES.marked))?;
+            self.check_marked(table, [&x_unit, &y_unit]).map_err(of(NAMES.marked))?;
         }
         let mut marks = Vec::new();
         for (number, mark) in (1..).zip(&self.published) {
             let along =
                 |place: &Option<Place>, unit: &str| place.as_ref().map_or(Ok(f64::NAN), |place| place.along(unit));
+            let along = |place, unit| along(place, unit).map_err(of(NAMES.published));
             let (x, y) = (along(&mark.x, &x_unit)?, along(&mark.y, &y_unit)?);
             marks.push(MarkRow { figure: self.number, number, label: &mark.label, x, y });
         }
@@ -270,45 +286,51 @@ impl Figure {
     }
 
     /// Checks the columns; gives the units of the two axes.
-    fn check(&self, table: &Table) -> Result<(String, String), String> {
+    fn check(&self, table: &Table) -> Result<(String, String), Diagnostic> {
+        const NAMES: StatedFigureNames = StatedFigure::NAMES;
         let schema = table.schema();
-        let column = |name: &str| schema.column(name).ok_or_else(|| unknown_column(schema, name));
-        let rows = rows_where(table, &self.conditions)?;
+        let column = |field, name: &str| schema.column(name).ok_or_else(|| of(field)(unknown_column(schema, name)));
+        let rows = rows_where(table, &self.conditions).map_err(of(NAMES.conditions))?;
         if rows.is_empty() {
-            return Err(no_rows(table, &self.conditions));
+            return Err(of(NAMES.conditions)(why_none(table, &self.conditions).unwrap_or_else(|message| message)));
         }
-        let x = column(&self.x)?;
-        if !matches!(self.kind, How::Bar | How::Tornado) {
-            numbers(x)?;
+        let x = column(NAMES.x, &self.x)?;
+        if !self.has_words() {
+            numbers(x).map_err(of(NAMES.x))?;
         }
         let mut unit: Option<&str> = None;
         for name in &self.y {
-            let y = column(name)?;
-            numbers(y)?;
+            let y = column(NAMES.y, name)?;
+            numbers(y).map_err(of(NAMES.y))?;
             if unit.is_some_and(|unit| unit != y.unit) {
-                return Err(format!("the columns {} have different units", self.y.join(", ")));
+                return Err(of(NAMES.y)(format!("the columns {} have different units", self.y.join(", "))));
             }
             unit = Some(&y.unit);
         }
-        for name in [&self.series, &self.segments] {
+        for (field, name) in [(NAMES.series, &self.series), (NAMES.segments, &self.segments)] {
             if !name.is_empty() {
-                column(name)?;
+                column(field, name)?;
             }
         }
-        for name in [&self.value, &self.length] {
+        for (field, name) in [(NAMES.value, &self.value), (NAMES.length, &self.length)] {
             if !name.is_empty() {
-                numbers(column(name)?)?;
+                numbers(column(field, name)?).map_err(of(field))?;
             }
         }
         if self.kind == How::Drawing && unit != Some(&x.unit) {
-            return Err(format!(
+            return Err(of(NAMES.y)(format!(
                 "a drawing needs one unit on both axes, not {} and {}",
                 x.unit,
                 unit.unwrap_or_default()
-            ));
+            )));
         }
         Ok((x.unit.clone(), unit.unwrap_or_default().to_owned()))
     }
+}
+
+/// Makes of a sentence a diagnostic about a field.
+fn of(field: &'static str) -> impl Fn(String) -> Diagnostic {
+    move |message| Diagnostic::new(message).of(field)
 }
 
 fn read_table(Placed { value, place }: &Placed<String>) -> Result<(String, String), Diagnostic> {

@@ -4,15 +4,19 @@
 
 use crate::stage::Inputs;
 use crate::stage::quantity::{Number, described};
+use declare::declared::Placed;
+use declare::error::{Diagnostic, Place};
 use declare::number::{significant, with_unit};
 use declare::units::{UnitError, parse_quantity, split_quantity};
 use studygraph::table::data::{Cell, Data, Table};
-use studygraph::table::select::{CellName, rows_where, unknown_column};
+use studygraph::table::select::{CellName, rows_where, unknown_column, why_none};
 
 /// A quantity or cells, as written.
 #[derive(Clone, Debug)]
 pub struct Operand {
     pub text: String,
+    /// Where it stands.
+    pub place: Place,
     pub source: Source,
 }
 
@@ -30,20 +34,29 @@ impl Operand {
     /// Reads `50 N m`, or `0.51 mm, 0.49 mm`, or `ste.summary[design=iso].peak_to_peak`.
     ///
     /// # Errors
-    /// A sentence that says what was expected.
-    pub fn parse(text: &str) -> Result<Self, String> {
-        let text = text.trim();
+    /// At its place: what was expected.
+    pub fn read(Placed { value, place }: &Placed<String>) -> Result<Self, Diagnostic> {
+        let text = value.trim();
+        let source = Self::source(text).map_err(|message| Diagnostic::new(message).at(*place))?;
+        Ok(Self { text: text.to_owned(), place: *place, source })
+    }
+
+    fn source(text: &str) -> Result<Source, String> {
         let first = text.split(',').next().unwrap_or_default();
-        let source = match parse_quantity(first) {
+        match parse_quantity(first) {
             Err(UnitError::NotANumber(_)) => {
                 let name = CellName::parse(text).map_err(|_| {
                     format!("`{text}` is neither a quantity (`50 N m`) nor a cell (`stage.table[key=value, …].column`)")
                 })?;
-                Source::Cells(name)
+                Ok(Source::Cells(name))
             }
-            _ => Source::Quantities { numbers: quantities(text)?, unit: split_quantity(first.trim()).1.to_owned() },
-        };
-        Ok(Self { text: text.to_owned(), source })
+            _ => Ok(Source::Quantities { numbers: quantities(text)?, unit: split_quantity(first.trim()).1.to_owned() }),
+        }
+    }
+
+    /// What is wrong with it.
+    pub fn refused(&self, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(message).at(self.place)
     }
 
     #[must_use]
@@ -58,7 +71,7 @@ impl Operand {
     ///
     /// # Errors
     /// When no row meets the conditions, or the column holds no numbers.
-    pub fn resolve(&self, inputs: &Inputs) -> Result<Values, String> {
+    pub fn resolve(&self, inputs: &Inputs) -> Result<Values, Diagnostic> {
         match &self.source {
             Source::Quantities { numbers, unit } => Ok(Values {
                 numbers: numbers.clone(),
@@ -66,7 +79,9 @@ impl Operand {
                 keys: Vec::new(),
                 rows: vec![Vec::new(); numbers.len()],
             }),
-            Source::Cells(name) => cells(name, inputs).map_err(|problem| format!("`{}`: {problem}", self.text)),
+            Source::Cells(name) => {
+                cells(name, inputs).map_err(|problem| self.refused(format!("`{}`: {problem}", self.text)))
+            }
         }
     }
 }
@@ -103,13 +118,12 @@ impl Values {
     ///
     /// # Errors
     /// When there are several rows: names the columns that would tell them apart.
-    pub fn single(&self, text: &str) -> Result<Number, String> {
+    pub fn single(&self, of: &Operand) -> Result<Number, Diagnostic> {
         match self.numbers.as_slice() {
             [only] => Ok(*only),
             several => {
-                let apart =
-                    if self.keys.is_empty() { String::new() } else { format!("; add {}", self.keys.join(", ")) };
-                Err(format!("`{text}` names {} rows where one is meant{apart}", several.len()))
+                let wrong = of.refused(format!("`{}` names {} rows where one is meant", of.text, several.len()));
+                Err(if self.keys.is_empty() { wrong } else { wrong.help(format!("add {}", self.keys.join(", "))) })
             }
         }
     }
@@ -152,7 +166,7 @@ fn cells(name: &CellName, inputs: &Inputs) -> Result<Values, String> {
     let table = table(&name.stage, &name.table, inputs)?;
     let rows = rows_where(table, &name.conditions)?;
     if rows.is_empty() {
-        return Err(no_rows(table, &name.conditions));
+        return Err(why_none(table, &name.conditions)?);
     }
     let schema = table.schema();
     let index = schema.position(&name.column).ok_or_else(|| unknown_column(schema, &name.column))?;
@@ -181,39 +195,4 @@ fn cells(name: &CellName, inputs: &Inputs) -> Result<Values, String> {
         keys: free.iter().map(|&key| schema.columns[key].name.clone()).collect(),
         rows: rows.iter().map(|&row| free.iter().map(|&column| key(row, column)).collect()).collect(),
     })
-}
-
-/// Says which condition nothing meets, and what there is instead.
-#[must_use]
-pub fn no_rows(table: &Table, conditions: &[(String, String)]) -> String {
-    if table.rows() == 0 {
-        return format!("table `{}` has no rows", table.name());
-    }
-    for condition in conditions {
-        let alone = std::slice::from_ref(condition);
-        if rows_where(table, alone).is_ok_and(|rows| rows.is_empty()) {
-            let (column, value) = condition;
-            return format!("no row has {column} = {value}; there are {}", distinct(table, column));
-        }
-    }
-    "no row meets all of its conditions together".to_owned()
-}
-
-/// The first few different values of a column.
-fn distinct(table: &Table, column: &str) -> String {
-    const MOST: usize = 8;
-    let Some(position) = table.schema().position(column) else { return "none".to_owned() };
-    let unit = &table.schema().columns[position].unit;
-    let mut seen: Vec<String> = Vec::new();
-    for row in 0..table.rows() {
-        let text = Key { value: table.columns()[position].cell(row), unit: unit.clone() }.to_string();
-        if !seen.contains(&text) {
-            if seen.len() == MOST {
-                seen.push("…".to_owned());
-                break;
-            }
-            seen.push(text);
-        }
-    }
-    seen.join(", ")
 }

@@ -6,6 +6,7 @@ use super::operand::{Operand, Values};
 use crate::stage::Inputs;
 use crate::stage::formula::{Formula, Names};
 use crate::stage::quantity::{Number, shown};
+use declare::error::Diagnostic;
 
 /// The values of every name, in rows that line up.
 pub struct OperandRows<'a> {
@@ -19,11 +20,8 @@ pub struct OperandRows<'a> {
 impl<'a> OperandRows<'a> {
     /// # Errors
     /// When an operand cannot be looked up, or the rows of two do not line up.
-    pub fn of(inputs: &Inputs, with: &'a [(String, Operand)]) -> Result<Self, String> {
-        let values: Vec<Values> = with
-            .iter()
-            .map(|(name, operand)| operand.resolve(inputs).map_err(|problem| format!("{name} = {problem}")))
-            .collect::<Result<_, _>>()?;
+    pub fn of(inputs: &Inputs, with: &'a [(String, Operand)]) -> Result<Self, Diagnostic> {
+        let values: Vec<Values> = with.iter().map(|(_, operand)| operand.resolve(inputs)).collect::<Result<_, _>>()?;
         let several = |values: &Values| values.numbers.len() > 1;
         // Rows that have keys tell where a claim fails; quantities as written have none.
         let leader = values.iter().position(|values| several(values) && !values.keys.is_empty());
@@ -40,16 +38,16 @@ impl<'a> OperandRows<'a> {
                     (&other.keys, &other.rows) == (&first.keys, &first.rows)
                 }
             };
-            for (other, (name, _)) in values.iter().zip(with) {
+            for (other, (name, operand)) in values.iter().zip(with) {
                 if other.numbers.len() > 1 && !line_up(other) {
                     let rows = |values: &Values| match values.keys.join(", ") {
                         keys if keys.is_empty() => values.numbers.len().to_string(),
                         keys => format!("{}, by {keys}", values.numbers.len()),
                     };
                     let (leader, rows_of_first, rows_of_other) = (&with[leader].0, rows(first), rows(other));
-                    return Err(format!(
+                    return Err(operand.refused(format!(
                         "the rows of {leader} ({rows_of_first}) and {name} ({rows_of_other}) do not line up"
-                    ));
+                    )));
                 }
             }
         }
@@ -58,10 +56,10 @@ impl<'a> OperandRows<'a> {
 
     /// # Errors
     /// When an operand names several rows where the formula means one.
-    pub fn single(&self, formula: &Formula) -> Result<(), String> {
+    pub fn single(&self, formula: &Formula) -> Result<(), Diagnostic> {
         for (values, (name, operand)) in self.values.iter().zip(self.with) {
             if formula.row_by_row(name) {
-                values.single(&operand.text)?;
+                values.single(operand)?;
             }
         }
         Ok(())

@@ -6,7 +6,7 @@ use super::operand::in_si;
 use crate::stage::quantity::{Number, described, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;
-use declare::error::Diagnostic;
+use declare::error::{Diagnostic, Place};
 use declare::number::Printed;
 use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
 
@@ -85,6 +85,18 @@ pub struct Stated {
 pub struct Target {
     pub stated: Stated,
     pub tolerance: f64,
+    /// Where the value stands.
+    pub place: Place,
+}
+
+impl Target {
+    /// Value and tolerance in another unit.
+    ///
+    /// # Errors
+    /// When a unit is none.
+    pub fn within(&self, unit: &str) -> Result<(f64, f64), String> {
+        Ok((convert(self.stated.number, &self.stated.unit, unit)?, convert(self.tolerance, &self.stated.unit, unit)?))
+    }
 }
 
 impl Stated {
@@ -95,13 +107,9 @@ impl Stated {
         let (found, stated) = (described(number.dimension), described(self.dimension));
         Err(format!("what is computed is {found}, but the published `{}` is {stated}", self.text))
     }
-
-    pub fn in_unit(&self, unit: &str) -> Result<f64, String> {
-        convert(self.number, &self.unit, unit)
-    }
 }
 
-pub fn convert(value: f64, from: &str, to: &str) -> Result<f64, String> {
+fn convert(value: f64, from: &str, to: &str) -> Result<f64, String> {
     if from == to { Ok(value) } else { in_si(value, from).map(|number| in_unit(number.si, to)) }
 }
 
@@ -125,7 +133,7 @@ pub fn read_target(
     let stated =
         Stated { text: text.to_owned(), number, unit: unit.to_owned(), dimension: quantity.dimension, printed };
     let tolerance = read_tolerance(tolerance, &stated)?;
-    Ok(Target { stated, tolerance })
+    Ok(Target { stated, tolerance, place: value.place })
 }
 
 /// `digits`, `1 %` of the value, or a quantity.
