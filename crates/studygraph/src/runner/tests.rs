@@ -251,6 +251,7 @@ impl Spec {
 static PROGRAM: Program = Program {
     kinds: &[],
     foreign: &[],
+    named: &[],
     code_of: |_| String::from("code"),
     counters: &[],
     about: ABOUT,
@@ -259,6 +260,7 @@ static PROGRAM: Program = Program {
 static OTHER: Program = Program {
     kinds: &[],
     foreign: &[],
+    named: &[],
     code_of: |_| String::from("other code"),
     counters: &[],
     about: ABOUT,

@@ -169,7 +169,7 @@ fn drafts(stages: &KeyValue, program: &'static Program, belong: &str) -> Result<
 }
 
 /// One stage; what is wrong besides the error goes to `wrong`.
-fn draft(pair: &KeyValue, stages: Stages, belong: &str, wrong: &mut Vec<Diagnostic>) -> Result<Draft, Diagnostic> {
+pub fn draft(pair: &KeyValue, stages: Stages, belong: &str, wrong: &mut Vec<Diagnostic>) -> Result<Draft, Diagnostic> {
     let kinds = stages.kinds;
     let (name, place) = (&pair.key, pair.place);
     check_name("stage", name, place)?;
@@ -227,7 +227,7 @@ fn check_name(what: &str, name: &str, place: Place) -> Result<(), Diagnostic> {
 }
 
 /// Which fields take ranges, in words.
-fn ranges_belong(kinds: &[&'static Kind]) -> String {
+pub fn ranges_belong(kinds: &[&'static Kind]) -> String {
     let fields = kinds
         .iter()
         .flat_map(|kind| kind.fields.iter().filter(|field| field.chooses).map(|field| (field.name, kind.name)));

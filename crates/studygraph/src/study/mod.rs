@@ -14,6 +14,7 @@ pub mod describe;
 pub mod described;
 mod document;
 mod links;
+pub mod named;
 mod notation;
 mod overrides;
 pub mod path;

@@ -176,6 +176,7 @@ static FOREIGN: &[Foreign] = &[
 static PROGRAM: Program = Program {
     kinds: KINDS,
     foreign: FOREIGN,
+    named: &[],
     code_of: |_| String::new(),
     counters: &[],
     about: ABOUT,
