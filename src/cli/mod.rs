@@ -180,6 +180,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             columns,
             *format,
         ),
+            quiet,
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Query(asked) => query::query(asked, places, quiet),
         Command::Gc(asked) => gc::gc(places, asked),

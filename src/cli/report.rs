@@ -10,10 +10,9 @@ use super::arguments::Places;
 use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
-use super::show::none_yet;
+use super::show::{none_yet, stale, tell_stale};
 use super::{Ending, json as shapes};
 use crate::program::PROGRAM;
-use studygraph::runner::standing::standing_of;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, Tables};
 use studygraph::study::Study;
@@ -50,7 +49,12 @@ pub(super) fn report(
     for study in studies {
         let folder = Folder::new(&places.results, &study.name).telling(progress::told);
         let said = if check { looked_at(study, &folder)? } else { drawn(study, &folder)? };
-        let stale = if check { stale(study, &folder)? } else { None };
+        let stale = if check {
+            stale(study, &folder)?
+        } else {
+            tell_stale(study, &folder, quiet);
+            None
+        };
         if as_json {
             values.push(value(study, &folder, &said, stale.as_deref(), check));
         } else if !quiet {
@@ -94,14 +98,6 @@ fn drawn(study: &Study, folder: &Folder) -> Result<Said, Ending> {
         return Err(Ending::Usage(problem));
     }
     said.take().ok_or_else(|| none_yet(study, folder))
-}
-
-/// Why the verdicts are not those of the study as it is now.
-fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
-    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
-    let known = folder.known().map_err(|error| usage(error.to_string()))?;
-    let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
-    Ok(standing.problem())
 }
 
 fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {

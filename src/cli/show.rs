@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::arguments::{Changes, Format, Places};
-use super::progress::out;
+use super::progress::{out, told};
 use super::{Ending, draw, json, print, studies};
 use crate::program::{load_changed, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::suggest;
 use studygraph::runner::rehearse::rehearse;
+use studygraph::runner::standing::standing;
 use studygraph::store::manifest::{ColumnRecord, TableRecord};
 use studygraph::store::results::Folder;
 use studygraph::study::{LoadError, Study, describe, described, schema as schemas};
@@ -178,12 +179,29 @@ pub(super) fn table(
     Ok(())
 }
 
+    quiet: bool,
 fn shown(
     study: &Study,
     folder: &Folder,
+    tell_stale(study, &folder, quiet);
     name: Option<&str>,
     conditions: &[String],
     columns: &[String],
+/// Why results are not those of the study and the program as they are now.
+pub(super) fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
+    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
+    let standing = standing(study, folder).map_err(|error| usage(error.message))?;
+    Ok(standing.problem())
+}
+
+/// Says it in a line on standard error; what cannot be told is not told.
+pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
+    if let Some(problem) = (!quiet).then(|| stale(study, folder).ok().flatten()).flatten() {
+        let (name, file) = (&study.name, study.path.display());
+        told(&format!("{name}: the results are not those of the study now: {problem}; first: gearstudy run {file}"));
+    }
+}
+
     format: Format,
 ) -> Result<String, Ending> {
     let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;
