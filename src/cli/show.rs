@@ -91,7 +91,7 @@ pub(super) fn rehearsed(study: Study) -> Result<Study, LoadError> {
 /// Says of every file whether it is a valid study.
 pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: bool) -> Result<(), Ending> {
     let settings = studies::settings(changes);
-    let (mut last, mut values) = (None, Vec::new());
+    let (mut last, mut values, mut is_invalid) = (None, Vec::new(), false);
     for file in files {
         let checked = load_changed(file, &settings).and_then(rehearsed);
         if as_json {
@@ -103,6 +103,7 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
             }
             Ok(_) => {}
             Err(error) => {
+                is_invalid |= !error.is_of_no_file();
                 if let Some(earlier) = last.replace(error).filter(|_| !as_json) {
                     draw::invalid_study(&earlier);
                 }
@@ -111,10 +112,15 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
     }
     if as_json {
         json::answer(&Value::Array(values));
-        let told = |_| Err(Ending::Unreadable("what is wrong with the study is in the answer".to_owned()));
-        return last.map_or(Ok(()), told);
+        let told = "what is wrong with the study is in the answer".to_owned();
+        return last.map_or(Ok(()), |_| Err(if is_invalid { Ending::Unreadable(told) } else { Ending::Usage(told) }));
     }
-    last.map_or(Ok(()), |error| Err(Ending::Invalid(Box::new(error))))
+    match last {
+        None => Ok(()),
+        // That another one is invalid says more than that this one is not there.
+        Some(error) if is_invalid && error.is_of_no_file() => Err(Ending::Unreadable(error.to_string())),
+        Some(error) => Err(Ending::Invalid(Box::new(error))),
+    }
 }
 
 fn checked_value(file: &Path, checked: &Result<Study, LoadError>) -> Value {
@@ -173,20 +179,14 @@ pub(super) fn table(
     conditions: &[String],
     columns: &[String],
     format: Format,
+    quiet: bool,
 ) -> Result<(), Ending> {
     let folder = Folder::new(&places.results, &study.name);
     out(&folder.settled(|| shown(study, &folder, name, conditions, columns, format))?);
+    tell_stale(study, &folder, quiet);
     Ok(())
 }
 
-    quiet: bool,
-fn shown(
-    study: &Study,
-    folder: &Folder,
-    tell_stale(study, &folder, quiet);
-    name: Option<&str>,
-    conditions: &[String],
-    columns: &[String],
 /// Why results are not those of the study and the program as they are now.
 pub(super) fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
     let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
@@ -202,6 +202,12 @@ pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
     }
 }
 
+fn shown(
+    study: &Study,
+    folder: &Folder,
+    name: Option<&str>,
+    conditions: &[String],
+    columns: &[String],
     format: Format,
 ) -> Result<String, Ending> {
     let read = folder.read_manifest().map_err(|error| Ending::Usage(error.to_string()))?;

@@ -130,6 +130,12 @@ impl LoadError {
         Self { path: path.to_owned(), text, diagnostic: first, others }
     }
 
+    /// Whether there is no file at all, of which anything could be wrong.
+    #[must_use]
+    pub fn is_of_no_file(&self) -> bool {
+        self.diagnostic.message == read::NOT_THERE
+    }
+
     /// Everything that is wrong.
     pub fn each(&self) -> impl Iterator<Item = &Diagnostic> {
         [self.diagnostic.as_ref()].into_iter().chain(&self.others)
