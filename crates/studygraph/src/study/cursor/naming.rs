@@ -57,7 +57,8 @@ impl<'a> Naming<'a> {
     /// What could stand at `offset` of a text in the place of the word around it; `node` is the value there.
     pub fn offers(&self, text: &str, node: &Tree, offset: usize) -> Option<Offers> {
         let written = Written::of(text, node);
-        let (spot, start) = self.spot(written.until(offset)?)?;
+        let head = written.until(offset)?;
+        let (spot, start) = self.spot(head)?;
         let stops: &[char] = match spot {
             Spot::Value(..) => &[',', ']', '}', '"', '\'', '\n'],
             _ => &['.', '[', '=', ',', ']', '}', '"', '\'', '\n', ' ', ':'],
@@ -65,7 +66,8 @@ impl<'a> Naming<'a> {
         let end = text[offset..].find(stops).map_or(text.len(), |at| offset + at);
         let end = offset + text[offset..end].trim_end().len();
         let all = self.named(&spot);
-        (!all.is_empty()).then_some(Offers { range: written.start + start..end, all })
+        // Where something stands already, an example of the whole would be put behind it.
+        (!all.is_empty() || !head.is_empty()).then_some(Offers { range: written.start + start..end, all })
     }
 
     /// Columns of the conditions of a map.
