@@ -10,9 +10,10 @@ use super::arguments::Places;
 use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
-use super::show::{none_yet, stale, tell_stale};
+use super::show::{none_yet, tell_stale};
 use super::{Ending, json as shapes};
 use crate::program::PROGRAM;
+use studygraph::runner::standing::standing_of;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::{Folder, Tables};
 use studygraph::study::Study;
@@ -98,6 +99,14 @@ fn drawn(study: &Study, folder: &Folder) -> Result<Said, Ending> {
         return Err(Ending::Usage(problem));
     }
     said.take().ok_or_else(|| none_yet(study, folder))
+}
+
+/// Why the verdicts are not those of the study as it is now.
+fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
+    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
+    let known = folder.known().map_err(|error| usage(error.to_string()))?;
+    let standing = standing_of(study, known.as_ref()).map_err(|error| usage(error.message))?;
+    Ok(standing.problem())
 }
 
 fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {

@@ -187,16 +187,11 @@ pub(super) fn table(
     Ok(())
 }
 
-/// Why results are not those of the study and the program as they are now.
-pub(super) fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
-    let usage = |problem: String| Ending::Usage(format!("{}: {problem}", study.path.display()));
-    let standing = standing(study, folder).map_err(|error| usage(error.message))?;
-    Ok(standing.problem())
-}
-
-/// Says it in a line on standard error; what cannot be told is not told.
+/// Says in a line on standard error where results are not those of the study and the program as they are now; what cannot be
+/// told is not told.
 pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
-    if let Some(problem) = (!quiet).then(|| stale(study, folder).ok().flatten()).flatten() {
+    let outdated = || standing(study, folder).ok()?.outdated();
+    if let Some(problem) = (!quiet).then(outdated).flatten() {
         let (name, file) = (&study.name, study.path.display());
         told(&format!("{name}: the results are not those of the study now: {problem}; first: gearstudy run {file}"));
     }
