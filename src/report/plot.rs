@@ -185,7 +185,7 @@ impl Plot {
         let Some(frame) = self.frame(8.0, layout) else { return self.empty(layout) };
         let (width, height) = self.extent(&frame);
         let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" tabindex="0" style="max-width:{}px" aria-label="{}" data-plot="{}">"#,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" style="max-width:{}px" aria-label="{}" data-plot="{}">"#,
             at(width),
             at(height),
             // Larger would be crude, smaller would leave blank beside it.
