@@ -61,7 +61,8 @@ FIGURES = """() => [...document.querySelectorAll('figure svg[data-plot]')].flatM
   const cut = svg.getBoundingClientRect().width > region.clientWidth + 1;
   if (cut && !(reached && getComputedStyle(region).overflowX === 'auto')) faults.push(`${name}: cut, and no key shows the rest`);
   const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
-  if (scale * 12.5 < 8) faults.push(`${name}: letters of ${scale * 12.5} px`);
+  const letters = svg.querySelector('.tick:not(.name)'), size = letters ? scale * parseFloat(getComputedStyle(letters).fontSize) : 8;
+  if (size < 8) faults.push(`${name}: letters of ${size} px`);
   return faults;
 })"""
 
