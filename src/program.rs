@@ -10,13 +10,14 @@ use crate::stage::rows::computed::{ROWS_COMPUTED, ROWS_TAKEN_OVER};
 use declare::work::Counter;
 use gearmesh::gear::work::COUNTERS;
 use studygraph::about::About;
-use studygraph::program::{Pictures, Program};
+use studygraph::program::{Names, Naming, Pictures, Program};
 use studygraph::study::{self, LoadError, Refused, Settings, Study};
 
 /// What studies are run with.
 pub static PROGRAM: Program = Program {
     kinds: KINDS,
     foreign: FOREIGN,
+    named: NAMED,
     code_of: code_digest,
     counters: &COUNTED,
     about: About {
@@ -34,6 +35,41 @@ pub static PROGRAM: Program = Program {
         reader: "report",
         tables: &[("geometry", "mesh_drawing"), ("modification", "profile"), ("modification", "lead")],
     },
+};
+
+/// Fields that name what is in tables.
+static NAMED: &[Naming] = {
+    const TABLE: Names = Names::Columns { table: "table" };
+    const MARKED: Names = Names::Columns { table: "marked" };
+    const ROWS: Names = Names::CellsOf { stage: "of", table: Some("summary") };
+    const RUNS: Names = Names::CellsOf { stage: "of", table: None };
+    const CURVE: Names = Names::CellsOfKind { kind: "ste", table: Some("summary") };
+    const fn of(kind: &'static str, field: &'static str, names: Names) -> Naming {
+        Naming { kind, field, names }
+    }
+    &[
+        of("report", "cell", Names::Cells),
+        of("report", "against", Names::Cells),
+        of("report", "with", Names::Cells),
+        of("report", "table", Names::Table),
+        of("report", "reference", Names::Table),
+        of("report", "marked", Names::Table),
+        of("report", "x", TABLE),
+        of("report", "y", TABLE),
+        of("report", "value", TABLE),
+        of("report", "series", TABLE),
+        of("report", "segments", TABLE),
+        of("report", "length", TABLE),
+        of("report", "where", TABLE),
+        of("report", "marked_x", MARKED),
+        of("report", "marked_y", MARKED),
+        of("sweep", "outputs", ROWS),
+        of("scatter", "outputs", ROWS),
+        of("accuracy", "quantities", RUNS),
+        of("accuracy", "evaluations", RUNS),
+        of("optimizer", "minimize", CURVE),
+        of("optimizer", "subject_to", CURVE),
+    ]
 };
 
 /// What the kernels count, and what stages count themselves.
@@ -108,6 +144,25 @@ mod code {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use studygraph::study::describe;
+
+    #[test]
+    fn fields_that_name_what_is_in_tables_are_there() {
+        for naming in NAMED {
+            let kind = PROGRAM.kind(naming.kind).unwrap();
+            assert!(describe::mentions(kind, naming.field), "{} has no `{}`", naming.kind, naming.field);
+            let beside = match naming.names {
+                Names::Columns { table } => table,
+                Names::CellsOf { stage, .. } => stage,
+                Names::CellsOfKind { kind, .. } => {
+                    assert!(PROGRAM.kind(kind).is_some(), "{kind}");
+                    continue;
+                }
+                Names::Cells | Names::Table => continue,
+            };
+            assert!(describe::mentions(kind, beside), "{} has no `{beside}`", naming.kind);
+        }
+    }
 
     #[test]
     fn the_citation_file_says_who_and_what() {

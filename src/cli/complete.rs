@@ -20,7 +20,9 @@ use crate::stage::{self, kinds::KINDS};
 use studygraph::history::side::Side;
 use studygraph::store::manifest::Manifest;
 use studygraph::store::results::Folder;
-use studygraph::study::{Study, described};
+use studygraph::study::{Node, Study, described, named};
+use studygraph::table::data::Cell;
+use studygraph::table::schema::Schema;
 
 /// Set by the shell's function.
 const VARIABLE: &str = "GEARSTUDY_COMPLETE";
@@ -114,7 +116,9 @@ impl Offer {
 
 fn offered(by: fn(&Line, &str) -> Vec<Offer>, so_far: &OsStr) -> Vec<CompletionCandidate> {
     let Some(so_far) = so_far.to_str() else { return Vec::new() };
-    let all = by(&Line::read(), so_far).into_iter();
+    let line = Line::read();
+    let listed = line.listed(so_far);
+    let all = by(&line, so_far).into_iter().filter(|offer| !listed.contains(&offer.word.as_str()));
     all.filter(|offer| offer.word.starts_with(so_far)).map(Offer::candidate).collect()
 }
 
@@ -142,6 +146,11 @@ fn kinds(so_far: &str) -> Vec<Offer> {
         .collect()
 }
 
+/// All tables that there can be, each with its stage.
+fn schemas(nodes: &[Node]) -> impl Iterator<Item = (&str, Schema)> {
+    nodes.iter().flat_map(|node| node.stage.outputs().into_iter().map(|schema| (node.name.as_str(), schema)))
+}
+
 /// What stands on the line that is completed.
 struct Line {
     words: Vec<OsString>,
@@ -151,6 +160,13 @@ impl Line {
     /// The shell hands it over behind `--`.
     fn read() -> Self {
         Self { words: std::env::args_os().skip_while(|word| word != "--").skip(2).collect() }
+    }
+
+    /// What stands already in the list `a,b,…` whose last item is completed.
+    fn listed(&self, so_far: &str) -> Vec<&str> {
+        let lists = self.words.iter().filter_map(|word| word.to_str()?.rsplit_once(','));
+        let here = lists.filter(|(_, last)| *last == so_far).map(|(before, _)| before.rsplit('=').next());
+        here.flatten().flat_map(|before| before.split(',')).collect()
     }
 
     fn results(&self) -> PathBuf {
@@ -208,20 +224,34 @@ impl Line {
             let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
             return records.map(|record| Offer::of(&record.name, &*record.description)).collect();
         }
-        let study = self.study();
-        let nodes = study.iter().flat_map(|study| &study.nodes);
-        let of_node = nodes.flat_map(|node| node.stage.outputs().into_iter().map(move |schema| (node, schema)));
-        let given = of_node.filter(|(_, schema)| !schema.on_demand);
-        given.map(|(node, schema)| Offer::of(format!("{}.{}", node.name, schema.name), &schema.description)).collect()
+        let nodes = self.study().map(|study| study.nodes).unwrap_or_default();
+        let given = schemas(&nodes).filter(|(_, schema)| !schema.on_demand);
+        given.map(|(stage, schema)| Offer::of(format!("{stage}.{}", schema.name), schema.description)).collect()
     }
 
-    /// The table that stands on the line, its columns with their units and meanings.
+    fn stands_here(&self, table: &str) -> bool {
+        self.words.iter().any(|word| word == table)
+    }
+
+    /// The table that stands on the line, of those that there can be, with its stage.
+    fn table<'a>(&self, nodes: &'a [Node]) -> Option<(&'a str, Schema)> {
+        schemas(nodes).find(|(stage, schema)| self.stands_here(&format!("{stage}.{}", schema.name)))
+    }
+
+    /// The columns of the table that stands on the line, with their units and meanings; before there are any, those that a
+    /// run gives.
     fn columns_of_table(&self) -> Vec<Offer> {
-        let Some((_, manifest)) = self.manifest() else { return Vec::new() };
-        let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
-        let mut named = records.filter(|record| self.words.iter().any(|word| *word == *record.name));
-        let columns = named.next().map(|record| record.columns.iter()).into_iter().flatten();
-        columns.map(|column| Offer::of(&column.name, &column.description)).collect()
+        let offer = |name: &str, unit: &str, meaning: &str| Offer::of(name, named::meaning(unit, meaning));
+        if let Some((_, manifest)) = self.manifest() {
+            let mut records = manifest.stages.iter().flat_map(|stage| &stage.tables);
+            let columns = records.find(|record| self.stands_here(&record.name)).map(|record| record.columns.iter());
+            let columns = columns.into_iter().flatten();
+            return columns.map(|column| offer(&column.name, &column.unit, &column.description)).collect();
+        }
+        let nodes = self.study().map(|study| study.nodes).unwrap_or_default();
+        let columns = self.table(&nodes).map(|(_, schema)| schema.columns).unwrap_or_default();
+        let columns = columns.iter().filter(|column| !column.on_demand);
+        columns.map(|column| offer(&column.name, &column.unit, &column.description)).collect()
     }
 
     fn columns(&self, _: &str) -> Vec<Offer> {
@@ -233,15 +263,24 @@ impl Line {
         let Some((column, _)) = so_far.split_once('=') else {
             return self.columns_of_table().into_iter().map(|of| Offer::of(of.word + "=", of.meaning)).collect();
         };
-        let Some((folder, manifest)) = self.manifest() else { return Vec::new() };
-        let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
-        let mut named = records.filter(|record| self.words.iter().any(|word| *word == *record.name));
-        let Some(table) = named.next().and_then(|record| folder.table(record).ok()) else { return Vec::new() };
-        let Some(data) = table.column(column) else { return Vec::new() };
+        let values = self.values(column).unwrap_or_default().into_iter().map(|value| value.to_string());
         let mut seen = BTreeSet::new();
-        let values = (0..table.rows()).map(|row| data.cell(row).to_string());
         let distinct = values.filter(|value| seen.insert(value.clone())).take(MOST_VALUES);
         distinct.map(|value| Offer::of(format!("{column}={value}"), "")).collect()
+    }
+
+    /// The values of a column of the table that stands on the line; before there are any, those that its keys will have.
+    fn values(&self, column: &str) -> Option<Vec<Cell>> {
+        let Some((folder, manifest)) = self.manifest() else {
+            let nodes = self.study()?.nodes;
+            let (stage, schema) = self.table(&nodes)?;
+            schema.column(column)?;
+            return named::Keys::new(&nodes).of(stage, &schema.name, column);
+        };
+        let mut records = manifest.stages.iter().flat_map(|stage| &stage.tables);
+        let table = folder.table(records.find(|record| self.stands_here(&record.name))?).ok()?;
+        let data = table.column(column)?;
+        Some((0..table.rows()).map(|row| data.cell(row)).collect())
     }
 
     /// `stage.table.column=`, of all results.

@@ -3,6 +3,7 @@
 //! Must not know: what is compared.
 
 use std::collections::BTreeSet;
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::arguments::{Differences, Places, Shown};
@@ -196,6 +197,7 @@ fn named(
     let mut names = known;
     if sides.len() < 2 {
         names.extend(repository.as_ref().map(Repository::names).unwrap_or_default());
+        names.extend(results_beside(word));
     }
     let what = if sides.len() < 2 {
         "neither a revision nor a folder nor a study with results"
@@ -205,6 +207,16 @@ fn named(
     let help = nearest(&name, names.iter().map(String::as_str)).map(|near| format!("; did you mean `{near}`?"));
     let outside = repository.as_ref().err().filter(|_| sides.len() < 2).map(|problem| format!("; {problem}"));
     Err(format!("`{word}` is {what}{}", help.or(outside).unwrap_or_default()))
+}
+
+/// Folders with results that lie where a word would name one.
+fn results_beside(word: &str) -> Vec<String> {
+    let parent = Path::new(word).parent().unwrap_or(Path::new(""));
+    let here = if parent.as_os_str().is_empty() { Path::new(".") } else { parent };
+    let entries = fs::read_dir(here).into_iter().flatten().flatten();
+    let with_results =
+        entries.filter(|entry| Side::folder(&entry.path(), "").studies().is_ok_and(|all| !all.is_empty()));
+    with_results.map(|entry| parent.join(entry.file_name()).to_string_lossy().into_owned()).collect()
 }
 
 /// The name in a study's file; other words are names.

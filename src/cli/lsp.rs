@@ -25,7 +25,7 @@ pub(super) fn lsp() -> Result<(), Ending> {
         "textDocumentSync": 1,
         "hoverProvider": true,
         "definitionProvider": true,
-        "completionProvider": { "triggerCharacters": [" ", ":"] },
+        "completionProvider": { "triggerCharacters": [" ", ":", ".", "[", "=", ","] },
     });
     let _asked = connection.initialize(capabilities).map_err(|error| broken(&error))?;
     let mut open = Open::new();
@@ -128,18 +128,20 @@ fn completion(open: &Open, params: &Value) -> Option<Value> {
     /// `CompletionItemKind.Field`.
     const FIELD: u32 = 5;
     let (_, text, offset) = place(open, params)?;
-    let offers = cursor::offers(text, offset, &PROGRAM).into_iter().enumerate();
+    let cursor::Offers { range, all } = cursor::offers(text, offset, &PROGRAM);
+    let range = json!({ "start": position(text, range.start), "end": position(text, range.end) });
     let item = |(order, offer): (usize, cursor::Offer)| {
         json!({
             "label": offer.label,
             "detail": offer.detail,
-            "insertText": offer.text,
+            // What is replaced is said: to editors a word ends elsewhere.
+            "textEdit": { "range": range, "newText": offer.text },
             "kind": FIELD,
             // Editors sort by letters otherwise.
             "sortText": format!("{order:03}"),
         })
     };
-    Some(offers.map(item).collect())
+    Some(all.into_iter().enumerate().map(item).collect())
 }
 
 /// From the first byte of a place to behind its last.

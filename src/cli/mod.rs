@@ -49,7 +49,7 @@ use studies::load_all;
 /// Why a command ended without doing all of its work.
 #[derive(Debug, thiserror::Error)]
 pub enum Ending {
-    /// A word or a name on the command line that makes no sense, or a file that cannot be written.
+    /// A word or a name on the command line that makes no sense, a file that is not there or cannot be written.
     #[error("{0}")]
     Usage(String),
     #[error("{0}")]
@@ -79,6 +79,7 @@ impl Ending {
     pub fn code(&self) -> i32 {
         match self {
             Self::Usage(_) => 1,
+            Self::Invalid(error) if error.is_of_no_file() => 1,
             Self::Invalid(_) | Self::Beyond(_) | Self::Query(_) | Self::Unreadable(_) => 2,
             Self::Failed(_) => 3,
             Self::Differs(_) => 4,
@@ -179,6 +180,7 @@ fn command(arguments: &Arguments) -> Result<(), Ending> {
             conditions,
             columns,
             *format,
+            quiet,
         ),
         Command::Diff(asked) => diff::diff(asked, places, quiet),
         Command::Query(asked) => query::query(asked, places, quiet),

@@ -34,6 +34,10 @@ pub struct Heading {
 pub fn table(table: &Table, conditions: &[String], columns: &[String], format: Format) -> Result<String, String> {
     let mut parsed = Vec::new();
     for condition in conditions {
+        if condition.contains(['<', '>', '!']) {
+            let compared = format!("`gearstudy query \"select * from … where {condition}\"` compares");
+            return Err(format!("`{condition}` is not a condition; write `column=value`, or ask in SQL: {compared}"));
+        }
         parsed.extend(parse_conditions(condition)?);
     }
     let rows = rows_where(table, &parsed)?;

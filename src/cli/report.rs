@@ -10,7 +10,7 @@ use super::arguments::Places;
 use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
-use super::show::none_yet;
+use super::show::{none_yet, tell_stale};
 use super::{Ending, json as shapes};
 use crate::program::PROGRAM;
 use studygraph::runner::standing::standing_of;
@@ -50,7 +50,12 @@ pub(super) fn report(
     for study in studies {
         let folder = Folder::new(&places.results, &study.name).telling(progress::told);
         let said = if check { looked_at(study, &folder)? } else { drawn(study, &folder)? };
-        let stale = if check { stale(study, &folder)? } else { None };
+        let stale = if check {
+            stale(study, &folder)?
+        } else {
+            tell_stale(study, &folder, quiet);
+            None
+        };
         if as_json {
             values.push(value(study, &folder, &said, stale.as_deref(), check));
         } else if !quiet {

@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use serde_json::{Value, json};
 
 use super::arguments::{Changes, Format, Places};
-use super::progress::out;
+use super::progress::{out, told};
 use super::{Ending, draw, json, print, studies};
 use crate::program::{examine, load_text};
 use crate::rexs;
 use crate::stage::{self, kinds::KINDS};
 use declare::error::{Faults, suggest};
 use studygraph::runner::rehearse::rehearse;
+use studygraph::runner::standing::standing;
 use studygraph::store::manifest::{ColumnRecord, TableRecord};
 use studygraph::store::results::Folder;
 use studygraph::study::{LoadError, Refused, Study, describe, described, schema as schemas};
@@ -99,7 +100,7 @@ pub(super) fn rehearsed(examined: Result<Study, Refused>) -> Result<Study, LoadE
 /// Says of every file whether it is a valid study.
 pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: bool) -> Result<(), Ending> {
     let settings = studies::settings(changes);
-    let (mut last, mut values) = (None, Vec::new());
+    let (mut last, mut values, mut is_invalid) = (None, Vec::new(), false);
     for file in files {
         let checked = rehearsed(examine(file, &settings)).map_err(LoadError::in_full);
         if as_json {
@@ -111,6 +112,7 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
             }
             Ok(_) => {}
             Err(error) => {
+                is_invalid |= !error.is_of_no_file();
                 if let Some(earlier) = last.replace(error).filter(|_| !as_json) {
                     draw::invalid_study(&earlier);
                 }
@@ -119,10 +121,15 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
     }
     if as_json {
         json::answer(&Value::Array(values));
-        let told = |_| Err(Ending::Unreadable("what is wrong with the study is in the answer".to_owned()));
-        return last.map_or(Ok(()), told);
+        let told = "what is wrong with the study is in the answer".to_owned();
+        return last.map_or(Ok(()), |_| Err(if is_invalid { Ending::Unreadable(told) } else { Ending::Usage(told) }));
     }
-    last.map_or(Ok(()), |error| Err(Ending::Invalid(Box::new(error))))
+    match last {
+        None => Ok(()),
+        // That another one is invalid says more than that this one is not there.
+        Some(error) if is_invalid && error.is_of_no_file() => Err(Ending::Unreadable(error.to_string())),
+        Some(error) => Err(Ending::Invalid(Box::new(error))),
+    }
 }
 
 fn checked_value(file: &Path, checked: &Result<Study, LoadError>) -> Value {
@@ -181,10 +188,22 @@ pub(super) fn table(
     conditions: &[String],
     columns: &[String],
     format: Format,
+    quiet: bool,
 ) -> Result<(), Ending> {
     let folder = Folder::new(&places.results, &study.name);
     out(&folder.settled(|| shown(study, &folder, name, conditions, columns, format))?);
+    tell_stale(study, &folder, quiet);
     Ok(())
+}
+
+/// Says in a line on standard error where results are not those of the study and the program as they are now; what cannot be
+/// told is not told.
+pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
+    let outdated = || standing(study, folder).ok()?.outdated();
+    if let Some(problem) = (!quiet).then(outdated).flatten() {
+        let (name, file) = (&study.name, study.path.display());
+        told(&format!("{name}: the results are not those of the study now: {problem}; first: gearstudy run {file}"));
+    }
 }
 
 fn shown(

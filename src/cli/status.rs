@@ -105,7 +105,8 @@ pub(super) fn status(
     if !stale.is_empty() {
         advice.push(format!("not up to date: {}", stale.join(", ")));
     }
-    let (invalid, number) = (faults.iter().any(|fault| matches!(fault, Fault::Study(_))), faults.len());
+    let is_invalid = |fault: &Fault| matches!(fault, Fault::Study(error) if !error.is_of_no_file());
+    let (invalid, number) = (faults.iter().any(is_invalid), faults.len());
     match faults.pop() {
         None if advice.is_empty() => Ok(()),
         None => Err(Ending::Differs(advice.join("\n"))),

@@ -13,6 +13,11 @@ use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
 use studygraph::table::schema::Column;
 
+/// Of the pair in mesh.
+const POINTS_OF_CONTACT: &str = "A: contact begins, at the root of the driving pinion; B and D: inner and outer point of \
+                                 single pair contact, where the pair before leaves and the next one enters; C: pitch \
+                                 point; E: contact ends";
+
 /// # Errors
 /// When a table is damaged.
 pub fn figures(manifest: &Manifest, order: &Order, tables: Tables<'_>) -> Result<Vec<Figure>, ReportError> {
@@ -62,14 +67,14 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
             found.extend(of_front(name, &draw, tables));
             found
         }
-        "modification" => of_modification(&draw, &by),
+        "modification" => of_modification(&draw, &by, tables),
         "geometry" => {
             let mesh =
                 draw("teeth", "The pair in mesh, with its path of contact", Kind::Drawing, "mesh_drawing", "x", "y");
-            let curves =
-                ["pinion", "gear", "line of action", "path of contact", "pitch circles", "base circles", "tip circles"];
-            let labels = curves.map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
-            vec![Spec { segments: "run".to_owned(), labels, ..by(labelled(mesh, "x", "y"), "curve") }]
+            // Others are in the order of their lines.
+            let labels = ["pinion", "gear"].map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
+            let note = POINTS_OF_CONTACT.to_owned();
+            vec![Spec { segments: "run".to_owned(), labels, note, ..by(labelled(mesh, "x", "y"), "curve") }]
         }
         _ => Vec::new(),
     };
@@ -154,26 +159,40 @@ fn of_front(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Option<Spec> {
     Some(Spec { marked: [format!("{stage}.best"), "objective".to_owned(), y], ..front })
 }
 
-fn of_modification(draw: &Draw<'_>, by: &dyn Fn(Spec, &str) -> Spec) -> Vec<Spec> {
+/// Charts of what is modified by a design; the first one says what is not.
+fn of_modification(draw: &Draw<'_>, by: &dyn Fn(Spec, &str) -> Spec, tables: Tables<'_>) -> Vec<Spec> {
     let chart = |gear: &str, (what, table, x): (&str, &str, &str), (x_label, length): (&str, &str)| {
         let title = format!("{what} of the {gear}");
         let spec = draw(&format!("{table}_{gear}"), &title, Kind::Chart, table, x, "depth");
-        Spec {
+        let spec = Spec {
             conditions: vec![("gear".to_owned(), gear.to_owned())],
             length: length.to_owned(),
             x_label: x_label.to_owned(),
             y_label: "Depth".to_owned(),
             ..by(spec, "design")
-        }
+        };
+        (format!("the {table} of the {gear}"), spec)
     };
     let profile = ("Profile modification", "profile", "roll_angle");
     let lead = ("Lead modification", "lead", "z");
-    ["pinion", "gear"]
-        .iter()
-        .flat_map(|gear| {
-            [chart(gear, profile, ("Roll angle", "roll_length")), chart(gear, lead, ("Across the face", "z"))]
-        })
-        .collect()
+    let charts = ["pinion", "gear"].iter().flat_map(|gear| {
+        [chart(gear, profile, ("Roll angle", "roll_length")), chart(gear, lead, ("Across the face", "z"))]
+    });
+    let charts = charts.filter(|(_, spec)| fits(spec, tables));
+    let (modified, unmodified): (Vec<_>, Vec<_>) = charts.partition(|(_, spec)| takes_something_off(spec, tables));
+    let mut drawn: Vec<Spec> = modified.into_iter().map(|(_, spec)| spec).collect();
+    let whole: Vec<String> = unmodified.into_iter().map(|(name, _)| name).collect();
+    if let Some(first) = drawn.first_mut().filter(|_| !whole.is_empty()) {
+        first.note = format!("unmodified in every design: {}", whole.join(", "));
+    }
+    drawn
+}
+
+/// Whether a chart shows a depth.
+fn takes_something_off(spec: &Spec, tables: Tables<'_>) -> bool {
+    let Some(table) = tables(&spec.tables[0]) else { return false };
+    let rows = studygraph::table::select::rows_where(&table, &spec.conditions).unwrap_or_default();
+    matches!(table.column("depth"), Some(Data::Float(depths)) if rows.iter().any(|&row| depths[row] != 0.0))
 }
 
 /// Whether all that it draws is there, and there are rows to draw.

@@ -25,6 +25,7 @@ pub fn true_to_scale(x: Scale, y: Scale, widest: f64, tallest: f64) -> (Scale, S
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::frame::Layout;
     use crate::report::look::Look;
     use crate::report::plot::{Kind, Plot, Series};
 
@@ -44,6 +45,17 @@ mod tests {
             let fills = |scale: Scale, (low, high): (f64, f64)| (scale.high - scale.low) / (high - low) < 1.0 + 1e-9;
             assert!(fills(across, x) || fills(up, y));
             assert!((fills(across, x) || width == NARROWEST) && (fills(up, y) || height == FLATTEST));
+        }
+    }
+
+    #[test]
+    fn a_drawing_without_another_beside_it_fills_its_row() {
+        for aspect in [0.5, 1.2, 1.3, 1.35, 1.4, 1.5, 1.8, 2.5, 6.0] {
+            let line = vec![(0.0, 0.0), (aspect, 0.0), (aspect, 1.0)];
+            let plot = Plot { series: vec![Series::new("", vec![line])], ..Plot::new("t", Kind::Drawing) };
+            // A page has 1104 px; a figure is enlarged by so much at most.
+            let width = 1.3 * plot.extent(&plot.frame(0.0, Layout::PAGE).unwrap()).0;
+            assert!(plot.narrow().is_some() || width > 0.9 * 1104.0, "{aspect}: {width} px");
         }
     }
 

@@ -8,11 +8,14 @@ use super::order::Order;
 use super::plot::{Axis, Kind, Mark, Named, Of, Plot, Series};
 use super::spec::Spec;
 use super::{ReportError, floats, integers, texts};
-use crate::report::look::Look;
+use crate::report::look::{Line, Look};
 use declare::number::{significant, with_unit};
 use declare::units::{in_unit, parse_quantity};
 use studygraph::table::data::{Data, Table};
 use studygraph::table::select::rows_where;
+
+/// The column by which a table of curves says how each is drawn.
+const LINE: &str = "line";
 
 /// A plot with its name and remark.
 pub struct Figure {
@@ -84,7 +87,7 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
             };
             let first = drawing.series.len();
             drawing.add(spec, &table, &rows, y, &prefix)?;
-            drawing.series[first..].sort_by_cached_key(|series| order.rank(spec, &series.raw));
+            drawing.series[first..].sort_by_cached_key(|series| (series.line, order.rank(spec, &series.raw)));
             if let Some(reference) = &reference {
                 drawing.relate(first, value_of(reference, conditions, y)?);
                 plot.y.unit.clear();
@@ -222,6 +225,7 @@ impl Drawing {
         let segment_data = if segments.is_empty() { None } else { Some(column(segments)?) };
         // Of a histogram each row is a bar, which ends somewhere.
         let ends = if spec.kind == Kind::Histogram { Some(column(&spec.value)?) } else { None };
+        let lines = table.column(LINE).filter(|_| spec.kind == Kind::Drawing);
         let own = self.series.len();
         let mut segment: Vec<Option<String>> = Vec::new();
         for &row in rows {
@@ -238,7 +242,8 @@ impl Drawing {
                     Some(value) => Of::Quantity { column: series.clone(), value },
                     None => Of::Word,
                 };
-                self.series.push(Series { raw, of, ..Series::new(&label, Vec::new()) });
+                let line = lines.and_then(|data| Line::named(&data.cell(row).to_string()));
+                self.series.push(Series { raw, of, line, ..Series::new(&label, Vec::new()) });
                 segment.push(None);
                 self.series.len() - 1
             });

@@ -6,14 +6,17 @@ use super::drawing::true_to_scale;
 use super::plot::{Kind, Plot, Size};
 use super::scale::{Scale, rounded_down};
 
+/// A drawing whose frame is wider has no other beside it \[px\].
+const ALONE: f64 = 590.0;
+
 /// Lengths in px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Layout {
     pub width: f64,
     /// Of the frame.
     height: f64,
-    /// The tallest frame of a drawing.
-    tallest: f64,
+    /// The tallest frame of a drawing that others stand beside, and of one that is alone in its row, which it fills.
+    tallest: [f64; 2],
     right: f64,
     /// Room for a title.
     pub title: f64,
@@ -30,7 +33,7 @@ impl Layout {
     pub const PAGE: Self = Self {
         width: 920.0,
         height: 340.0,
-        tallest: 440.0,
+        tallest: [440.0, 540.0],
         right: 18.0,
         title: 0.0,
         character: 7.0,
@@ -41,11 +44,11 @@ impl Layout {
 
     pub const fn of_file(size: Size) -> Self {
         match size {
-            Size::Page => Self { title: 34.0, tallest: 820.0, ..Self::PAGE },
+            Size::Page => Self { title: 34.0, tallest: [820.0; 2], ..Self::PAGE },
             Size::Column => Self {
                 width: 340.0,
                 height: 190.0,
-                tallest: 400.0,
+                tallest: [400.0; 2],
                 right: 12.0,
                 title: 2.0,
                 character: 5.7,
@@ -141,7 +144,9 @@ impl Plot {
         let right = layout.right + if self.kind == Kind::Map { 11.0 * layout.character } else { 0.0 };
         let width = layout.width - left - right;
         let (x, y, width, height) = if self.kind == Kind::Drawing {
-            true_to_scale(x, y, width, layout.tallest)
+            let [beside, alone] = layout.tallest;
+            let tallest = if (x.high - x.low) * beside > ALONE * (y.high - y.low) { alone } else { beside };
+            true_to_scale(x, y, width, tallest)
         } else {
             (x, y, width, layout.height)
         };
@@ -166,15 +171,14 @@ impl Plot {
     }
 }
 
-/// With room for greater depths, so that the factor is a round number.
+/// Lower, so that the factor is a round number and nothing stays blank below the greatest depth.
 fn exaggerated(frame: Frame, length: f64) -> Frame {
     let along = frame.width / ((frame.x.high - frame.x.low) * length);
-    let across = frame.height / (frame.y.high - frame.y.low);
-    let factor = rounded_down(across / along);
-    let span = frame.height / (factor * along);
-    let y = Scale { high: frame.y.low + span, ..frame.y };
-    let fits = factor.is_finite() && factor > 0.0 && span.is_finite();
-    if fits { Frame { y, exaggeration: Some(factor), ..frame } } else { frame }
+    let depths = frame.y.high - frame.y.low;
+    let factor = rounded_down(frame.height / depths / along);
+    let height = factor * along * depths;
+    let fits = factor.is_finite() && factor > 0.0 && height.is_finite();
+    if fits { Frame { height, exaggeration: Some(factor), ..frame } } else { frame }
 }
 
 #[cfg(test)]
@@ -195,7 +199,8 @@ mod tests {
             let path = (frame.x(10.0 + along) - frame.x(10.0)) / (along * length);
             assert!((drawn / path / factor - 1.0).abs() < 1e-12, "{factor}");
             assert_eq!(factor.to_bits(), rounded_down(factor).to_bits(), "{factor} is round");
-            assert!(frame.y.share(depth) > 0.5, "the depth fills the chart");
+            assert!(frame.y.share(depth) > 0.9, "the depth fills the chart");
+            assert!(frame.height > 0.6 * Layout::PAGE.height, "{factor}: {} px high", frame.height);
             assert!(frame.y(depth) > frame.y(0.0) && frame.y(depth) <= frame.bottom(), "downwards, inside");
         }
     }

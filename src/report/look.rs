@@ -42,35 +42,68 @@ const HOLLOW: [&str; 4] =
 /// Lines of published values: dashes that no series has.
 const PUBLISHED: [&str; 4] = ["7 5", "2 3", "12 3 2 3 2 3", "4 8"];
 
+/// A line of a technical drawing, by what it is: outlines wide and solid, what helps to read them narrow (ISO 128-2).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Line {
+    Wide,
+    Narrow,
+    Dashed,
+    DashDotted,
+}
+
+impl Line {
+    /// By its name in a table.
+    pub fn named(name: &str) -> Option<Self> {
+        match name {
+            "wide" => Some(Self::Wide),
+            "narrow" => Some(Self::Narrow),
+            "dashed" => Some(Self::Dashed),
+            "dash-dotted" => Some(Self::DashDotted),
+            _ => None,
+        }
+    }
+
+    const fn dash(self) -> &'static str {
+        match self {
+            Self::Wide | Self::Narrow => "",
+            Self::Dashed => "7 4",
+            Self::DashDotted => "14 3 1 3",
+        }
+    }
+}
+
 /// A category's dashes and marker are counted apart from its colour: where colours come again, those do not.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Look {
     pub colour: Colour,
     kind: usize,
+    /// Of a drawing, where it is told.
+    line: Option<Line>,
 }
 
 impl Look {
     /// Of a category, counted from 0.
     pub fn of(category: usize) -> Self {
-        Self { colour: Colour::Of(category % KINDS), kind: (category + category / KINDS) % KINDS }
+        Self { colour: Colour::Of(category % KINDS), kind: (category + category / KINDS) % KINDS, line: None }
     }
 
     /// Of a value on a ramp of so many; a solid line with round dots.
     pub fn on_ramp(index: usize, count: usize) -> Self {
-        Self { colour: Colour::ramp(index, count), kind: 0 }
+        Self { colour: Colour::ramp(index, count), kind: 0, line: None }
     }
 
-    /// As in a drawing, where bodies are solid: the first two, which are told apart by where they are too.
-    pub fn in_drawing(self) -> Self {
-        if self.kind < 2 { Self { kind: 0, ..self } } else { self }
+    /// As in a drawing, where bodies are solid: what is told to be, or the first two, which are told apart by where they
+    /// are too.
+    pub fn in_drawing(self, line: Option<Line>) -> Self {
+        if self.kind < 2 { Self { kind: 0, line, ..self } } else { Self { line, ..self } }
     }
 
     pub const fn ink(kind: usize) -> Self {
-        Self { colour: Colour::Ink, kind }
+        Self { colour: Colour::Ink, kind, line: None }
     }
 
     pub fn dash(self) -> &'static str {
-        DASHES[self.kind % DASHES.len()]
+        self.line.map_or(DASHES[self.kind % DASHES.len()], Line::dash)
     }
 
     /// Class and path of a marker.
@@ -93,19 +126,17 @@ impl Look {
 
     /// The style of a line in it.
     pub fn stroke(self) -> String {
-        Self::stroked(self.colour, self.dash())
+        let is_narrow = self.line.is_some_and(|line| line != Line::Wide);
+        Self::stroked(self.colour, self.dash(), if is_narrow { ";stroke-width:1.1" } else { "" })
     }
 
     pub fn published_stroke(self) -> String {
-        Self::stroked(self.colour, self.published_dash())
+        Self::stroked(self.colour, self.published_dash(), "")
     }
 
-    fn stroked(colour: Colour, dash: &str) -> String {
-        if dash.is_empty() {
-            format!(r#"style="stroke:{}""#, colour.value())
-        } else {
-            format!(r#"style="stroke:{};stroke-dasharray:{dash}""#, colour.value())
-        }
+    fn stroked(colour: Colour, dash: &str, width: &str) -> String {
+        let dashes = if dash.is_empty() { String::new() } else { format!(";stroke-dasharray:{dash}") };
+        format!(r#"style="stroke:{}{dashes}{width}""#, colour.value())
     }
 }
 

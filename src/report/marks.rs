@@ -11,6 +11,48 @@ use super::svg::{at, escape};
 /// Of a named point.
 const MARKER: &str = "m0-6l6 6l-6 6l-6-6z";
 
+/// Where a name may stand beside its point, the best first: anchor, and how far aside and below \[px\].
+const BESIDE: [(&str, f64, f64); 8] = [
+    ("start", 9.0, -8.0),
+    ("end", -9.0, 18.0),
+    ("end", -9.0, -8.0),
+    ("start", 9.0, 18.0),
+    ("middle", 0.0, -12.0),
+    ("middle", 0.0, 24.0),
+    ("start", 12.0, 5.0),
+    ("end", -12.0, 5.0),
+];
+
+/// The room that a named point and its name take: left, right, top, bottom.
+type Room = [f64; 4];
+
+fn overlap(one: &Room, two: &Room) -> bool {
+    one[0] < two[1] && two[0] < one[1] && one[2] < two[3] && two[2] < one[3]
+}
+
+/// A place for each name beside its point where it meets no other point and no name before it, if there is one.
+fn places(frame: &Frame, points: &[(f64, f64, &str)]) -> Vec<(&'static str, f64, f64)> {
+    let mut taken: Vec<Room> = points.iter().map(|(x, y, _)| [x - 3.5, x + 3.5, y - 3.5, y + 3.5]).collect();
+    let place = |&(x, y, name): &(f64, f64, &str)| {
+        // The letters are wider than those of a label, and as high above the line as wide.
+        let long = 1.6 * frame.layout.character * name.chars().count() as f64;
+        let room = |(anchor, aside, below): (&str, f64, f64)| {
+            let before = match anchor {
+                "start" => 0.0,
+                "middle" => 0.5 * long,
+                _ => long,
+            };
+            let left = x + aside - before;
+            [left, left + long, y + below - 11.0, y + below + 1.0]
+        };
+        let is_free = |beside: &(&str, f64, f64)| taken.iter().all(|other| !overlap(&room(*beside), other));
+        let chosen = BESIDE.into_iter().find(is_free).unwrap_or(BESIDE[0]);
+        taken.push(room(chosen));
+        chosen
+    };
+    points.iter().map(place).collect()
+}
+
 impl Plot {
     /// A series of a drawing that is made of single points is named where it stands, not in the legend.
     pub(super) fn is_named_point(&self, series: &Series) -> bool {
@@ -18,13 +60,20 @@ impl Plot {
     }
 
     pub(super) fn draw_named_points(&self, svg: &mut String, frame: &Frame) {
-        for (index, series) in self.series.iter().enumerate().filter(|(_, series)| self.is_named_point(series)) {
+        let named = || self.series.iter().enumerate().filter(|(_, series)| self.is_named_point(series));
+        let placed = |series: &Series| -> Vec<(f64, f64)> {
+            series.runs.iter().flatten().filter_map(|&point| frame.place(point)).collect()
+        };
+        let of = |(_, series)| placed(series).into_iter().map(move |(x, y)| (x, y, series.label.as_str()));
+        let points: Vec<(f64, f64, &str)> = named().flat_map(of).collect();
+        let mut places = places(frame, &points).into_iter();
+        for (index, series) in named() {
             let _ = write!(svg, r#"<g data-s="s{index}">"#);
-            for (x, y) in series.runs.iter().flatten().filter_map(|&point| frame.place(point)) {
+            for ((x, y), (anchor, aside, below)) in placed(series).into_iter().zip(&mut places) {
                 let (x, y, label) = (at(x), at(y), escape(&series.label));
                 let _ = write!(
                     svg,
-                    r#"<path class="dot" style="stroke:var(--ink)" d="M{x} {y}h0"/><text class="point" x="{x}" y="{y}" dx="9" dy="-8">{label}</text>"#
+                    r#"<path class="dot" style="stroke:var(--ink)" d="M{x} {y}h0"/><text class="point" x="{x}" y="{y}" dx="{aside}" dy="{below}" text-anchor="{anchor}">{label}</text>"#
                 );
             }
             svg.push_str("</g>");
@@ -66,6 +115,50 @@ impl Plot {
                 _ => continue,
             };
             let _ = write!(svg, r#"<g data-s="{}"><path class="{class}" {style} d="{path}"/></g>"#, self.key_of(mark));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::frame::Layout;
+
+    fn drawing(points: &[(&str, (f64, f64))]) -> Plot {
+        let frame = Series::new("", vec![vec![(0.0, 0.0), (100.0, 0.0), (100.0, 40.0)]]);
+        let named = points.iter().map(|(name, place)| Series::new(name, vec![vec![*place]]));
+        Plot { series: std::iter::once(frame).chain(named).collect(), ..Plot::new("t", Kind::Drawing) }
+    }
+
+    /// Contact ratios from just one to just two: A beside B, and B, C and D beside each other.
+    #[test]
+    fn names_of_points_that_lie_close_together_stand_apart() {
+        for ends in [0.1, 1.0, 4.0, 12.0, 19.0, 19.9] {
+            let on = |s: f64| (30.0 + s, 10.0 + 0.36 * s);
+            let points = [("A", 0.0), ("B", ends), ("C", 20.0), ("D", 40.0 - ends), ("E", 40.0)];
+            let points = points.map(|(name, s)| (name, on(s)));
+            let plot = drawing(&points);
+            let frame = plot.frame(0.0, Layout::PAGE).unwrap();
+            let placed = points.map(|(name, point)| frame.place(point).map(|(x, y)| (x, y, name)).unwrap());
+            let names: Vec<Room> = places(&frame, &placed)
+                .into_iter()
+                .zip(placed)
+                .map(|((anchor, aside, below), (x, y, _))| {
+                    let left = x + aside
+                        - match anchor {
+                            "start" => 0.0,
+                            "middle" => 5.5,
+                            _ => 11.0,
+                        };
+                    [left, left + 11.0, y + below - 11.0, y + below]
+                })
+                .collect();
+            for (index, name) in names.iter().enumerate() {
+                assert!(names[..index].iter().all(|other| !overlap(name, other)), "{ends}: {names:?}");
+                assert!(placed.iter().all(|(x, y, _)| !overlap(name, &[*x, *x, *y, *y])), "{ends}: {names:?}");
+            }
+            let svg = plot.inline();
+            assert!(points.iter().all(|(name, _)| svg.contains(&format!(">{name}</text>"))), "{svg}");
         }
     }
 }

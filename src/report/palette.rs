@@ -28,7 +28,7 @@ pub fn assign<'a>(plots: impl Iterator<Item = &'a mut Plot>) {
                 Of::Word => Look::of(categories.get(&series.label).copied().unwrap_or(0)),
             };
             if plot.kind == Kind::Drawing {
-                series.look = series.look.in_drawing();
+                series.look = series.look.in_drawing(series.line);
             }
         }
         // Of a series' name its colour; others are told apart by dashes and markers, in the order of the study.

@@ -9,7 +9,7 @@ use std::fmt::Write;
 use super::cells::Cells;
 use super::frame::{Frame, Layout};
 use super::legend::{self, Item, Sign};
-use super::look::Look;
+use super::look::{Line, Look};
 use super::svg::{at, escape};
 
 /// About the frame nothing is cut off, so that a line on its edge is not cut in half \[px\].
@@ -71,13 +71,15 @@ pub struct Series {
     pub raw: String,
     pub of: Of,
     pub look: Look,
+    /// Of a drawing, where its table tells it.
+    pub line: Option<Line>,
     pub runs: Vec<Vec<(f64, f64)>>,
 }
 
 impl Series {
     #[must_use]
     pub fn new(label: &str, runs: Vec<Vec<(f64, f64)>>) -> Self {
-        Self { label: label.to_owned(), raw: label.to_owned(), of: Of::Word, look: Look::of(0), runs }
+        Self { label: label.to_owned(), raw: label.to_owned(), of: Of::Word, look: Look::of(0), line: None, runs }
     }
 }
 
@@ -183,7 +185,7 @@ impl Plot {
         let Some(frame) = self.frame(8.0, layout) else { return self.empty(layout) };
         let (width, height) = self.extent(&frame);
         let mut svg = format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" tabindex="0" style="max-width:{}px" aria-label="{}" data-plot="{}">"#,
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {} {}" role="img" style="max-width:{}px" aria-label="{}" data-plot="{}">"#,
             at(width),
             at(height),
             // Larger would be crude, smaller would leave blank beside it.

@@ -3,6 +3,7 @@
 //! Places are absolute and shapes about them relative, so that the page's script can move places to other axes. Must not
 //! know: axes, tables.
 
+use std::cmp::Reverse;
 use std::fmt::Write;
 
 use super::frame::Frame;
@@ -11,7 +12,11 @@ use super::svg::at;
 
 impl Plot {
     pub(super) fn draw_lines(&self, svg: &mut String, frame: &Frame) {
-        for (index, series) in self.series.iter().enumerate().filter(|(_, series)| !self.is_named_point(series)) {
+        let mut lines: Vec<(usize, &Series)> =
+            self.series.iter().enumerate().filter(|(_, series)| !self.is_named_point(series)).collect();
+        // Bodies above what helps to read them.
+        lines.sort_by_key(|(_, series)| Reverse(series.line));
+        for (index, series) in lines {
             let style = series.look.stroke();
             let (mut line, mut jumps) = (String::new(), String::new());
             let mut last: Option<(f64, f64)> = None;

@@ -100,18 +100,16 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             failing: failing[row].clone(),
         }
     };
-    // What needs attention, what is explained, what agrees; each in the order of the study.
+    // Verdict by verdict, each in the order of the study.
     let mut order: Vec<usize> = (0..table.rows()).collect();
     order.sort_by_key(|&row| rank(&verdicts[row]));
     Ok(order.into_iter().map(one).collect())
 }
 
+/// What needs attention comes first, then what is explained, then what agrees; as the table of counts has them.
 fn rank(verdict: &str) -> usize {
-    match sign(verdict) {
-        "✓" => 2,
-        "≠" => 1,
-        _ => 0,
-    }
+    const ORDER: [&str; 7] = ["unexplained", "moved", "outdated", "explained", "refuted", "reproduced", "holds"];
+    ORDER.iter().position(|known| *known == verdict).unwrap_or(0)
 }
 
 /// The printed text with the typography of a journal: `2.738e8 N/m` as `2.738×10⁸ N/m`.
@@ -187,10 +185,11 @@ mod tests {
     }
 
     #[test]
-    fn what_needs_attention_is_first() {
-        let words = ["reproduced", "explained", "holds", "outdated", "refuted", "unexplained", "moved"];
-        let mut sorted = words;
-        sorted.sort_by_key(|word| rank(word));
-        assert_eq!(sorted, ["outdated", "unexplained", "moved", "explained", "refuted", "reproduced", "holds"]);
+    fn what_needs_attention_is_first_and_each_verdict_stands_together() {
+        let mut words =
+            ["refuted", "reproduced", "explained", "holds", "outdated", "explained", "refuted", "unexplained"];
+        words.sort_by_key(|word| rank(word));
+        let sorted = ["unexplained", "outdated", "explained", "explained", "refuted", "refuted", "reproduced", "holds"];
+        assert_eq!(words, sorted);
     }
 }

@@ -9,6 +9,7 @@ after `--quick` also what a keyboard and a mouse can do. Prints one line; ends w
 
 import csv
 import io
+import json
 import math
 import re
 import sys
@@ -52,6 +53,18 @@ STICKY = """() => [...document.querySelectorAll('.wide')].filter(region => regio
 
 REGIONS = """() => [...document.querySelectorAll('.wide')].filter(region =>
   region.tabIndex !== 0 || region.getAttribute('role') !== 'region' || !region.getAttribute('aria-label')).length"""
+
+# Nothing of a figure is cut without a way to see it, and what stands at its axes can be read.
+FIGURES = """() => [...document.querySelectorAll('figure svg[data-plot]')].flatMap(svg => {
+  const region = svg.parentElement, faults = [], name = svg.getAttribute('aria-label');
+  const reached = region.tabIndex === 0 && region.getAttribute('role') && region.getAttribute('aria-label');
+  const cut = svg.getBoundingClientRect().width > region.clientWidth + 1;
+  if (cut && !(reached && getComputedStyle(region).overflowX === 'auto')) faults.push(`${name}: cut, and no key shows the rest`);
+  const scale = svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
+  const letters = svg.querySelector('.tick:not(.name)'), size = letters ? scale * parseFloat(getComputedStyle(letters).fontSize) : 8;
+  if (size < 8) faults.push(`${name}: letters of ${size} px`);
+  return faults;
+})"""
 
 OPEN = """async () => {
   for (const details of document.querySelectorAll('details')) details.open = true;
@@ -98,7 +111,7 @@ def everybody(browser, path, faults):
     faults.check(page.locator("th:not([scope])").count() == 0, f"{path}: a heading has no scope")
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
-        for fault in page.evaluate(KEYS) + page.evaluate(STICKY):
+        for fault in page.evaluate(KEYS) + page.evaluate(STICKY) + page.evaluate(FIGURES):
             faults.check(False, f"{path} at {width} px: {fault}")
         wider = page.evaluate("() => document.documentElement.scrollWidth - document.documentElement.clientWidth")
         faults.check(wider <= 0, f"{path} at {width} px: {wider} px wider than the window")
@@ -115,7 +128,7 @@ def everybody(browser, path, faults):
     page.set_viewport_size({"width": 1280, "height": 900})
     filled = page.evaluate("""() => [...document.querySelectorAll('figure:not(.narrow) .canvas > svg')].map(svg =>
       svg.getBoundingClientRect().width / document.querySelector('main').getBoundingClientRect().width)""")
-    faults.check(all(share > 0.8 for share in filled), f"{path}: blank beside a figure: {filled}")
+    faults.check(all(share > 0.9 for share in filled), f"{path}: blank beside a figure: {filled}")
     page.reload()
     pdf = page.pdf()
     faults.check(pdf.startswith(b"%PDF") and len(pdf) > 10_000, f"{path}: it cannot be printed")
@@ -165,10 +178,10 @@ def by_hand(browser, path, faults):
     """The page of studies/quick.yaml: three figures, the second with four designs."""
     page = opened(browser, path, faults, viewport={"width": 1280, "height": 900})
     figure = page.locator("#figure-transmission_error")
-    svg, readout = figure.locator("svg[data-plot]"), figure.locator(".readout")
+    svg, readout, canvas = (figure.locator(part) for part in ["svg[data-plot]", ".readout", ".canvas"])
 
     # Readout by keyboard: further to the right, further along.
-    svg.focus()
+    canvas.focus()
     page.keyboard.press("ArrowRight")
     first = readout.inner_text()
     for _ in range(40):
@@ -179,16 +192,21 @@ def by_hand(browser, path, faults):
     faults.check(figure.locator(".cross").count() == 1, "no crosshair")
 
     # Zoom by keyboard: ticks are new, and closer together; back again they are the old ones.
+    cut = lambda: numbers(figure.locator("svg.data").get_attribute("viewBox"))
+    uncut = cut()
     whole, curve = ticks(figure), figure.locator("path.series").first.get_attribute("d")
     page.keyboard.press("+")
     page.keyboard.press("+")
     close = ticks(figure)
+    frame = json.loads(svg.get_attribute("data-plot"))["frame"]
+    faults.check(cut() == frame, f"zoomed curves run over the axes: {cut()} for {frame}")
     faults.check(close != whole and len(close) >= 4, f"zoom leaves the axes: {close}")
     page.keyboard.press("ArrowRight")
     inside = numbers(readout.inner_text())[0]
     faults.check(abs(inside - numbers(later)[0]) < 2.5, f"it zooms elsewhere: {inside}")
     page.keyboard.press("0")
     faults.check(ticks(figure) == whole, f"not the whole again: {ticks(figure)} for {whole}")
+    faults.check(cut() == uncut, f"a line on the edge is cut in half: {cut()}")
     restored = figure.locator("path.series").first.get_attribute("d")
     far = max(abs(a - b) for a, b in zip(numbers(curve), numbers(restored)))
     faults.check(far < 0.02, f"the line is {far} px elsewhere after a zoom and back")
@@ -206,13 +224,33 @@ def by_hand(browser, path, faults):
     page.mouse.dblclick(*at(0.5, 0.5))
     faults.check(ticks(figure) == whole, "a double click does not show the whole")
 
+    # By mouse: what is read is a point of the curve beside the pointer, marked where it lies.
+    samples = [point for series in json.loads(svg.get_attribute("data-plot"))["series"] for point in series["points"]]
+    for across in [0.203, 0.377, 0.641]:
+        page.mouse.move(*at(across, 0.4))
+        across, down = [numbers(figure.locator(".cross").get_attribute("d"))[index] for index in [0, 4]]
+        marked = figure.locator("circle").evaluate_all("all => all.map(one => [+one.getAttribute('cx'), +one.getAttribute('cy')])")
+        faults.check([across, down] in marked, f"the crosshair is at {across}, {down}, the points at {marked}")
+        said = readout.inner_text().splitlines()
+        place, value = numbers(said[0])[0], numbers(readout.locator(".near").inner_text())[0]
+        near = min(math.dist(point, [place, value]) for point in samples)
+        faults.check(near < 1e-3, f"{said} is no point of a curve, by {near}")
+
+    # Where the figure is wider than the window, keys show the rest.
+    page.set_viewport_size({"width": 390, "height": 900})
+    canvas.focus()
+    page.keyboard.press("End")
+    scrolled = canvas.evaluate("region => [region.scrollLeft, region.scrollWidth - region.clientWidth]")
+    faults.check(scrolled[0] > 0.9 * scrolled[1] > 0, f"the end is not in sight: {scrolled}")
+    page.set_viewport_size({"width": 1280, "height": 900})
+
     # Toggling by keyboard and by mouse.
     button = figure.locator(".legend button", has_text="short")
     button.focus()
     page.keyboard.press("Space")
     shown = lambda: figure.locator("svg.data > g:not([style*=none])").count()
     faults.check(button.get_attribute("aria-pressed") == "false" and shown() == 3, f"{shown()} of 4 are left")
-    svg.focus()
+    canvas.focus()
     page.keyboard.press("ArrowRight")
     faults.check("short" not in readout.inner_text(), "what is hidden is read")
     button.click()

@@ -61,7 +61,9 @@ with h5py.File(results / f"{manifest['study']}.h5", "r") as file:
         metadata = {key.decode(): value.decode() for key, value in arrow.schema.metadata.items()}
         assert metadata["table"] == table_name and metadata["description"] == schema["description"], name
         attrs = json.loads(metadata["PANDAS_ATTRS"])
-        assert attrs == {"table": table_name, "units": {one["name"]: one["unit"] for one in columns if one["unit"]}}, name
+        units = {one["name"]: one["unit"] for one in columns if one["unit"]}
+        beside = {"value": "unit"} if {"value", "unit"} <= {one["name"] for one in columns} and "value" not in units else {}
+        assert attrs == {"table": table_name, "units": units} | ({"unit_columns": beside} if beside else {}), name
         assert group.attrs["description"] == schema["description"], name
         names = [column["name"] for column in columns]
         assert arrow.column_names == names and list(group.attrs["columns"]) == names, name

@@ -16,12 +16,37 @@ pub struct Foreign {
     pub remark: &'static str,
 }
 
+/// A field of a kind of stage that names what is in tables: for editors, to which a text is a text otherwise.
+#[derive(Clone, Copy)]
+pub struct Naming {
+    pub kind: &'static str,
+    pub field: &'static str,
+    pub names: Names,
+}
+
+/// What a text of a field names.
+#[derive(Clone, Copy)]
+pub enum Names {
+    /// Numbers, `stage.table[column=value, …].column`.
+    Cells,
+    /// The same without the stage, which is the one in the field of this name beside it. `column` by itself is one of `table`,
+    /// where there is one that can be left out.
+    CellsOf { stage: &'static str, table: Option<&'static str> },
+    /// The same of what a stage of this kind would give.
+    CellsOfKind { kind: &'static str, table: Option<&'static str> },
+    /// `stage.table`.
+    Table,
+    /// A column of the table in the field of this name beside it; a map names columns, and values of them.
+    Columns { table: &'static str },
+}
+
 /// A program that runs studies.
 pub struct Program {
     /// Every kind of stage, in the order in which they are listed to the user.
     pub kinds: &'static [&'static Kind],
     /// What others call its fields.
     pub foreign: &'static [Foreign],
+    pub named: &'static [Naming],
     /// The digest of the code that the tables of a kind, called by its name, come from; part of every cache key.
     pub code_of: fn(&str) -> String,
     /// What its stages count of their work.

@@ -11,6 +11,7 @@ for (const figure of all("figure")) {
     return element;
   };
   const layer = svg.appendChild(tag("g", {})), box = svg.appendChild(tag("rect", { class: "lasso" }));
+  const uncut = data.getAttribute("viewBox");
   const drawn = all("path", data).map(path => [path, path.getAttribute("d")]);
   const named = all("text", data).map(text => [text, +text.getAttribute("x"), +text.getAttribute("y")]);
   const names = all(".name", axes), labels = all(".label", axes), flat = plot.cells && plot.cells.y.length < 2;
@@ -23,6 +24,8 @@ for (const figure of all("figure")) {
   const toX = (number, { x } = view) => left + width * share(x, number);
   const toY = (number, { y } = view) => top + height * upright(share(y, number));
   const fits = axis => axis.high > axis.low && axis.high - axis.low > 1e-12 * Math.abs(axis.high);
+  const place = (element, lengths) => ["x", "y", "width", "height"].forEach((key, index) => element.setAttribute(key, lengths[index]));
+  const scale = () => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
   const redraw = () => {
     const first = whole(), [x0, x1] = [toX(view.x.low, first), toX(view.x.high, first)];
     const ends = [toY(view.y.low, first), toY(view.y.high, first)], [y0, y1] = [Math.min(...ends), Math.max(...ends)];
@@ -31,6 +34,10 @@ for (const figure of all("figure")) {
     for (const [path, d] of drawn) path.setAttribute("d", d.replace(/([MLHV])(-?[\d.]+)(?: (-?[\d.]+))?/g, (_, letter, p, q) =>
       letter === "V" ? "V" + y(p) : letter === "H" ? "H" + x(p) : `${letter}${x(p)} ${y(q)}`));
     for (const [text, px, py] of named) { text.setAttribute("x", x(px)); text.setAttribute("y", y(py)); }
+    // The whole has room for lines on its edge; of a part nothing runs over the axes.
+    const cut = JSON.stringify(view) === JSON.stringify(first) ? uncut : plot.frame.join(" ");
+    data.setAttribute("viewBox", cut);
+    place(data, cut.split(" "));
     axes.replaceChildren();
     const bottom = top + height, right = left + width;
     const line = (name, d) => axes.append(tag("path", { class: name, d }));
@@ -61,7 +68,7 @@ for (const figure of all("figure")) {
     if (fits(next.x) && fits(next.y)) { view = next; redraw(); }
   };
   // By a factor, about what is read or the middle.
-  const scale = factor => {
+  const enlarge = factor => {
     const about = (axis, centre) => [-0.5, 0.5].map(side => value(axis, centre + side * factor));
     const inside = at && [share(view.x, at[0]), share(view.y, at[1])];
     zoom(about(view.x, inside ? inside[0] : 0.5), about(view.y, inside ? inside[1] : 0.5));
@@ -78,10 +85,10 @@ for (const figure of all("figure")) {
   const tell = (px, py, rows) => {
     readout.replaceChildren(...rows);
     readout.hidden = false;
-    const size = svg.getBoundingClientRect(), scale = size.width / svg.viewBox.baseVal.width, offset = svg.offsetLeft || size.left - canvas.getBoundingClientRect().left + canvas.scrollLeft;
-    const onRight = px * scale + readout.offsetWidth + 24 > size.width;
-    readout.style.left = `${Math.max(0, offset + px * scale + (onRight ? -readout.offsetWidth - 14 : 14))}px`;
-    readout.style.top = `${Math.max(0, Math.min(py * scale - readout.offsetHeight / 2, size.height - readout.offsetHeight))}px`;
+    const size = svg.getBoundingClientRect(), offset = svg.offsetLeft || size.left - canvas.getBoundingClientRect().left + canvas.scrollLeft;
+    const x = px * scale(), y = py * scale(), onRight = x + readout.offsetWidth + 24 > size.width;
+    readout.style.left = `${Math.max(0, offset + x + (onRight ? -readout.offsetWidth - 14 : 14))}px`;
+    readout.style.top = `${Math.max(0, Math.min(y - readout.offsetHeight / 2, size.height - readout.offsetHeight))}px`;
   };
   const cross = (px, py) => layer.append(tag("path", { class: "cross", d: `M${px} ${top}v${height}M${left} ${py}h${width}` }));
   const named_value = (axis, number) => `${axis.label} ${shown(number, 5)} ${axis.unit}`.trim();
@@ -95,6 +102,7 @@ for (const figure of all("figure")) {
     tell(toX(at[0]), toY(at[1]), [row(named_value(plot.x, at[0])), ...flat ? [] : [row(named_value(plot.y, at[1]))],
       row(`${cells.label} ${number === null ? "–" : shown(number, 5)} ${cells.unit}`, "", true)]);
   };
+  // At a point of the curves, the one nearest to the pointer; without a height at the abscissa alone.
   const read = (x, y) => {
     if (plot.cells) return readCell(x, y);
     const far = point => Math.abs(toX(point[0]) - x), off = point => Math.abs(toY(point[1]) - y);
@@ -102,18 +110,21 @@ for (const figure of all("figure")) {
       !best || far(point) < far(best) || (point[0] === best[0] && off(point) < off(best)) ? point : best, null) })).filter(entry => entry.point);
     const reach = Math.min(...near.map(entry => far(entry.point))), found = near.filter(entry => far(entry.point) <= reach + 0.02 * width);
     if (!found.length) return hide();
-    const first = found.reduce((a, b) => far(b.point) < far(a.point) ? b : a).point;
-    const closest = found.reduce((a, b) => off(b.point) < off(a.point) ? b : a);
-    at = [first[0], closest.point[1]];
+    const apart = y === undefined ? far : off, closest = found.reduce((a, b) => apart(b.point) < apart(a.point) ? b : a);
+    at = closest.point;
+    const [px, py] = [toX(at[0]), toY(at[1])], along = point => shown(point[0], 5);
     layer.replaceChildren();
-    cross(toX(first[0]), toY(closest.point[1]));
+    cross(px, py);
     for (const { point, series } of found) layer.append(tag("circle", { cx: toX(point[0]), cy: toY(point[1]), r: 4.5, style: `fill:${series.colour};stroke:var(--paper);stroke-width:1.5` }));
-    tell(toX(first[0]), toY(closest.point[1]), [row(plot.names.length ? plot.names[first[0]] : named_value(plot.x, first[0])),
-      ...found.sort((a, b) => toY(a.point[1]) - toY(b.point[1])).map(entry => row(`${entry.series.label ? entry.series.label + ": " : ""}${shown(entry.point[1], 5)} ${plot.y.unit}`, entry.series.colour, entry === closest && found.length > 1))]);
+    const name = plot.names[at[0]] || named_value(plot.x, at[0]) + (Math.abs(px - x) > 1 ? ", nearest point" : "");
+    const said = ({ point, series: { label } }) => `${label ? label + ": " : ""}${shown(point[1], 5)} ${plot.y.unit}`
+      + (along(point) === along(at) ? "" : ` at ${along(point)} ${plot.x.unit}`);
+    tell(px, py, [row(name), ...found.sort((a, b) => toY(a.point[1]) - toY(b.point[1])).map(entry =>
+      row(said(entry), entry.series.colour, entry === closest && found.length > 1))]);
   };
   const where = event => {
-    const size = svg.getBoundingClientRect(), scale = svg.viewBox.baseVal.width / size.width;
-    return [(event.clientX - size.left) * scale, (event.clientY - size.top) * scale];
+    const size = svg.getBoundingClientRect();
+    return [(event.clientX - size.left) / scale(), (event.clientY - size.top) / scale()];
   };
   let from = null;
   const corners = to => [[from[0], to[0]], [from[1], to[1]]].map((pair, axis) => {
@@ -129,7 +140,7 @@ for (const figure of all("figure")) {
     const [x, y] = where(event);
     if (from) {
       const [[x0, x1], [y0, y1]] = corners([x, y]);
-      for (const [key, length] of Object.entries({ x: x0, y: y0, width: x1 - x0, height: y1 - y0 })) box.setAttribute(key, length);
+      place(box, [x0, y0, x1 - x0, y1 - y0]);
     } else if (x < left - 8 || x > left + width + 8) hide(); else read(x, y);
   });
   svg.addEventListener("pointerup", event => {
@@ -147,10 +158,10 @@ for (const figure of all("figure")) {
   });
   svg.addEventListener("dblclick", reset);
   svg.addEventListener("pointerleave", hide);
-  svg.addEventListener("blur", hide);
-  svg.addEventListener("keydown", event => {
-    const actions = { "+": () => scale(0.5), "-": () => scale(2), "0": reset, Escape: hide };
-    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+  canvas.addEventListener("blur", hide);
+  canvas.addEventListener("keydown", event => {
+    const actions = { "+": () => enlarge(0.5), "-": () => enlarge(2), "0": reset, Escape: hide };
+    const step = { ArrowRight: 1, ArrowLeft: -1, Home: -Infinity, End: Infinity }[event.key];
     if (actions[event.key]) { event.preventDefault(); actions[event.key](); }
     if (!step) return;
     event.preventDefault();
@@ -158,8 +169,9 @@ for (const figure of all("figure")) {
     const stops = [...new Set(points.filter(inside).map(point => point[0]))].sort((a, b) => a - b);
     if (!stops.length) return;
     const next = Math.max(0, Math.min(stops.length - 1, stop + step));
-    read(toX(stops[next]), top + height / 2);
+    read(toX(stops[next]), plot.cells ? top + height / 2 : undefined);
     stop = next;
+    canvas.scrollLeft = toX(stops[next]) * scale() - canvas.clientWidth / 2;
   });
   for (const button of all(".legend button", figure)) button.addEventListener("click", () => {
     const on = button.getAttribute("aria-pressed") !== "true";
@@ -178,7 +190,7 @@ for (const figure of all("figure")) {
   const drawing = () => {
     const copy = svg.cloneNode(true), size = svg.viewBox.baseVal, items = all(".legend button[aria-pressed=true]", figure);
     for (const extra of [copy.lastChild, copy.lastChild.previousSibling]) extra.remove();
-    for (const key of ["data-plot", "tabindex"]) copy.removeAttribute(key);
+    copy.removeAttribute("data-plot");
     for (const group of all("[data-s]", copy)) if (group.style.display) group.remove();
     let x = left, rows = items.length ? 1 : 0;
     const legend = items.map(item => {
@@ -205,6 +217,6 @@ for (const figure of all("figure")) {
     addEventListener("afterprint", () => alone.remove(), { once: true });
     print();
   };
-  const actions = { in: () => scale(0.5), out: () => scale(2), whole: reset, csv: () => save(name + ".csv", csv()), svg: () => save(name + ".svg", drawing()), pdf };
+  const actions = { in: () => enlarge(0.5), out: () => enlarge(2), whole: reset, csv: () => save(name + ".csv", csv()), svg: () => save(name + ".svg", drawing()), pdf };
   for (const button of all("[data-do]", figure)) button.addEventListener("click", () => actions[button.dataset.do]());
 }

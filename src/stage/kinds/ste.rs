@@ -17,7 +17,7 @@ use rayon::prelude::*;
 use self::nominal::nominal_root_stresses;
 use self::pressures::CellRow;
 use self::samples::{Sample, Samples};
-use self::tables::{Found, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
+use self::tables::{Found, HARMONICS, Keyed, Load, amplitudes, cost, curve, harmonics, points, summary};
 use crate::stage::cases::{DEVIATIONS, Deviation, Deviations};
 use crate::stage::common::{Contact, Slices};
 use crate::stage::doubts::Doubted;
@@ -260,7 +260,7 @@ impl Stage for Ste {
 
     fn keys(&self, table: &str, column: &str, of: KeysOf) -> Option<Vec<Cell>> {
         match column {
-            "order" if table == tables::HARMONICS => Some((1..=self.harmonics).map(Cell::from).collect()),
+            "order" if table == HARMONICS => Some((1..=self.harmonics).map(Cell::from).collect()),
             "torque" => Some(self.torque.iter().map(|torque| in_unit(*torque, "N m").into()).collect()),
             "design" => {
                 let names = |giver: &Placed<String>| of(&giver.value, names::designs::TABLE, names::designs::DESIGN);

@@ -51,6 +51,9 @@ fn bash_completes_what_the_study_on_the_line_has() {
     is(&["run", "qui"], &["quick.yaml"]);
     is(&["run", "quick.yaml", "--only", "st"], &["stiffness", "ste"]);
     is(&["run", "quick.yaml", "--only", "pair,opt"], &["pair,optimum"]);
+    // What stands in the list already is not offered again.
+    let stages = bash(&desk, &["run", "quick.yaml", "--only", "pair,ste,"]);
+    assert_eq!(stages, ["pair,ste,stiffness", "pair,ste,designs", "pair,ste,optimum", "pair,ste,report"]);
     is(&["plan", "quick.yaml", "--want", "optimum."], &["optimum.evaluations"]);
     has(&["plan", "quick.yaml", "--want", "ste.summary.la"], &["ste.summary.largest_pressure"]);
     is(&["run", "quick.yaml", "--set", "pair.pinion.fa"], &["pair.pinion.face_width="]);
@@ -59,7 +62,8 @@ fn bash_completes_what_the_study_on_the_line_has() {
     is(&["new", "x.yaml", "--template", ""], &["quick", "sweep"]);
     // Before a run, the tables that it gives; afterwards those that are there, their columns and values.
     has(&["table", "quick.yaml", "ste."], &["ste.summary", "ste.curve"]);
-    assert!(bash(&desk, &["table", "quick.yaml", "ste.summary", "--where", "des"]).is_empty());
+    is(&["table", "quick.yaml", "ste.summary", "--where", "des"], &["design="]);
+    is(&["table", "quick.yaml", "ste.summary", "--where", "design="], &["unmodified", "short", "long", "optimum"]);
     desk.run(&["run", "--quiet", "quick.yaml", "--results", "here"], 0);
     is(&["table", "quick.yaml", "--results", "here", "ste.su"], &["ste.summary"]);
     is(
@@ -87,6 +91,8 @@ fn other_shells_are_given_meanings_too() {
     };
     let zsh = asked("zsh", "4", &["run", "quick.yaml", "--only", "pa"]);
     assert!(zsh.starts_with("pair:"), "{zsh}");
+    let fish = asked("fish", "", &["table", "quick.yaml", "ste.summary", "--columns", "peak_to"]);
+    assert!(fish.starts_with("peak_to_peak\t[um] "), "{fish}");
     let fish = asked("fish", "", &["run", "quick.yaml", "--only", "pa"]);
     assert!(fish.starts_with("pair\t"), "{fish}");
     for shell in ["zsh", "fish", "elvish", "powershell"] {

@@ -245,6 +245,8 @@ fn what_makes_no_sense_is_said_in_one_sentence() {
     assert!(said(&["--", "quik"]).contains("has results of a study `quik`"), "{}", said(&["--", "quik"]));
     assert!(said(&["--", "--all"]).contains("`--all`"));
     desk.run(&["diff", "main", "--", "quick"], 0);
+    assert!(said(&["reslts"]).contains("did you mean `results`?"), "{}", said(&["reslts"]));
+    assert!(said(&["./reslts/"]).contains("did you mean `./results`?"), "{}", said(&["./reslts/"]));
 
     // A damaged table is told, the others go on; a damaged manifest ends with 1, after the other studies.
     edit(&desk, "face_width: 20 mm, bore_radius: 18 mm", "face_width: 22 mm, bore_radius: 18 mm");

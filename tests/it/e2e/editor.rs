@@ -199,3 +199,98 @@ fn an_editor_is_told_what_stands_there_and_where_it_is_declared() {
     let line = quick.lines().position(|line| line == "  optimum:").unwrap();
     assert_eq!(declared["range"]["start"], json!({ "line": line, "character": 2 }));
 }
+
+/// A text is no study while a cell in it is written: what the other stages have is known all the same.
+#[test]
+fn an_editor_is_offered_the_tables_columns_and_keys_of_the_study() {
+    let mut editor = Editor::start();
+    let quick = quick();
+    let cell = "short: ste.summary[design=short, torque=150 N m].peak_to_peak";
+    let mut at = |written: &str| editor.offered(&quick.replacen(cell, &format!("short: {written}"), 1));
+    assert_eq!(at("|"), ["pair", "stiffness", "designs", "optimum", "ste"]);
+    assert_eq!(at("st|"), at("|"), "an editor picks those that begin so");
+    let tables = at("ste.summ|");
+    assert!(["summary", "curve", "harmonics"].iter().all(|name| tables.contains(&(*name).to_owned())), "{tables:?}");
+    assert_eq!(at("ste.summary[|")[..2], ["design", "torque"]);
+    assert_eq!(at("ste.summary[design=|"), ["unmodified", "short", "long", "optimum"]);
+    assert_eq!(at("ste.summary[design=short, torque=1|"), ["50 N m", "100 N m", "150 N m", "200 N m", "250 N m"]);
+    let columns = at("ste.summary[design=short, torque=150 N m].|");
+    assert!(columns.contains(&"peak_to_peak".to_owned()) && !columns.contains(&"design".to_owned()), "{columns:?}");
+    assert_eq!(at("\"ste.summary[design=short, torque=150 N m].pea|\""), columns);
+    for unknown in ["nothing.|", "ste.harmonics[order=|"] {
+        assert!(at(unknown).is_empty(), "{unknown}");
+    }
+
+    // What is replaced, and what is said of a column.
+    let marked = quick.replacen(cell, "short: ste.summary[design=short, torque=1|50 N m].peak_to_peak", 1);
+    let one = editor.at("textDocument/completion", &marked)[2].clone();
+    let line = marked.lines().find(|line| line.contains('|')).unwrap();
+    let from = line.find("1|50").unwrap();
+    assert_eq!(one["textEdit"]["newText"], "150 N m");
+    assert_eq!(one["textEdit"]["range"]["start"]["character"], from);
+    assert_eq!(one["textEdit"]["range"]["end"]["character"], from + "150 N m".len());
+    let found = editor.at("textDocument/completion", &quick.replacen(cell, "short: ste.summary.|", 1));
+    let column = found.as_array().unwrap().iter().find(|one| one["label"] == "peak_to_peak").unwrap().clone();
+    assert!(column["detail"].as_str().unwrap().starts_with("[um] "), "{column}");
+
+    // Figures: tables, columns of theirs, conditions and values.
+    let mut figure = |old: &str, new: &str| {
+        let (before, after) = quick.split_once("      - name: transmission_error").unwrap();
+        assert!(after.contains(old), "{old}");
+        editor.offered(&format!("{before}      - name: transmission_error{}", after.replacen(old, new, 1)))
+    };
+    assert!(figure("table: ste.curve", "table: |").contains(&"stiffness".to_owned()));
+    assert!(figure("table: ste.curve", "table: ste.|").contains(&"curve".to_owned()));
+    let columns = figure("x: cycle_position", "x: |");
+    assert!(["cycle_position", "design", "pairs"].iter().all(|name| columns.contains(&(*name).to_owned())));
+    assert_eq!(figure("y: transmission_error", "y: [transmission_error, |]"), columns);
+    assert_eq!(figure("series: design", "series: d|"), columns);
+    assert_eq!(figure("{ torque: 150 N m }", "{ | }"), columns);
+    let others: Vec<&String> = columns.iter().filter(|name| *name != "torque").collect();
+    assert_eq!(figure("{ torque: 150 N m }", "{ torque: 150 N m, | }").iter().collect::<Vec<_>>(), others);
+    assert_eq!(figure("{ torque: 150 N m }", "{ design: | }"), ["unmodified", "short", "long", "optimum"]);
+    assert_eq!(figure("{ torque: 150 N m }", "{ torque: 1| }").len(), 5);
+
+    // Of stages that are named beside; of the kind that a search asks.
+    let sweep = "\n  swept: { kind: sweep, of: ste, outputs: [|] }\n";
+    let offered = editor.offered(&(quick.clone() + sweep));
+    assert!(offered.contains(&"peak_to_peak".to_owned()) && offered.contains(&"harmonics".to_owned()), "{offered:?}");
+    let offered = editor.offered(&(quick.clone() + &sweep.replace("[|]", "[harmonics.|]")));
+    assert!(offered.contains(&"amplitude".to_owned()), "{offered:?}");
+    let offered = editor.offered(&quick.replacen("minimize: peak_to_peak", "minimize: |", 1));
+    assert!(offered.contains(&"largest_pressure".to_owned()), "{offered:?}");
+
+    // Whatever else is wrong with the text.
+    let broken = quick.replacen("module: 3 mm", "module: 3", 1).replacen(cell, "short: ste.summary[design=|", 1);
+    assert_eq!(editor.offered(&broken), ["unmodified", "short", "long", "optimum"]);
+    let without = quick.replacen("title: Mesh", "titel: Mesh", 1).replacen(cell, "short: ste.|", 1);
+    assert!(editor.offered(&without).contains(&"summary".to_owned()));
+    // Stages that would ask each other without end.
+    let circle = "  a: { kind: ste, stiffness: stiffness, designs: [a, a], torque: 1 N m }\n  ste:";
+    let circle = quick.replacen("  ste:", circle, 1);
+    assert!(!editor.offered(&circle.replacen(cell, "short: ste.summary[design=|", 1)).is_empty());
+}
+
+#[test]
+fn an_editor_is_told_what_a_cell_is() {
+    let mut editor = Editor::start();
+    let quick = quick();
+    let cell = "short: ste.summary[design=short, torque=150 N m].peak_to_peak";
+    let mut hover = |marked: &str, new: &str| {
+        let found = editor.at("textDocument/hover", &quick.replacen(marked, new, 1));
+        found["contents"]["value"].as_str().unwrap_or_default().to_owned()
+    };
+    let column = hover(cell, "short: ste.summary[design=short, torque=150 N m].peak_|to_peak");
+    assert!(column.starts_with("ste.summary.peak_to_peak [um]\n") && column.len() > 40, "{column}");
+    assert!(hover(cell, "short: s|te.summary.peak_to_peak").starts_with("ste: Static transmission error"));
+    assert!(hover(cell, "short: ste.su|mmary.peak_to_peak").starts_with("ste.summary\n"));
+    let torque = hover(cell, "short: ste.summary[design=short, tor|que=150 N m].peak_to_peak");
+    assert!(torque.starts_with("ste.summary.torque [N m]\n"), "{torque}");
+    assert_eq!(hover(cell, "short: ste.summary[design=short, torque=1|50 N m].peak_to_peak"), torque);
+    assert!(hover(cell, "short: 3 u|m").starts_with("with: "));
+    assert!(hover("y: stiffness", "y: sti|ffness").starts_with("stiffness.curve.stiffness ["));
+    assert!(hover("where: { torque", "where: { tor|que").starts_with("ste.curve.torque [N m]\n"));
+    let declared = editor.at("textDocument/definition", &quick.replacen(cell, &cell.replacen("peak_", "pe|ak_", 1), 1));
+    let line = quick.lines().position(|line| line == "  ste:").unwrap();
+    assert_eq!(declared["range"]["start"], json!({ "line": line, "character": 2 }));
+}

@@ -115,6 +115,36 @@ fn tables_are_printed_and_filtered() {
     assert!(list.contains("ste.curve") && list.contains("stiffness.summary"), "{list}");
     let (_, error) = desk.run(&["table", "quick.yaml", "ste.sumary"], 1);
     assert!(error.contains("did you mean `ste.summary`"), "{error}");
+    let (_, error) = desk.run(&["table", "quick.yaml", "ste.summary", "--where", "torque>55"], 1);
+    assert!(error.contains("`gearstudy query \"select * from … where torque>55\"`"), "{error}");
+}
+
+#[test]
+fn a_word_that_names_nothing_ends_with_1_whatever_it_should_name() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "--quiet", "quick.yaml"], 0);
+    for words in [
+        &["table", "r1x"][..],
+        &["table", "quick.yaml", "r1x"],
+        &["run", "r1x"],
+        &["run", "quik.yaml"],
+        &["run", "quick.yaml", "--only", "r1x"],
+        &["check", "r1x"],
+        &["check", "r1x.yaml", "--format", "json"],
+        &["report", "r1x"],
+        &["status", "r1x"],
+        &["status", "r1x", "quick.yaml", "r1y"],
+        &["diff", "r1x"],
+        &["archive", "r1x", "-o", "r1x.zip"],
+        &["kinds", "r1x"],
+    ] {
+        desk.run(words, 1);
+    }
+    // A study that is there and invalid is another matter.
+    fs::write(desk.path("bad.yaml"), "study: bad\n").unwrap();
+    for words in [&["table", "bad.yaml"][..], &["check", "bad.yaml", "r1x"], &["status", "r1x", "bad.yaml"]] {
+        desk.run(words, 2);
+    }
 }
 
 #[test]

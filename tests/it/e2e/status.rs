@@ -86,6 +86,32 @@ fn tables_that_git_does_not_keep_are_not_missing() {
 }
 
 /// Studies by name, and one that is broken between others.
+/// What is shown need not be what the study is now; that is said, and changes nothing.
+#[test]
+fn tables_and_verdicts_that_are_stale_are_told_in_a_line() {
+    let desk = Desk::with("quick.yaml");
+    desk.run(&["run", "quick.yaml", "--quiet"], 0);
+    let shows = [&["table", "quick.yaml", "ste.summary"][..], &["table", "quick.yaml"], &["report", "quick.yaml"]];
+    let before = shows.map(|words| desk.run(words, 0));
+    assert!(before.iter().all(|(_, error)| error.is_empty()), "{before:?}");
+    // That a file is not as it was written is for `status` to tell: while a run publishes, it need not be.
+    let curve = desk.path("results/quick/ste.curve.parquet");
+    let kept = fs::read(&curve).unwrap();
+    fs::write(&curve, "other").unwrap();
+    assert_eq!(desk.run(shows[0], 0).1, "");
+    fs::write(&curve, kept).unwrap();
+    let text = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    fs::write(desk.path("quick.yaml"), text.replace("module: 3 mm", "module: 3.1 mm")).unwrap();
+    for (words, (out, _)) in shows.iter().zip(before) {
+        let (now, error) = desk.run(words, 0);
+        assert_eq!(now, out);
+        let said = "gearstudy: quick: the results are not those of the study now: stage `pair` is not up to date: stale: config \
+                    changed: module; first: gearstudy run quick.yaml\n";
+        assert_eq!(error, said, "{words:?}");
+        assert_eq!(desk.run(&[words, &["--quiet"][..]].concat(), 0).1, "");
+    }
+}
+
 #[test]
 fn studies_have_names_and_one_that_is_broken_silences_no_other() {
     let desk = Desk::with("quick.yaml");

@@ -26,6 +26,13 @@ pub struct Differences {
     pub worst: Vec<(f64, usize)>,
 }
 
+impl Differences {
+    /// Where what stands for all that changed is: values furthest apart, and of words the first.
+    pub fn shown(&self) -> Option<usize> {
+        self.largest_absolute.or(self.largest_over).map(|(_, place)| place)
+    }
+}
+
 /// Compares two columns of one type; `converted` when one of them was in another unit.
 pub fn compare(
     before: &Data,

@@ -272,7 +272,8 @@ pub struct SchemaChange {
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ColumnDiff {
     pub name: String,
-    /// Of both values; where the unit changed, that of the later table.
+    /// Of both values; where the unit changed, that of the later table; where each row has its own, that of the row that is
+    /// shown.
     pub unit: String,
     /// Rows that are in both tables.
     pub compared: usize,

@@ -8,6 +8,7 @@ use super::columns::{self, Differences, KEPT};
 use super::model::{ColumnDiff, Difference, Extreme, Key, SchemaChange, TableDiff, Value, Worst};
 use super::rows::{KeyColumn, MatchedRows, by_keys, by_position};
 use crate::store::manifest::{ColumnRecord, TableRecord};
+use crate::store::parquet::unit_beside;
 use crate::table::data::{Data, Table};
 use crate::table::schema::{Column, Tolerance, Type};
 use declare::units::parse_unit;
@@ -67,6 +68,7 @@ pub fn compare(
     });
     let compared: Vec<_> = compared.filter(|(.., found)| found.changed > 0).collect();
     let key_at = |place: usize| key_of(after, rows.matched[place].1, &is_key);
+    let unit_at = |column: &Column, place: usize| unit_of(after, column, rows.matched[place].1);
     for (shared, tolerance, found) in &compared {
         let extreme = |(difference, place): (f64, usize)| {
             let (i, j) = rows.matched[place];
@@ -75,7 +77,7 @@ pub fn compare(
         };
         diff.columns.push(ColumnDiff {
             name: shared.column.name.clone(),
-            unit: shared.column.unit.clone(),
+            unit: found.shown().map_or_else(|| shared.column.unit.clone(), |place| unit_at(shared.column, place)),
             compared: rows.matched.len(),
             changed: found.changed,
             beyond: found.beyond,
@@ -86,7 +88,8 @@ pub fn compare(
             largest_over: found.largest_over.map(extreme),
         });
     }
-    diff.worst = worst(&compared.iter().map(|(shared, _, found)| (*shared, found)).collect::<Vec<_>>(), &rows, &key_at);
+    let compared: Vec<_> = compared.iter().map(|(shared, _, found)| (*shared, found)).collect();
+    diff.worst = worst(&compared, &rows, &key_at, &unit_at);
     let structure = diff.schema.iter().any(|change| change.differs) || diff.rows_added + diff.rows_removed > 0;
     diff.state = if structure || diff.columns.iter().any(|column| column.beyond > 0) {
         Difference::Changed
@@ -229,7 +232,18 @@ pub(super) fn key_of(table: &Table, row: usize, is_key: &dyn Fn(&Column) -> bool
     }
 }
 
-fn worst(compared: &[(&Shared<'_>, &Differences)], rows: &MatchedRows, key_at: &dyn Fn(usize) -> Key) -> Vec<Worst> {
+/// The unit of a column in a row: its own, or the one that stands beside each value.
+fn unit_of(table: &Table, column: &Column, row: usize) -> String {
+    let beside = unit_beside(table.schema(), column).and_then(|unit| table.column(unit));
+    beside.map_or_else(|| column.unit.clone(), |units| units.cell(row).to_string())
+}
+
+fn worst(
+    compared: &[(&Shared<'_>, &Differences)],
+    rows: &MatchedRows,
+    key_at: &dyn Fn(usize) -> Key,
+    unit_at: &dyn Fn(&Column, usize) -> String,
+) -> Vec<Worst> {
     let mut cells: Vec<(f64, usize, &Shared<'_>)> = Vec::new();
     for (shared, found) in compared {
         cells.extend(found.worst.iter().map(|&(size, place)| (size, place, *shared)));
@@ -254,7 +268,7 @@ fn worst(compared: &[(&Shared<'_>, &Differences)], rows: &MatchedRows, key_at: &
         Worst {
             key: key_at(place),
             column: shared.column.name.clone(),
-            unit: shared.column.unit.clone(),
+            unit: unit_at(shared.column, place),
             before: shared.before.cell(i).into(),
             after: shared.after.cell(j).into(),
             difference,

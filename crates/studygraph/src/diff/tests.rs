@@ -276,3 +276,27 @@ fn whole_numbers_are_exact_however_large() {
     assert_eq!(diff(&of(i64::MAX), &of(i64::MAX - 1)).state, Difference::Changed);
     assert_eq!(diff(&of(i64::MIN), &of(i64::MIN)).state, Difference::Same);
 }
+
+#[test]
+fn a_value_has_the_unit_that_stands_beside_it() {
+    let table = |amount: f64, angle: f64| {
+        let columns = vec![
+            Column::text("parameter", "").key(),
+            Column::float("value", "", "").allows_nan(),
+            Column::text("unit", ""),
+            Column::float("share", "", ""),
+        ];
+        let rows = vec![
+            vec!["amount".into(), amount.into(), "m".into(), 1.0.into()],
+            vec!["angle".into(), angle.into(), "rad".into(), 1.0.into()],
+            vec!["count".into(), 3.0.into(), "".into(), amount.into()],
+        ];
+        Table::from_rows(Schema::new("elements", "", columns), rows).unwrap()
+    };
+    let found = diff(&table(12e-6, 0.5), &table(14e-6, 0.25));
+    let units: Vec<_> = found.columns.iter().map(|column| (column.name.as_str(), column.unit.as_str())).collect();
+    assert_eq!(units, [("value", "rad"), ("share", "")], "of the row that is furthest apart");
+    let worst: Vec<_> = found.worst.iter().map(|worst| (worst.column.as_str(), worst.unit.as_str())).collect();
+    assert!(worst.contains(&("value", "rad")) && worst.contains(&("value", "m")), "{worst:?}");
+    assert_eq!(diff(&table(12e-6, 0.5), &table(14e-6, 0.5)).columns[0].unit, "m");
+}

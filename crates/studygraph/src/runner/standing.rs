@@ -100,17 +100,28 @@ impl Standing {
     /// The first thing that is not as it should be.
     #[must_use]
     pub fn problem(&self) -> Option<String> {
+        let foreign = || self.foreign.first().map(|file| format!("`{file}` is not as the last run wrote it"));
+        self.first(|state| *state != Condition::UpToDate).or_else(foreign)
+    }
+
+    /// The first thing by which the results are not those of the study and the program now, whatever became of the files: while a
+    /// run publishes, these need not fit.
+    #[must_use]
+    pub fn outdated(&self) -> Option<String> {
+        self.first(|state| matches!(state, Condition::Stale(_) | Condition::Missing(_)))
+    }
+
+    fn first(&self, counts: impl Fn(&Condition) -> bool) -> Option<String> {
         if !self.has_results {
             return Some("there are no results".to_owned());
         }
-        let of_stage = self.stages.iter().find(|stage| stage.state != Condition::UpToDate).map(|stage| {
+        let of_stage = self.stages.iter().find(|stage| counts(&stage.state)).map(|stage| {
             let (name, word, why) = (&stage.name, stage.state.word(), stage.state.why());
             format!("stage `{name}` is not up to date: {word}: {why}")
         });
         let gone = || self.gone.first().map(|name| format!("the results have a stage `{name}`, the study has none"));
         let changed = || self.text_changed.then(|| "the study's file has changed since".to_owned());
-        let foreign = || self.foreign.first().map(|file| format!("`{file}` is not as the last run wrote it"));
-        of_stage.or_else(gone).or_else(changed).or_else(foreign)
+        of_stage.or_else(gone).or_else(changed)
     }
 }
 

@@ -27,7 +27,7 @@ use crate::store::cache::Cache;
 use crate::study::{Node, Study};
 use crate::table::data::{Row, Table};
 use crate::table::schema::{Column, Schema};
-use declare::error::{Diagnostic, Failure, Place};
+use declare::error::{Failure, Faults, Place};
 use declare::parameter::{Field, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value};
 
@@ -251,6 +251,7 @@ impl Spec {
 static PROGRAM: Program = Program {
     kinds: &[],
     foreign: &[],
+    named: &[],
     code_of: |_| String::from("code"),
     counters: &[],
     about: ABOUT,
@@ -259,6 +260,7 @@ static PROGRAM: Program = Program {
 static OTHER: Program = Program {
     kinds: &[],
     foreign: &[],
+    named: &[],
     code_of: |_| String::from("other code"),
     counters: &[],
     about: ABOUT,

@@ -185,7 +185,23 @@ fn extend(data: &mut Data, array: &ArrayRef) -> Result<(), String> {
 fn attrs(schema: &Schema) -> String {
     let with_unit = schema.columns.iter().filter(|column| !column.unit.is_empty());
     let units: Map<String, Value> = with_unit.map(|column| (column.name.clone(), json!(column.unit))).collect();
-    json!({ "table": schema.name, "units": units }).to_string()
+    let mut attrs = json!({ "table": schema.name, "units": units });
+    let beside =
+        schema.columns.iter().filter_map(|column| Some((column.name.clone(), json!(unit_beside(schema, column)?))));
+    let beside: Map<String, Value> = beside.collect();
+    if !beside.is_empty() {
+        attrs["unit_columns"] = Value::Object(beside);
+    }
+    attrs.to_string()
+}
+
+/// The column that has the unit of each row of another one: `unit` that of `value`, which has none of its own.
+#[must_use]
+pub fn unit_beside(schema: &Schema, column: &Column) -> Option<&'static str> {
+    const UNIT: &str = "unit";
+    let is_value = column.name == "value" && column.kind == Type::Float && column.unit.is_empty();
+    let unit = schema.column(UNIT).filter(|unit| is_value && unit.kind == Type::Text);
+    unit.map(|_| UNIT)
 }
 
 fn arrow_schema(schema: &Schema) -> ArrowSchema {
@@ -331,6 +347,20 @@ pub mod tests {
             assert_identical(&table, &back);
             assert_eq!(table.content_hash(), back.content_hash());
         }
+    }
+
+    #[test]
+    fn attrs_say_where_a_unit_of_each_row_stands() {
+        let said =
+            |columns: Vec<Column>| -> Value { serde_json::from_str(&attrs(&Schema::new("t", "", columns))).unwrap() };
+        let [value, unit] = [Column::float("value", "", ""), Column::text("unit", "")];
+        let beside = json!({ "table": "t", "units": {}, "unit_columns": { "value": "unit" } });
+        assert_eq!(said(vec![value.clone(), unit.clone()]), beside);
+        assert_eq!(
+            said(vec![Column::float("value", "m", ""), unit]),
+            json!({ "table": "t", "units": { "value": "m" } })
+        );
+        assert_eq!(said(vec![value]), json!({ "table": "t", "units": {} }));
     }
 
     /// Tier: second way; wherever a table of several row groups is cut.

@@ -195,7 +195,7 @@ fn drafts(
 }
 
 /// One stage, as far as it can be read; what is wrong with it goes to `blame`.
-fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMut(Diagnostic)) -> Draft {
+pub fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMut(Diagnostic)) -> Draft {
     let mut draft =
         Draft { name: pair.key.clone(), place: pair.place, kind: None, record: None, references: Vec::new() };
     if let Err(found) = check_name("stage", &draft.name, draft.place) {
@@ -265,7 +265,7 @@ fn check_name(what: &str, name: &str, place: Place) -> Result<(), Diagnostic> {
 }
 
 /// Which fields take ranges, in words.
-fn ranges_belong(kinds: &[&'static Kind]) -> String {
+pub fn ranges_belong(kinds: &[&'static Kind]) -> String {
     let fields = kinds
         .iter()
         .flat_map(|kind| kind.fields.iter().filter(|field| field.chooses).map(|field| (field.name, kind.name)));

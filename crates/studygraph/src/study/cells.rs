@@ -4,10 +4,8 @@
 //! Which values a key column is going to have often follows from the study alone: names of designs, torques of an axis. A
 //! condition on another value is refused before anything runs. Must not know: which columns these are, or what they mean.
 
-use std::collections::BTreeMap;
-
-use super::Node;
 use super::blame::{Blame, Built};
+use super::named::Keys;
 use super::words::quote;
 use crate::stage::Named;
 use crate::table::data::Cell;
@@ -16,29 +14,9 @@ use crate::table::select;
 use declare::error::Diagnostic;
 use declare::units::{described, parse_unit, same_dimension};
 
-/// Values of the key columns, by stage, table and column; nothing where they are not known.
-struct Keys<'a> {
-    nodes: BTreeMap<&'a str, &'a Node>,
-}
-
-impl Keys<'_> {
-    fn of(&self, stage: &str, table: &str, column: &str) -> Option<Vec<Cell>> {
-        self.within(stage, table, column, self.nodes.len())
-    }
-
-    /// Stages that read from each other in a circle, which was told, know nothing.
-    fn within(&self, stage: &str, table: &str, column: &str, steps: usize) -> Option<Vec<Cell>> {
-        let left = steps.checked_sub(1)?;
-        self.nodes
-            .get(stage)?
-            .stage
-            .keys(table, column, &|stage, table, column| self.within(stage, table, column, left))
-    }
-}
-
 /// Checks all cells that are named.
 pub fn check(built: &[Built], blame: &mut Blame) {
-    let keys = Keys { nodes: built.iter().flatten().map(|node| (node.name.as_str(), node)).collect() };
+    let keys = Keys::new(built.iter().flatten());
     for (at, node) in built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?))) {
         for named in node.stage.named() {
             if let Some(found) = wrong(&keys, &named) {
@@ -51,7 +29,7 @@ pub fn check(built: &[Built], blame: &mut Blame) {
 /// What is wrong with a cell, where its stage and table are there.
 fn wrong(keys: &Keys, named: &Named) -> Option<Diagnostic> {
     let cell = &named.cell;
-    let node = keys.nodes.get(cell.stage.as_str())?;
+    let node = keys.stage(&cell.stage)?;
     let schemas = node.stage.outputs();
     let schema = schemas.iter().find(|schema| schema.name == cell.table)?;
     unmet(keys, named, schema)

@@ -3,15 +3,21 @@
 //! For editors, which ask while a text is no study yet. So nothing is decoded: the tree is walked beside the declarations,
 //! and for what could stand at the cursor a word is put there and looked for. Must not know: how an editor asks.
 
+use std::ops::Range;
+
 use super::assemble::KEYS;
 use super::describe;
 use super::document::{Content, KeyValue, Node, parse};
+use super::named::kind_of;
 use super::words;
 use crate::program::Program;
 use crate::stage::Kind;
 use declare::error::Place;
 use declare::parameter::{Field, Member, Presence, Shape};
 use declare::units::{Dimension, RATIO, in_unit, parse_quantity, split_quantity};
+use naming::Naming;
+
+mod naming;
 
 /// What is known of a place.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -31,6 +37,27 @@ pub struct Offer {
     pub text: String,
 }
 
+/// What could stand at a place, and the bytes of the text in whose place it is written.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Offers {
+    pub range: Range<usize>,
+    pub all: Vec<Offer>,
+}
+
+/// What stands beside a value.
+#[derive(Clone, Copy)]
+struct Beside<'a> {
+    /// The stage that it is in, and whose fields are there; none in the head of a study.
+    stage: Option<&'a str>,
+    kind: Option<&'static Kind>,
+    /// The fields that could stand beside its own, and those that do.
+    fields: &'static [Field],
+    pairs: &'a [KeyValue],
+    /// In a map: all that is in it, and the name of the value.
+    map: &'a [KeyValue],
+    name: Option<&'a str>,
+}
+
 /// What the cursor is at.
 enum Here<'a> {
     /// A key of a mapping with these fields; others of its keys.
@@ -45,7 +72,16 @@ enum Here<'a> {
     /// The kind of a stage.
     Kind(&'a str),
     Member(&'static [Member], &'a str),
-    Value(&'static Field, &'static Shape, &'a Node),
+    /// A name of the user's own, for a value of a field.
+    Own(&'static Field, &'a str, Beside<'a>),
+    Value(&'static Field, &'static Shape, &'a Node, Beside<'a>),
+}
+
+/// A text whose tree is walked to a byte of it.
+struct Walk<'a> {
+    root: &'a Node,
+    offset: usize,
+    program: &'a Program,
 }
 
 /// What stands at a byte of the text; nothing where nothing is known of it.
@@ -53,14 +89,19 @@ enum Here<'a> {
 pub fn at(text: &str, offset: usize, program: &Program) -> Option<Found> {
     let root = parse(text).ok()??;
     let plain = |described: String| Some(Found { described, declared: None });
-    match locate(&root, offset, program)? {
+    let naming = |field, beside| Naming::of(field, beside, stages(&root), program);
+    match (Walk { root: &root, offset, program }).locate()? {
         Here::Key { key: "kind", kind: true, .. } => plain("kind: what the stage computes".to_owned()),
         Here::Key { fields, key, .. } => plain(describe::field(fields.iter().find(|field| field.name == key)?)),
         Here::Stage(stage) => plain(of_kind(kind_of(stage, program)?)),
         Here::Kind(name) => plain(of_kind(program.kind(name)?)),
         Here::Member(members, name) => plain(of_member(members.iter().find(|member| member.name == name)?)),
-        Here::Value(field, shape, node) => {
+        Here::Own(field, name, beside) => naming(field, beside)?.found_name(name),
+        Here::Value(field, shape, node, beside) => {
             let Content::Scalar { text: word, .. } = &node.content else { return plain(describe::field(field)) };
+            if let Some(found) = naming(field, beside).and_then(|naming| naming.found(text, node, offset)) {
+                return Some(found);
+            }
             match shape {
                 Shape::Reference(_) => {
                     let stage = stages(&root).iter().find(|stage| stage.key == *word)?;
@@ -81,23 +122,33 @@ pub fn at(text: &str, offset: usize, program: &Program) -> Option<Found> {
 /// Stands for what is not written yet.
 const WORD: &str = "zzzz";
 
-/// What could stand at a byte of the text, in the place of the word that is there.
+/// What could stand at a byte of the text, in the place of what is there.
 #[must_use]
-pub fn offers(text: &str, offset: usize, program: &Program) -> Vec<Offer> {
+pub fn offers(text: &str, offset: usize, program: &Program) -> Offers {
     let in_word = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
     let before = text[..offset].trim_end_matches(in_word).len();
     let after = text.len() - text[offset..].trim_start_matches(in_word).len();
     // A dash by itself begins an item.
     let before = before + usize::from(text[before..].starts_with("- ") || &text[before..offset] == "-");
+    let range = before..after.max(before);
     // As a value or a key that has its colon, else as a key with a value.
     for word in [WORD.to_owned(), format!("{WORD}: 0")] {
         let changed = format!("{}{word}{}", &text[..before], &text[after..]);
         let Ok(Some(root)) = parse(&changed) else { continue };
-        if let Some(here) = locate(&root, before, program) {
-            return of(&here, &root, program);
-        }
+        let Some(here) = (Walk { root: &root, offset: before, program }).locate() else { continue };
+        let naming = |field, beside| Naming::of(field, beside, stages(&root), program);
+        let named = match here {
+            Here::Own(field, _, beside) | Here::Value(field, Shape::Map(_), _, beside) => {
+                naming(field, beside).and_then(|naming| naming.own_names(range.clone()))
+            }
+            Here::Value(field, _, node, beside) => {
+                naming(field, beside).and_then(|naming| naming.offers(text, node, offset))
+            }
+            _ => None,
+        };
+        return named.unwrap_or_else(|| Offers { range, all: of(&here, &root, program) });
     }
-    Vec::new()
+    Offers::default()
 }
 
 fn of(here: &Here, root: &Node, program: &Program) -> Vec<Offer> {
@@ -115,10 +166,10 @@ fn of(here: &Here, root: &Node, program: &Program) -> Vec<Offer> {
             let fields = free.into_iter().map(|field| offer(field.name, field.summary, &format!("{}: ", field.name)));
             first.into_iter().chain(fields).collect()
         }
-        Here::Stage(_) => Vec::new(),
+        Here::Stage(_) | Here::Own(..) => Vec::new(),
         Here::Kind(_) => program.kinds.iter().map(|kind| offer(kind.name, kind.summary, kind.name)).collect(),
         Here::Member(members, _) => of_members(members),
-        Here::Value(field, shape, node) => of_value(field, shape, node, root, program),
+        Here::Value(field, shape, node, _) => of_value(field, shape, node, root, program),
     }
 }
 
@@ -199,12 +250,6 @@ fn stages(root: &Node) -> &[KeyValue] {
     }
 }
 
-fn kind_of(stage: &KeyValue, program: &Program) -> Option<&'static Kind> {
-    let Content::Mapping(pairs) = &stage.node.content else { return None };
-    let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == "kind")?.node.content else { return None };
-    program.kind(text)
-}
-
 /// The last of several that begins at the offset or before.
 fn last_before<T>(all: &[T], offset: usize, begins: impl Fn(&T) -> usize) -> Option<&T> {
     all.iter().filter(|one| begins(one) <= offset).max_by_key(|one| begins(one))
@@ -214,82 +259,87 @@ fn is_on(place: Place, offset: usize) -> bool {
     (place.offset..=place.offset + place.length).contains(&offset)
 }
 
-fn locate<'a>(root: &'a Node, offset: usize, program: &Program) -> Option<Here<'a>> {
-    let Content::Mapping(pairs) = &root.content else { return None };
-    let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
-    if is_on(pair.place, offset) {
-        return Some(Here::Key { fields: KEYS, key: &pair.key, pairs, kind: false });
-    }
-    if pair.key != "stages" {
-        let field = KEYS.iter().find(|field| field.name == pair.key)?;
-        return in_value(field, &field.shape, &pair.node, offset, root, program);
-    }
-    let stage = last_before(stages(root), offset, |stage| stage.place.offset)?;
-    if is_on(stage.place, offset) {
-        return Some(Here::Stage(stage));
-    }
-    let Content::Mapping(pairs) = &stage.node.content else { return None };
-    let fields = kind_of(stage, program).map_or(&[][..], |kind| kind.fields);
-    in_fields(fields, pairs, offset, root, program, true)
-}
-
-fn in_fields<'a>(
-    fields: &'static [Field],
-    pairs: &'a [KeyValue],
-    offset: usize,
-    root: &'a Node,
-    program: &Program,
-    kind: bool,
-) -> Option<Here<'a>> {
-    let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
-    if is_on(pair.place, offset) {
-        return Some(Here::Key { fields, key: &pair.key, pairs, kind });
-    }
-    if kind && pair.key == "kind" {
-        let Content::Scalar { text, .. } = &pair.node.content else { return None };
-        return Some(Here::Kind(text));
-    }
-    let field = fields.iter().find(|field| field.name == pair.key)?;
-    // The fields of another stage, which a field beside this one names.
-    if let Shape::Overrides(of) = field.shape {
-        let Content::Scalar { text, .. } = &pairs.iter().find(|pair| pair.key == of)?.node.content else { return None };
-        let other = stages(root).iter().find(|stage| stage.key == *text)?;
-        let Content::Mapping(inside) = &pair.node.content else { return None };
-        return in_fields(kind_of(other, program)?.fields, inside, offset, root, program, false);
-    }
-    in_value(field, &field.shape, &pair.node, offset, root, program)
-}
-
-fn in_value<'a>(
-    field: &'static Field,
-    shape: &'static Shape,
-    node: &'a Node,
-    offset: usize,
-    root: &'a Node,
-    program: &Program,
-) -> Option<Here<'a>> {
-    match (shape, &node.content) {
-        (Shape::List(item), Content::Sequence(items)) => {
-            let inside = last_before(items, offset, |item| item.place.offset)?;
-            in_value(field, item, inside, offset, root, program)
+impl<'a> Walk<'a> {
+    fn locate(&self) -> Option<Here<'a>> {
+        let Content::Mapping(pairs) = &self.root.content else { return None };
+        let pair = last_before(pairs, self.offset, |pair| pair.place.offset)?;
+        if is_on(pair.place, self.offset) {
+            return Some(Here::Key { fields: KEYS, key: &pair.key, pairs, kind: false });
         }
-        (Shape::List(item), _) => in_value(field, item, node, offset, root, program),
-        (Shape::Map(item), Content::Mapping(pairs)) => {
-            let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
-            // A name of the user's own.
-            if is_on(pair.place, offset) { None } else { in_value(field, item, &pair.node, offset, root, program) }
+        let head = Beside { stage: None, kind: None, fields: KEYS, pairs, map: &[], name: None };
+        if pair.key != "stages" {
+            let field = KEYS.iter().find(|field| field.name == pair.key)?;
+            return self.in_value(field, &field.shape, &pair.node, head);
         }
-        (Shape::Group(fields), Content::Mapping(pairs)) => in_fields(fields, pairs, offset, root, program, false),
-        (Shape::Member(members), Content::Mapping(pairs)) => {
-            let pair = last_before(pairs, offset, |pair| pair.place.offset)?;
-            if is_on(pair.place, offset) {
-                return Some(Here::Member(members(), &pair.key));
-            }
-            let member = members().iter().find(|member| member.name == pair.key)?;
+        let stage = last_before(stages(self.root), self.offset, |stage| stage.place.offset)?;
+        if is_on(stage.place, self.offset) {
+            return Some(Here::Stage(stage));
+        }
+        let Content::Mapping(pairs) = &stage.node.content else { return None };
+        let kind = kind_of(stage, self.program);
+        let fields = kind.map_or(&[][..], |kind| kind.fields);
+        self.in_fields(Beside { stage: Some(&stage.key), kind, fields, pairs, ..head }, true)
+    }
+
+    fn in_fields(&self, beside: Beside<'a>, is_stage: bool) -> Option<Here<'a>> {
+        let Beside { fields, pairs, .. } = beside;
+        let pair = last_before(pairs, self.offset, |pair| pair.place.offset)?;
+        if is_on(pair.place, self.offset) {
+            return Some(Here::Key { fields, key: &pair.key, pairs, kind: is_stage });
+        }
+        if is_stage && pair.key == "kind" {
+            let Content::Scalar { text, .. } = &pair.node.content else { return None };
+            return Some(Here::Kind(text));
+        }
+        let field = fields.iter().find(|field| field.name == pair.key)?;
+        // The fields of another stage, which a field beside this one names.
+        if let Shape::Overrides(of) = field.shape {
+            let named = &pairs.iter().find(|pair| pair.key == of)?.node.content;
+            let Content::Scalar { text, .. } = named else { return None };
+            let other = stages(self.root).iter().find(|stage| stage.key == *text)?;
             let Content::Mapping(inside) = &pair.node.content else { return None };
-            in_fields(member.fields, inside, offset, root, program, false)
+            let kind = kind_of(other, self.program)?;
+            return self.in_fields(Beside { kind: Some(kind), fields: kind.fields, pairs: inside, ..beside }, false);
         }
-        (_, Content::Scalar { .. }) => Some(Here::Value(field, shape, node)),
-        _ => None,
+        self.in_value(field, &field.shape, &pair.node, beside)
+    }
+
+    fn in_value(
+        &self,
+        field: &'static Field,
+        shape: &'static Shape,
+        node: &'a Node,
+        beside: Beside<'a>,
+    ) -> Option<Here<'a>> {
+        match (shape, &node.content) {
+            (Shape::List(item), Content::Sequence(items)) => {
+                let inside = last_before(items, self.offset, |item| item.place.offset)?;
+                self.in_value(field, item, inside, beside)
+            }
+            (Shape::List(item), _) => self.in_value(field, item, node, beside),
+            (Shape::Map(item), Content::Mapping(map)) => {
+                let pair = last_before(map, self.offset, |pair| pair.place.offset)?;
+                let beside = Beside { map, name: Some(&pair.key), ..beside };
+                if is_on(pair.place, self.offset) {
+                    return Some(Here::Own(field, &pair.key, beside));
+                }
+                self.in_value(field, item, &pair.node, beside)
+            }
+            (Shape::Group(fields), Content::Mapping(pairs)) => {
+                self.in_fields(Beside { fields, pairs, map: &[], name: None, ..beside }, false)
+            }
+            (Shape::Member(members), Content::Mapping(pairs)) => {
+                let pair = last_before(pairs, self.offset, |pair| pair.place.offset)?;
+                if is_on(pair.place, self.offset) {
+                    return Some(Here::Member(members(), &pair.key));
+                }
+                let member = members().iter().find(|member| member.name == pair.key)?;
+                let Content::Mapping(inside) = &pair.node.content else { return None };
+                let inside = Beside { fields: member.fields, pairs: inside, map: &[], name: None, ..beside };
+                self.in_fields(inside, false)
+            }
+            (_, Content::Scalar { .. }) => Some(Here::Value(field, shape, node, beside)),
+            _ => None,
+        }
     }
 }

@@ -73,7 +73,10 @@ impl<'a> Decoder<'a> {
         let mut wrong = Vec::new();
         if !pairs.iter().all(is_known) {
             let known: Vec<_> = others.iter().copied().chain(fields.iter().map(|field| field.name)).collect();
-            wrong = unknown::fields(pairs, &known, label, self.stages.foreign);
+            let field = |name: &str| fields.iter().find(|field| field.name == name);
+            let distance =
+                |name: &str, text: &str| field(name).map(Measure::of).map_or(0.0, |measure| measure.distance(text));
+            wrong = unknown::fields(pairs, &known, label, self.stages.foreign, &distance);
         }
         let is_renamed = !wrong.is_empty();
         let mut record = Record { fields: Vec::with_capacity(fields.len()), place };
@@ -164,14 +167,8 @@ impl<'a> Decoder<'a> {
             return Err(Diagnostic::new(message).at(node.place).help(help));
         }
         let value = match shape {
-            Shape::Quantity { dimension, minimum, maximum } => {
-                let (dimension, minimum, maximum) = (Some(*dimension), *minimum, *maximum);
-                let measure = Measure { name, dimension, minimum, maximum, example };
-                measure.value(node, field.span, self.ranges())?
-            }
-            Shape::Number { minimum, maximum } => {
-                let measure = Measure { name, dimension: None, minimum: *minimum, maximum: *maximum, example };
-                measure.value(node, field.span, self.ranges())?
+            Shape::Quantity { .. } | Shape::Number { .. } => {
+                Measure::new(name, shape, example).value(node, field.span, self.ranges())?
             }
             Shape::AnyQuantity => any_quantity(name, node)?,
             Shape::Integer { minimum, maximum, multiple } => {
@@ -408,7 +405,7 @@ fn any_quantity(name: &str, node: &Node) -> Result<Value, Diagnostic> {
     let text = scalar(name, node, &Shape::AnyQuantity)?;
     if let Some(help) = notation::help(text) {
         let message = format!("{} is not a number as a study has it; {name} needs one", quote(text));
-        return Err(Diagnostic::new(message).at(node.place).help(help));
+        return Err(Diagnostic::new(message).at(node.place).help(notation::with_reading(help, text, &|_| 0.0)));
     }
     let read = parse_quantity(text).map_err(|error| {
         let unit = quote(split_quantity(text).1);

@@ -15,6 +15,7 @@ pub mod describe;
 pub mod described;
 mod document;
 mod links;
+pub mod named;
 mod notation;
 mod overrides;
 pub mod path;
@@ -146,6 +147,12 @@ impl LoadError {
     pub fn more(&self) -> Option<String> {
         let more = (self.others.len() + 1).saturating_sub(self.told);
         (more > 0).then(|| format!("and {more} more; `gearstudy check` tells all"))
+    }
+
+    /// Whether there is no file at all, of which anything could be wrong.
+    #[must_use]
+    pub fn is_of_no_file(&self) -> bool {
+        self.diagnostic.message == read::NOT_THERE
     }
 
     /// Everything that is wrong.

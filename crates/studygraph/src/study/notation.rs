@@ -7,13 +7,36 @@
 /// Of a comma in a number.
 pub const COMMA: &str = "a decimal point, not a comma, and nothing parts thousands";
 
-/// The number that is meant by one with a comma, in quotes; both where the comma may also part thousands.
-pub fn with_point(whole: &str, fraction: &str, rest: &str) -> String {
-    let point = format!("`{whole}.{fraction}{rest}`");
-    if fraction.len() == 3 && !whole.trim_start_matches(['+', '-']).starts_with('0') {
-        return format!("{point}, or `{whole}{fraction}{rest}` if the comma parts thousands");
+/// What to write instead of a number with commas, which may stand for a point or part thousands: both where nothing tells, the
+/// one first that is nearer to what the field usually has, as `distance` says.
+pub fn without_commas(text: &str, distance: &dyn Fn(&str) -> f64) -> Option<String> {
+    let end = text.find(|c: char| !c.is_ascii_digit() && !"+-.,".contains(c)).unwrap_or(text.len());
+    let (number, rest) = text.split_at(end);
+    let groups: Vec<&str> = number.split(',').collect();
+    let (whole, others) = groups.split_first()?;
+    let is_group = |group: &&str| group.len() == 3 && group.bytes().all(|byte| byte.is_ascii_digit());
+    let starts_with_zero = whole.trim_start_matches(['+', '-']).starts_with('0');
+    let (last, inner) = others.split_last()?;
+    let last_group = last.split('.').next().unwrap_or(last);
+    let parts_thousands =
+        !starts_with_zero && !whole.contains('.') && inner.iter().all(is_group) && is_group(&last_group);
+    let thousands = parts_thousands.then(|| format!("{}{rest}", groups.concat()));
+    let point = (inner.is_empty() && !number.contains('.')).then(|| format!("{whole}.{last}{rest}"));
+    Some(match (point, thousands) {
+        (Some(point), Some(thousands)) if distance(&thousands) < distance(&point) => {
+            format!("write `{thousands}`, or `{point}` if the comma is a decimal one")
+        }
+        (Some(point), Some(thousands)) => format!("write `{point}`, or `{thousands}` if the comma parts thousands"),
+        (point, thousands) => format!("write `{}`", point.or(thousands)?),
+    })
+}
+
+/// A help of [`help`], and behind it what to write instead of a number with commas.
+pub fn with_reading(help: String, text: &str, distance: &dyn Fn(&str) -> f64) -> String {
+    match without_commas(text.trim(), distance) {
+        Some(meant) => format!("{help}: {meant}"),
+        None => help,
     }
-    point
 }
 
 /// What to write instead of a text that is, or begins with, a number in another notation; nothing where it is not.
@@ -86,6 +109,27 @@ mod tests {
         for text in ["0", "0.5", "-0.0", "30", "+30", ".5", "5.", "3e1", "0xyz", "19 mm", "", "-", "two", "µ_1", "0e5"]
         {
             assert_eq!(help(text), None, "{text}");
+        }
+    }
+
+    #[test]
+    fn commas_are_points_or_part_thousands_whichever_is_nearer_to_the_usual() {
+        let near = |usual: f64| {
+            move |text: &str| (text.split(' ').next().unwrap().parse::<f64>().unwrap().abs() / usual).ln().abs()
+        };
+        for (text, usual, says) in [
+            ("206,000 MPa", 2e5, "write `206000 MPa`, or `206.000 MPa` if the comma is a decimal one"),
+            ("206,000 MPa", 2e2, "write `206.000 MPa`, or `206000 MPa` if the comma parts thousands"),
+            ("3,5 mm", 1e4, "write `3.5 mm`"),
+            ("0,125 mm", 1e4, "write `0.125 mm`"),
+            ("-1,250", 1.0, "write `-1.250`, or `-1250` if the comma parts thousands"),
+            ("1,234.5 mm", 1.0, "write `1234.5 mm`"),
+            ("206,000,000 kPa", 1.0, "write `206000000 kPa`"),
+        ] {
+            assert_eq!(without_commas(text, &near(usual)).as_deref(), Some(says), "{text}");
+        }
+        for text in ["1,2,3", "1.5,000", "1,00,000 mm"] {
+            assert_eq!(without_commas(text, &near(1.0)), None, "{text}");
         }
     }
 }

@@ -8,7 +8,7 @@ use super::notation;
 use super::unknown;
 use super::words::{self, quote};
 use declare::error::{Diagnostic, suggest};
-use declare::parameter::Span;
+use declare::parameter::{Field, Shape, Span};
 use declare::record::Value;
 use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_quantity};
 
@@ -28,7 +28,27 @@ pub struct Measure<'a> {
     pub example: Option<&'static str>,
 }
 
-impl Measure<'_> {
+impl<'a> Measure<'a> {
+    /// What the shape of a field says of a number.
+    pub fn new(name: &'a str, shape: &Shape, example: Option<&'static str>) -> Self {
+        match *shape {
+            Shape::Quantity { dimension, minimum, maximum } => {
+                Self { name, dimension: Some(dimension), minimum, maximum, example }
+            }
+            Shape::Number { minimum, maximum } => Self { name, dimension: None, minimum, maximum, example },
+            Shape::Integer { minimum, maximum, .. } => {
+                Self { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64, example }
+            }
+            _ => Self { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, example },
+        }
+    }
+
+    /// The same of a field.
+    pub fn of(field: &'a Field) -> Self {
+        let shape = if let Shape::List(item) = field.shape { item } else { &field.shape };
+        Self::new(field.name, shape, words::example_of(field))
+    }
+
     /// Reads what the span of a field allows.
     ///
     /// # Errors
@@ -73,6 +93,7 @@ impl Measure<'_> {
         }
         if let Some(help) = notation::help(text) {
             let message = format!("{shown} is not a number as a study has it; {} is expected", self.expected());
+            let help = notation::with_reading(help, text, &|text| self.distance(text));
             return Err(Diagnostic::new(message).help(help));
         }
         let read = parse_quantity(text).map_err(|error| self.unreadable(text, error))?;
@@ -140,6 +161,20 @@ impl Measure<'_> {
         }
     }
 
+    /// How far a number is from the usual one, as the logarithm of their ratio: without end where it cannot stand here.
+    pub fn distance(&self, text: &str) -> f64 {
+        let si = |text: &str| {
+            parse_quantity(text).ok().filter(|read| self.dimension.is_none_or(|own| own == read.dimension))
+        };
+        match (si(text).filter(|read| (self.minimum..=self.maximum).contains(&read.value)), self.example.and_then(si)) {
+            (None, _) => f64::INFINITY,
+            (Some(read), Some(usual)) if read.value != 0.0 && usual.value != 0.0 => {
+                (read.value / usual.value).abs().ln().abs()
+            }
+            (Some(_), _) => 0.0,
+        }
+    }
+
     fn outside(&self, text: &str) -> Diagnostic {
         let admissible = self.range().unwrap_or_else(|| "finite".to_owned());
         Diagnostic::new(format!("{} must be {admissible}, not {}", quote(self.name), quote(text)))
@@ -185,7 +220,9 @@ impl Measure<'_> {
             return self.single(node).map(|value| Value::Axis(vec![value]));
         };
         let names = ["from", "to", "count"];
-        if let Some(wrong) = unknown::fields(pairs, &names, &quote(self.name), &[]).into_iter().next() {
+        if let Some(wrong) =
+            unknown::fields(pairs, &names, &quote(self.name), &[], &|_, text| self.distance(text)).into_iter().next()
+        {
             return Err(wrong);
         }
         let part = |name: &str| {

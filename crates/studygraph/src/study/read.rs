@@ -8,6 +8,9 @@ use super::LoadError;
 use super::place::place_at;
 use declare::error::{Diagnostic, nearest};
 
+/// What is said of a file that is not there.
+pub const NOT_THERE: &str = "there is no such file";
+
 /// Bytes of a study. The largest that anybody wrote has a few ten thousand.
 const LARGEST: u64 = 1 << 20;
 
@@ -39,7 +42,7 @@ fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
     if error.kind() != io::ErrorKind::NotFound {
         return Diagnostic::new(format!("this file cannot be read: {error}"));
     }
-    let missing = Diagnostic::new("there is no such file");
+    let missing = Diagnostic::new(NOT_THERE);
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
     let found = studies(folder);

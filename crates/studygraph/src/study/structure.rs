@@ -12,6 +12,9 @@ use declare::error::{Diagnostic, Place};
 
 /// The cause of what the parser refused at `place`; none where it is not one of structure.
 pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
+    if *kind == ErrorKind::InvalidQuotedScalarIndent {
+        return quote_opened(text, place);
+    }
     let at = |line: &Line| place_at(text, line.offset + line.indent, line.body.len());
     let lines = Line::all(text);
     let stopped = lines.iter().position(|line| line.number >= place.line)?;
@@ -26,7 +29,7 @@ pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
             | ErrorKind::UnexpectedEofFlowMapping
             | ErrorKind::UnexpectedEofFlowSequence
     );
-    if flow && let Some((bracket, offset)) = open_bracket(text, place.offset) {
+    if flow && let Some((bracket, offset)) = open_at(text, place.offset).bracket {
         let opened = place_at(text, offset, 1);
         let closing = if bracket == '{' { '}' } else { ']' };
         let message = format!("`{bracket}` is opened in line {} and not closed here", opened.line);
@@ -41,10 +44,6 @@ pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
             let message = format!("`{open}` is opened here and closed by `{close}`");
             Some(Diagnostic::new(message).at(place))
         }
-        ErrorKind::InvalidQuotedScalarIndent => {
-            let opened = before.iter().chain([line]).rev().find(|line| line.has_open_quote())?;
-            Some(Diagnostic::new("a quote is opened and not closed in its line").at(at(opened)))
-        }
         ErrorKind::SimpleKeyExpected => Some(without_colon(line).at(at(line))),
         ErrorKind::MappingValueNotAllowed => value_below_value(line, before, place).map(|found| match found {
             Deeper(found) => found.at(at(line)),
@@ -56,6 +55,15 @@ pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
         | ErrorKind::BlockSequenceEntryNotAllowed => between_levels(line, before).map(|found| found.at(at(line))),
         _ => None,
     }
+}
+
+/// A quote that is not closed, where it opens: the parser may go on to the end of the text before it gives up.
+fn quote_opened(text: &str, place: Place) -> Option<Diagnostic> {
+    let (_, offset) = open_at(text, place.offset).quote?;
+    let ends = text[place.offset..].trim().is_empty();
+    let message =
+        if ends { "a quote is opened and never closed" } else { "a quote is opened and not closed in its line" };
+    Some(Diagnostic::new(message).at(place_at(text, offset, 1)))
 }
 
 /// Why a name stands in a mapping a second time, where it is more than that: a list goes on without its dash, or a name
@@ -113,11 +121,6 @@ impl<'a> Line<'a> {
     fn keys_at(&self) -> usize {
         let behind = self.body.strip_prefix('-').map_or(0, |rest| self.body.len() - rest.trim_start().len());
         self.indent + if self.is_item() { behind } else { 0 }
-    }
-
-    fn has_open_quote(&self) -> bool {
-        let count = |mark: char| self.body.chars().filter(|&c| c == mark).count();
-        count('"') % 2 == 1 || count('\'') % 2 == 1
     }
 
     /// Key and value, where it has both.
@@ -214,22 +217,32 @@ fn between_levels(line: &Line, before: &[Line]) -> Option<Diagnostic> {
     Some(Diagnostic::new(message).help(help))
 }
 
-/// The innermost bracket that is open before `end`, and where.
-fn open_bracket(text: &str, end: usize) -> Option<(char, usize)> {
+/// What is not closed, each with its place.
+struct Opened {
+    /// The innermost one.
+    bracket: Option<(char, usize)>,
+    quote: Option<(char, usize)>,
+}
+
+/// What is open before `end`.
+fn open_at(text: &str, end: usize) -> Opened {
     let (mut open, mut quote, mut before, mut comment) = (Vec::new(), None, '\n', false);
     for (offset, c) in text.char_indices().take_while(|(offset, _)| *offset < end) {
         match (quote, c) {
             (_, '\n') => comment = false,
             _ if comment => {}
-            (Some(mark), _) => quote = Some(mark).filter(|mark| *mark != c),
+            // Behind a backslash it is a part of the text.
+            (Some(('"', _)), '"') if before == '\\' => {}
+            (Some((mark, _)), _) => quote = quote.filter(|_| mark != c),
             (None, '#') if before.is_whitespace() => comment = true,
             // In the middle of a word it is an apostrophe.
-            (None, '"' | '\'') if !before.is_alphanumeric() => quote = Some(c),
+            (None, '"' | '\'') if !before.is_alphanumeric() => quote = Some((c, offset)),
             (None, '{' | '[') => open.push((c, offset)),
             (None, '}' | ']') => drop(open.pop()),
             _ => {}
         }
-        before = c;
+        // Two of them are one that is meant.
+        before = if (before, c) == ('\\', '\\') { ' ' } else { c };
     }
-    open.pop()
+    Opened { bracket: open.pop(), quote }
 }

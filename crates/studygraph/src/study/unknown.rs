@@ -9,11 +9,28 @@ use crate::program::Foreign;
 use declare::error::{Diagnostic, Place, suggest};
 
 /// What is wrong with every key of `pairs` that is not `known`; the mapping is called `label`.
-pub fn fields(pairs: &[KeyValue], known: &[&str], label: &str, foreign: &[Foreign]) -> Vec<Diagnostic> {
+///
+/// `distance` of a field and a number is how far that is from what the field usually has.
+pub fn fields(
+    pairs: &[KeyValue],
+    known: &[&str],
+    label: &str,
+    foreign: &[Foreign],
+    distance: &dyn Fn(&str, &str) -> f64,
+) -> Vec<Diagnostic> {
     let mut wrong = Vec::new();
+    let mut told = 0;
     for (at, pair) in pairs.iter().enumerate().filter(|(_, pair)| !known.contains(&pair.key.as_str())) {
-        let before = at.checked_sub(1).map(|before| &pairs[before]);
-        wrong.push(before.and_then(|before| decimal_comma(before, pair)).unwrap_or_else(|| {
+        if at < told {
+            continue;
+        }
+        let comma = at.checked_sub(1).and_then(|before| with_commas(&pairs[before], &pairs[at..], distance));
+        if let Some((found, keys)) = comma {
+            told = at + keys;
+            wrong.push(found);
+            continue;
+        }
+        wrong.push({
             let message = format!("unknown field {} of {label}", quote(&pair.key));
             let help = called(&pair.key, known, foreign).unwrap_or_else(|| {
                 let help = suggest(&pair.key, known.iter().copied());
@@ -23,7 +40,7 @@ pub fn fields(pairs: &[KeyValue], known: &[&str], label: &str, foreign: &[Foreig
                 }
             });
             Diagnostic::new(message).at(pair.place).help(help)
-        }));
+        });
     }
     wrong
 }
@@ -47,17 +64,44 @@ fn elsewhere(word: &str, foreign: &[Foreign]) -> Option<String> {
     Some(format!("a study calls it `{field}`, in another place"))
 }
 
-/// `{ amount: 0,012 mm }` is `amount: 0` and a key `012 mm` to YAML.
-fn decimal_comma(before: &KeyValue, rest: &KeyValue) -> Option<Diagnostic> {
+/// `{ amount: 0,012 mm }` is `amount: 0` and a key `012 mm` to YAML. How many keys are parts of the number is told with it.
+fn with_commas(
+    before: &KeyValue,
+    rest: &[KeyValue],
+    distance: &dyn Fn(&str, &str) -> f64,
+) -> Option<(Diagnostic, usize)> {
     let Content::Scalar { text: whole, quoted: false } = &before.node.content else { return None };
     let is_digits = |text: &str| !text.is_empty() && text.bytes().all(|byte| byte.is_ascii_digit());
-    let fraction = rest.key.split_whitespace().next().filter(|digits| is_digits(digits))?;
-    let follows = rest.place.offset == before.node.place.offset + before.node.place.length + 1;
-    if !follows || !rest.node.is_null() || !is_digits(whole.trim_start_matches(['+', '-'])) {
+    if !is_digits(whole.trim_start_matches(['+', '-'])) {
         return None;
     }
-    let place = Place { length: before.node.place.length + 1 + fraction.len(), ..before.node.place };
-    let message = format!("{} is two values to YAML: {}", quote(&format!("{whole},{}", rest.key)), notation::COMMA);
-    let unit = rest.key.strip_prefix(fraction).unwrap_or_default();
-    Some(Diagnostic::new(message).at(place).help(format!("write {}", notation::with_point(whole, fraction, unit))))
+    let (mut text, mut length, mut keys) = (whole.clone(), before.node.place.length, 0);
+    for part in rest {
+        let fraction = part.key.split_whitespace().next().unwrap_or_default();
+        let follows = part.place.offset == before.node.place.offset + length + 1;
+        if !follows || !part.node.is_null() || !is_digits(fraction) {
+            break;
+        }
+        text += &format!(",{}", part.key);
+        // Behind a unit comes another field.
+        let ends = fraction != part.key;
+        length += 1 + if ends { fraction.len() } else { part.place.length };
+        keys += 1;
+        if ends {
+            break;
+        }
+    }
+    if keys == 0 {
+        return None;
+    }
+    let place = Place { length, ..before.node.place };
+    let message = format!(
+        "{} is {} values to YAML: {}",
+        quote(&text),
+        if keys == 1 { "two" } else { "several" },
+        notation::COMMA
+    );
+    let found = Diagnostic::new(message).at(place);
+    let help = notation::without_commas(&text, &|text| distance(&before.key, text));
+    Some((if let Some(help) = help { found.help(help) } else { found }, keys))
 }

@@ -138,7 +138,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         let message = format!("{} is {}; `{{ field: …, values: […] }}` is expected", quote(name), pair.node.describe());
         return Err(Diagnostic::new(message).at(pair.node.place));
     };
-    if let Some(wrong) = unknown::fields(fields, &FIELDS, &quote(name), &[]).into_iter().next() {
+    if let Some(wrong) = unknown::fields(fields, &FIELDS, &quote(name), &[], &|_, _| 0.0).into_iter().next() {
         return Err(wrong);
     }
     let given = |field: &str| fields.iter().find(|given| given.key == field && !given.node.is_null());
@@ -172,7 +172,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
     };
     let one = |node: &Node| number(name, target.shape, node);
     let about = || path.written(stages.pairs, stages.kinds);
-    let stated = spread::Stated { name, fields, place: pair.place, measure: measure(name, target.shape) };
+    let stated = spread::Stated { name, fields, place: pair.place, measure: Measure::new(name, target.shape, None) };
     let (values, first, values_place) = if let Some((spread, first, place)) = stated.spread(multiple, about)? {
         (Values::Spread(spread), first, place)
     } else {
@@ -214,7 +214,7 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         (Content::Scalar { text, .. }, Some(dimension)) if dimension != RATIO => split_quantity(text).1.to_owned(),
         _ => String::new(),
     };
-    let Measure { minimum, maximum, .. } = measure(name, target.shape);
+    let Measure { minimum, maximum, .. } = Measure::new(name, target.shape, None);
     let (name, place) = (name.clone(), written.node.place);
     let axis = Axis {
         name,
@@ -232,33 +232,18 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
     Ok((axis, stage.to_owned(), first))
 }
 
-/// What the shape says of a number.
-fn measure<'a>(name: &'a str, shape: &Shape) -> Measure<'a> {
-    let example = None;
-    match *shape {
-        Shape::Quantity { dimension, minimum, maximum } => {
-            Measure { name, dimension: Some(dimension), minimum, maximum, example }
-        }
-        Shape::Number { minimum, maximum } => Measure { name, dimension: None, minimum, maximum, example },
-        Shape::Integer { minimum, maximum, .. } => {
-            Measure { name, dimension: None, minimum: minimum as f64, maximum: maximum as f64, example }
-        }
-        _ => Measure { name, dimension: None, minimum: f64::NEG_INFINITY, maximum: f64::INFINITY, example },
-    }
-}
-
 fn number(name: &str, shape: &Shape, node: &Node) -> Result<f64, Diagnostic> {
     match shape {
         Shape::Integer { minimum, maximum, multiple } => {
             Ok(integer(name, node, shape, (*minimum, *maximum), *multiple)? as f64)
         }
-        _ => measure(name, shape).single(node),
+        _ => Measure::new(name, shape, None).single(node),
     }
 }
 
 /// The points of `{ from, to, count }`, which must be whole where the field is.
 fn spaced(name: &str, shape: &Shape, node: &Node) -> Result<Vec<f64>, Diagnostic> {
-    let values = match measure(name, shape).spaced(node)? {
+    let values = match Measure::new(name, shape, None).spaced(node)? {
         declare::record::Value::Axis(values) => values,
         _ => Vec::new(),
     };

@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::drawn::{Drawn, of_gear};
+use super::drawn::{Drawn, LINE, of_gear};
 use gearmesh::gear::geometry::Side;
 use gearmesh::gear::geometry::outline::curve::OutlinePart;
 use gearmesh::gear::geometry::outline::sample::Density;
@@ -19,6 +19,7 @@ const ARC: u32 = 90;
 pub struct ArcPoint {
     side: Side,
     curve: &'static str,
+    line: &'static str,
     /// From 1, as the run.
     point: usize,
     run: usize,
@@ -38,6 +39,7 @@ pub fn columns() -> Columns<ArcPoint> {
         .key()
         .integer("run", "Counts lines of one name that do not meet.", |row| row.run)
         .text("step", step, |row| row.step)
+        .text("line", LINE, |row| row.line)
         .float("x", "mm", "Place across, in the gear's frame.", |row| row.at[0])
         .but(|column| column.tolerance(1e-9, 1e-9))
         .float("y", "mm", "Place upwards, in the gear's frame.", |row| row.at[1])
@@ -52,8 +54,9 @@ pub fn maximum(half: usize) -> usize {
     half + 8 * (ARC as usize + 1)
 }
 
-struct Line {
+struct Part {
     curve: &'static str,
+    line: &'static str,
     step: &'static str,
     runs: Vec<Vec<[f64; 2]>>,
 }
@@ -84,37 +87,49 @@ pub fn rows(drawn: &Drawn, density: Density) -> Vec<ArcPoint> {
     let high = 2.0 * base.base_radius - base.root_radius;
     let flank = flank.map(|point| point.local.position).filter(|[x, y]| libm::hypot(*x, *y) <= high);
     let flank: Vec<[f64; 2]> = flank.collect();
-    let line = |curve, step, runs| Line { curve, step, runs };
+    let line = |curve, line, step, runs| Part { curve, line, step, runs };
     let lines = [
-        line("flank", "boundary", vec![flank]),
-        line("base circle", "boundary", whole(base.base_radius)),
-        line("root circle", "boundary", whole(base.root_radius)),
+        line("flank", "wide", "boundary", vec![flank]),
+        line("base circle", "dashed", "boundary", whole(base.base_radius)),
+        line("root circle", "narrow", "boundary", whole(base.root_radius)),
         line(
             "centrelines of tooth and space",
+            "dash-dotted",
             "boundary",
             vec![
                 along(base.root_radius - 0.3 * r, high, 0.0),
                 along(base.root_radius - 0.3 * r, high, base.half_pitch),
             ],
         ),
-        line("tangent in A", "boundary", vec![along(base.root_radius, high, base.angle)]),
-        line("arc", "arc", vec![about(c, r, PI - base.angle, 1.5 * PI)]),
+        line("tangent in A", "narrow", "boundary", vec![along(base.root_radius, high, base.angle)]),
+        line("arc", "wide", "arc", vec![about(c, r, PI - base.angle, 1.5 * PI)]),
         line(
             "rest of its circle, with the radii to A and B",
+            "dashed",
             "arc",
             vec![about(c, r, 1.5 * PI, 3.0 * PI - base.angle), vec![a, c, b]],
         ),
         // Between the radius to A and the horizontal through C.
-        line("angle θ", "arc", vec![about(c, 0.7 * r, PI - base.angle, PI), vec![c, [c[0] - 0.85 * r, c[1]]]]),
-        line("A", "boundary", vec![vec![a]]),
-        line("B", "arc", vec![vec![b]]),
-        line("C", "arc", vec![vec![c]]),
-        line("θ", "arc", vec![about(c, 0.7 * r, PI - base.angle, PI)[ARC as usize / 2..=ARC as usize / 2].to_vec()]),
+        line(
+            "angle θ",
+            "narrow",
+            "arc",
+            vec![about(c, 0.7 * r, PI - base.angle, PI), vec![c, [c[0] - 0.85 * r, c[1]]]],
+        ),
+        line("A", "wide", "boundary", vec![vec![a]]),
+        line("B", "wide", "arc", vec![vec![b]]),
+        line("C", "wide", "arc", vec![vec![c]]),
+        line(
+            "θ",
+            "wide",
+            "arc",
+            vec![about(c, 0.7 * r, PI - base.angle, PI)[ARC as usize / 2..=ARC as usize / 2].to_vec()],
+        ),
     ];
     let mut rows = Vec::new();
-    for Line { curve, step, runs } in lines {
+    for Part { curve, line, step, runs } in lines {
         let points = (1..).zip(&runs).flat_map(|(run, points)| points.iter().map(move |&at| (run, at)));
-        let row = |(point, (run, at))| ArcPoint { side: drawn.side, curve, point, run, step, at };
+        let row = |(point, (run, at))| ArcPoint { side: drawn.side, curve, line, point, run, step, at };
         rows.extend((1..).zip(points).map(row));
     }
     rows

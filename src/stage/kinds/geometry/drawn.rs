@@ -16,6 +16,9 @@ use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row};
 use studygraph::table::schema::{Column, Schema};
 
+/// What a column of types of lines says of itself.
+pub const LINE: &str = "Type of line, by what it is, as in a technical drawing: wide, narrow, dashed or dash-dotted.";
+
 /// A gear with its full profile.
 pub struct Drawn {
     /// What it is called: a gear alone is a pinion.

@@ -153,7 +153,7 @@ macro_rules! kind {
             build: |record| {
                 // Something that no declaration can say.
                 if record.entry("note").is_some() && record.text("note") == "impossible" {
-                    return Err(Diagnostic::new("this pair is impossible"));
+                    return Err(Diagnostic::new("this pair is impossible").into());
                 }
                 Ok(Box::new(Part { record: record.clone(), kind: $name }))
             },
@@ -176,6 +176,7 @@ static FOREIGN: &[Foreign] = &[
 static PROGRAM: Program = Program {
     kinds: KINDS,
     foreign: FOREIGN,
+    named: &[],
     code_of: |_| String::new(),
     counters: &[],
     about: ABOUT,

@@ -43,7 +43,17 @@ const CHANGES: &[(&str, &str, &str)] = &[
     (
         "module: 3 mm",
         "module: 3,5 mm",
-        "8:13: `3,5 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: a decimal point, not a comma, and nothing parts thousands",
+        "8:13: `3,5 mm` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: a decimal point, not a comma, and nothing parts thousands: write `3.5 mm`",
+    ),
+    (
+        "module: 3 mm",
+        "module: 3,000 um",
+        "8:13: `3,000 um` is not a number as a study has it; a length (for example `3 mm`) is expected\n  help: a decimal point, not a comma, and nothing parts thousands: write `3000 um`, or `3.000 um` if the comma is a decimal one",
+    ),
+    (
+        "value: 2.316 um",
+        "value: 2,316 um",
+        "34:12: `2,316 um` is not a number as a study has it; value needs one\n  help: a decimal point, not a comma, and nothing parts thousands: write `2.316 um`, or `2316 um` if the comma parts thousands",
     ),
     (
         "value: 2.316 um",

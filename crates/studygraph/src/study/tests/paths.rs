@@ -29,7 +29,7 @@ fn leads(path: &str) -> (usize, usize, &'static str) {
 
 fn with(text: &str, set: &[&str], name: Option<&str>) -> Result<Study, String> {
     let settings = Settings { set: set.iter().map(|one| (*one).to_owned()).collect(), name: name.map(str::to_owned) };
-    changes::load(text, Path::new("t.yaml"), &PROGRAM, &settings).map_err(|error| error.to_string())
+    changes::examine(text, Path::new("t.yaml"), &PROGRAM, &settings).map_err(|refused| refused.error().to_string())
 }
 
 fn set(path: &str) -> Study {

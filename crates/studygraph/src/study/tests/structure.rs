@@ -43,7 +43,7 @@ fn structure_is_told_in_the_words_of_whoever_wrote_it() {
             "title: A study: small",
             "2:1: a second `:` stands in the value of `title`\n  help: put the text in quotes: `title: \"A study: small of 5 µm\"`",
         ),
-        ("title: A small", "title: \"A small", "2:1: a quote is opened and not closed in its line"),
+        ("title: A small", "title: \"A small", "2:8: a quote is opened and not closed in its line"),
         (
             "    module: 3 mm\n    rack",
             "    module:3mm\n    rack",
@@ -123,7 +123,12 @@ fn words_of_others_lead_to_the_field() {
         (
             "amount: 7.81 um",
             "amount: 7,810 nm",
-            "18:33: `7,810 nm` is two values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `7.810 nm`, or `7810 nm` if the comma parts thousands",
+            "18:33: `7,810 nm` is two values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `7810 nm`, or `7.810 nm` if the comma is a decimal one",
+        ),
+        (
+            "amount: 7.81 um",
+            "amount: 7,810,000 pm",
+            "18:33: `7,810,000 pm` is several values to YAML: a decimal point, not a comma, and nothing parts thousands\n  help: write `7810000 pm`",
         ),
     ]);
 }
