@@ -90,14 +90,20 @@ impl Faults {
     /// # Errors
     /// When anything was wrong.
     pub fn collect<T, E: Into<Self>>(each: impl IntoIterator<Item = Result<T, E>>) -> Result<Vec<T>, Self> {
-        let (mut read, mut wrong) = (Vec::new(), Vec::new());
+        let (given, wrong) = Self::apart(each);
+        Self::all(wrong).map(|()| given)
+    }
+
+    /// What each gave with which nothing is wrong, and everything that is wrong with the others.
+    pub fn apart<T, E: Into<Self>>(each: impl IntoIterator<Item = Result<T, E>>) -> (Vec<T>, Vec<Diagnostic>) {
+        let (mut given, mut wrong) = (Vec::new(), Vec::new());
         for one in each {
             match one {
-                Ok(one) => read.push(one),
+                Ok(one) => given.push(one),
                 Err(found) => wrong.extend(found.into()),
             }
         }
-        Self::all(wrong).map(|()| read)
+        (given, wrong)
     }
 }
 

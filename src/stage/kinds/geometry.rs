@@ -12,7 +12,7 @@ mod valid;
 use std::f64::consts::FRAC_PI_4;
 
 use crate::stage::designs::Elements;
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Port, RowCount, Saved, Stage, pair};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Saved, Stage, names, pair};
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults, Place};
 use declare::record::Record;
@@ -30,7 +30,7 @@ use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::work::OUTLINES;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
 
 pub const KIND: Kind = Kind {
@@ -264,6 +264,13 @@ const OF_OUTLINES: [&str; 3] = ["outline", "validity", "mesh_drawing"];
 impl Stage for Geometry {
     fn inputs(&self) -> Vec<Port> {
         Vec::new()
+    }
+
+    fn keys(&self, table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
+        let is_of_gears = [(names::gears::TABLE, names::gears::GEAR), (names::outline::TABLE, names::outline::GEAR)];
+        is_of_gears
+            .contains(&(table, column))
+            .then(|| self.gears.iter().map(|drawn| drawn.side.name().into()).collect())
     }
 
     fn outputs(&self) -> Vec<Schema> {

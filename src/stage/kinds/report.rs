@@ -20,7 +20,7 @@ use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, 
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
-use declare::error::{Failure, Faults};
+use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
@@ -86,27 +86,23 @@ struct Report {
     entries: Vec<ReportEntry>,
     comparisons: Vec<Comparison>,
     figures: Vec<Figure>,
+    /// What is wrong with others of them.
+    wrong: Vec<Diagnostic>,
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
     let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
-    let entries = Faults::collect(entries);
+    let (entries, mut wrong) = Faults::apart(entries);
     let compared = (1..).zip(stated.compare.iter().flatten()).zip(record.each_inside(Stated::NAMES.compare));
     let comparisons = compared.map(|((number, stated), record)| Comparison::read(number, stated, record));
-    let comparisons = Faults::collect(comparisons);
-    let drawn: Vec<&Record> = record.each_inside(Stated::NAMES.figures).collect();
-    let figures = (1..).zip(stated.figures.iter().flatten()).zip(&drawn);
-    let figures = figures.map(|((number, stated), record)| Figure::read(number, stated, record));
-    let figures = Faults::collect(figures).and_then(|figures| {
-        figure::check_names(&figures, &drawn)?;
-        Ok(figures)
-    });
-    // Somebody who mends a report wants to be told of all that is wrong with it.
-    let wrong = [entries.as_ref().err(), comparisons.as_ref().err(), figures.as_ref().err()];
-    Faults::all(wrong.into_iter().flatten().cloned().flatten().collect())?;
-    Ok(Box::new(Report { entries: entries?, comparisons: comparisons?, figures: figures? }))
+    let (comparisons, of_comparisons) = Faults::apart(comparisons);
+    let drawn = (1..).zip(stated.figures.iter().flatten()).zip(record.each_inside(Stated::NAMES.figures));
+    let figures = drawn.map(|((number, stated), record)| Figure::read(number, stated, record));
+    let (figures, of_figures) = Faults::apart(figures);
+    wrong.extend(of_comparisons.into_iter().chain(of_figures).chain(figure::twice(&figures)));
+    Ok(Box::new(Report { entries, comparisons, figures, wrong }))
 }
 
 impl Report {
@@ -128,6 +124,10 @@ impl Stage for Report {
             want(&mut ports, stage, table, columns);
         }
         ports
+    }
+
+    fn wrong(&self) -> &[Diagnostic] {
+        &self.wrong
     }
 
     fn named(&self) -> Vec<Named> {

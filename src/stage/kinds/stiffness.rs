@@ -8,8 +8,8 @@ use std::time::Instant;
 use crate::stage::common::Teeth;
 use crate::stage::compliance as codec;
 use crate::stage::{
-    Ahead, Context, Curves, Demand, Estimate, Inputs, Kind, Omission, Port, RowCount, Saved, Stage, common, names,
-    pair, root_influences,
+    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, RowCount, Saved, Stage, common,
+    names, pair, root_influences,
 };
 use declare::declared::{Declared, Words};
 use declare::error::{Diagnostic, Failure, Faults};
@@ -19,12 +19,13 @@ use declare::work::Work;
 use declare::{Declared, Words};
 use gearmesh::gear::compliance::iso6336;
 use gearmesh::gear::compliance::{Assumptions, ContactLaw, MeshFacts, RootStress, Tabulated};
+use gearmesh::gear::geometry::Side;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::transmission_error::cycle::{MeshCycle, Settings};
 use gearmesh::gear::transmission_error::stiffness::{StiffnessSummary, stiffness};
 use gearmesh::gear::work::{CONTACT_SOLVES, MESH_FACTORISATIONS};
 use studygraph::table::columns::Columns;
-use studygraph::table::data::{Table, TableError};
+use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 /// Tables that are not always there.
@@ -239,6 +240,11 @@ impl Stiffness {
 impl Stage for Stiffness {
     fn inputs(&self) -> Vec<Port> {
         vec![pair::port(&self.pair)]
+    }
+
+    fn keys(&self, table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
+        let is_of_gears = column == "gear" && ["mesh", ROOT_STRESS].contains(&table);
+        is_of_gears.then(|| [Side::Pinion, Side::Gear].map(|side| side.name().into()).to_vec())
     }
 
     fn outputs(&self) -> Vec<Schema> {

@@ -16,7 +16,7 @@ use crate::table::data::{Cell, Table};
 use crate::table::schema::Schema;
 use crate::table::select::CellName;
 use crate::warning::Warning;
-use declare::error::{Failure, Faults, Place};
+use declare::error::{Diagnostic, Failure, Faults, Place};
 use declare::parameter::Field;
 use declare::record::Record;
 use declare::seed::Seed;
@@ -84,6 +84,12 @@ pub trait Stage: Send + Sync {
     /// Whether nothing else may run beside it, because it measures time or memory.
     fn runs_alone(&self) -> bool {
         false
+    }
+
+    /// What is wrong with parts of it that it does without, so that what is wrong with the others can be found too. A study
+    /// with any is refused.
+    fn wrong(&self) -> &[Diagnostic] {
+        &[]
     }
 
     /// What it names of other stages' tables: cells, or rows.

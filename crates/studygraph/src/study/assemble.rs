@@ -92,12 +92,16 @@ fn sound(
     })?;
     let mut blame = Blame::default();
     let drafts = drafts(stages, program, &belong, &mut blame)?;
+    blame.is_misnamed = drafts.iter().any(|draft| draft.is_misnamed);
     links::check_references(&drafts, &mut blame);
     let mut built = Vec::with_capacity(drafts.len());
     for (index, Draft { name, place, kind, record, .. }) in drafts.into_iter().enumerate() {
         let stage = kind.zip(record).map(|(kind, record)| ((kind.build)(&record), kind, record));
         let stage = match stage {
-            Some((Ok(stage), kind, record)) => Ok(Node { name, place, kind, record, stage }),
+            Some((Ok(stage), kind, record)) => {
+                stage.wrong().iter().for_each(|found| blame.put(index, found.clone().or_at(place)));
+                Ok(Node { name, place, kind, record, stage })
+            }
             Some((Err(found), ..)) => {
                 found.into_iter().for_each(|found| blame.put(index, found.or_at(place)));
                 Err(name)
@@ -196,9 +200,16 @@ fn drafts(
 
 /// One stage, as far as it can be read; what is wrong with it goes to `blame`.
 pub fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMut(Diagnostic)) -> Draft {
-    let mut draft =
-        Draft { name: pair.key.clone(), place: pair.place, kind: None, record: None, references: Vec::new() };
+    let mut draft = Draft {
+        name: pair.key.clone(),
+        place: pair.place,
+        is_misnamed: false,
+        kind: None,
+        record: None,
+        references: Vec::new(),
+    };
     if let Err(found) = check_name("stage", &draft.name, draft.place) {
+        draft.is_misnamed = true;
         blame(found);
     }
     match kind_of(pair, stages.kinds) {

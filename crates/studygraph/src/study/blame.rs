@@ -16,12 +16,23 @@ pub struct Blame {
     pub wrong: Vec<Diagnostic>,
     /// Stages, by their place among all.
     unsound: BTreeSet<usize>,
+    /// Whether a stage has a name that no stage can have: what is called otherwise elsewhere may be that one.
+    pub is_misnamed: bool,
 }
 
 impl Blame {
     pub fn put(&mut self, stage: usize, found: Diagnostic) {
         self.wrong.push(found);
         self.unsound.insert(stage);
+    }
+
+    /// That something is wrong with a stage which is told elsewhere.
+    pub fn doubt(&mut self, stage: usize) {
+        self.unsound.insert(stage);
+    }
+
+    pub fn is_unsound(&self, stage: usize) -> bool {
+        self.unsound.contains(&stage)
     }
 
     pub fn put_on_all(&mut self, stages: impl IntoIterator<Item = usize>, found: Diagnostic) {

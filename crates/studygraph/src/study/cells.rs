@@ -56,7 +56,8 @@ fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Option<Dia
 
 /// The keys that tell rows apart where one is meant.
 fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
-    if !is_one {
+    // A condition on a column that is not there was told.
+    if !is_one || cell.conditions.iter().any(|(name, _)| schema.column(name).is_none()) {
         return None;
     }
     let is_free = |column: &&Column| cell.conditions.iter().all(|(name, _)| *name != column.name);

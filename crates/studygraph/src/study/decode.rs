@@ -199,7 +199,9 @@ impl<'a> Decoder<'a> {
                     Content::Sequence(items) => items.as_slice(),
                     _ => std::slice::from_ref(node),
                 };
-                Value::List(self.each(items, |decoder, node| decoder.value(node, item, field, name, key))?)
+                // An item stands where it is written, not where the list does.
+                let at = |item: &Node| if std::ptr::eq(item, node) { key } else { item.place };
+                Value::List(self.each(items, |decoder, node| decoder.value(node, item, field, name, at(node)))?)
             }
             Shape::Map(item) => {
                 let Content::Mapping(pairs) = &node.content else { return Err(not_a(name, node, shape)) };

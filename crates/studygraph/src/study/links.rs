@@ -3,7 +3,7 @@
 //! Must not know: when or how stages run.
 
 use std::cell::OnceCell;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::Node;
 use super::blame::{Blame, Built};
@@ -22,6 +22,8 @@ type Edge = (usize, Place);
 pub struct Draft {
     pub name: String,
     pub place: Place,
+    /// Whether no stage can have this name.
+    pub is_misnamed: bool,
     pub kind: Option<&'static Kind>,
     pub record: Option<Record>,
     pub references: Vec<Reference>,
@@ -41,6 +43,8 @@ pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
             let target = index.get(reference.stage.as_str()).copied();
             if let Some(target) = target.filter(|target| fits(&drafts[*target])) {
                 own.push((target, reference.place));
+            } else if target.is_none() && blame.is_misnamed {
+                blame.doubt(at);
             } else {
                 let found = target.and_then(|target| drafts[target].kind).map(|kind| kind.name);
                 let others = drafts.iter().filter(|other| fits(other) && other.name != draft.name);
@@ -54,8 +58,8 @@ pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
     check_circles(&names, &edges, blame);
 }
 
-/// Checks that every tolerance is meant for a column that is there, and fits it. Unless all stages are there, it may be meant
-/// for one that is not.
+/// Checks that every tolerance is meant for a column that is there, and fits it. It may be meant for a stage that is not there,
+/// unless all are.
 pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node], are_all: bool) -> Vec<Diagnostic> {
     let mut wrong = Vec::new();
     for (allowance, place) in tolerances {
@@ -72,7 +76,8 @@ pub fn check_tolerances(tolerances: &[(Allowance, Place)], nodes: &[Node], are_a
                 }
             }
         }
-        if !found && are_all {
+        let begins_so = |node: &Node| allowance.name.strip_prefix(&node.name).is_some_and(|rest| rest.starts_with('.'));
+        if !found && (are_all || nodes.iter().any(begins_so)) {
             let parts = allowance.name.split('.').count();
             let same = known.iter().map(|full| full.splitn(4 - parts, '.').last().unwrap_or(full));
             let help = suggest(&allowance.name, same.collect::<Vec<_>>());
@@ -111,12 +116,22 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
     let ports: Vec<Vec<Port>> =
         built.iter().map(|one| one.as_ref().map_or_else(|_| Vec::new(), |node| node.stage.inputs())).collect();
     let nodes = || built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?)));
+    // What a stage reads that has something wrong with it is not known.
+    let is_known: Vec<bool> = built.iter().enumerate().map(|(at, one)| one.is_ok() && !blame.is_unsound(at)).collect();
+    // Where a reference fits no stage, nothing can be read.
+    let told: BTreeSet<usize> = blame.wrong.iter().filter_map(|found| Some(found.place?.offset)).collect();
+    let is_told = |node: &Node, port: &Port| !told.is_empty() && told.contains(&place_of(&node.record, port).offset);
     let mut edges = vec![Vec::new(); built.len()];
     for (at, node) in nodes() {
         for port in &ports[at] {
             let place = place_of(&node.record, port);
+            if told.contains(&place.offset) {
+                continue;
+            }
             if let Some(target) = index.get(port.stage.as_str()) {
                 edges[at].push((*target, place));
+            } else if blame.is_misnamed {
+                blame.doubt(at);
             } else {
                 let others = names.iter().copied().filter(|name| *name != node.name);
                 let help = suggest(&port.stage, others.collect::<Vec<_>>());
@@ -133,8 +148,8 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
         Some((node, outputs[at].get_or_init(|| node.stage.outputs()).as_slice()))
     };
     for (at, node) in nodes() {
-        for port in ports[at].iter().filter(|port| port.only_for.is_empty()) {
-            let target = match source(port, &index, &ports) {
+        for port in ports[at].iter().filter(|port| port.only_for.is_empty() && !is_told(node, port)) {
+            let target = match source(port, &index, &is_known, &ports) {
                 Ok(target) => target,
                 Err(found) => {
                     blame.put(at, found.at(place_of(&node.record, port)));
@@ -151,7 +166,7 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
                 let needed = target.into_iter().flat_map(|target| &ports[target]);
                 for (needed, column) in needed.filter_map(|needed| Some((needed, asked(needed, want)?))) {
                     // What that takes in turn, since it is wanted.
-                    let from = source(needed, &index, &ports).ok().flatten().and_then(given);
+                    let from = source(needed, &index, &is_known, &ports).ok().flatten().and_then(given);
                     let Some((from, schemas)) = from else { continue };
                     for (found, _) in needed.wants.iter().flat_map(|want| missing(from, want, schemas)) {
                         let whole = format!("{}.{}.{column}", read.name, want.table);
@@ -182,18 +197,23 @@ fn no_stage(name: &str) -> Diagnostic {
 
 /// The stage whose tables a port reads: the one it names, or what that one reads through a port of its own; none where that
 /// is not known.
-fn source(port: &Port, index: &BTreeMap<&str, usize>, ports: &[Vec<Port>]) -> Result<Option<usize>, Diagnostic> {
+fn source(
+    port: &Port,
+    index: &BTreeMap<&str, usize>,
+    is_known: &[bool],
+    ports: &[Vec<Port>],
+) -> Result<Option<usize>, Diagnostic> {
     let mut port = port;
     // More steps than stages are a circle, which was told.
     for _ in 0..=ports.len() {
         let Some(&target) = index.get(port.stage.as_str()) else { return Ok(None) };
         let Some(through) = port.through else { return Ok(Some(target)) };
-        let Some(next) = ports[target].iter().find(|other| other.name == through) else {
-            let is_unknown = ports[target].is_empty();
-            let message = format!("stage {} reads nothing as {}", quote(&port.stage), quote(through));
-            return if is_unknown { Ok(None) } else { Err(Diagnostic::new(message)) };
-        };
-        port = next;
+        if !is_known[target] {
+            return Ok(None);
+        }
+        port = ports[target].iter().find(|other| other.name == through).ok_or_else(|| {
+            Diagnostic::new(format!("stage {} reads nothing as {}", quote(&port.stage), quote(through)))
+        })?;
     }
     Ok(None)
 }
@@ -228,22 +248,44 @@ fn place_of(record: &Record, port: &Port) -> Place {
 }
 
 /// Where a record says that a table is read, or a column of it: in every text that begins with `stage.table` and has the
-/// column in it, else in the first that begins so, else as [`place_of`].
+/// column in it or beside it, else in all that begin so, else as [`place_of`].
 fn places_of(record: &Record, port: &Port, table: &str, column: Option<&str>) -> Vec<Place> {
     let table = format!("{}.{table}", port.stage);
     let texts = |test: &dyn Fn(&str) -> bool| {
         find(record, &|value| matches!(value, Value::Text(text) if begins(text, &table) && test(text)))
     };
-    let with_column = column.map_or_else(Vec::new, |column| texts(&|text| has_word(text, column)));
-    if !with_column.is_empty() {
-        return with_column;
+    let with_column = column.map_or_else(Vec::new, |column| {
+        let mut places = texts(&|text| has_word(text, column));
+        beside(record, &table, column, &mut places);
+        places
+    });
+    let places = if with_column.is_empty() { texts(&|_| true) } else { with_column };
+    if places.is_empty() { vec![place_of(record, port)] } else { places }
+}
+
+/// The places where a column stands beside its table, each a text of its own in one record.
+fn beside(record: &Record, table: &str, column: &str, places: &mut Vec<Place>) {
+    let of = |test: &dyn Fn(&str) -> bool| {
+        let own = record.fields.iter().filter(|(_, entry)| inner(&entry.value).is_empty());
+        let is_it = |value: &Value| matches!(value, Value::Text(text) if test(text));
+        own.flat_map(|(_, entry)| find_in(&entry.value, entry.place, &is_it)).collect::<Vec<_>>()
+    };
+    if !of(&|text| text == table).is_empty() {
+        places.extend(of(&|text| text == column));
     }
-    let places = texts(&|_| true);
-    match (column, places.first()) {
-        (_, None) => vec![place_of(record, port)],
-        // The column stands somewhere else, as in a figure.
-        (Some(_), Some(first)) => vec![*first],
-        (None, Some(_)) => places,
+    for (_, entry) in &record.fields {
+        for record in inner(&entry.value) {
+            beside(record, table, column, places);
+        }
+    }
+}
+
+/// The records that a value holds.
+fn inner(value: &Value) -> Vec<&Record> {
+    match value {
+        Value::List(entries) => entries.iter().flat_map(|entry| inner(&entry.value)).collect(),
+        Value::Map(entries) => entries.iter().flat_map(|(_, entry)| inner(&entry.value)).collect(),
+        other => other.record().into_iter().collect(),
     }
 }
 

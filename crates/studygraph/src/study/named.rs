@@ -24,7 +24,7 @@ pub(super) fn that_stand(pairs: &[KeyValue], program: &Program) -> Vec<Node> {
     let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
     let built = |pair: &KeyValue| {
         let mut is_wrong = false;
-        let Draft { name, place, kind, record, references } = draft(pair, stages, &belong, |_| is_wrong = true);
+        let Draft { name, place, kind, record, references, .. } = draft(pair, stages, &belong, |_| is_wrong = true);
         let (kind, record) = (kind?, record?);
         // No stage is built elsewhere before all that it refers to was found.
         let is_there = |stage: &str, kinds: &[&str]| {

@@ -67,6 +67,9 @@ fn summary() -> Table {
 
 fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String> {
     let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
+    if let Some(found) = stage.wrong().first() {
+        return Err(format!("study: {found}"));
+    }
     let tables = stage.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
     let (demand, stop) = (Demand { tables }, AtomicBool::new(false));
     let context = Context {
@@ -79,7 +82,10 @@ fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String>
     };
     let summary = summary();
     let inputs = Inputs { ports: [("ste".to_owned(), vec![&summary])].into() };
-    stage.run(&context, &inputs).map_err(|failure| failure.to_string())
+    stage.run(&context, &inputs).map_err(|failure| match failure {
+        Failure::Study(wrong) => format!("line {}: {}", wrong.first.place.unwrap().line, wrong.first),
+        other => other.to_string(),
+    })
 }
 
 fn verdict(fields: Fields) -> Result<(String, Table), String> {
@@ -269,8 +275,11 @@ fn a_reason_needs_its_proof_and_its_expectation() {
 fn cells_that_cannot_be_compared_are_refused_by_name() {
     for (cell, message) in [
         ("ste.summary[design=iso].peak_to_peak", "names 3 rows where one is meant; add torque"),
-        ("ste.summary[design=is, torque=50 N m].peak_to_peak", "no row has design = is; there are ga, iso, unmodified"),
-        ("ste.summary[design=iso, torque=51 N m].peak_to_peak", "no row has torque = 51 N m; there are 25\u{202f}N·m"),
+        (
+            "ste.summary[design=is, torque=50 N m].peak_to_peak",
+            "no row has `design=is`; did you mean `iso`? there: `ga`, `iso`, `unmodified`",
+        ),
+        ("ste.summary[design=iso, torque=51 N m].peak_to_peak", "no row has `torque=51 N m`; there: `25 N m`"),
         ("ste.summary[design=ga, torque=100 N m].peak_to_peak", "column `peak_to_peak` is NaN"),
         ("ste.summary[design=iso, torque=50 N m].seconds", "differs from run to run"),
         ("ste.summary[design=iso, torque=50 N m].design", "holds texts, not numbers"),
@@ -280,8 +289,7 @@ fn cells_that_cannot_be_compared_are_refused_by_name() {
         ("other.summary[design=iso].x", "nothing came in through `other`"),
     ] {
         let error = verdict(&[("cell", text(cell)), ("value", text("1 um")), ("where", text("Table 2"))]).unwrap_err();
-        assert!(error.starts_with("`published` entry 1 (line 3, Table 2): "), "{error}");
-        assert!(error.contains(message), "{cell}: {error}");
+        assert!(error.starts_with("line 7: ") && error.contains(message), "{cell}: {error}");
     }
 }
 
@@ -359,7 +367,7 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         (("x", text("torq")), "did you mean `torque`?"),
         (("x", text("design")), "holds texts"),
         (("y", list(vec![text("peak_to_peak"), text("seconds")])), "different units"),
-        (("where", map(&[("design", "best")])), "no row has design = best"),
+        (("where", map(&[("design", "best")])), "no row has `design=best`"),
         (
             ("published", list(vec![group::<StatedMark>(&[("x", text("5 um")), ("label", text("p"))])])),
             "`5 um` is a length, but the axis shows a torque",

@@ -70,7 +70,8 @@ fn all_mistakes_that_can_be_told_by_themselves_are_told_at_once_in_the_order_of_
     let many = many.concat();
     let error = load(&VALID.replacen("    module: 3 mm\n", &format!("    module: 3 mm\n{many}"), 1)).err().unwrap();
     assert_eq!(error.each().count(), 14);
-    assert!(error.to_string().ends_with("\nt.yaml: and 4 more"), "{error}");
+    assert_eq!(error.clone().in_full().to_string().matches("unknown field").count(), 14);
+    assert!(error.to_string().ends_with("\nt.yaml: and 4 more; `gearstudy check` tells all"), "{error}");
 }
 
 /// A list that goes on without its dash, a stage that stands as deep as the fields of the one before.
