@@ -52,7 +52,10 @@ pub fn cause(text: &str, kind: &ErrorKind, place: Place) -> Option<Diagnostic> {
         ErrorKind::ExpectedBlockMappingKey
         | ErrorKind::ExpectedBlockSequenceEntry
         | ErrorKind::InvalidIndentation
-        | ErrorKind::BlockSequenceEntryNotAllowed => between_levels(line, before).map(|found| found.at(at(line))),
+        | ErrorKind::BlockSequenceEntryNotAllowed => match first_without_dash(line, before) {
+            Some((found, first)) => Some(found.at(at(first))),
+            None => between_levels(line, before).map(|found| found.at(at(line))),
+        },
         _ => None,
     }
 }
@@ -171,6 +174,25 @@ fn value_below_value<'a>(line: &Line, before: &'a [Line<'a>], place: Place) -> O
     let message =
         format!("{} is indented further than {} above it, which has its value already", quote(line.body), quote(key));
     Some(Deeper(Diagnostic::new(message).help(format!("indent it by {} spaces, as {}", above.keys_at(), quote(key)))))
+}
+
+/// The first item of a list whose second one, the line, has a dash: it stands below the name of the list, and no other list does.
+fn first_without_dash<'a>(line: &Line, before: &'a [Line<'a>]) -> Option<(Diagnostic, &'a Line<'a>)> {
+    let deep = before.iter().rev().take_while(|above| above.indent >= line.indent);
+    let (owner, items) = before.split_at(before.len() - deep.count());
+    let (owner, first) = (owner.last()?, items.first()?);
+    let is_list = line.is_item() && owner.body.ends_with(':') && items.iter().all(|item| !item.is_item());
+    if !is_list || ![line.indent, line.keys_at()].contains(&first.indent) {
+        return None;
+    }
+    let message =
+        format!("{} has no dash, and the list that begins with it goes on in line {}", quote(first.body), line.number);
+    let deeper = if items.len() > 1 && first.indent == line.indent {
+        format!(", and indent what belongs to it by {} spaces", line.keys_at())
+    } else {
+        String::new()
+    };
+    Some((Diagnostic::new(message).help(format!("write {}{deeper}", quote(&format!("- {}", first.body)))), first))
 }
 
 /// A line that belongs to no level that is open above it.

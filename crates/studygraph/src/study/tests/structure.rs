@@ -34,6 +34,16 @@ fn structure_is_told_in_the_words_of_whoever_wrote_it() {
             "19:9: `nothing: 1` has no dash, and stands in a list\n  help: write `- nothing: 1` for another item, or indent it by 10 spaces if it belongs to the item in line 18",
         ),
         (
+            "        - tip_relief: { amount: 7.81 um }\n",
+            "        tip_relief: { amount: 7.81 um }\n",
+            "18:9: `tip_relief: { amount: 7.81 um }` has no dash, and the list that begins with it goes on in line 19\n  help: write `- tip_relief: { amount: 7.81 um }`",
+        ),
+        (
+            "        - tip_relief: { amount: 7.81 um }\n",
+            "          tip_relief:\n            amount: 7.81 um\n",
+            "18:11: `tip_relief:` has no dash, and the list that begins with it goes on in line 20\n  help: write `- tip_relief:`",
+        ),
+        (
             "        - nothing\n",
             "       - nothing\n",
             "19:8: `- nothing` is indented by 7 spaces, which no line above it that it could belong to is\n  help: indent it by 6 or 8 spaces",
