@@ -13,6 +13,8 @@ pub enum Sign {
     LineAndMarker,
     Marker,
     Square,
+    /// A band upon so many others.
+    Band(usize),
     PublishedPoint,
     PublishedLine,
 }
@@ -47,6 +49,9 @@ impl Item {
             Sign::LineAndMarker => line() + &marker(),
             Sign::Marker => marker(),
             Sign::Square => format!(r#"<path class="bar" {} d="M8 1h12v12h-12z"/>"#, look.colour.fill()),
+            Sign::Band(below) => {
+                format!(r#"<path {} fill-opacity=".2" d="M8 1h12v12h-12z"/>"#, look.colour.fill()).repeat(below + 1)
+            }
             Sign::PublishedLine => format!(r#"<path class="dashes" {} d="M0 7h28"/>"#, look.published_stroke()),
             Sign::PublishedPoint => {
                 format!(r#"<path class="mark" {} d="M14 7{}"/>"#, look.colour.stroke(), look.published_marker())

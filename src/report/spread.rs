@@ -69,7 +69,7 @@ impl Plot {
         let bands = self.bands().enumerate().map(|(index, [low, high])| Item {
             label: format!("{} to {}", low.label, high.label),
             key: format!("s{index}"),
-            sign: Sign::Square,
+            sign: Sign::Band(index),
             look,
         });
         let middle = self.middle().map(|middle| Item {
@@ -148,11 +148,13 @@ mod tests {
         let line = |label: &str, y: f64| Series::new(label, vec![vec![(0.0, y), (1.0, y + 1.0)]]);
         let series = vec![line("5 %", 1.0), line("25 %", 2.0), line("50 %", 3.0), line("75 %", 4.0), line("95 %", 5.0)];
         let plot = Plot { series, ..Plot::new("t", Kind::Quantiles) };
-        let labels: Vec<String> = plot.legend().into_iter().map(|item| item.label).collect();
+        let legend = plot.legend();
+        let labels: Vec<&str> = legend.iter().map(|item| item.label.as_str()).collect();
         assert_eq!(labels, ["5 % to 95 %", "25 % to 75 %", "50 %"]);
+        assert_ne!(legend[0].swatch(), legend[1].swatch(), "as dark as they lie upon each other");
         let svg = plot.file();
         // The line is in the legend too.
-        assert_eq!((svg.matches("fill-opacity").count(), paths(&svg, r#"class="series""#).len()), (2, 2));
+        assert_eq!((svg.matches("fill-opacity").count(), paths(&svg, r#"class="series""#).len()), (2 + 3, 2));
     }
 
     #[test]
