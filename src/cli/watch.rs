@@ -18,7 +18,7 @@ use super::run::{self, How};
 use super::serve::Server;
 use super::signals::stop_flag;
 use super::{Ending, draw, events, pages, show, studies};
-use crate::program::examine;
+use crate::program::{self, examine};
 use studygraph::store::results::Folder;
 
 /// How often it is looked whether somebody asked to stop.
@@ -75,6 +75,10 @@ pub(super) fn watch(
     (as_json, quiet): (bool, bool),
 ) -> Result<(), Ending> {
     let file = studies::file(word)?;
+    // A mistake in a study can be mended while it is watched; of a file that is not there, the name is the mistake.
+    if file.is_dir() || !file.exists() {
+        program::load_changed(&file, &studies::settings(changes)).map_err(|error| Ending::Invalid(Box::new(error)))?;
+    }
     let cannot = |error: notify::Error| Ending::Usage(format!("cannot watch {}: {error}", file.display()));
     let (saves, stop, board) = (saves_of(&file).map_err(cannot)?, stop_flag(None), Arc::new(Board::default()));
     let server = Server::start(port, Arc::clone(&board)).map_err(Ending::Usage)?;
@@ -84,9 +88,10 @@ pub(super) fn watch(
     } else if !quiet {
         tell(&format!("{} is watched; its page: {} (Ctrl-C ends)\n", file.display(), server.address()));
     }
-    let mut last = String::new();
+    let mut last = None;
     loop {
-        let text = std::fs::read_to_string(&file).unwrap_or_default();
+        // A file that is gone is a change too.
+        let text = Some(std::fs::read(&file).ok());
         if last != text {
             last = text;
             renew(&file, changes, places, selection, (as_json, quiet), &stop, &board)?;

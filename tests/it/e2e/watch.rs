@@ -96,6 +96,23 @@ fn the_page_follows_what_is_saved() {
     fs::write(desk.path("other.yaml"), &quick).unwrap();
     fs::rename(desk.path("other.yaml"), desk.path("quick.yaml")).unwrap();
     assert_eq!(watching.after(3), (4, String::new()));
+
+    fs::remove_file(desk.path("quick.yaml")).unwrap();
+    let (version, message) = watching.after(4);
+    assert!(version == 5 && message.contains("there is no such file"), "{message}");
+    fs::write(desk.path("quick.yaml"), "").unwrap();
+    let (version, message) = watching.after(5);
+    assert!(version == 6 && message.contains("empty"), "{message}");
+    fs::write(desk.path("quick.yaml"), &quick).unwrap();
+    assert_eq!(watching.after(6), (7, String::new()));
+}
+
+#[test]
+fn what_is_not_there_is_not_waited_for() {
+    let desk = Desk::with("quick.yaml");
+    let said = desk.run(&["watch", "quik.yaml"], 1).1;
+    assert!(said.contains("there is no such file") && said.contains("quick.yaml"), "{said}");
+    assert!(desk.run(&["watch", "."], 2).1.contains("this is a directory"));
 }
 
 /// The same in a browser, whose page has a script of its own beside the one that follows.
