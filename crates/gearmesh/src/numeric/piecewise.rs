@@ -91,7 +91,7 @@ impl Rule {
     }
 }
 
-/// From values at the nodes of the last of so many polynomials.
+/// For each node of the last of so many polynomials, what a value there adds to the coefficients.
 fn to_coefficients<const N: usize>() -> [[f64; N]; N] {
     let last = N - 1;
     let cosine = |multiple: usize| libm::cos(PI * (multiple % (2 * last)) as f64 / last as f64);
@@ -99,15 +99,20 @@ fn to_coefficients<const N: usize>() -> [[f64; N]; N] {
     let coefficient = |order: usize, index: usize| {
         2.0 / last as f64 * half_at_ends(order) * half_at_ends(index) * cosine(order * (last - index))
     };
-    std::array::from_fn(|order| std::array::from_fn(|index| coefficient(order, index)))
+    std::array::from_fn(|index| std::array::from_fn(|order| coefficient(order, index)))
 }
 
 /// The coefficients of the polynomial through values at its nodes; those of higher order are 0.
 fn fitted<const N: usize>(to_coefficients: &[[f64; N]; N], values: impl Fn(usize) -> f64) -> [f64; TERMS] {
-    let mut coefficients = [0.0; TERMS];
-    for (coefficient, row) in coefficients.iter_mut().zip(to_coefficients) {
-        *coefficient = row.iter().enumerate().map(|(index, part)| part * values(index)).sum();
+    let mut sums = [0.0; N];
+    for (index, parts) in to_coefficients.iter().enumerate() {
+        let value = values(index);
+        for (sum, part) in sums.iter_mut().zip(parts) {
+            *sum += part * value;
+        }
     }
+    let mut coefficients = [0.0; TERMS];
+    coefficients[..N].copy_from_slice(&sums);
     coefficients
 }
 

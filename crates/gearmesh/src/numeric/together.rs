@@ -68,18 +68,43 @@ impl<const N: usize> Together<N> {
     #[must_use]
     #[inline]
     pub fn at(&self, x: f64) -> Found<N> {
-        let nothing = Found { values: [0.0; N], bound: None };
+        self.panel(x).map_or(Found::NONE, |panel| panel.at(x))
+    }
+
+    /// What they are at ascending places.
+    #[must_use]
+    #[inline]
+    pub fn at_each<const M: usize>(&self, places: &[f64; M]) -> [Found<N>; M] {
+        match self.panel(places[0]) {
+            Some(panel) if places[M - 1] <= panel.upper => places.map(|x| panel.at(x)),
+            _ => places.map(|x| self.at(x)),
+        }
+    }
+
+    #[inline]
+    fn panel(&self, x: f64) -> Option<&Panel<N>> {
         if !(x >= self.lower && x <= self.upper) {
-            return nothing;
+            return None;
         }
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // inside the range
         let bin = ((x - self.lower) * self.per_bin) as u32;
         let first = self.bins[bin.min(LAST_BIN) as usize];
-        let Some(panel) = self.panels[first..].iter().find(|panel| x <= panel.upper) else { return nothing };
-        let t = (x - panel.middle) * panel.per_half;
+        self.panels[first..].iter().find(|panel| x <= panel.upper)
+    }
+}
+
+impl<const N: usize> Found<N> {
+    /// Where there is no copy.
+    const NONE: Self = Self { values: [0.0; N], bound: None };
+}
+
+impl<const N: usize> Panel<N> {
+    #[inline]
+    fn at(&self, x: f64) -> Found<N> {
+        let t = (x - self.middle) * self.per_half;
         let (t2, t4) = (t * t, (t * t) * (t * t));
         let t8 = t4 * t4;
-        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11] = &panel.coefficients;
+        let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11] = &self.coefficients;
         let values = std::array::from_fn(|n| {
             // Estrin's order: short chains of dependent operations.
             let low = (c0[n] + c1[n] * t) + (c2[n] + c3[n] * t) * t2;
@@ -87,7 +112,7 @@ impl<const N: usize> Together<N> {
             let high = (c8[n] + c9[n] * t) + (c10[n] + c11[n] * t) * t2;
             (low + middle * t4) + high * t8
         });
-        Found { values, bound: panel.bound }
+        Found { values, bound: self.bound }
     }
 }
 
@@ -160,6 +185,9 @@ mod tests {
             assert!((values[0] - exact[0]).abs() < 2e-14 * exact[0].abs().max(1.0), "{x}");
             assert!((values[1] / exact[1] - 1.0).abs() < 3e-14, "{x}");
             assert!(least <= bound * (1.0 + 1e-14) && least > 0.3 * bound, "{x}: {least} of {bound}");
+            // Side by side, on one panel and across the next ones.
+            let places = [x, (x + 1e-3).min(3.0), (x + 0.4).min(3.0)];
+            assert_eq!(copies.at_each(&places), places.map(|x| copies.at(x)), "{x}");
             copied += 1;
         }
         assert!(copied > 29_800, "{copied}");

@@ -3,6 +3,8 @@
 //! Of flanks and teeth in series, and of what far tips add, w = p (T − β ln p + R p) is left up to a load per width. Must not
 //! know: what lies beyond.
 
+pub mod shared;
+
 use crate::numeric::lambert::larger_root;
 use crate::numeric::logarithm::Known;
 

@@ -130,9 +130,17 @@ impl Elasticity {
     /// As far as the law of a pair is known beforehand, from A to E.
     #[inline]
     pub(super) fn plain(&self, s: f64) -> PlainLaw {
-        let Self::Logarithmic { plain, .. } = self else { return PlainLaw::NONE };
-        let Found { values: [total, rest], bound } = plain.at(s);
-        bound.map_or(PlainLaw::NONE, |last| PlainLaw { total, rest, last })
+        let [plain] = self.plain_at_each(&[s]);
+        plain
+    }
+
+    /// The same at ascending places.
+    #[inline]
+    pub(super) fn plain_at_each<const M: usize>(&self, places: &[f64; M]) -> [PlainLaw; M] {
+        let Self::Logarithmic { plain, .. } = self else { return [PlainLaw::NONE; M] };
+        plain.at_each(places).map(|Found { values: [total, rest], bound }| {
+            bound.map_or(PlainLaw::NONE, |last| PlainLaw { total, rest, last })
+        })
     }
 
     /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.

@@ -279,6 +279,11 @@ impl<'a> LoadCase<'a> {
         if let Some([state]) = self.together(&[position], pairs) {
             return state;
         }
+        self.in_general(position, pairs)
+    }
+
+    /// The same whatever the pairs, their faces and their laws are.
+    pub(super) fn in_general(&self, position: f64, pairs: usize) -> Equilibrium {
         let mut nearest = None;
         let reach = self.within_reach(position, pairs, None, &mut nearest);
         let (balance, peaks) = self.balance(&reach, nearest.as_ref());

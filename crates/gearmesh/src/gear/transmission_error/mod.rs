@@ -17,6 +17,7 @@ pub mod face_map;
 mod flanks;
 pub mod load_case;
 mod path;
+mod plain_pairs;
 pub mod pressure;
 pub mod root_stress;
 pub mod sampling;

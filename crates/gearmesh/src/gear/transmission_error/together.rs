@@ -1,4 +1,5 @@
-//! Equilibria at several positions at once: of pairs that hold themselves, under the linear law, on a face of one stretch.
+//! Equilibria at several positions at once, of pairs that hold themselves: under the linear law on a face of one stretch, under
+//! one that is known at once between parallel flanks.
 //!
 //! That is what most designs are that a search or a sweep tries. Each position has what it has alone, to the last bit. Must
 //! not know: which positions are computed.
@@ -20,18 +21,22 @@ impl LoadCase<'_> {
     /// Equilibria at ascending positions with `pairs` inside the path of contact; nothing where there is more to them.
     #[inline]
     pub(super) fn together<const M: usize>(&self, positions: &[f64; M], pairs: usize) -> Option<[Equilibrium; M]> {
-        let (Regime::Pairs, Elasticity::Linear(stiffness)) = (&self.regime, &self.cycle.elasticity) else {
-            return None;
-        };
-        if !self.touches_on_line() || self.flanks.is_surface {
+        if !matches!(self.regime, Regime::Pairs) || !self.touches_on_line() || self.flanks.is_surface {
             return None;
         }
+        let Elasticity::Linear(stiffness) = &self.cycle.elasticity else { return self.of_plain_pairs(positions, pairs) };
         let alike = Alike { stiffness, piece: self.flanks.face.one_piece()? };
         match pairs {
             1 => Some(self.alike::<1, M>(&alike, positions)),
             2 => Some(self.alike::<2, M>(&alike, positions)),
             _ => None,
         }
+    }
+
+    /// At ascending places on the line of action, where there always is one.
+    #[inline]
+    pub(super) fn gaps_on_line<const M: usize>(&self, places: &[f64; M]) -> [f64; M] {
+        self.flanks.quick_gaps(places).unwrap_or_else(|| places.map(|s| self.gap(s).unwrap_or(0.0)))
     }
 
     #[inline]
@@ -42,9 +47,7 @@ impl LoadCase<'_> {
         for spring in 0..N {
             let places = positions.map(|position| self.cycle.path_position(position, spring));
             stiffness[spring] = places.map(|s| alike.stiffness.value(s));
-            // On the line of action there always is one.
-            gaps[spring] =
-                self.flanks.quick_gaps(&places).unwrap_or_else(|| places.map(|s| self.gap(s).unwrap_or(0.0)));
+            gaps[spring] = self.gaps_on_line(&places);
             for m in 0..M {
                 smallest[m] = smallest[m].min(gaps[spring][m]);
             }

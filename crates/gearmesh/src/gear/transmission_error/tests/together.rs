@@ -29,14 +29,53 @@ fn positions_at_once_have_what_each_has_alone() {
     }
 }
 
+/// Tier: second method; pairs whose law is known at once share a load as they do by the search for any of them, and several
+/// positions at once have what each has alone.
+#[test]
+fn pairs_of_logarithmic_laws_share_as_by_the_general_search() {
+    let pair = pair();
+    let designs = [Design::default(), relief(&pair, 9e-6, 0.3), relief(&pair, 25e-6, 0.6)];
+    let (mut found, mut all) = (0, 0);
+    for contact in [ContactLaw::LoadDependent, ContactLaw::Resolved] {
+        let compliance = PairCompliance { contact: Some(contact), ..varying() };
+        let cycle = cycle(&pair, &compliance);
+        for (design, force) in designs.iter().flat_map(|design| [20.0, 700.0, 9000.0].map(|force| (design, force))) {
+            let loading = LoadCase::new(&cycle, design, torque(force));
+            for zone in &cycle.zones {
+                let place = |index: u32| zone.start + (zone.end - zone.start) * f64::from(index) / 300.0;
+                for first in (0..300).step_by(2) {
+                    let positions = [first, first + 1].map(place);
+                    all += 1;
+                    let Some(both) = loading.together(&positions, zone.pairs) else { continue };
+                    found += 1;
+                    for (position, state) in positions.into_iter().zip(both) {
+                        assert_eq!(state, loading.state(position, zone.pairs), "{position} under {force}");
+                        let exact = loading.in_general(position, zone.pairs);
+                        close(state.unloaded, exact.unloaded, 1e-14);
+                        close(state.balance.approach, exact.balance.approach, 3e-14);
+                        close(state.balance.slope, exact.balance.slope, 1e-9);
+                        close(state.balance.loads.iter().sum(), force, 1e-15);
+                        for spring in 0..zone.pairs {
+                            let (one, other) = (&state.balance, &exact.balance);
+                            assert!((one.loads[spring] - other.loads[spring]).abs() < 1e-12 * force);
+                            let apart = (one.penetration[spring] - other.penetration[spring]).abs();
+                            assert!(apart < 1e-13 * other.approach, "{position} under {force}: {apart}");
+                        }
+                    }
+                }
+            }
+        }
+    }
+    assert!(100 * found > 85 * all, "{found} of {all}");
+}
+
 /// Pairs of what is not alike are not put together.
 #[test]
 fn what_has_more_to_it_is_left_to_others() {
     let pair = pair();
     let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
-    for compliance in [coupled(), logarithmic] {
+    for (compliance, design) in [(coupled(), Design::default()), (logarithmic, crowned(&pair, 8e-6))] {
         let cycle = cycle(&pair, &compliance);
-        let design = Design::default();
         assert!(LoadCase::new(&cycle, &design, 30.0).together(&[1e-3], 2).is_none());
     }
     let cycle = cycle(&pair, &varying());
