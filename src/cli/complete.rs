@@ -206,16 +206,8 @@ impl Line {
 
     /// Tables and columns that are computed only when somebody asks for them.
     fn on_demand(&self, _: &str) -> Vec<Offer> {
-        let mut all = Vec::new();
-        for node in self.study().iter().flat_map(|study| &study.nodes) {
-            for schema in node.stage.outputs() {
-                let table = format!("{}.{}", node.name, schema.name);
-                let columns = schema.columns.iter().filter(|column| column.on_demand);
-                all.extend(columns.map(|column| Offer::of(format!("{table}.{}", column.name), &column.description)));
-                all.extend(schema.on_demand.then(|| Offer::of(table, &schema.description)));
-            }
-        }
-        all
+        let nodes = self.study().map(|study| study.nodes).unwrap_or_default();
+        named::on_demand(&nodes).into_iter().map(|(name, meaning)| Offer::of(name, meaning)).collect()
     }
 
     /// Those of the results; before there are any, those that a run gives.

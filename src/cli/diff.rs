@@ -97,7 +97,7 @@ fn stale(comparison: &Comparison, places: &Places) -> Vec<Stale> {
         let problem = standing.problem().filter(|_| standing.stages.iter().any(is_stale))?;
         Some(Stale {
             study: name.clone(),
-            problem: format!("{problem}; first: gearstudy run {}", study.path.display()),
+            problem: format!("{problem}; first: gearstudy run {}", studies::shell_word(&study.path)),
         })
     };
     comparison.studies.iter().filter_map(|study| of_study(&study.name)).collect()

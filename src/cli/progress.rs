@@ -163,7 +163,7 @@ impl Watcher {
         }
         match &self.bars {
             // Above the bars; when the terminal is gone there is nobody to tell.
-            Some(bars) => drop(bars.println(plain(text))),
+            Some(bars) => drop(bars.println(between_words(&plain(text), Term::stderr().size().1.into()))),
             None => tell(&format!("{text}\n")),
         }
     }
@@ -247,6 +247,11 @@ impl Observer for Watcher {
             }
         }
     }
+}
+
+/// What is told of a stage on a terminal of so many columns: lines end between words, and what goes on stands further in.
+fn between_words(text: &str, columns: usize) -> String {
+    textwrap::fill(text, textwrap::Options::new(columns).subsequent_indent("      ").break_words(false))
 }
 
 fn style(template: &str) -> ProgressStyle {

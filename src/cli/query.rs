@@ -11,7 +11,7 @@ use super::diff::{side, study_name, working_tree};
 use super::print::{Grid, Heading};
 use super::progress::out;
 use super::show::table_value;
-use super::{Ending, json};
+use super::{Ending, json, studies};
 use crate::query::tables::Tables;
 use crate::query::{Answer, Kind, ask};
 use studygraph::history::git::Repository;
@@ -38,7 +38,8 @@ pub(super) fn query(asked: &Question, places: &Places, quiet: bool) -> Result<()
         side(word, places, &repository)?.ok_or_else(none)
     };
     let study = asked.study.as_deref().map(study_name);
-    let mut tables = Tables::new(&open, study.as_deref(), cache.as_ref());
+    let on_demand = |study: &str, name: &str| studies::only_on_demand(&studies::of_name(study)?, name);
+    let mut tables = Tables::new(&open, &on_demand, study.as_deref(), cache.as_ref());
     let Some(text) = &asked.sql else {
         match asked.format {
             Format::Pretty => out(&list(&mut tables).map_err(Ending::Usage)?),

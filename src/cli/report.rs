@@ -11,7 +11,7 @@ use super::pages::{self, Counts};
 use super::print::objects;
 use super::progress::{self, out};
 use super::show::{none_yet, tell_stale};
-use super::{Ending, json as shapes};
+use super::{Ending, json as shapes, studies};
 use crate::program::PROGRAM;
 use studygraph::runner::standing::standing_of;
 use studygraph::store::manifest::Manifest;
@@ -67,7 +67,7 @@ pub(super) fn report(
             problems.extend(said.counts.complaints().into_iter().map(|words| format!("{}: {words}", study.name)));
         }
         problems.extend(
-            stale.map(|problem| format!("{}: {problem}; first: gearstudy run {}", study.name, study.path.display())),
+            stale.map(|problem| format!("{}: {problem}; first: gearstudy run {}", study.name, studies::shell_word(&study.path))),
         );
     }
     if as_json {

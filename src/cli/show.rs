@@ -47,9 +47,9 @@ pub(super) fn new_study(file: &Path, template: &str, as_json: bool) -> Result<()
     let cannot = |error: std::io::Error| Ending::Usage(format!("cannot write {}: {error}", file.display()));
     let mut opened = OpenOptions::new().write(true).create_new(true).open(file).map_err(|error| {
         if error.kind() == ErrorKind::AlreadyExists {
-            let shown = file.display();
+            let (shown, word) = (file.display(), studies::shell_word(file));
             return Ending::Usage(format!(
-                "{shown} is there already and stays as it is; give another name, or remove it first: rm {shown}"
+                "{shown} is there already and stays as it is; give another name, or remove it first: rm {word}"
             ));
         }
         cannot(error)
@@ -60,7 +60,7 @@ pub(super) fn new_study(file: &Path, template: &str, as_json: bool) -> Result<()
         let study = load_text(&text, file).ok().map(|study| study.name);
         json::answer(&json!({ "file": shown, "study": study, "next": ["gearstudy", "run", shown] }));
     } else {
-        out(&format!("wrote {shown}; next: gearstudy run {shown}\n"));
+        out(&format!("wrote {shown}; next: gearstudy run {}\n", studies::shell_word(file)));
     }
     Ok(())
 }
@@ -108,7 +108,9 @@ pub(super) fn check(files: &[PathBuf], changes: &Changes, as_json: bool, quiet: 
         }
         match checked {
             Ok(study) if !quiet && !as_json => {
-                out(&format!("{}: `{}` is valid, {} stages\n", file.display(), study.name, study.nodes.len()));
+                let count = study.nodes.len();
+                let stages = if count == 1 { "stage" } else { "stages" };
+                out(&format!("{}: `{}` is valid, {count} {stages}\n", file.display(), study.name));
             }
             Ok(_) => {}
             Err(error) => {
@@ -201,7 +203,7 @@ pub(super) fn table(
 pub(super) fn tell_stale(study: &Study, folder: &Folder, quiet: bool) {
     let outdated = || standing(study, folder).ok()?.outdated();
     if let Some(problem) = (!quiet).then(outdated).flatten() {
-        let (name, file) = (&study.name, study.path.display());
+        let (name, file) = (&study.name, studies::shell_word(&study.path));
         told(&format!("{name}: the results are not those of the study now: {problem}; first: gearstudy run {file}"));
     }
 }
@@ -230,10 +232,18 @@ fn shown(
     };
     let found = records.iter().find(|record| record.name == name);
     let Some(record) = found else {
+        if let Some(said) = studies::only_on_demand(study, name) {
+            return Err(Ending::Usage(said));
+        }
         let known: Vec<&str> = records.iter().map(|record| record.name.as_str()).collect();
         return Err(Ending::Usage(format!("there is no table `{name}`; {}", suggest(name, known.iter().copied()))));
     };
     let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
+    let names = conditions.iter().map(|condition| condition.split('=').next().unwrap_or_default().trim());
+    let mut absent = names.chain(columns.iter().map(String::as_str)).filter(|name| table.schema().position(name).is_none());
+    if let Some(said) = absent.find_map(|column| studies::only_on_demand(study, &format!("{name}.{column}"))) {
+        return Err(Ending::Usage(said));
+    }
     print::table(&table, conditions, columns, format).map_err(Ending::Usage)
 }
 
@@ -253,6 +263,6 @@ pub(super) fn table_value(record: &TableRecord, name: &str) -> Value {
 
 /// That a study has no results.
 pub(super) fn none_yet(study: &Study, folder: &Folder) -> Ending {
-    let (path, file) = (folder.path().display(), study.path.display());
+    let (path, file) = (folder.path().display(), studies::shell_word(&study.path));
     Ending::Usage(format!("there are no results in {path}; first: gearstudy run {file}"))
 }

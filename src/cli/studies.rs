@@ -8,7 +8,7 @@ use super::Ending;
 use super::arguments::Changes;
 use crate::program;
 use declare::error::nearest;
-use studygraph::study::{Settings, Study};
+use studygraph::study::{Settings, Study, named};
 
 /// Where studies are looked for by name.
 const FOLDER: &str = "studies";
@@ -50,6 +50,25 @@ pub(super) fn file(word: &Path) -> Result<PathBuf, Ending> {
 /// The file of this name in the folder `studies`, where it is there.
 pub(super) fn called(name: &str) -> Option<PathBuf> {
     Some(Path::new(FOLDER).join(name).with_extension("yaml")).filter(|path| path.is_file())
+}
+
+/// A file as a word of a command line that a reader can paste.
+pub(super) fn shell_word(file: &Path) -> String {
+    let text = file.to_string_lossy();
+    shlex::try_quote(&text).map_or_else(|_| text.to_string(), std::borrow::Cow::into_owned)
+}
+
+/// The study of this name, from the folder `studies` or from here, where there is a sound one.
+pub(super) fn of_name(name: &str) -> Option<Study> {
+    let mut files = called(name).into_iter().chain([PathBuf::from(format!("{name}.yaml"))]);
+    files.find_map(|file| program::load(&file).ok().filter(|study| study.name == name))
+}
+
+/// That a study gives a table, or a column of one, only where somebody asks for it; nothing where that is not so.
+pub(super) fn only_on_demand(study: &Study, name: &str) -> Option<String> {
+    let is_it = named::on_demand(&study.nodes).iter().any(|(known, _)| known == name);
+    let file = shell_word(&study.path);
+    is_it.then(|| format!("`{name}` is computed on demand only: gearstudy run {file} --want {name}"))
 }
 
 /// The files of the studies that were named, or of all in the folder `studies`.

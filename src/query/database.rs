@@ -36,12 +36,15 @@ const SHOWN: usize = 40;
 /// How the type of a flag is called; SQLite has none of its own and keeps 0 and 1.
 const FLAG: &str = "BOOLEAN";
 
+/// What is to be done about a column that a table does not have; nothing where nobody has it.
+type Lacking<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
+
 /// Asks the query of tables under the names it calls them by.
 ///
 /// # Errors
 /// One sentence.
-pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)]) -> Result<Answer, String> {
-    let failed = |error| failed(&error, tables);
+pub(super) fn answer(query: &Parsed, tables: &[(&str, Table)], lacking: Lacking) -> Result<Answer, String> {
+    let failed = |error| failed(&error, tables, lacking);
     let database = filled(tables).map_err(failed)?;
     let mut statement = database.prepare(&query.text).map_err(failed)?;
     let mut columns = Vec::new();
@@ -353,7 +356,7 @@ fn order(a: Option<&Cell>, b: Option<&Cell>) -> Ordering {
 }
 
 /// What SQLite says of a query that it will not do, with the nearest column where it misses one.
-fn failed(error: &Error, tables: &[(&str, Table)]) -> String {
+fn failed(error: &Error, tables: &[(&str, Table)], lacking: Lacking) -> String {
     if error.sqlite_error_code() == Some(ErrorCode::OutOfMemory) {
         return too_large("the query");
     }
@@ -376,7 +379,8 @@ fn failed(error: &Error, tables: &[(&str, Table)]) -> String {
             }
             of_table => {
                 let name = of_table.map_or(name, |(_, column)| column);
-                format!("there is no column `{name}`; {}", suggest(name, known))
+                let to_be_had = tables.iter().find_map(|(table, _)| lacking(table, name));
+                to_be_had.unwrap_or_else(|| format!("there is no column `{name}`; {}", suggest(name, known)))
             }
         };
     }

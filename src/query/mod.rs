@@ -50,5 +50,5 @@ pub fn ask(text: &str, tables: &mut Tables<'_>) -> Result<Answer, String> {
     let query = names::parse(text)?;
     let found = query.tables.iter().map(|name| Ok((name.as_str(), tables.read(name)?)));
     let found = found.collect::<Result<Vec<_>, String>>()?;
-    database::answer(&query, &found)
+    database::answer(&query, &found, &|table, column| tables.lacking(table, column))
 }

@@ -12,9 +12,14 @@ use studygraph::table::data::Table;
 /// Opens the results of a revision or a folder; those that are meant where none is named.
 pub type Open<'a> = &'a dyn Fn(Option<&str>) -> Result<Side, String>;
 
+/// What is to be done about a table, or a column, that a study gives only where it is asked for: the study, and `stage.table` or
+/// `stage.table.column`. Nothing where that is not so.
+pub type OnDemand<'a> = &'a dyn Fn(&str, &str) -> Option<String>;
+
 /// All tables that a query can read.
 pub struct Tables<'a> {
     open: Open<'a>,
+    on_demand: OnDemand<'a>,
     /// What `stage.table` is a table of; the only study there is, where this is none.
     study: Option<&'a str>,
     /// Has tables that are not kept with the results.
@@ -31,8 +36,8 @@ struct Study {
 
 impl<'a> Tables<'a> {
     #[must_use]
-    pub fn new(open: Open<'a>, study: Option<&'a str>, cache: Option<&'a Cache>) -> Self {
-        Self { open, study, cache, sides: Vec::new() }
+    pub fn new(open: Open<'a>, on_demand: OnDemand<'a>, study: Option<&'a str>, cache: Option<&'a Cache>) -> Self {
+        Self { open, on_demand, study, cache, sides: Vec::new() }
     }
 
     /// The table of this name: `stage.table` or `study.stage.table`, behind `revision:` where another side is meant.
@@ -45,15 +50,15 @@ impl<'a> Tables<'a> {
             Some((revision, inside)) => (Some(revision), inside),
             None => (None, name),
         };
-        let (study, cache) = (self.study, self.cache);
+        let (study, cache, on_demand) = (self.study, self.cache, self.on_demand);
         let side = self.side(revision)?;
-        match table(side, study, cache, inside)? {
+        match table(side, study, cache, inside, on_demand)? {
             Ok(table) => Ok(table),
             // While a run publishes, its files and its manifest do not belong together: once more when none does.
             Err(Missed { folder, why }) => {
                 let Some(folder) = side.path().and_then(|path| Folder::at(&path.join(folder))) else { return Err(why) };
                 let _lock = folder.lock();
-                table(side, study, cache, inside)?.map_err(|missed| missed.why)
+                table(side, study, cache, inside, on_demand)?.map_err(|missed| missed.why)
             }
         }
     }
@@ -75,6 +80,14 @@ impl<'a> Tables<'a> {
         Ok(tables.collect())
     }
 
+    /// What is to be done about a column that a table of this name does not have, if its study gives it where it is asked for.
+    #[must_use]
+    pub fn lacking(&self, name: &str, column: &str) -> Option<String> {
+        let inside = name.rsplit_once(':').map_or(name, |(_, inside)| inside);
+        let (study, table) = parted(self.study, inside)?;
+        (self.on_demand)(study, &format!("{table}.{column}"))
+    }
+
     fn side(&mut self, revision: Option<&str>) -> Result<&Side, String> {
         let at = match self.sides.iter().position(|(known, _)| known.as_deref() == revision) {
             Some(at) => at,
@@ -93,7 +106,13 @@ struct Missed {
     why: String,
 }
 
-fn table(side: &Side, study: Option<&str>, cache: Option<&Cache>, name: &str) -> Result<Result<Table, Missed>, String> {
+fn table(
+    side: &Side,
+    study: Option<&str>,
+    cache: Option<&Cache>,
+    name: &str,
+    on_demand: OnDemand<'_>,
+) -> Result<Result<Table, Missed>, String> {
     let studies = studies(side)?;
     let is_short = name.matches('.').count() < 2;
     if is_short {
@@ -101,6 +120,9 @@ fn table(side: &Side, study: Option<&str>, cache: Option<&Cache>, name: &str) ->
     }
     let only = study.or(if let [only] = &studies[..] { Some(only.name.as_str()) } else { None });
     let Some((of, stage, record)) = find(&studies, only, name) else {
+        if let Some(said) = parted(only, name).and_then(|(study, table)| on_demand(study, table)) {
+            return Err(said);
+        }
         let known = known(&studies, only, name.matches('.').count());
         let help = suggest(name, known.iter().map(String::as_str));
         return Err(format!("there is no table `{name}` in {}; {help}", side.label));
@@ -136,13 +158,15 @@ fn find<'a>(
     only: Option<&str>,
     name: &str,
 ) -> Option<(&'a Study, &'a StageRecord, &'a TableRecord)> {
-    let (study, table) = match name.matches('.').count() {
-        1 => (only?, name),
-        _ => name.split_once('.')?,
-    };
+    let (study, table) = parted(only, name)?;
     let of = studies.iter().find(|candidate| candidate.name == study)?;
     let mut tables = of.manifest.stages.iter().flat_map(|stage| stage.tables.iter().map(move |record| (stage, record)));
     tables.find(|(_, record)| record.name == table).map(|(stage, record)| (of, stage, record))
+}
+
+/// The study of a name, and `stage.table`.
+fn parted<'a>(only: Option<&'a str>, name: &'a str) -> Option<(&'a str, &'a str)> {
+    if name.matches('.').count() == 1 { Some((only?, name)) } else { name.split_once('.') }
 }
 
 /// Names with as many points as the one that was asked for, where there are such.

@@ -7,8 +7,9 @@
 
 #[cfg(test)]
 mod tests;
+mod units;
 
-use evalexpr::{DefaultNumericTypes, Node, Operator, Value, build_operator_tree};
+use evalexpr::{DefaultNumericTypes, EvalexprError, Node, Operator, Value, build_operator_tree};
 
 use super::quantity::{Number, described, power, product, shown, wider};
 use declare::error::suggest;
@@ -55,8 +56,7 @@ impl Formula {
         if text.len() > LONGEST {
             return Err(format!("the formula has {} characters; at most {LONGEST} are read", text.len()));
         }
-        let root = build_operator_tree::<DefaultNumericTypes>(text)
-            .map_err(|error| format!("`{text}` cannot be read: {error}"))?;
+        let root = build_operator_tree::<DefaultNumericTypes>(text).map_err(|error| unreadable(text, &error))?;
         let is_claim = check(&root, names)?;
         Ok(Self { text: text.trim().to_owned(), root, is_claim })
     }
@@ -91,6 +91,28 @@ impl Formula {
     /// As [`Formula::evaluate`].
     pub fn with_numbers(&self, names: Names, unit: &str) -> Result<String, String> {
         with_numbers(&self.root, names, unit)
+    }
+}
+
+/// Why there is no expression, in words of formulas rather than of trees.
+fn unreadable(text: &str, error: &EvalexprError<DefaultNumericTypes>) -> String {
+    if !matches!(error, EvalexprError::AppendedToLeafNode) {
+        return format!("`{text}` cannot be read: {error}");
+    }
+    let words: Vec<&str> = text.split_whitespace().collect();
+    let begins = |word: &str, of: fn(char) -> bool| word.starts_with(of);
+    let with_unit = words.windows(2).find(|pair| {
+        let is_number = pair[0].trim_start_matches(['(', '-']).parse::<f64>().is_ok();
+        is_number && begins(pair[1], |first| first.is_alphabetic() || first == '%' || first == '°')
+    });
+    match with_unit {
+        Some(pair) => format!(
+            "`{text}` has a number with a unit, `{}`; write a name there, and what it stands for beside the formula: \
+             `with: {{ limit: {} }}`",
+            pair.join(" "),
+            pair.join(" ").trim_matches(['(', ')'])
+        ),
+        None => format!("`{text}` has two values without an operator between them"),
     }
 }
 

@@ -27,6 +27,7 @@ use figure::{Figure, figures, marks};
 use operand::Operand;
 use stated::Published;
 use stated_figure::StatedFigure;
+use studygraph::stage::DimensionOf;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;
@@ -141,6 +142,15 @@ impl Stage for Report {
         let compared = self.comparisons.iter().flat_map(Comparison::operands);
         let compared = compared.filter_map(|operand| of_operand((operand, false), None));
         entries.chain(compared).chain(self.figures.iter().flat_map(Figure::named)).collect()
+    }
+
+    fn at_odds(&self, of: DimensionOf) -> Vec<Diagnostic> {
+        let of_entries = self.entries.iter().flat_map(|entry| entry.at_odds(of));
+        let of_comparison = |comparison: &Comparison| {
+            let dimensions: Vec<_> = comparison.operands().map(|operand| operand.cell().and_then(of)).collect();
+            comparison.of_one_sort([dimensions[0], dimensions[1]]).err()
+        };
+        of_entries.chain(self.comparisons.iter().filter_map(of_comparison)).collect()
     }
 
     fn outputs(&self) -> Vec<Schema> {

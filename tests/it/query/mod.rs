@@ -91,7 +91,7 @@ impl Shop {
             None => Ok(Side::folder(self.path(), "the shop")),
             Some(revision) => Err(format!("there is no revision `{revision}`")),
         };
-        ask(query, &mut Tables::new(&open, Some("small"), None))
+        ask(query, &mut Tables::new(&open, &|_, _| None, Some("small"), None))
     }
 
     /// The rows as text, cells with a space between, NULL as a dash.

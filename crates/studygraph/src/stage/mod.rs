@@ -54,6 +54,9 @@ pub struct Curves {
     pub quantity: &'static str,
 }
 
+/// The dimension of the numbers of a cell, where its column is going to be there and holds numbers.
+pub type DimensionOf<'a> = &'a dyn Fn(&CellName) -> Option<Dimension>;
+
 /// Gives the values of a key column of (stage, table, column), where they are known before anything runs.
 pub type KeysOf<'a> = &'a dyn Fn(&str, &str, &str) -> Option<Vec<Cell>>;
 
@@ -94,6 +97,11 @@ pub trait Stage: Send + Sync {
 
     /// What it names of other stages' tables: cells, or rows.
     fn named(&self) -> Vec<Named> {
+        Vec::new()
+    }
+
+    /// What it sets against each other, of cells and quantities, that does not go together.
+    fn at_odds(&self, _of: DimensionOf) -> Vec<Diagnostic> {
         Vec::new()
     }
 

@@ -193,13 +193,23 @@ fn drafts(
         }
     };
     let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
-    let drafted =
-        pairs.iter().enumerate().map(|(index, pair)| draft(pair, stages, belong, |found| blame.put(index, found)));
-    Ok(drafted.collect())
+    let (mut drafts, mut above) = (Vec::with_capacity(pairs.len()), None);
+    for (index, pair) in pairs.iter().enumerate() {
+        let draft = draft(pair, stages, belong, above, |found| blame.put(index, found));
+        above = draft.kind.map(|kind| (pair.key.as_str(), kind)).or(above);
+        drafts.push(draft);
+    }
+    Ok(drafts)
 }
 
-/// One stage, as far as it can be read; what is wrong with it goes to `blame`.
-pub fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMut(Diagnostic)) -> Draft {
+/// One stage, as far as it can be read; what is wrong with it goes to `blame`. `above`: the nearest one above it whose kind can be.
+pub fn draft(
+    pair: &KeyValue,
+    stages: Stages,
+    belong: &str,
+    above: Option<(&str, &'static Kind)>,
+    mut blame: impl FnMut(Diagnostic),
+) -> Draft {
     let mut draft = Draft {
         name: pair.key.clone(),
         place: pair.place,
@@ -213,7 +223,7 @@ pub fn draft(pair: &KeyValue, stages: Stages, belong: &str, mut blame: impl FnMu
         blame(found);
     }
     match kind_of(pair, stages.kinds) {
-        Err(found) => blame(found),
+        Err(found) => blame(above.and_then(|above| dedented(pair, above)).unwrap_or(found)),
         Ok(kind) => {
             let mut decoder = Decoder::new(belong, stages);
             let record = decoder.record(&pair.node, kind.fields, &["kind"], &quote(&draft.name), draft.place);
@@ -239,6 +249,13 @@ fn kind_of(pair: &KeyValue, kinds: &[&'static Kind]) -> Result<&'static Kind, Di
         return Err(Diagnostic::new(format!("stage {} has no `kind`", quote(name))).at(pair.place).help(known()));
     };
     kind_named(wanted, kinds)
+}
+
+/// That what stands as a stage is a field of the one above it.
+fn dedented(pair: &KeyValue, (name, kind): (&str, &'static Kind)) -> Option<Diagnostic> {
+    let field = kind.fields.iter().find(|field| field.name == pair.key)?;
+    let message = format!("{} stands among the stages, and is a field of {} above it", quote(field.name), quote(name));
+    Some(Diagnostic::new(message).at(pair.place).help(format!("indent it as deep as the other fields of {}", quote(name))))
 }
 
 fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Diagnostic> {

@@ -5,41 +5,61 @@
 //! condition on another value is refused before anything runs. Must not know: which columns these are, or what they mean.
 
 use super::blame::{Blame, Built};
+use super::Node;
 use super::named::Keys;
 use super::words::quote;
 use crate::stage::Named;
 use crate::table::data::Cell;
 use crate::table::schema::{Column, Schema, Type};
-use crate::table::select;
+use crate::table::select::{self, CellName};
 use declare::error::Diagnostic;
-use declare::units::{described, parse_unit, same_dimension};
+use declare::units::{Dimension, described, parse_unit, same_dimension};
 
 /// Checks all cells that are named.
 pub fn check(built: &[Built], blame: &mut Blame) {
     let keys = Keys::new(built.iter().flatten());
     for (at, node) in built.iter().enumerate().filter_map(|(at, one)| Some((at, one.as_ref().ok()?))) {
         for named in node.stage.named() {
-            if let Some(found) = wrong(&keys, &named) {
+            for found in wrong(&keys, &named) {
                 blame.put(at, found.or_at(named.place));
             }
+        }
+        for found in node.stage.at_odds(&|cell| numbers(table(&keys, cell)?.1.column(&cell.column)?)) {
+            blame.put(at, found);
         }
     }
 }
 
 /// What is wrong with a cell, where its stage and table are there.
-fn wrong(keys: &Keys, named: &Named) -> Option<Diagnostic> {
+fn wrong(keys: &Keys, named: &Named) -> Vec<Diagnostic> {
     let cell = &named.cell;
-    let node = keys.stage(&cell.stage)?;
-    let schemas = node.stage.outputs();
-    let schema = schemas.iter().find(|schema| schema.name == cell.table)?;
-    unmet(keys, named, schema)
-        .or_else(|| several(keys, named, schema).filter(|_| node.stage.combines(&cell.table)))
+    let Some((node, schema)) = table(keys, cell) else { return Vec::new() };
+    let unmet = unmet(keys, named, &schema);
+    if !unmet.is_empty() {
+        return unmet;
+    }
+    several(keys, named, &schema)
+        .filter(|_| node.stage.combines(&cell.table))
         .or_else(|| incomparable(named, schema.column(&cell.column)?))
+        .into_iter()
+        .collect()
 }
 
-/// The first condition that fits no column, or that no row is going to meet.
-fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Option<Diagnostic> {
-    cell.conditions.iter().find_map(|condition| {
+/// The table of a cell and its stage.
+fn table<'a>(keys: &Keys<'a>, cell: &CellName) -> Option<(&'a Node, Schema)> {
+    let node = keys.stage(&cell.stage)?;
+    Some((node, node.stage.outputs().into_iter().find(|schema| schema.name == cell.table)?))
+}
+
+/// What a column's numbers are of, if it holds any.
+fn numbers(column: &Column) -> Option<Dimension> {
+    let holds_numbers = matches!(column.kind, Type::Float | Type::Integer);
+    holds_numbers.then(|| parse_unit(&column.unit).ok().map(|unit| unit.dimension))?
+}
+
+/// The conditions that fit no column, or that no row is going to meet.
+fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Vec<Diagnostic> {
+    let unmet = |condition: &(String, String)| {
         let (name, value) = condition;
         // That the column is missing is told of all that a stage reads.
         let column = schema.column(name)?;
@@ -51,7 +71,8 @@ fn unmet(keys: &Keys, Named { cell, .. }: &Named, schema: &Schema) -> Option<Dia
         let table = quote(&format!("{}.{}", cell.stage, cell.table));
         let message = format!("no row of {table} will have {}", quote(&format!("{name}={value}")));
         Some(Diagnostic::new(message).help(there))
-    })
+    };
+    cell.conditions.iter().filter_map(unmet).collect()
 }
 
 /// The keys that tell rows apart where one is meant.
@@ -78,11 +99,12 @@ fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> 
 /// A column without numbers, or in another unit than what it is compared with.
 fn incomparable(named: &Named, column: &Column) -> Option<Diagnostic> {
     let name = quote(&column.name);
-    if !matches!(column.kind, Type::Float | Type::Integer) {
+    let Some(own) = numbers(column) else {
         return Some(Diagnostic::new(format!("column {name} holds {}s, not numbers", column.kind.name())));
-    }
+    };
     let (dimension, text, place) = named.beside.as_ref()?;
-    let own = parse_unit(&column.unit).ok()?.dimension;
     let message = format!("column {name} is {}, and {} is {}", described(own), quote(text), described(*dimension));
-    (!same_dimension(own, *dimension)).then(|| Diagnostic::new(message).at(*place))
+    let without_unit = !column.unit.is_empty() && text.trim().parse::<f64>().is_ok();
+    let help = without_unit.then(|| format!("{} has no unit: for example `{} {}`", quote(text), text.trim(), column.unit));
+    (!same_dimension(own, *dimension)).then(|| Diagnostic { help, ..Diagnostic::new(message).at(*place) })
 }

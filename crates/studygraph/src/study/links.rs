@@ -47,7 +47,8 @@ pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
                 blame.doubt(at);
             } else {
                 let found = target.and_then(|target| drafts[target].kind).map(|kind| kind.name);
-                let others = drafts.iter().filter(|other| fits(other) && other.name != draft.name);
+                // Of those whose kind can be read.
+                let others = drafts.iter().filter(|other| other.kind.is_some() && fits(other) && other.name != draft.name);
                 let others = others.map(|other| other.name.as_str()).collect();
                 blame.put(at, does_not_fit(reference, found, others));
             }
@@ -120,7 +121,12 @@ pub fn check_ports(built: &[Built], blame: &mut Blame) {
     let is_known: Vec<bool> = built.iter().enumerate().map(|(at, one)| one.is_ok() && !blame.is_unsound(at)).collect();
     // Where a reference fits no stage, nothing can be read.
     let told: BTreeSet<usize> = blame.wrong.iter().filter_map(|found| Some(found.place?.offset)).collect();
-    let is_told = |node: &Node, port: &Port| !told.is_empty() && told.contains(&place_of(&node.record, port).offset);
+    // A record may name a stage twice, once rightly.
+    let is_told = |node: &Node, port: &Port| {
+        let are_told = |places: Vec<Place>| places.iter().any(|place| told.contains(&place.offset));
+        !told.is_empty()
+            && (told.contains(&place_of(&node.record, port).offset) || are_told(references(&node.record, port)))
+    };
     let mut edges = vec![Vec::new(); built.len()];
     for (at, node) in nodes() {
         for port in &ports[at] {
@@ -241,10 +247,14 @@ fn missing<'a>(node: &Node, want: &'a Want, outputs: &[Schema]) -> Vec<(Diagnost
 
 /// Where a record says that a port is read: a reference to the stage, a text that begins with the stage, or the record itself.
 fn place_of(record: &Record, port: &Port) -> Place {
-    let is_it = |value: &Value| matches!(value, Value::Reference(name) if *name == port.stage);
     let begins_so = |value: &Value| matches!(value, Value::Text(text) if begins(text, &port.stage));
-    let found = find(record, &is_it).first().copied();
+    let found = references(record, port).first().copied();
     found.or_else(|| find(record, &begins_so).first().copied()).unwrap_or(record.place)
+}
+
+/// Where a record refers to the stage of a port.
+fn references(record: &Record, port: &Port) -> Vec<Place> {
+    find(record, &|value| matches!(value, Value::Reference(name) if *name == port.stage))
 }
 
 /// Where a record says that a table is read, or a column of it: in every text that begins with `stage.table` and has the

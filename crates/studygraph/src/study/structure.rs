@@ -152,7 +152,8 @@ fn without_colon(line: &Line) -> Diagnostic {
         }
         _ => {
             let message = format!("{} has no `:` between a name and its value", quote(shown));
-            let (key, value) = shown.split_once(' ').unwrap_or((shown, "…"));
+            let (key, value) = shown.split_once([' ', '=']).unwrap_or((shown, "…"));
+            let value = value.trim_start_matches(['=', ' ']);
             Diagnostic::new(message).help(format!("write {}", quote(&format!("{key}: {value}"))))
         }
     }
@@ -164,6 +165,10 @@ fn value_below_value<'a>(line: &Line, before: &'a [Line<'a>], place: Place) -> O
     if let Some((key, value)) = line.pair().filter(|_| line.body.get(..column).is_some_and(|left| left.contains(": ")))
     {
         let message = format!("a second `:` stands in the value of {}", quote(key));
+        if value.ends_with('}') && !value.contains('{') {
+            let message = format!("a `{{` is missing in the value of {}", quote(key));
+            return Some(Deeper(Diagnostic::new(message).help(format!("write `{key}: {{ {value}`"))));
+        }
         return Some(Deeper(Diagnostic::new(message).help(format!("put the text in quotes: `{key}: \"{value}\"`"))));
     }
     let above = before.last()?;
@@ -193,6 +198,10 @@ fn first_without_dash<'a>(line: &Line, before: &'a [Line<'a>]) -> Option<(Diagno
         String::new()
     };
     Some((Diagnostic::new(message).help(format!("write {}{deeper}", quote(&format!("- {}", first.body)))), first))
+}
+
+fn spaces(count: usize) -> String {
+    if count == 1 { "1 space".to_owned() } else { format!("{count} spaces") }
 }
 
 /// A line that belongs to no level that is open above it.
@@ -231,9 +240,9 @@ fn between_levels(line: &Line, before: &[Line]) -> Option<Diagnostic> {
     let near = [below, above].into_iter().flatten();
     let levels: Vec<String> = near.map(|(level, _)| level.to_string()).collect();
     let message = format!(
-        "{} is indented by {} spaces, which no line above it that it could belong to is",
+        "{} is indented by {}, which no line above it that it could belong to is",
         quote(line.body),
-        line.indent
+        spaces(line.indent)
     );
     let help = format!("indent it by {} spaces", alternatives(levels.iter().map(String::as_str)).replace('`', ""));
     Some(Diagnostic::new(message).help(help))

@@ -32,7 +32,7 @@ pub fn fields(
         }
         wrong.push({
             let message = format!("unknown field {} of {label}", quote(&pair.key));
-            let help = called(&pair.key, known, foreign).unwrap_or_else(|| {
+            let help = called(&pair.key, known, foreign).or_else(|| without_space(pair, known)).unwrap_or_else(|| {
                 let help = suggest(&pair.key, known.iter().copied());
                 match elsewhere(&pair.key, foreign) {
                     Some(lead) if help.starts_with("known here") => format!("{lead}; {help}"),
@@ -43,6 +43,12 @@ pub fn fields(
         });
     }
     wrong
+}
+
+/// `{ teeth:24 }` is a key `teeth:24` to YAML.
+fn without_space(pair: &KeyValue, known: &[&str]) -> Option<String> {
+    let (name, value) = pair.key.split_once(':').filter(|(name, _)| known.contains(name) && pair.node.is_null())?;
+    Some(format!("a space is missing behind the `:`; write {}", quote(&format!("{name}: {value}"))))
 }
 
 /// What a word of others is called here, where a field of that name is known; or why there is no such field anywhere.

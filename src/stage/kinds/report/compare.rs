@@ -8,9 +8,9 @@ use crate::stage::Inputs;
 use crate::stage::quantity::{Number, described, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;
-use declare::error::Diagnostic;
+use declare::error::{Diagnostic, Place};
 use declare::record::Record;
-use declare::units::{RATIO, in_unit, parse_quantity};
+use declare::units::{Dimension, RATIO, in_unit, parse_quantity};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
@@ -40,7 +40,8 @@ pub struct Compared {
 enum Tolerance {
     None,
     Share(f64),
-    Quantity(Number),
+    /// With where it stands.
+    Quantity(Number, Place),
 }
 
 pub struct Comparison {
@@ -115,6 +116,25 @@ impl Comparison {
         self.operands.iter().map(|(_, operand)| operand)
     }
 
+    /// Whether both are of one sort, and the tolerance too, as far as that is known.
+    ///
+    /// # Errors
+    /// At what is compared with, or the tolerance.
+    pub fn of_one_sort(&self, [own, other]: [Option<Dimension>; 2]) -> Result<(), Diagnostic> {
+        let Some(own) = own else { return Ok(()) };
+        let sort = described(own);
+        if let Some(other) = other.filter(|other| !same_dimension(own, *other)) {
+            return Err(self.operands[1].1.refused(format!("{sort} is compared with {}", described(other))));
+        }
+        match &self.tolerance {
+            Tolerance::Quantity(number, place) if !same_dimension(own, number.dimension) => {
+                let message = format!("{sort} is compared, and the tolerance is {}", described(number.dimension));
+                Err(Diagnostic::new(message).at(*place))
+            }
+            _ => Ok(()),
+        }
+    }
+
     /// Compares.
     ///
     /// # Errors
@@ -127,16 +147,7 @@ impl Comparison {
             let difference = (value - reference).abs();
             if reference == 0.0 { difference } else { difference / reference.abs() }
         };
-        let first = rows.number(0, 0);
-        for number in [rows.number(1, 0)].into_iter().chain(match &self.tolerance {
-            Tolerance::Quantity(number) => Some(*number),
-            _ => None,
-        }) {
-            if !same_dimension(first.dimension, number.dimension) {
-                let (one, other) = (described(first.dimension), described(number.dimension));
-                return Err(self.operands[1].1.refused(format!("{one} is compared with {other}")));
-            }
-        }
+        self.of_one_sort([0, 1].map(|index| Some(rows.number(index, 0).dimension)))?;
         // By relative distance, unless a reference is 0 somewhere: then all by their absolute one.
         let has_zero = (0..rows.count).any(|row| rows.number(1, row).si == 0.0);
         let absolute = |row: usize| (rows.number(0, row).si - rows.number(1, row).si).abs();
@@ -147,7 +158,7 @@ impl Comparison {
         let tolerance = match self.tolerance {
             Tolerance::None => f64::NAN,
             Tolerance::Share(share) => share * reference.abs(),
-            Tolerance::Quantity(number) => in_unit(number),
+            Tolerance::Quantity(number, _) => in_unit(number),
         };
         Ok(Compare {
             of: self,
@@ -172,7 +183,7 @@ fn read_tolerance(Placed { value, place }: &Placed<String>) -> Result<Tolerance,
     if quantity.has_unit && quantity.dimension == RATIO {
         return Ok(Tolerance::Share(quantity.value));
     }
-    Ok(Tolerance::Quantity(Number { si: quantity.value, dimension: quantity.dimension }))
+    Ok(Tolerance::Quantity(Number { si: quantity.value, dimension: quantity.dimension }, *place))
 }
 
 /// Values in the unit of the compared cells.

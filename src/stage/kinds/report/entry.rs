@@ -2,6 +2,8 @@
 //!
 //! Must not know: figures, other entries.
 
+mod units;
+
 use super::operand::{Operand, in_si};
 use super::rows::OperandRows;
 use super::stated::{Expected, Published, StatedProof, Target, read_target};

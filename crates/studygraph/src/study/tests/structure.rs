@@ -22,6 +22,16 @@ fn structure_is_told_in_the_words_of_whoever_wrote_it() {
             "kind geometry",
             "7:5: `kind geometry` has no `:` between a name and its value\n  help: write `kind: geometry`",
         ),
+        (
+            "kind: geometry",
+            "kind = geometry",
+            "7:5: `kind = geometry` has no `:` between a name and its value\n  help: write `kind: geometry`",
+        ),
+        (
+            "    module: 3 mm\n",
+            " module: 3 mm\n",
+            "8:2: `module: 3 mm` is indented by 1 space, which no line above it that it could belong to is\n  help: indent it by 0 or 2 spaces",
+        ),
         ("module: 3 mm", "module:3 mm", &format!("8:5: {SPACE}")),
         (
             "face_width: 20 mm }",
@@ -82,6 +92,26 @@ fn all_mistakes_that_can_be_told_by_themselves_are_told_at_once_in_the_order_of_
     assert_eq!(error.each().count(), 14);
     assert_eq!(error.clone().in_full().to_string().matches("unknown field").count(), 14);
     assert!(error.to_string().ends_with("\nt.yaml: and 4 more; `gearstudy check` tells all"), "{error}");
+}
+
+/// What stands as deep as the stages and is a field of the one above it; what has no space or brace, so that it is a name.
+#[test]
+fn a_field_that_is_no_field_where_it_stands_is_told_as_what_it_was_meant_for() {
+    let is_said = |text: &str, said: &str| assert!(refused(text).contains(said), "{}", refused(text));
+    let dedented = "study: t\nstages:\n  one:\n    kind: geometry\n  pinion: { teeth: 19 }\n  bolts: 6\n";
+    for (line, field) in [(5, "pinion"), (6, "bolts")] {
+        is_said(
+            dedented,
+            &format!(
+                "t.yaml:{line}:3: `{field}` stands among the stages, and is a field of `one` above it\n  help: indent it as deep as \
+                 the other fields of `one`"
+            ),
+        );
+    }
+    let space = "unknown field `teeth:19` of `pinion`\n  help: a space is missing behind the `:`; write `teeth: 19`";
+    is_said(&changed("teeth: 19, face_width: 20 mm", "teeth:19, face_width: 20 mm"), space);
+    let brace = "a `{` is missing in the value of `pinion`\n  help: write `pinion: { teeth: 19, face_width: 20 mm }`";
+    is_said(&changed("{ teeth: 19, face_width: 20 mm }", "teeth: 19, face_width: 20 mm }"), brace);
 }
 
 /// A list that goes on without its dash, a stage that stands as deep as the fields of the one before.

@@ -1,0 +1,66 @@
+//! Whether what an entry sets against each other are quantities of one sort, before any of them is computed.
+//!
+//! Must not know: values.
+
+use super::{GIVEN, Operands, Proof, ReportEntry, Subject};
+use crate::stage::formula::Formula;
+use crate::stage::kinds::report::operand::Source;
+use declare::error::{Diagnostic, Place};
+use declare::units::{Dimension, described, same_dimension};
+use studygraph::stage::DimensionOf;
+
+/// What helps where a bare number stands beside a quantity.
+const NAME_IT: &str = "a number in a formula has no unit; write `limit` there, and beside it `with: { limit: 3 um }`";
+
+impl ReportEntry {
+    /// What does not go together in its formulas; `of` has the dimension of a cell.
+    pub fn at_odds(&self, of: DimensionOf) -> Vec<Diagnostic> {
+        let published = self.published.as_ref().map(|target| target.stated.dimension);
+        let mut found = Vec::new();
+        if let Subject::Formula(formula, with) | Subject::Claim(formula, with) = &self.subject {
+            match dimension(formula, with, None, self.place, of) {
+                Err(wrong) => found.push(wrong),
+                Ok(Some(own)) => {
+                    if let Some(target) = &self.published
+                        && !same_dimension(own, target.stated.dimension)
+                    {
+                        let (computed, stated) = (described(own), described(target.stated.dimension));
+                        let text = &target.stated.text;
+                        let message = format!("what is computed is {computed}, but the published `{text}` is {stated}");
+                        found.push(Diagnostic::new(message).at(target.place));
+                    }
+                }
+                Ok(None) => {}
+            }
+        }
+        if let Some(Proof { claim, place, with }) = &self.proof
+            && let Err(wrong) = dimension(claim, with, published, *place, of)
+        {
+            found.push(Diagnostic { message: format!("proof: {}", wrong.message), ..wrong });
+        }
+        found
+    }
+}
+
+/// Of a formula with these names; the value that is published and the one that is computed are of one sort.
+fn dimension(
+    formula: &Formula,
+    with: &Operands,
+    published: Option<Dimension>,
+    place: Place,
+    of: DimensionOf,
+) -> Result<Option<Dimension>, Diagnostic> {
+    let of_name = |name: &str| {
+        let Some((_, operand)) = with.iter().find(|(known, _)| known == name) else {
+            return published.filter(|_| GIVEN.contains(&name));
+        };
+        match &operand.source {
+            Source::Cells(cell) => of(cell),
+            Source::Quantities { numbers, .. } => numbers.first().map(|number| number.dimension),
+        }
+    };
+    formula.dimension(&of_name).map_err(|message| {
+        let wrong = Diagnostic::new(message).at(place);
+        if formula.has_numbers() { wrong.help(NAME_IT) } else { wrong }
+    })
+}
