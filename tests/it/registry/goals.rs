@@ -200,3 +200,59 @@ fn what_cannot_be_and_what_need_not_be_is_said() {
     );
     assert!(!says("base", "simpler"), "{:?}", warned["base"].warnings);
 }
+
+/// Tier: second method; what is told of long relief is what `ste` says of a design with it. At each torque by itself, tilted too.
+#[test]
+fn a_curve_tells_of_a_simpler_design_that_is_as_good() {
+    let stages = |amount: &str| {
+        format!(
+            "
+  designs:
+    kind: modification
+    pair: pair
+    designs:
+      none: []
+      long: [tip_relief: {{ gear: both, amount: {amount} um, fraction: 1, curve: linear }}]
+      parts: [tip_relief: {{ gear: both, amount: 12 um, length: 4 mm, curve: parabolic }}, end_relief: {{ gear: pinion, amount: 1 um, length: 3 mm }}]
+  within: &ste {{ kind: ste, stiffness: k, designs: designs, torque: [150 N m], helix_slope: [0 um, 5 um], simpler_within: 20 % }}
+  not_asked: {{ kind: ste, stiffness: k, designs: designs, torque: [150 N m], helix_slope: [0 um, 5 um] }}
+  search:
+    <<: *base
+    name: search
+    at: {{ torque: 150 N m, helix_slope: [0 um, 20 um] }}
+    design:
+      - tip_relief: {{ gear: both, amount: [0 um, 30 um], length: [0.5 mm, 6 mm], curve: linear }}
+      - lead_crowning: {{ gear: pinion, amount: [0 um, 12 um] }}
+  as_searched: {{ kind: ste, stiffness: k, designs: search, torque: [150 N m], helix_slope: [0 um, 20 um], simpler_within: 0.1 % }}
+"
+        )
+    };
+    let of_parts =
+        |ran: &BTreeMap<String, Ran>, design: &str| worst(table(ran, "within", "summary"), design, "peak_to_peak");
+    let first = ran(&stages("1"));
+    let said: Vec<&String> = first["within"].warnings.iter().filter(|said| said.contains("simpler")).collect();
+    println!("{said:?}");
+    assert!(
+        said.len() == 1 && said[0].starts_with("design `parts` at 150 N m: a simpler design is as good"),
+        "{said:?}"
+    );
+    let between = |text: &str, from: &str, to: &str| {
+        let after = text.split_once(from).unwrap().1;
+        after.split_once(to).unwrap().0.to_owned()
+    };
+    let amount = between(said[0], "gear: both, amount: ", " um");
+    let [is, share] =
+        ["is larger by ", "is smaller by "].map(|is| said[0].contains(is).then(|| between(said[0], is, " %")));
+    let share = is.map_or_else(|| -share.unwrap().parse::<f64>().unwrap(), |larger| larger.parse().unwrap());
+    let second = ran(&stages(&amount));
+    let found = 100.0 * (of_parts(&second, "long") / of_parts(&second, "parts") - 1.0);
+    assert!((found - share).abs() < 0.02 * share.abs() + 0.05 && found < 20.0, "{found} {share}");
+    // Nothing is said where nobody asks, and where a search finds what long relief does not reach.
+    for stage in ["not_asked", "search", "as_searched"] {
+        assert!(
+            first[stage].warnings.iter().all(|said| !said.contains("simpler")),
+            "{stage}: {:?}",
+            first[stage].warnings
+        );
+    }
+}
