@@ -280,4 +280,70 @@ mod tests {
         let area: f64 = rectangles.iter().map(|r| (r[2] - r[0]) * (r[3] - r[1])).sum();
         assert!((area / (frame.width * frame.height) - 5.0 / 6.0).abs() < 1e-3, "{area}");
     }
+
+    /// The numbers of a path with absolute commands, by its class.
+    fn numbers(svg: &str, class: &str) -> Vec<f64> {
+        let path =
+            svg.split(&format!(r#"class="{class}" d=""#)).nth(1).map_or("", |rest| rest.split('"').next().unwrap());
+        path.split(|c: char| c.is_ascii_alphabetic() || c == ' ').filter_map(|number| number.parse().ok()).collect()
+    }
+
+    /// Around the middle of the cell half way to its neighbours; a cell without a value is never the best.
+    #[test]
+    fn the_best_cell_is_framed() {
+        let points =
+            [(0.0, 0.0, 4.0), (1.0, 0.0, 3.0), (2.0, 0.0, f64::NAN), (0.0, 1.0, 7.0), (1.0, 1.0, 9.0), (2.0, 1.0, 8.0)];
+        let drawn = |best: Best| {
+            let cells = Cells::new(&points, "Error".to_owned(), "um".to_owned()).unwrap();
+            Plot { cells: Some(Cells { best, ..cells }), ..Plot::new("t", Kind::Map) }
+        };
+        let frame = drawn(Best::None).frame(8.0, crate::report::frame::Layout::PAGE).unwrap();
+        for (best, [column, row], title) in
+            [(Best::Smallest, [1.0, 0.0], "3\u{202f}µm"), (Best::Largest, [1.0, 1.0], "9\u{202f}µm")]
+        {
+            let svg = drawn(best).inline();
+            let [left, low, right, high, back] = numbers(&svg, "best")[..] else { panic!("{svg}") };
+            let sides = [left, right, low, high].into_iter();
+            let meant = [frame.x(column - 0.5), frame.x(column + 0.5), frame.y(row - 0.5), frame.y(row + 0.5)];
+            assert!(sides.zip(meant).all(|(drawn, meant)| (drawn - meant).abs() < 0.1), "{best:?}: {meant:?} {svg}");
+            assert!(back == left && svg.contains(&format!("<title>{title}</title>")), "{svg}");
+        }
+        assert!(!drawn(Best::None).inline().contains(r#"class="best""#));
+        // What has no value is crossed out, corner to corner, once.
+        let crossed = numbers(&drawn(Best::None).inline(), "missing");
+        let [left, right, low, high] = [frame.x(1.5), frame.x(2.5), frame.y(-0.5), frame.y(0.5)];
+        let meant = [left, low, right, high, left, high, right, low];
+        assert!(
+            crossed.len() == 8 && crossed.iter().zip(meant).all(|(a, b)| (a - b).abs() < 0.1),
+            "{crossed:?} {meant:?}"
+        );
+    }
+
+    /// Of the plane x + 2 y the lines are straight, and each stands with its value at a tick of the scale of colours.
+    #[test]
+    fn isolines_are_where_the_plane_has_their_value() {
+        let points: Vec<(f64, f64, f64)> = (0..5)
+            .flat_map(|x| (0..4).map(move |y| (f64::from(x), f64::from(y), 1.0 + f64::from(x) + 2.0 * f64::from(y))))
+            .collect();
+        let cells = Cells::new(&points, String::new(), String::new()).unwrap();
+        let ticks = cells.scale().unwrap().ticks(crate::report::frame::Layout::PAGE.ticks[1]);
+        let plain = Plot { cells: Some(cells.clone()), ..Plot::new("t", Kind::Map) };
+        let plot = Plot { cells: Some(Cells { isolines: true, ..cells }), ..Plot::new("t", Kind::Map) };
+        assert!(!plain.inline().contains("isoline"));
+        let (svg, frame) = (plot.inline(), plot.frame(8.0, crate::report::frame::Layout::PAGE).unwrap());
+        let (unit_x, unit_y) = (frame.x(1.0) - frame.x(0.0), frame.y(1.0) - frame.y(0.0));
+        let mut lines = 0;
+        for one in svg.split(r#"<path class="isoline""#).skip(1) {
+            let value: f64 = one.split("</text>").next().unwrap().rsplit('>').next().unwrap().parse().unwrap();
+            let places = numbers(&format!(r#"class="isoline"{one}"#), "isoline");
+            for place in places.chunks(2) {
+                let at = 1.0 + (place[0] - frame.x(0.0)) / unit_x + 2.0 * (place[1] - frame.y(0.0)) / unit_y;
+                assert!((at - value).abs() < 0.02, "{value}: {at}");
+            }
+            lines += 1;
+        }
+        // One for each tick between the corners, 1 and 11.
+        assert_eq!(lines, ticks.iter().filter(|tick| tick.value > 1.0 && tick.value < 11.0).count());
+        assert!(lines >= 3);
+    }
 }

@@ -122,7 +122,9 @@ impl Plot {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::cells::Cells;
     use crate::report::frame::Layout;
+    use crate::report::plot::Named;
 
     fn drawing(points: &[(&str, (f64, f64))]) -> Plot {
         let frame = Series::new("", vec![vec![(0.0, 0.0), (100.0, 0.0), (100.0, 40.0)]]);
@@ -160,5 +162,26 @@ mod tests {
             let svg = plot.inline();
             assert!(points.iter().all(|(name, _)| svg.contains(&format!(">{name}</text>"))), "{svg}");
         }
+    }
+
+    /// A name stands at its place, inside of the frame; one whose place is no number is left out.
+    #[test]
+    fn designs_are_named_where_they_lie_on_a_map() {
+        let grid: Vec<(f64, f64, f64)> =
+            (0..9).map(|at| (f64::from(at % 3), f64::from(at / 3), f64::from(at))).collect();
+        let named = |name: &str, place| Named { name: name.to_owned(), place };
+        let found = [named("found <1>", (0.5, 1.0)), named("right", (2.4, 2.4)), named("none", (f64::NAN, 1.0))];
+        let cells = Cells::new(&grid, String::new(), String::new());
+        let plot = Plot { cells, named: found.to_vec(), ..Plot::new("t", Kind::Map) };
+        let (svg, frame) = (plot.inline(), plot.frame(8.0, Layout::PAGE).unwrap());
+        for (name, place, anchor) in [("found &lt;1&gt;", (0.5, 1.0), "start"), ("right", (2.4, 2.4), "end")] {
+            let [x, y] = [at(frame.x(place.0)), at(frame.y(place.1))];
+            assert!(
+                svg.contains(&format!(r#"d="M{x} {y}{MARKER}"/><text class="point" x="{x}" y="{y}""#)),
+                "{name}: {svg}"
+            );
+            assert!(svg.contains(&format!(r#"text-anchor="{anchor}">{name}</text>"#)), "{name}: {svg}");
+        }
+        assert!(!svg.contains(">none<"));
     }
 }

@@ -18,6 +18,7 @@ pub mod pair;
 pub mod quantity;
 pub mod root_influences;
 pub mod rows;
+pub mod simpler;
 
 pub use studygraph::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Named, Omission, Others, Parts, Port, RowCount,

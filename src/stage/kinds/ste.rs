@@ -6,9 +6,10 @@ mod ahead;
 mod nominal;
 mod pressures;
 mod samples;
+mod simpler;
 mod tables;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 use std::time::Instant;
 
@@ -24,7 +25,7 @@ use crate::stage::doubts::Doubted;
 use crate::stage::names::{self, summary};
 use crate::stage::{
     Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Omission, Port, Saved, Stage, common, designs,
-    root_influences,
+    root_influences, simpler as long_relief,
 };
 use declare::Declared;
 use declare::declared::{Declared, Placed};
@@ -84,6 +85,9 @@ struct Ste {
     pub slices: Slices,
     #[declared(flatten)]
     pub contact: Contact,
+    /// By how much of a design's peak-to-peak that of long relief may be larger, to be told as a simpler one that is as good.
+    #[declared(minimum = 0.0, maximum = 0.5, dimension = RATIO, example = "5 %")]
+    pub simpler_within: Option<f64>,
     /// How many harmonics of the mesh frequency.
     #[declared(minimum = 0, maximum = 200, default = "8")]
     pub harmonics: usize,
@@ -332,7 +336,7 @@ impl Stage for Ste {
         let (pair, base) = common::mesh_cycle(inputs, self.settings())?;
         let stated = &self.deviations.stated()[..];
         let combinations = self.deviations.combinations();
-        let mut designs: Vec<Named> = Vec::new();
+        let (mut designs, mut simple): (Vec<Named>, BTreeSet<String>) = Default::default();
         let mut givers: BTreeMap<String, &str> = BTreeMap::new();
         for (index, Placed { value: giver, .. }) in (1..).zip(&self.designs) {
             let port = format!("designs_{index}");
@@ -344,6 +348,9 @@ impl Stage for Ste {
                     )));
                 }
                 let drawn = named.built(&pair)?;
+                if long_relief::is_simple(&named.elements) {
+                    simple.insert(named.name.clone());
+                }
                 for deviation in &combinations {
                     let off = deviation.on(&drawn, &pair);
                     let off =
@@ -388,6 +395,7 @@ impl Stage for Ste {
         let (answers, parts): (Vec<_>, Vec<_>) = parts.into_iter().unzip();
         let keyed: Vec<Keyed> = answers.into_iter().flatten().collect();
         self.warn(context, &keyed, pair.pinion.specification.module);
+        self.tell_if_simpler_does(context, (&pair, &base), (&keyed, &simple))?;
         pressures::warn(context, &base, &keyed);
         let none = || Table::from_rows(of_curve, Vec::new());
         let curves = Table::concatenated(parts).and_then(|curves| curves.map_or_else(none, Ok));

@@ -125,6 +125,33 @@ mod tests {
         is(Slope::Helix, &pinion, 1, 1.5);
     }
 
+    /// Tier: second method; what somebody else's implementation answers, written from DIN ISO 1328-1:2018, which is the edition of 2013:
+    /// `flank_tolerances` of `20_code/40_backend/app/services/geometry/tolerances.py` in github.com/tkuhn39/semesterthesis, at
+    /// 0279232acae01b5ea7cd232a6d174d791bb5e2cd. Its own tests print the first gear in class 5.
+    #[test]
+    fn tolerances_are_those_of_another_implementation() {
+        // Teeth, module and face width in mm; f_Hα and f_Hβ in µm. None is half way between two steps before it is rounded: there
+        // it takes powers of √2 that are exact, and that one has others.
+        let rows = [
+            ([50.0, 2.0, 20.0], [1.2, 3.5, 4.9, 7.0, 14.0, 39.0], [1.5, 4.3, 6.0, 8.5, 17.0, 49.0]),
+            ([19.0, 3.0, 20.0], [1.3, 3.7, 5.5, 7.5, 15.0, 42.0], [1.5, 4.2, 6.0, 8.5, 17.0, 48.0]),
+            ([48.0, 3.0, 18.0], [1.3, 3.8, 5.5, 7.5, 15.0, 43.0], [1.5, 4.3, 6.0, 8.5, 17.0, 49.0]),
+            ([25.0, 0.5, 4.0], [1.1, 3.0, 4.2, 6.0, 12.0, 34.0], [1.2, 3.4, 4.9, 7.0, 14.0, 39.0]),
+            ([31.0, 1.25, 12.5], [1.1, 3.2, 4.5, 6.5, 13.0, 36.0], [1.4, 3.9, 5.5, 8.0, 16.0, 44.0]),
+            ([120.0, 8.0, 160.0], [2.0, 6.0, 8.0, 12.0, 23.0, 65.0], [2.5, 7.0, 10.0, 14.0, 28.0, 80.0]),
+            ([1000.0, 10.0, 300.0], [4.5, 13.0, 18.0, 25.0, 51.0, 144.0], [3.8, 11.0, 15.0, 21.0, 43.0, 120.0]),
+            ([200.0, 65.0, 1200.0], [11.0, 30.0, 43.0, 61.0, 122.0, 344.0], [5.5, 15.0, 22.0, 31.0, 62.0, 175.0]),
+        ];
+        for ([teeth, module, width], profile, helix) in rows {
+            #[allow(clippy::cast_possible_truncation)]
+            let gear = gear(teeth as i64, 1e-3 * module, 1e-3 * width);
+            for (place, class) in [1, 4, 5, 6, 8, 11].into_iter().enumerate() {
+                is(Slope::Profile, &gear, class, profile[place]);
+                is(Slope::Helix, &gear, class, helix[place]);
+            }
+        }
+    }
+
     /// Tier: invariant; two classes double a tolerance, but for rounding.
     #[test]
     fn two_classes_double_a_tolerance() {

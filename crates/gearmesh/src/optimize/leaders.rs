@@ -17,6 +17,8 @@ pub struct Leader {
     pub value: f64,
     /// The sum of what is broken of the constraints.
     pub violation: f64,
+    /// What is left of each.
+    pub constraints: Vec<f64>,
 }
 
 /// The best points, each of a place of its own, the best first.
@@ -39,7 +41,12 @@ impl Leaders {
         if !evaluation.admissible() {
             return;
         }
-        let found = Leader { point: point.to_vec(), value: evaluation.value, violation: evaluation.violation() };
+        let found = Leader {
+            point: point.to_vec(),
+            value: evaluation.value,
+            violation: evaluation.violation(),
+            constraints: evaluation.constraints.clone(),
+        };
         let rank = |leader: &Leader| (leader.violation, leader.value);
         let is_near = |leader: &Leader| {
             let pairs = leader.point.iter().zip(point).zip(self.bounds.pairs());

@@ -9,7 +9,7 @@ mod closer;
 
 use rayon::prelude::*;
 
-use self::closer::{ASKED, BETWEEN};
+use self::closer::{ASKED, BETWEEN, Starts};
 use super::goal::Worth;
 use super::sampling::{coarser, finer};
 use super::{EVALUATIONS, Optimizer};
@@ -27,8 +27,8 @@ use gearmesh::optimize::settled::Settled;
 
 /// Searches at most, each with a finer sampling, until the objective is as accurate as wanted.
 const ROUNDS: usize = 4;
-/// Passes at most: the coarse search, the look at its best, and what follows; or searches alone.
-pub const MOST: usize = 2 + CLOSER + ROUNDS;
+/// Passes at most: the coarse search, the look at its best, and what follows, once from two places; or searches alone.
+pub const MOST: usize = 3 + CLOSER + ROUNDS;
 /// Samplings between the coarse one and the asked one, at most.
 const CLOSER: usize = 1;
 /// Places that are looked at as asked for, at most, and at once.
@@ -64,11 +64,27 @@ pub struct Found {
     pub passes: Vec<Pass>,
 }
 
-/// What is known of a constraint.
-#[derive(Clone, Copy)]
+/// What is known of the constraints, from looks of one accuracy.
+#[derive(Clone)]
 struct Seen {
-    /// The largest reserve that any design left.
-    most: f64,
+    /// The largest reserve that any design left, of each.
+    most: Vec<f64>,
+    /// The least that any design broke of all together.
+    broken: f64,
+}
+
+impl Seen {
+    fn none(limits: usize) -> Self {
+        Self { most: vec![f64::NEG_INFINITY; limits], broken: f64::INFINITY }
+    }
+
+    fn take(&mut self, evaluation: &Evaluation) {
+        for (most, reserve) in self.most.iter_mut().zip(&evaluation.constraints) {
+            *most = most.max(*reserve);
+        }
+        let is_known = evaluation.constraints.iter().all(|reserve| reserve.is_finite());
+        self.broken = if is_known { self.broken.min(evaluation.violation()) } else { self.broken };
+    }
 }
 
 /// A search under way.
@@ -83,7 +99,9 @@ pub struct Run<'a> {
     evaluations: usize,
     tried: Vec<(Vec<f64>, f64)>,
     leaders: Leaders,
-    limits: Vec<Seen>,
+    seen: Seen,
+    /// By how much each constraint was kept at least, whatever coarse looks were off by; nothing where there were none.
+    shown: Vec<f64>,
     /// The smallest and the largest value of each objective.
     extent: Vec<(f64, f64)>,
     passes: Vec<Pass>,
@@ -91,7 +109,7 @@ pub struct Run<'a> {
 
 /// What comes on top of what a method foresees, where a search is staged.
 pub fn on_top(foreseen: Foreseen, dimension: usize) -> Foreseen {
-    let more = PLACES + CLOSER + CLOSER * BETWEEN.evaluations(dimension) + ROUNDS * ASKED.evaluations(dimension);
+    let more = PLACES + CLOSER + CLOSER * BETWEEN.evaluations(dimension) + (1 + ROUNDS) * ASKED.evaluations(dimension);
     Foreseen {
         evaluations: foreseen.evaluations.saturating_add(more),
         batches: foreseen.batches.saturating_add(more),
@@ -117,7 +135,8 @@ impl<'a> Run<'a> {
             evaluations: 0,
             tried: Vec::new(),
             leaders: Leaders::new(bounds, PLACES),
-            limits: vec![Seen { most: f64::NEG_INFINITY }; optimizer.goal.limits.len()],
+            seen: Seen::none(optimizer.goal.limits.len()),
+            shown: Vec::new(),
             extent: vec![(f64::INFINITY, f64::NEG_INFINITY); optimizer.goal.objectives().len()],
             passes: Vec::new(),
         })
@@ -192,16 +211,16 @@ impl<'a> Run<'a> {
         }
         let mut from = self.confirm(asked)?;
         for closer in &coarse[1..] {
-            let candidate = self.refine(&from, *closer, BETWEEN, rule)?;
-            from = self.better(from, candidate, asked)?;
+            let candidate = self.refine(&from.best, *closer, BETWEEN, rule)?;
+            from = self.compared(from, candidate, asked)?;
         }
         let mut settings = asked;
         let mut round = 1;
         loop {
-            let best = self.refine(&from, settings, ASKED, rule)?;
+            let best = self.refine_all(&from, settings, rule)?;
             let error = self.optimizer.error(self.base, self.pair, &best.point, settings);
             match self.next_settings(&best.point, settings, error).filter(|_| round < ROUNDS) {
-                Some(next) => (from, settings, round) = (best, next, round + 1),
+                Some(next) => (from, settings, round) = (Starts::of(best, true), next, round + 1),
                 None => {
                     self.is_accurate(error);
                     let best = self.kept(Some(&best))?.clone();
@@ -272,9 +291,7 @@ impl<'a> Run<'a> {
         let evaluations: Vec<Evaluation> = worths.into_iter().map(|worth| worth.evaluation).collect();
         for (point, evaluation) in points.iter().zip(&evaluations) {
             self.leaders.take(point, evaluation);
-            for (seen, reserve) in self.limits.iter_mut().zip(&evaluation.constraints) {
-                seen.most = seen.most.max(*reserve);
-            }
+            self.seen.take(evaluation);
             let finite = self.extent.iter_mut().zip(evaluation.objectives()).filter(|(_, value)| value.is_finite());
             finite.for_each(|((least, most), value)| (*least, *most) = (least.min(value), most.max(value)));
         }
@@ -284,6 +301,12 @@ impl<'a> Run<'a> {
         self.evaluations += points.len();
         (self.context.progress)((self.evaluations as f64 / self.budget).min(1.0));
         Ok(evaluations)
+    }
+
+    /// From here on designs are looked at as asked for: what is said of the constraints is to be true of them.
+    /// Gives what was seen until now.
+    fn look_as_asked(&mut self) -> Seen {
+        std::mem::replace(&mut self.seen, Seen::none(self.optimizer.goal.limits.len()))
     }
 
     /// A batch by itself as a row of the history.
@@ -344,16 +367,17 @@ impl<'a> Run<'a> {
             let limit = &goal.limits[limit];
             format!("`{}` (nearest: {})", limit.text, limit.missed(reserve, goal.measures[limit.measure].unit))
         };
-        let never = (0..goal.limits.len()).filter(|limit| self.limits[*limit].most < -KEPT);
-        let never: Vec<String> = never.map(|limit| missed(limit, self.limits[limit].most)).collect();
+        // A search in the neighbourhood of the best sees little of what keeps one limit and breaks another.
+        let is_shown = |limit: &usize| goal.limits.len() > 1 && self.shown.get(*limit).is_some_and(|kept| *kept >= 0.0);
+        let never = (0..goal.limits.len()).filter(|limit| self.seen.most[*limit] < -KEPT && !is_shown(limit));
+        let never: Vec<String> = never.map(|limit| missed(limit, self.seen.most[limit])).collect();
         if never.is_empty() {
             let all: Vec<&str> = goal.limits.iter().map(|limit| limit.text.as_str()).collect();
-            let least = self.leaders.all().first().map_or(0.0, |leader| leader.violation);
             return Failure::new(format!(
                 "each of the constraints {} is kept by some design, but none that was tried keeps all of them: the nearest \
                  breaks them by {} % of their limits in all",
                 all.join(", "),
-                significant(100.0 * least, 3)
+                significant(100.0 * self.seen.broken, 3)
             ));
         }
         Failure::new(format!("no design that was tried keeps {}", never.join(" or ")))

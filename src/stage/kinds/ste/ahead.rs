@@ -5,7 +5,7 @@
 use super::pressures::{self, CellRow, Contacts};
 use super::tables::{cost, curve, harmonics, summary};
 use super::{MOST_AT_ONCE, Ste, samples};
-use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences};
+use crate::stage::{Ahead, Demand, Estimate, RowCount, common, names, root_influences, simpler};
 use declare::work::Work;
 use gearmesh::gear::transmission_error::curve::Point;
 use gearmesh::gear::work::{CONTACT_PRESSURES, CONTACT_SOLVES, ROOT_STRESSES};
@@ -40,6 +40,8 @@ impl Ste {
         // Of this many rows the product is far below 2^53, or the estimate is beyond any limit.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let solves = (SOLVES_PER_ROW * rows.count as f64) as usize;
+        // Long relief in the place of each design.
+        let solves = solves.saturating_mul(if self.simpler_within.is_some() { 1 + simpler::TRIED } else { 1 });
         let again = if of_pairs { rows.index() } else { 0 };
         let solves = solves.saturating_add(sampled).saturating_add(positions).saturating_add(again);
         let work = Work::of(&CONTACT_SOLVES, solves)
