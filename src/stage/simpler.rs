@@ -61,7 +61,7 @@ impl Simpler {
             "no modification at all".to_owned()
         };
         // Nothing is a share of nothing.
-        let more = if self.value == self.other { 0.0 } else { self.value / self.other - 1.0 };
+        let more = if self.value.total_cmp(&self.other).is_eq() { 0.0 } else { self.value / self.other - 1.0 };
         let than = if more < 0.0 { "smaller" } else { "larger" };
         let share = significant(100.0 * more.abs(), 2);
         format!("a simpler design is as good: {what}, whose {quantity} is {than} by {share} %")

@@ -186,6 +186,7 @@ fn what_cannot_be_and_what_need_not_be_is_said() {
     let warned = ran("
   same: { <<: *base, name: same, minimize: largest_pressure, design: [tip_relief: { gear: both, amount: [1 um, 2 um], length: [0.5 mm, 0.6 mm] }] }
   long: { <<: *base, name: long, settled: { improvement: 1 % }, design: [tip_relief: { gear: both, amount: [5 um, 25 um], fraction: 1, curve: linear }, end_relief: { gear: pinion, amount: [0 um, 5 um], length: 3 mm }] }
+  beyond: { <<: *base, name: beyond, method: { latin_hypercube: { points: 400 } }, design: [tip_relief: { gear: both, amount: [0 um, 30 um], length: [0.5 mm, 60 mm] }] }
 ");
     let says = |stage: &str, what: &str| warned[stage].warnings.iter().any(|warning| warning.contains(what));
     assert!(
@@ -199,6 +200,11 @@ fn what_cannot_be_and_what_need_not_be_is_said() {
         warned["long"].warnings
     );
     assert!(!says("base", "simpler"), "{:?}", warned["base"].warnings);
+    // The flank is about a quarter as long as the box.
+    let beyond = warned["beyond"].warnings.iter().find(|warning| warning.contains(" designs do not fit, ")).unwrap();
+    let share: f64 = beyond.split("fit, ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap();
+    assert!((60.0..90.0).contains(&share) && beyond.contains("and the first because "), "{beyond}");
+    assert!(!says("base", "do not fit"), "{:?}", warned["base"].warnings);
 }
 
 /// Tier: second method; what is told of long relief is what `ste` says of a design with it. At each torque by itself, tilted too.

@@ -104,6 +104,8 @@ pub struct Run<'a> {
     shown: Vec<f64>,
     /// The smallest and the largest value of each objective.
     extent: Vec<(f64, f64)>,
+    /// How many designs of a pass could not be built, and why the first could not.
+    misfits: (usize, String),
     passes: Vec<Pass>,
 }
 
@@ -138,6 +140,7 @@ impl<'a> Run<'a> {
             seen: Seen::none(optimizer.goal.limits.len()),
             shown: Vec::new(),
             extent: vec![(f64::INFINITY, f64::NEG_INFINITY); optimizer.goal.objectives().len()],
+            misfits: (0, String::new()),
             passes: Vec::new(),
         })
     }
@@ -160,6 +163,17 @@ impl<'a> Run<'a> {
         if evaluations > 1 && !same.is_empty() {
             let names = same.join(" and ");
             let said = format!("every design that was tried has the same {names}: nothing in the box changes it");
+            (self.context.warn)(said.into());
+        }
+    }
+
+    /// Says how many designs of a search do not fit the pair: bounds that reach beyond the flank cost looks, and say nothing.
+    fn fit(&self, evaluations: usize) {
+        let (count, why) = &self.misfits;
+        if *count > 0 {
+            let share = 100.0 * *count as f64 / evaluations.max(1) as f64;
+            let designs = if *count == 1 { "design does" } else { "designs do" };
+            let said = format!("{count} {designs} not fit, {share:.0} % of those that were tried, and the first because {why}");
             (self.context.warn)(said.into());
         }
     }
@@ -272,12 +286,14 @@ impl<'a> Run<'a> {
         let cycle = self.base.sampled(settings);
         let before = self.evaluations;
         self.extent.fill((f64::INFINITY, f64::NEG_INFINITY));
+        self.misfits = (0, String::new());
         let reason = search.run_constrained(|points| self.evaluate(&cycle, points))?;
         self.history
             .extend(search.history().iter().map(|row| Generation { evaluations: before + row.evaluations, ..*row }));
         let (evaluations, best) = (search.evaluations(), search.best().map_or(f64::INFINITY, |best| best.value));
         if what == SEARCH {
             self.is_changed(evaluations);
+            self.fit(evaluations);
         }
         let ended = if what == SEARCH { self.said(reason) } else { reason.to_string() };
         self.passes.push(Pass { what, settings, evaluations, best, ended });
@@ -290,6 +306,14 @@ impl<'a> Run<'a> {
         let worths: Vec<Worth> = points.par_iter().map(|point| optimizer.worth(cycle, pair, point)).collect();
         let evaluations: Vec<Evaluation> = worths.into_iter().map(|worth| worth.evaluation).collect();
         for (point, evaluation) in points.iter().zip(&evaluations) {
+            if evaluation.value.is_infinite()
+                && let Err(wrong) = optimizer.template.design(pair, point)
+            {
+                self.misfits.0 += 1;
+                if self.misfits.0 == 1 {
+                    self.misfits.1 = wrong.message;
+                }
+            }
             self.leaders.take(point, evaluation);
             self.seen.take(evaluation);
             let finite = self.extent.iter_mut().zip(evaluation.objectives()).filter(|(_, value)| value.is_finite());

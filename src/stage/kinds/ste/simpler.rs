@@ -26,7 +26,7 @@ impl Ste {
         (answers, simple): (&[Keyed], &BTreeSet<String>),
     ) -> Result<(), Failure> {
         let Some(within) = self.simpler_within else { return Ok(()) };
-        let groups = answers.chunk_by(|one, other| one.0 == other.0 && one.1.torque == other.1.torque);
+        let groups = answers.chunk_by(|one, other| one.0 == other.0 && one.1.torque.total_cmp(&other.1.torque).is_eq());
         let groups: Vec<&[Keyed]> = groups.filter(|group| !simple.contains(group[0].0)).collect();
         let judged = groups.par_iter().map(|group| {
             context.check_stop()?;
