@@ -119,6 +119,25 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
 }
 
 #[test]
+fn a_gear_alone_has_a_picture() {
+    let desk = Desk::with("quick.yaml");
+    let stages = PLAIN.split_inclusive('\n').take(8).collect::<String>();
+    for (teeth, title) in [("", "A tooth of the gear"), ("    outline: { teeth: all }\n", "The gear")] {
+        fs::write(desk.path("plain.yaml"), format!("{stages}{teeth}")).unwrap();
+        desk.run(&["run", "--quiet", "plain.yaml"], 0);
+        let read = |file: &str| fs::read_to_string(desk.path("results/plain").join(file)).unwrap();
+        let page = read("report.html");
+        assert!(page.contains("<h2>The gear</h2>") && page.contains(">Gear</a>"), "{page}");
+        let figure = between(&page, "id=\"figure-pair_profile\"", "</figure>");
+        assert!(figure.contains(title), "{figure}");
+        // Round a tooth, from the middle of a space to the next one: at least as many points as are asked for.
+        let drawing = read("figures/pair_profile.svg");
+        let line = between(&drawing, "class=\"series\"", "/>");
+        assert!(line.matches('L').count() >= if teeth.is_empty() { 199 } else { 24 * 199 }, "{line}");
+    }
+}
+
+#[test]
 fn results_stand_beside_results() {
     let desk = Desk::with("quick.yaml");
     fs::write(desk.path("plain.yaml"), format!("{PLAIN}{COMPARE}")).unwrap();
