@@ -71,6 +71,9 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
         varies |= read.chain(conditions.iter().map(|(column, _)| column)).any(|column| volatile(column));
         plot.x.unit = unit(&table, x);
         plot.y.unit = ys.first().map_or_else(String::new, |y| unit(&table, y));
+        if table.rows() == 0 {
+            plot.without_rows.push(name.clone());
+        }
         if *kind == Kind::Map {
             plot.cells = cells(spec, &table, &rows)?;
             continue;

@@ -208,6 +208,22 @@ fn a_missing_table_is_named() {
     assert!(error.to_string().contains("`ste.curve`"), "{error}");
 }
 
+/// What a stage found may be nothing: the figure says so in its place, and the others are drawn.
+#[test]
+fn a_figure_without_rows_says_so() {
+    let (manifest, mut tables) = study(published(), figures());
+    let schema = tables["stiffness.curve"].schema().clone();
+    tables.insert("stiffness.curve".to_owned(), Table::from_rows(schema, Vec::new()).unwrap());
+    let Rendered { html, figures } = render(&manifest, &tables);
+    check_tags(&html);
+    let told = |text: &str| text.contains(": table stiffness.curve has no rows</text>");
+    for RenderedFigure { name, svg, .. } in &figures {
+        assert_eq!(told(svg), name == "stiffness", "{svg}");
+    }
+    let figure = html.split("id=\"figure-stiffness\"").nth(1).and_then(|rest| rest.split("</figure>").next()).unwrap();
+    assert!(figures.len() == 6 && told(figure) && !figure.contains("data-do"), "{figure}");
+}
+
 #[test]
 fn the_terminal_shows_the_same_in_any_width() {
     let (_, tables) = study(published(), figures());

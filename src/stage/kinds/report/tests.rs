@@ -1,5 +1,6 @@
 //! The stage as a whole, on small tables, with records built by hand.
 
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use super::stated::{Expected, StatedProof};
@@ -66,26 +67,37 @@ fn summary() -> Table {
 }
 
 fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String> {
+    run_on(&summary(), published, figures).map(|(tables, _)| tables)
+}
+
+/// The tables of the report on one table of another stage, and what it warns of.
+fn run_on(
+    summary: &Table,
+    published: Vec<Value>,
+    figures: Vec<Value>,
+) -> Result<(Vec<Table>, Vec<String>), String> {
     let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
     if let Some(found) = stage.wrong().first() {
         return Err(format!("study: {found}"));
     }
     let tables = stage.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
     let (demand, stop) = (Demand { tables }, AtomicBool::new(false));
+    let warned = Mutex::new(Vec::new());
     let context = Context {
         seed: Seed::of_stage(1, "report"),
         demand: &demand,
         stop: &stop,
         progress: &|_| (),
-        warn: &|_| (),
+        warn: &|warning| warned.lock().unwrap().push(String::from(warning)),
         work: &Tally::default(),
     };
-    let summary = summary();
-    let inputs = Inputs { ports: [("ste".to_owned(), vec![&summary])].into() };
-    stage.run(&context, &inputs).map_err(|failure| match failure {
+    let inputs = Inputs { ports: [("ste".to_owned(), vec![summary])].into() };
+    let tables = stage.run(&context, &inputs).map_err(|failure| match failure {
         Failure::Study(wrong) => format!("line {}: {}", wrong.first.place.unwrap().line, wrong.first),
         other => other.to_string(),
-    })
+    })?;
+    let warned = warned.lock().unwrap().clone();
+    Ok((tables, warned))
 }
 
 fn verdict(fields: Fields) -> Result<(String, Table), String> {
@@ -383,6 +395,17 @@ fn figures_are_checked_and_their_points_put_in_the_axes_units() {
         assert!(error.contains(message), "{message}: {error}");
     }
     assert!(run(vec![], vec![figure(&[]), figure(&[])]).unwrap_err().contains("two figures are called `sweep`"));
+}
+
+/// Energy methods have no mesh: a figure over its table fails nothing, whatever rows it asks for.
+#[test]
+fn a_figure_over_a_table_without_rows_is_a_warning() {
+    let empty = Table::from_rows(summary().schema().clone(), Vec::new()).unwrap();
+    let figures = || vec![figure(&[("where", map(&[("design", "best")]))])];
+    let (tables, warned) = run_on(&empty, vec![], figures()).unwrap();
+    assert_eq!(tables[2].texts("name"), ["sweep"]);
+    assert_eq!(warned, ["figure `sweep`: table `ste.summary` has no rows"]);
+    assert!(run(vec![], figures()).unwrap_err().contains("no row has `design=best`"));
 }
 
 #[test]
