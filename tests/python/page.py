@@ -211,6 +211,16 @@ def by_hand(browser, path, faults):
     far = max(abs(a - b) for a, b in zip(numbers(curve), numbers(restored)))
     faults.check(far < 0.02, f"the line is {far} px elsewhere after a zoom and back")
 
+    # So close that there is nothing more to see it goes no closer.
+    for _ in range(40):
+        page.keyboard.press("+")
+    closest = ticks(figure)
+    faults.check(len(closest) >= 4 and all(len(text) < 9 for text in closest), f"zoomed too far: {closest}")
+    for _ in range(40):
+        page.keyboard.press("-")
+    faults.check(ticks(figure) != closest, f"it does not zoom out of {closest}")
+    page.keyboard.press("0")
+
     # A box by mouse: what was inside fills the frame, and its axis says so.
     box = svg.bounding_box()
     at = lambda x, y: (box["x"] + x * box["width"], box["y"] + y * box["height"])
@@ -255,6 +265,20 @@ def by_hand(browser, path, faults):
     faults.check("short" not in readout.inner_text(), "what is hidden is read")
     button.click()
     faults.check(button.get_attribute("aria-pressed") == "true" and shown() == 4, "it does not come back")
+
+    # Nothing is read where nothing is shown.
+    page.mouse.move(*at(0.5, 0.4))
+    faults.check("short" in readout.text_content(), "no readout")
+    for button in figure.locator(".legend button").all():
+        button.focus()
+        page.keyboard.press("Space")
+    page.mouse.move(*at(0.6, 0.4))
+    canvas.focus()
+    page.keyboard.press("ArrowRight")
+    faults.check(readout.text_content() == "" and not readout.is_visible(), f"read of nothing: {readout.text_content()}")
+    for button in figure.locator(".legend button").all():
+        button.focus()
+        page.keyboard.press("Space")
 
     # Export by keyboard: the values of the table, and a drawing by itself.
     name, text = downloaded(page, figure.locator("[data-do=csv]"))
