@@ -60,6 +60,13 @@ const COMPARE: &str = "  report:
       - { name: mesh, title: In mesh, kind: drawing, table: pair.mesh_drawing, x: x, y: y, series: curve, segments: run }
 ";
 
+/// As many series as nobody can read at once.
+const MANY: &str = "  report:
+    kind: report
+    figures:
+      - { name: curves, title: Over the cycle, table: ste.curve, x: cycle_position, y: transmission_error, series: torque, where: { design: relieved } }
+";
+
 /// The text between two others.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
     text.split(from).nth(1).and_then(|rest| rest.split(to).next()).unwrap_or_else(|| panic!("no {from}"))
@@ -213,9 +220,11 @@ fn pages_hold_in_a_browser() {
     }
     let desk = Desk::with("quick.yaml");
     fs::write(desk.path("plain.yaml"), format!("{PLAIN}{COMPARE}")).unwrap();
-    desk.run(&["run", "--quiet", "quick.yaml", "plain.yaml"], 0);
+    let many = format!("{PLAIN}{MANY}").replace("study: plain", "study: many").replace("count: 5", "count: 41");
+    fs::write(desk.path("many.yaml"), many).unwrap();
+    desk.run(&["run", "--quiet", "quick.yaml", "plain.yaml", "many.yaml"], 0);
     let page = |study: &str| desk.path(&format!("results/{study}/report.html")).into_os_string();
-    let arguments = [page("plain"), "--quick".into(), page("quick")];
+    let arguments = [page("plain"), "--quick".into(), page("quick"), "--many".into(), page("many")];
     let said = python::run("page.py", &arguments.each_ref().map(|argument| argument.as_ref() as &OsStr));
     assert!(said.is_none_or(|said| said.contains("2 pages, ")));
 }

@@ -1,10 +1,10 @@
 """Pages as a reader meets them: in Chromium, from the disk, without a network.
 
-    page.py PAGE... [--quick PAGE]
+    page.py PAGE... [--quick PAGE] [--many PAGE]
 
 Of every page: no error on the console, nothing asked of a network, axe-core finds nothing with all details open, the key
 column is legible at every width, nothing but scrolling regions is wider than the window, proofs are printed. Of the page
-after `--quick` also what a keyboard and a mouse can do. Prints one line; ends with 1 and all that is wrong.
+after `--quick` also what a keyboard and a mouse can do, of the one after `--many` what is read of 41 series. Prints one line; ends with 1 and all that is wrong.
 """
 
 import csv
@@ -336,19 +336,44 @@ def by_hand(browser, path, faults):
     page.context.close()
 
 
+def many(browser, path, faults):
+    """A page whose first figure has 41 series: the nearest are read, and nothing hangs over."""
+    for width in [1280, 390]:
+        page = opened(browser, path, faults, viewport={"width": width, "height": 900})
+        figure = page.locator("figure").first
+        canvas, readout = figure.locator(".canvas"), figure.locator(".readout")
+        canvas.focus()
+        for _ in range(20):
+            page.keyboard.press("ArrowRight")
+        said = readout.inner_text().splitlines()
+        told = len(said) - 2
+        faults.check(3 <= told <= 10 and said[-1] == f"{41 - told} more", f"{path} at {width} px: {said}")
+        inside = readout.evaluate("one => one.offsetTop >= 0 && one.offsetTop + one.offsetHeight <= one.parentElement.clientHeight")
+        still = canvas.evaluate("one => one.scrollHeight <= one.clientHeight")
+        faults.check(inside and still, f"{path} at {width} px: the readout hangs over")
+        page.context.close()
+
+
 def main(arguments):
     if not Path(CHROMIUM).exists():
         print("SKIPPED: no chromium")
         return 0
     faults = Faults()
-    quick = arguments.index("--quick") if "--quick" in arguments else len(arguments)
-    pages, driven = arguments[:quick], arguments[quick + 1:]
+    pages, driven, crowded = ([], [], [])
+    group = pages
+    for argument in arguments:
+        if argument.startswith("--"):
+            group = {"--quick": driven, "--many": crowded}[argument]
+        else:
+            group.append(argument)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
         for path in pages + driven:
             everybody(browser, Path(path), faults)
         for path in driven:
             by_hand(browser, Path(path), faults)
+        for path in crowded:
+            many(browser, Path(path), faults)
         for path in pages + driven:
             files(browser, Path(path).parent / "figures", faults)
         browser.close()

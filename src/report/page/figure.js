@@ -119,8 +119,11 @@ for (const figure of all("figure")) {
     const name = plot.names[at[0]] || named_value(plot.x, at[0]) + (Math.abs(px - x) > 1 ? ", nearest point" : "");
     const said = ({ point, series: { label } }) => `${label ? label + ": " : ""}${shown(point[1], 5)} ${plot.y.unit}`
       + (told(point) === told(at) ? "" : ` at ${told(point)} ${plot.x.unit}`);
-    tell(px, py, [row(name), ...found.sort((a, b) => toY(a.point[1]) - toY(b.point[1])).map(entry =>
-      row(said(entry), entry.series.colour, entry === closest && found.length > 1))]);
+    // No more rows than there is room for: those that are nearest.
+    const upwards = ({ point }) => toY(point[1]), most = Math.min(10, canvas.clientHeight / 18 - 3);
+    const left_out = found.sort((a, b) => Math.abs(upwards(a) - py) - Math.abs(upwards(b) - py)).splice(most).length;
+    tell(px, py, [row(name), ...found.sort((a, b) => upwards(a) - upwards(b)).map(entry =>
+      row(said(entry), entry.series.colour, entry === closest && found.length > 1)), ...left_out ? [row(left_out + " more")] : []]);
   };
   const where = event => {
     const size = svg.getBoundingClientRect();
