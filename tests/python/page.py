@@ -66,6 +66,11 @@ FIGURES = """() => [...document.querySelectorAll('figure svg[data-plot]')].flatM
   return faults;
 })"""
 
+# All gears of a data sheet are in sight, and what is not in sight elsewhere is hinted at.
+SHEETS = """() => [...document.querySelectorAll('.wide')].filter(region => region.offsetParent && region.scrollWidth > region.clientWidth + 1)
+  .map(region => [region.getAttribute('aria-label'), region.closest('.sheet') ? 'cut' : getComputedStyle(region).backgroundImage])
+  .filter(([_, how]) => !how.includes('gradient')).map(([name, how]) => `${name}: ${how}`)"""
+
 OPEN = """async () => {
   for (const details of document.querySelectorAll('details')) details.open = true;
   await new Promise(done => setTimeout(done, 300));
@@ -111,7 +116,7 @@ def everybody(browser, path, faults):
     faults.check(page.locator("th:not([scope])").count() == 0, f"{path}: a heading has no scope")
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
-        for fault in page.evaluate(KEYS) + page.evaluate(STICKY) + page.evaluate(FIGURES):
+        for fault in page.evaluate(KEYS) + page.evaluate(STICKY) + page.evaluate(FIGURES) + page.evaluate(SHEETS):
             faults.check(False, f"{path} at {width} px: {fault}")
         wider = page.evaluate("() => document.documentElement.scrollWidth - document.documentElement.clientWidth")
         faults.check(wider <= 0, f"{path} at {width} px: {wider} px wider than the window")
