@@ -45,6 +45,7 @@ pub fn figures(
         let spec = Spec::read(declared, row)?;
         let mut figure = figure(&spec, order, tables)?;
         figure.plot.marks = marks(published, spec.number)?;
+        figure.plot.lost += figure.plot.marks.iter().filter(|mark| figure.plot.loses(mark.x, mark.y)).count();
         Ok(figure)
     };
     (0..declared.rows()).map(one).collect()
@@ -119,6 +120,10 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
         plot.series = plot.series.into_iter().map(interrupted).collect();
     }
     let tables = spec.tables.join(", ");
+    // Before those that nobody could tell apart are left out.
+    let points = plot.series.iter().flat_map(|series| series.runs.iter().flatten());
+    let places = points.copied().chain(plot.named.iter().map(|named| named.place));
+    plot.lost = places.filter(|point| plot.loses(Some(point.0), Some(point.1))).count();
     Ok(Figure { name: spec.name.clone(), note: spec.note.clone(), plot: plot.thinned(), tables, varies })
 }
 

@@ -128,6 +128,8 @@ pub struct Plot {
     pub length: Option<f64>,
     /// The tables that it would be drawn from if they had rows.
     pub without_rows: Vec<String>,
+    /// Points for which a logarithmic axis has no place.
+    pub lost: usize,
 }
 
 impl Plot {
@@ -147,17 +149,31 @@ impl Plot {
             size: Size::Page,
             length: None,
             without_rows: Vec::new(),
+            lost: 0,
         }
     }
 
     /// What a reader would look for in vain; empty where that is nothing.
     #[must_use]
     pub fn remark(&self) -> String {
-        match &self.without_rows[..] {
+        let rows = match &self.without_rows[..] {
             [] => String::new(),
             [one] => format!("table {one} has no rows"),
             several => format!("tables {} have no rows", several.join(", ")),
-        }
+        };
+        let lost = match self.lost {
+            0 => String::new(),
+            1 => "1 point at or below 0 is not drawn".to_owned(),
+            many => format!("{many} points at or below 0 are not drawn"),
+        };
+        [rows, lost].into_iter().filter(|said| !said.is_empty()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// Whether a point with values has no place, because an axis is logarithmic; of a line across one of them is told.
+    pub(super) fn loses(&self, x: Option<f64>, y: Option<f64>) -> bool {
+        let is_number = |value: Option<f64>| value.is_none_or(f64::is_finite);
+        let is_below = |axis: &Axis, value: Option<f64>| axis.is_log && value.is_some_and(|value| value <= 0.0);
+        is_number(x) && is_number(y) && (is_below(&self.x, x) || is_below(&self.y, y))
     }
 
     /// Whether there is anything to draw.

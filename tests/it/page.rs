@@ -60,11 +60,12 @@ const COMPARE: &str = "  report:
       - { name: mesh, title: In mesh, kind: drawing, table: pair.mesh_drawing, x: x, y: y, series: curve, segments: run }
 ";
 
-/// As many series as nobody can read at once.
+/// As many series as nobody can read at once, and points that a logarithmic axis has no place for.
 const MANY: &str = "  report:
     kind: report
     figures:
       - { name: curves, title: Over the cycle, table: ste.curve, x: cycle_position, y: transmission_error, series: torque, where: { design: relieved } }
+      - { name: amplitude, title: Over torque, table: ste.summary, x: torque, y: peak_to_peak, series: design, log: both }
 ";
 
 /// The text between two others.
@@ -142,6 +143,21 @@ fn a_gear_alone_has_a_picture() {
         let line = between(&drawing, "class=\"series\"", "/>");
         assert!(line.matches('L').count() >= if teeth.is_empty() { 199 } else { 24 * 199 }, "{line}");
     }
+}
+
+/// On a logarithmic axis there is no 0: the figure, the page and the run say how many points are not to be seen.
+#[test]
+fn points_that_are_not_drawn_are_told() {
+    let (desk, told) = (Desk::with("quick.yaml"), "2 points at or below 0 are not drawn");
+    fs::write(desk.path("plain.yaml"), format!("{PLAIN}{MANY}").replace("from: 50 N m", "from: 0 N m")).unwrap();
+    let (said, _) = desk.run(&["run", "plain.yaml"], 0);
+    assert!(said.contains(&format!("figure `amplitude`: {told}: an axis is logarithmic")), "{said}");
+    let read = |file: &str| fs::read_to_string(desk.path("results/plain").join(file)).unwrap();
+    let page = read("report.html");
+    let caption = between(&page, "id=\"figure-amplitude\"", "</figcaption>");
+    assert!(caption.contains(&format!(">{told}<")), "{caption}");
+    assert!(read("figures/amplitude.svg").contains(&format!(">{told}</text>")));
+    assert!(!read("figures/curves.svg").contains("not drawn"));
 }
 
 #[test]
