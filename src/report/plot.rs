@@ -55,10 +55,10 @@ pub struct Axis {
     pub is_log: bool,
 }
 
-/// What a series is told apart by.
+/// Something that a series is told apart by.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Of {
-    Word,
+    Word(String),
     /// A number of a column.
     Quantity {
         column: String,
@@ -72,7 +72,8 @@ pub struct Series {
     pub label: String,
     /// As the table has it, where `label` is what the study calls it.
     pub raw: String,
-    pub of: Of,
+    /// Of one of these it has its colour: of the first, unless only another one stands alone somewhere on the page.
+    pub of: Vec<Of>,
     pub look: Look,
     /// Of a drawing, where its table tells it.
     pub line: Option<Line>,
@@ -82,7 +83,8 @@ pub struct Series {
 impl Series {
     #[must_use]
     pub fn new(label: &str, runs: Vec<Vec<(f64, f64)>>) -> Self {
-        Self { label: label.to_owned(), raw: label.to_owned(), of: Of::Word, look: Look::of(0), line: None, runs }
+        let (label, of) = (label.to_owned(), vec![Of::Word(label.to_owned())]);
+        Self { raw: label.clone(), label, of, look: Look::of(0), line: None, runs }
     }
 }
 
