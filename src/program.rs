@@ -33,7 +33,11 @@ pub static PROGRAM: Program = Program {
     },
     pictures: Pictures {
         reader: "report",
-        tables: &[("geometry", "mesh_drawing"), ("modification", "profile"), ("modification", "lead")],
+        tables: &[
+            ("geometry", &["mesh_drawing", "outline"]),
+            ("modification", &["profile"]),
+            ("modification", &["lead"]),
+        ],
     },
 };
 

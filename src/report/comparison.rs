@@ -4,7 +4,7 @@
 
 use serde::Serialize;
 
-use super::verdict::percent;
+use super::verdict::{apart, percent};
 use super::{ReportError, floats, integers, texts};
 use declare::number::{significant, with_unit};
 use studygraph::table::data::Table;
@@ -60,6 +60,7 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
     let (units, verdicts, because, note) = (text("unit")?, text("verdict")?, text("because")?, text("note")?);
     let one = |row: usize| {
         let said = |value: f64| with_unit(&significant(value, 5), &units[row]);
+        let said_apart = |value: f64| apart(&significant(value, 5), &units[row]);
         let tolerance = tolerances[row];
         let is_nothing = differences[row].abs() < 1e-3 * tolerance;
         let (class, sign) = match verdicts[row].as_str() {
@@ -77,8 +78,8 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             value: said(values[row]),
             reference: said(references[row]),
             relative: if relative[row].is_nan() { String::new() } else { percent(relative[row]) },
-            difference: if is_nothing { with_unit("0", &units[row]) } else { said(differences[row]) },
-            tolerance: if tolerance.is_nan() { String::new() } else { format!("± {}", said(tolerance)) },
+            difference: said_apart(if is_nothing { 0.0 } else { differences[row] }),
+            tolerance: if tolerance.is_nan() { String::new() } else { format!("± {}", said_apart(tolerance)) },
             verdict: verdicts[row].clone(),
             class,
             sign,

@@ -74,7 +74,8 @@ fn specs(stage: &StageRecord, several: bool, tables: Tables<'_>) -> Vec<Spec> {
             // Others are in the order of their lines.
             let labels = ["pinion", "gear"].map(|curve| (curve.to_owned(), curve.to_owned())).to_vec();
             let note = POINTS_OF_CONTACT.to_owned();
-            vec![Spec { segments: "run".to_owned(), labels, note, ..by(labelled(mesh, "x", "y"), "curve") }]
+            let mesh = Spec { segments: "run".to_owned(), labels, note, ..by(labelled(mesh, "x", "y"), "curve") };
+            if fits(&mesh, tables) { vec![mesh] } else { of_gear_alone(name, &draw, &labelled, tables) }
         }
         _ => Vec::new(),
     };
@@ -157,6 +158,25 @@ fn of_front(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Option<Spec> {
     let (x, y) = (objectives.next()?, objectives.next()?);
     let front = draw("front", "Designs that no other one beats", Kind::Front, "front", &x, &y);
     Some(Spec { marked: [format!("{stage}.best"), "objective".to_owned(), y], ..front })
+}
+
+/// The profile of a gear without a mate: a tooth, or the whole gear where the study asks for all teeth.
+fn of_gear_alone(
+    stage: &str,
+    draw: &Draw<'_>,
+    labelled: &dyn Fn(Spec, &str, &str) -> Spec,
+    tables: Tables<'_>,
+) -> Vec<Spec> {
+    let teeth = match tables(&format!("{stage}.outline")).as_ref().and_then(|table| table.column("tooth")) {
+        Some(Data::Integer(teeth)) => teeth.iter().copied().max().unwrap_or(1),
+        _ => return Vec::new(),
+    };
+    if tables(&format!("{stage}.pair")).is_some() {
+        // Both in one place would be no picture of a pair.
+        return Vec::new();
+    }
+    let title = if teeth > 1 { "The gear" } else { "A tooth of the gear, with half a space on either side" };
+    vec![labelled(draw("profile", title, Kind::Drawing, "outline", "x", "y"), "x", "y")]
 }
 
 /// Charts of what is modified by a design; the first one says what is not.

@@ -45,6 +45,7 @@ pub fn figures(
         let spec = Spec::read(declared, row)?;
         let mut figure = figure(&spec, order, tables)?;
         figure.plot.marks = marks(published, spec.number)?;
+        figure.plot.lost += figure.plot.marks.iter().filter(|mark| figure.plot.loses(mark.x, mark.y)).count();
         Ok(figure)
     };
     (0..declared.rows()).map(one).collect()
@@ -71,6 +72,9 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
         varies |= read.chain(conditions.iter().map(|(column, _)| column)).any(|column| volatile(column));
         plot.x.unit = unit(&table, x);
         plot.y.unit = ys.first().map_or_else(String::new, |y| unit(&table, y));
+        if table.rows() == 0 {
+            plot.without_rows.push(name.clone());
+        }
         if *kind == Kind::Map {
             plot.cells = cells(spec, &table, &rows)?;
             continue;
@@ -79,14 +83,9 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
             let stage = name.split('.').next().unwrap_or(name);
             let column =
                 spec.labels.iter().find(|(known, _)| known == y).map_or_else(|| plain(y), |label| label.1.clone());
-            let prefix = match (spec.tables.len() > 1, ys.len() > 1) {
-                (true, true) => format!("{}, {column}", spec.label(stage)),
-                (true, false) => spec.label(stage),
-                (false, true) => column,
-                (false, false) => String::new(),
-            };
+            let names = [(spec.tables.len() > 1).then(|| spec.label(stage)), (ys.len() > 1).then_some(column)];
             let first = drawing.series.len();
-            drawing.add(spec, &table, &rows, y, &prefix)?;
+            drawing.add(spec, &table, &rows, y, &names)?;
             drawing.series[first..].sort_by_cached_key(|series| (series.line, order.rank(spec, &series.raw)));
             if let Some(reference) = &reference {
                 drawing.relate(first, value_of(reference, conditions, y)?);
@@ -100,7 +99,8 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
     plot.named = named(spec, tables)?;
     drawing.order_categories(spec, order);
     if *kind == Kind::Quantiles {
-        let share = |series: &Series| if let Of::Quantity { value, .. } = series.of { value } else { f64::NAN };
+        let value = |of: &Of| if let Of::Quantity { value, .. } = of { Some(*value) } else { None };
+        let share = |series: &Series| series.of.iter().find_map(value).unwrap_or(f64::NAN);
         drawing.series.sort_by(|one, two| share(one).total_cmp(&share(two)));
     }
     let label = |given: &str, column: &str| if given.is_empty() { sentence(column) } else { given.to_owned() };
@@ -116,6 +116,10 @@ pub fn figure(spec: &Spec, order: &Order, tables: Tables<'_>) -> Result<Figure, 
         plot.series = plot.series.into_iter().map(interrupted).collect();
     }
     let tables = spec.tables.join(", ");
+    // Before those that nobody could tell apart are left out.
+    let points = plot.series.iter().flat_map(|series| series.runs.iter().flatten());
+    let places = points.copied().chain(plot.named.iter().map(|named| named.place));
+    plot.lost = places.filter(|point| plot.loses(Some(point.0), Some(point.1))).count();
     Ok(Figure { name: spec.name.clone(), note: spec.note.clone(), plot: plot.thinned(), tables, varies })
 }
 
@@ -216,8 +220,15 @@ struct Drawing {
 }
 
 impl Drawing {
-    /// Adds the points of some rows.
-    fn add(&mut self, spec: &Spec, table: &Table, rows: &[usize], y: &str, prefix: &str) -> Result<(), ReportError> {
+    /// Adds the points of some rows; `names` are those of stage and column, where there are several.
+    fn add(
+        &mut self,
+        spec: &Spec,
+        table: &Table,
+        rows: &[usize],
+        y: &str,
+        names: &[Option<String>; 2],
+    ) -> Result<(), ReportError> {
         let Spec { x, series, segments, .. } = spec;
         let column = |name: &str| table.column(name).ok_or_else(|| missing(table, name));
         let (x_data, y_data) = (column(x)?, column(y)?);
@@ -232,16 +243,18 @@ impl Drawing {
             let raw = series_data.map(|data| shown(data, row, &unit(table, series))).unwrap_or_default();
             let known = (own..self.series.len()).find(|&index| self.series[index].raw == raw);
             let at = known.unwrap_or_else(|| {
-                let label = match (prefix.is_empty(), raw.is_empty()) {
-                    (true, _) => spec.label(&raw),
-                    (false, true) => prefix.to_owned(),
-                    (false, false) => format!("{prefix}, {}", spec.label(&raw)),
-                };
-                let value = series_data.and_then(|data| number(table, series, data, row).ok());
-                let of = match value.filter(|_| prefix.is_empty()) {
+                let [stage, column] = names;
+                let is_named = stage.is_some() || column.is_some();
+                let value = (!is_named || !raw.is_empty()).then(|| spec.label(&raw));
+                let said: Vec<&str> = [stage, column, &value].into_iter().flatten().map(String::as_str).collect();
+                let number = series_data.and_then(|data| number(table, series, data, row).ok());
+                let of_value = value.clone().map(|word| match number {
                     Some(value) => Of::Quantity { column: series.clone(), value },
-                    None => Of::Word,
-                };
+                    None => Of::Word(word),
+                });
+                let word = |name: &Option<String>| name.clone().map(Of::Word);
+                let of = [word(stage), of_value, word(column)].into_iter().flatten().collect();
+                let label = said.join(", ");
                 let line = lines.and_then(|data| Line::named(&data.cell(row).to_string()));
                 self.series.push(Series { raw, of, line, ..Series::new(&label, Vec::new()) });
                 segment.push(None);

@@ -48,7 +48,7 @@ impl Item {
             Sign::Line => line(),
             Sign::LineAndMarker => line() + &marker(),
             Sign::Marker => marker(),
-            Sign::Square => format!(r#"<path class="bar" {} d="M8 1h12v12h-12z"/>"#, look.colour.fill()),
+            Sign::Square => format!(r#"<path class="bar" {} d="M8 1h12v12h-12z"/>"#, look.bar()),
             Sign::Band(below) => {
                 format!(r#"<path {} fill-opacity=".2" d="M8 1h12v12h-12z"/>"#, look.colour.fill()).repeat(below + 1)
             }

@@ -1,7 +1,10 @@
 //! What a series looks like: colour, dashes, marker.
 //!
-//! Words are categories: each has a colour, dashes and a marker, so that colour is never alone. Quantities lie on a ramp.
+//! Words are categories: each has a colour, dashes and a marker, so that colour is never alone. Quantities lie on a ramp. What
+//! is a part of something has its colour, and other dashes.
 //! Must not know: axes, data.
+
+use super::svg::at;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Colour {
@@ -79,17 +82,33 @@ pub struct Look {
     kind: usize,
     /// Of a drawing, where it is told.
     line: Option<Line>,
+    /// Which of so many parts of what has its colour.
+    part: [usize; 2],
 }
+
+/// Of what has no parts.
+const WHOLE: [usize; 2] = [0, 1];
 
 impl Look {
     /// Of a category, counted from 0.
     pub fn of(category: usize) -> Self {
-        Self { colour: Colour::Of(category % KINDS), kind: (category + category / KINDS) % KINDS, line: None }
+        Self {
+            colour: Colour::Of(category % KINDS),
+            kind: (category + category / KINDS) % KINDS,
+            line: None,
+            part: WHOLE,
+        }
     }
 
     /// Of a value on a ramp of so many; a solid line with round dots.
     pub fn on_ramp(index: usize, count: usize) -> Self {
-        Self { colour: Colour::ramp(index, count), kind: 0, line: None }
+        Self { colour: Colour::ramp(index, count), kind: 0, line: None, part: WHOLE }
+    }
+
+    /// The same colour with other dashes and another marker, and paler as a bar: the first part looks as the whole.
+    pub fn part(self, index: usize, count: usize) -> Self {
+        let step = (KINDS / count.max(1)).max(1);
+        Self { kind: (self.kind + index * step) % KINDS, part: [index, count.max(1)], ..self }
     }
 
     /// As in a drawing, where bodies are solid: what is told to be, or the first two, which are told apart by where they
@@ -99,7 +118,7 @@ impl Look {
     }
 
     pub const fn ink(kind: usize) -> Self {
-        Self { colour: Colour::Ink, kind, line: None }
+        Self { colour: Colour::Ink, kind, line: None, part: WHOLE }
     }
 
     pub fn dash(self) -> &'static str {
@@ -114,6 +133,20 @@ impl Look {
             _ => "sign",
         };
         (class, MARKERS[self.kind % KINDS])
+    }
+
+    /// How dark a bar is.
+    pub fn opacity(self) -> f64 {
+        1.0 - self.part[0] as f64 / self.part[1] as f64
+    }
+
+    /// The style of a bar; a pale one has an outline.
+    pub fn bar(self) -> String {
+        let colour = self.colour.value();
+        match self.part[0] {
+            0 => self.colour.fill(),
+            _ => format!(r#"style="fill:{colour};fill-opacity:{};stroke:{colour}""#, at(self.opacity())),
+        }
     }
 
     pub fn published_dash(self) -> &'static str {

@@ -98,6 +98,10 @@ struct FigureView {
     name: String,
     title: String,
     note: String,
+    /// Whether there is anything to look at closer.
+    is_drawn: bool,
+    /// What is not there to be seen.
+    remark: String,
     tables: String,
     /// Made by `plot`, which escapes what it is given.
     svg: String,
@@ -268,10 +272,14 @@ fn figure_view(figure: &Figure) -> FigureView {
         key: item.key.clone(),
         swatch: item.swatch(),
     };
+    let is_drawn = figure.plot.is_drawn();
     FigureView {
         name: figure.name.clone(),
         title: figure.plot.title.clone(),
         note: figure.note.clone(),
+        is_drawn,
+        // Where nothing is drawn it stands there instead.
+        remark: if is_drawn { figure.plot.remark() } else { String::new() },
         tables: figure.tables.clone(),
         svg: figure.plot.inline(),
         legend: figure.plot.legend().iter().map(item).collect(),

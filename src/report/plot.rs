@@ -15,6 +15,9 @@ use super::svg::{at, escape};
 /// About the frame nothing is cut off, so that a line on its edge is not cut in half \[px\].
 const ROOM: f64 = 6.0;
 
+/// Room of a remark below a figure \[px\].
+const REMARK: f64 = 20.0;
+
 /// Colours, type and strokes of every figure; light, dark and print.
 pub const STYLE: &str = include_str!("plot.css");
 
@@ -52,10 +55,10 @@ pub struct Axis {
     pub is_log: bool,
 }
 
-/// What a series is told apart by.
+/// Something that a series is told apart by.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Of {
-    Word,
+    Word(String),
     /// A number of a column.
     Quantity {
         column: String,
@@ -69,7 +72,8 @@ pub struct Series {
     pub label: String,
     /// As the table has it, where `label` is what the study calls it.
     pub raw: String,
-    pub of: Of,
+    /// Of one of these it has its colour: of the first, unless only another one stands alone somewhere on the page.
+    pub of: Vec<Of>,
     pub look: Look,
     /// Of a drawing, where its table tells it.
     pub line: Option<Line>,
@@ -79,7 +83,8 @@ pub struct Series {
 impl Series {
     #[must_use]
     pub fn new(label: &str, runs: Vec<Vec<(f64, f64)>>) -> Self {
-        Self { label: label.to_owned(), raw: label.to_owned(), of: Of::Word, look: Look::of(0), line: None, runs }
+        let (label, of) = (label.to_owned(), vec![Of::Word(label.to_owned())]);
+        Self { raw: label.clone(), label, of, look: Look::of(0), line: None, runs }
     }
 }
 
@@ -123,6 +128,10 @@ pub struct Plot {
     pub size: Size,
     /// Of a chart: the length that a unit of the x axis stands for, in units of the y axis.
     pub length: Option<f64>,
+    /// The tables that it would be drawn from if they had rows.
+    pub without_rows: Vec<String>,
+    /// Points for which a logarithmic axis has no place.
+    pub lost: usize,
 }
 
 impl Plot {
@@ -141,7 +150,38 @@ impl Plot {
             cells: None,
             size: Size::Page,
             length: None,
+            without_rows: Vec::new(),
+            lost: 0,
         }
+    }
+
+    /// What a reader would look for in vain; empty where that is nothing.
+    #[must_use]
+    pub fn remark(&self) -> String {
+        let rows = match &self.without_rows[..] {
+            [] => String::new(),
+            [one] => format!("table {one} has no rows"),
+            several => format!("tables {} have no rows", several.join(", ")),
+        };
+        let lost = match self.lost {
+            0 => String::new(),
+            1 => "1 point at or below 0 is not drawn".to_owned(),
+            many => format!("{many} points at or below 0 are not drawn"),
+        };
+        [rows, lost].into_iter().filter(|said| !said.is_empty()).collect::<Vec<_>>().join("; ")
+    }
+
+    /// Whether a point with values has no place, because an axis is logarithmic; of a line across one of them is told.
+    pub(super) fn loses(&self, x: Option<f64>, y: Option<f64>) -> bool {
+        let is_number = |value: Option<f64>| value.is_none_or(f64::is_finite);
+        let is_below = |axis: &Axis, value: Option<f64>| axis.is_log && value.is_some_and(|value| value <= 0.0);
+        is_number(x) && is_number(y) && (is_below(&self.x, x) || is_below(&self.y, y))
+    }
+
+    /// Whether there is anything to draw.
+    #[must_use]
+    pub fn is_drawn(&self) -> bool {
+        self.frame(0.0, Layout::PAGE).is_some()
     }
 
     /// The figure as a file of its own, with style, background, title and legend.
@@ -153,7 +193,11 @@ impl Plot {
         let rows = legend::rows(&legend, frame.left + frame.width, layout.character);
         let legend_height = if legend.is_empty() { 8.0 } else { 12.0 + 22.0 * rows.len() as f64 };
         let frame = Frame { top: layout.title + legend_height, ..frame };
-        let (width, height) = self.extent(&frame);
+        let (width, mut height) = self.extent(&frame);
+        let remark = self.remark();
+        if !remark.is_empty() {
+            height += REMARK;
+        }
         let scale = match self.size {
             Size::Page => format!(r#"width="{}" height="{}""#, at(width), at(height)),
             // 96 to the inch, as CSS has it: a column is 90 mm.
@@ -174,6 +218,10 @@ impl Plot {
             let _ = write!(svg, r#"<text class="title" x="16" y="26">{}</text>"#, escape(&self.title));
         }
         legend::draw(&mut svg, &legend, &rows, (frame.left, layout.title), layout.character);
+        if !remark.is_empty() {
+            let (x, y) = (at(frame.left), at(height - 0.4 * REMARK));
+            let _ = write!(svg, r#"<text x="{x}" y="{y}">{}</text>"#, escape(&remark));
+        }
         self.draw(&mut svg, &frame);
         svg
     }
@@ -240,8 +288,10 @@ impl Plot {
 
     fn empty(&self, layout: Layout) -> String {
         let (title, width) = (escape(&self.title), at(layout.width));
+        let why = Some(self.remark()).filter(|remark| !remark.is_empty());
+        let why = why.map_or_else(|| "there is no finite value to draw".to_owned(), |why| escape(&why));
         format!(
-            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {width} 80" role="img" aria-label="{title}"><style>{STYLE}</style><text class="label" x="16" y="44">{title}: there is no finite value to draw</text></svg>"#
+            r#"<svg xmlns="http://www.w3.org/2000/svg" class="plot" viewBox="0 0 {width} 80" role="img" aria-label="{title}"><style>{STYLE}</style><text class="label" x="16" y="44">{title}: {why}</text></svg>"#
         )
     }
 

@@ -89,7 +89,7 @@ impl Plot {
                 let _ = write!(path, "M{left} {}H{right}V{}H{left}Z", at(base), at(y));
             }
             let _ =
-                write!(svg, r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#, series.look.colour.fill());
+                write!(svg, r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#, series.look.bar());
         }
     }
 }

@@ -24,7 +24,7 @@ impl Plot {
                     let _ = write!(path, "M{} {base}V{}H{}V{base}Z", at(left), at(top), at(right));
                 }
             }
-            let style = series.look.colour.fill();
+            let style = series.look.bar();
             let _ = write!(svg, r#"<g data-s="s{index}"><path class="bar" {style} d="{path}"/></g>"#);
         }
     }
@@ -93,7 +93,7 @@ impl Plot {
                 let (top, bottom) = (at(y + offset + 0.5), at(y + offset + bar - 0.5));
                 let _ = write!(path, "M{base} {top}H{}V{bottom}H{base}Z", at(x));
             }
-            let style = series.look.colour.fill();
+            let style = series.look.bar();
             let _ = write!(svg, r#"<g data-s="s{index}"><path class="bar" {style} d="{path}"/></g>"#);
         }
     }

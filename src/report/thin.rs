@@ -41,7 +41,7 @@ fn cell(frame: &Frame, point: (f64, f64)) -> Option<(i32, i32)> {
     frame.place(point).map(|(x, y)| ((x * FINENESS).floor() as i32, (y * FINENESS).floor() as i32))
 }
 
-/// One point of each cell; what cannot be placed is not drawn.
+/// One point of each cell; what cannot be placed is not drawn, and was counted before.
 fn spread(runs: &mut [Vec<(f64, f64)>], frame: &Frame) {
     let mut taken = BTreeSet::new();
     for run in runs {

@@ -5,6 +5,7 @@
 use serde_json::{Value, json};
 
 use super::cells::Cells;
+use super::look::Look;
 use super::plot::{Axis, Kind, Plot, Size};
 use declare::number::unit_symbol;
 
@@ -85,6 +86,19 @@ impl Plot {
             let scale = json!({ "domain": names, "range": colours });
             encoding["color"] = json!({ "field": "series", "type": "nominal", "title": null, "scale": scale });
         }
+        // Parts of one thing have its colour.
+        if self.series.iter().any(|series| series.look.opacity() < 1.0) {
+            let by = |range: Vec<Value>| json!({ "field": "series", "type": "nominal", "legend": null, "scale": { "domain": names, "range": range } });
+            let of =
+                |pick: fn(Look) -> Value| self.series.iter().map(|series| pick(series.look)).collect::<Vec<Value>>();
+            match self.kind {
+                Kind::Bar | Kind::Histogram | Kind::Tornado => {
+                    encoding["opacity"] = by(of(|look| json!(look.opacity())));
+                }
+                Kind::Points | Kind::Front => encoding["shape"] = json!({ "field": "series", "legend": null }),
+                _ => encoding["strokeDash"] = by(of(|look| dashes(look.dash()))),
+            }
+        }
         let mark = match self.kind {
             Kind::Points | Kind::Front => json!({ "type": "point", "filled": true }),
             Kind::Bar => {
@@ -154,6 +168,12 @@ impl Plot {
         };
         self.marks.iter().map(mark).collect()
     }
+}
+
+/// Lengths of dashes and gaps; of a solid line one dash after the other.
+fn dashes(lengths: &str) -> Value {
+    let lengths: Vec<f64> = lengths.split(' ').filter_map(|length| length.parse().ok()).collect();
+    if lengths.is_empty() { json!([1, 0]) } else { json!(lengths) }
 }
 
 /// JSON has no NaN: null interrupts a line.

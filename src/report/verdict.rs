@@ -82,13 +82,13 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
             difference: if is_claim {
                 String::new()
             } else {
-                with_unit(&signed(near(difference[row], tolerance[row], printed)), unit)
+                apart(&signed(near(difference[row], tolerance[row], printed)), unit)
             },
             relative: if is_claim || relative[row].is_nan() { String::new() } else { percent(relative[row]) },
             tolerance: if is_claim {
                 String::new()
             } else {
-                with_unit(&format!("± {}", significant(tolerance[row], 3)), unit)
+                apart(&format!("± {}", significant(tolerance[row], 3)), unit)
             },
             expected: within(expected[row], expected_tolerance[row]),
             verdict: verdicts[row].clone(),
@@ -104,6 +104,11 @@ pub fn rows(table: &Table) -> Result<Vec<Row>, ReportError> {
     let mut order: Vec<usize> = (0..table.rows()).collect();
     order.sort_by_key(|&row| rank(&verdicts[row]));
     Ok(order.into_iter().map(one).collect())
+}
+
+/// How far apart two values are. Of two percentages that is points: in percent it would read as a share of one of them.
+pub fn apart(number: &str, unit: &str) -> String {
+    with_unit(number, if unit == "%" { "points" } else { unit })
 }
 
 /// What needs attention comes first, then what is explained, then what agrees; as the table of counts has them.
@@ -169,6 +174,12 @@ mod tests {
         assert_eq!(signed("0.0000".to_owned()), "0.0000");
         assert_eq!((percent(0.2957).as_str(), percent(-0.0123).as_str()), ("+29.6\u{202f}%", "−1.23\u{202f}%"));
         assert_eq!(percent(-0.000_01), "0.00\u{202f}%");
+    }
+
+    #[test]
+    fn two_percentages_are_points_apart() {
+        assert_eq!(apart("−19.4", "%"), "−19.4\u{202f}points");
+        assert_eq!(apart("−19.4", "um"), "−19.4\u{202f}µm");
     }
 
     #[test]

@@ -60,6 +60,14 @@ const COMPARE: &str = "  report:
       - { name: mesh, title: In mesh, kind: drawing, table: pair.mesh_drawing, x: x, y: y, series: curve, segments: run }
 ";
 
+/// As many series as nobody can read at once, and points that a logarithmic axis has no place for.
+const MANY: &str = "  report:
+    kind: report
+    figures:
+      - { name: curves, title: Over the cycle, table: ste.curve, x: cycle_position, y: transmission_error, series: torque, where: { design: relieved } }
+      - { name: amplitude, title: Over torque, table: ste.summary, x: torque, y: peak_to_peak, series: design, log: both }
+";
+
 /// The text between two others.
 fn between<'a>(text: &'a str, from: &str, to: &str) -> &'a str {
     text.split(from).nth(1).and_then(|rest| rest.split(to).next()).unwrap_or_else(|| panic!("no {from}"))
@@ -116,6 +124,40 @@ fn a_study_that_says_nothing_has_figures_and_a_data_sheet() {
     // A depth is exaggerated by a factor that is said, and by which it is drawn: 12 µm at the tip.
     let chart = read("figures/designs_profile_pinion.svg");
     assert!(between(&chart, "Depth (µm), ", "</text>").ends_with(" : 1"), "{chart}");
+}
+
+#[test]
+fn a_gear_alone_has_a_picture() {
+    let desk = Desk::with("quick.yaml");
+    let stages = PLAIN.split_inclusive('\n').take(8).collect::<String>();
+    for (teeth, title) in [("", "A tooth of the gear"), ("    outline: { teeth: all }\n", "The gear")] {
+        fs::write(desk.path("plain.yaml"), format!("{stages}{teeth}")).unwrap();
+        desk.run(&["run", "--quiet", "plain.yaml"], 0);
+        let read = |file: &str| fs::read_to_string(desk.path("results/plain").join(file)).unwrap();
+        let page = read("report.html");
+        assert!(page.contains("<h2>The gear</h2>") && page.contains(">Gear</a>"), "{page}");
+        let figure = between(&page, "id=\"figure-pair_profile\"", "</figure>");
+        assert!(figure.contains(title), "{figure}");
+        // Round a tooth, from the middle of a space to the next one: at least as many points as are asked for.
+        let drawing = read("figures/pair_profile.svg");
+        let line = between(&drawing, "class=\"series\"", "/>");
+        assert!(line.matches('L').count() >= if teeth.is_empty() { 199 } else { 24 * 199 }, "{line}");
+    }
+}
+
+/// On a logarithmic axis there is no 0: the figure, the page and the run say how many points are not to be seen.
+#[test]
+fn points_that_are_not_drawn_are_told() {
+    let (desk, told) = (Desk::with("quick.yaml"), "2 points at or below 0 are not drawn");
+    fs::write(desk.path("plain.yaml"), format!("{PLAIN}{MANY}").replace("from: 50 N m", "from: 0 N m")).unwrap();
+    let (said, _) = desk.run(&["run", "plain.yaml"], 0);
+    assert!(said.contains(&format!("figure `amplitude`: {told}: an axis is logarithmic")), "{said}");
+    let read = |file: &str| fs::read_to_string(desk.path("results/plain").join(file)).unwrap();
+    let page = read("report.html");
+    let caption = between(&page, "id=\"figure-amplitude\"", "</figcaption>");
+    assert!(caption.contains(&format!(">{told}<")), "{caption}");
+    assert!(read("figures/amplitude.svg").contains(&format!(">{told}</text>")));
+    assert!(!read("figures/curves.svg").contains("not drawn"));
 }
 
 #[test]
@@ -194,9 +236,11 @@ fn pages_hold_in_a_browser() {
     }
     let desk = Desk::with("quick.yaml");
     fs::write(desk.path("plain.yaml"), format!("{PLAIN}{COMPARE}")).unwrap();
-    desk.run(&["run", "--quiet", "quick.yaml", "plain.yaml"], 0);
+    let many = format!("{PLAIN}{MANY}").replace("study: plain", "study: many").replace("count: 5", "count: 41");
+    fs::write(desk.path("many.yaml"), many).unwrap();
+    desk.run(&["run", "--quiet", "quick.yaml", "plain.yaml", "many.yaml"], 0);
     let page = |study: &str| desk.path(&format!("results/{study}/report.html")).into_os_string();
-    let arguments = [page("plain"), "--quick".into(), page("quick")];
+    let arguments = [page("plain"), "--quick".into(), page("quick"), "--many".into(), page("many")];
     let said = python::run("page.py", &arguments.each_ref().map(|argument| argument.as_ref() as &OsStr));
     assert!(said.is_none_or(|said| said.contains("2 pages, ")));
 }

@@ -1,10 +1,10 @@
 """Pages as a reader meets them: in Chromium, from the disk, without a network.
 
-    page.py PAGE... [--quick PAGE]
+    page.py PAGE... [--quick PAGE] [--many PAGE]
 
 Of every page: no error on the console, nothing asked of a network, axe-core finds nothing with all details open, the key
 column is legible at every width, nothing but scrolling regions is wider than the window, proofs are printed. Of the page
-after `--quick` also what a keyboard and a mouse can do. Prints one line; ends with 1 and all that is wrong.
+after `--quick` also what a keyboard and a mouse can do, of the one after `--many` what is read of 41 series. Prints one line; ends with 1 and all that is wrong.
 """
 
 import csv
@@ -66,6 +66,11 @@ FIGURES = """() => [...document.querySelectorAll('figure svg[data-plot]')].flatM
   return faults;
 })"""
 
+# All gears of a data sheet are in sight, and what is not in sight elsewhere is hinted at.
+SHEETS = """() => [...document.querySelectorAll('.wide')].filter(region => region.offsetParent && region.scrollWidth > region.clientWidth + 1)
+  .map(region => [region.getAttribute('aria-label'), region.closest('.sheet') ? 'cut' : getComputedStyle(region).backgroundImage])
+  .filter(([_, how]) => !how.includes('gradient')).map(([name, how]) => `${name}: ${how}`)"""
+
 OPEN = """async () => {
   for (const details of document.querySelectorAll('details')) details.open = true;
   await new Promise(done => setTimeout(done, 300));
@@ -111,7 +116,7 @@ def everybody(browser, path, faults):
     faults.check(page.locator("th:not([scope])").count() == 0, f"{path}: a heading has no scope")
     for width in WIDTHS:
         page.set_viewport_size({"width": width, "height": 900})
-        for fault in page.evaluate(KEYS) + page.evaluate(STICKY) + page.evaluate(FIGURES):
+        for fault in page.evaluate(KEYS) + page.evaluate(STICKY) + page.evaluate(FIGURES) + page.evaluate(SHEETS):
             faults.check(False, f"{path} at {width} px: {fault}")
         wider = page.evaluate("() => document.documentElement.scrollWidth - document.documentElement.clientWidth")
         faults.check(wider <= 0, f"{path} at {width} px: {wider} px wider than the window")
@@ -211,6 +216,16 @@ def by_hand(browser, path, faults):
     far = max(abs(a - b) for a, b in zip(numbers(curve), numbers(restored)))
     faults.check(far < 0.02, f"the line is {far} px elsewhere after a zoom and back")
 
+    # So close that there is nothing more to see it goes no closer.
+    for _ in range(40):
+        page.keyboard.press("+")
+    closest = ticks(figure)
+    faults.check(len(closest) >= 4 and all(len(text) < 9 for text in closest), f"zoomed too far: {closest}")
+    for _ in range(40):
+        page.keyboard.press("-")
+    faults.check(ticks(figure) != closest, f"it does not zoom out of {closest}")
+    page.keyboard.press("0")
+
     # A box by mouse: what was inside fills the frame, and its axis says so.
     box = svg.bounding_box()
     at = lambda x, y: (box["x"] + x * box["width"], box["y"] + y * box["height"])
@@ -255,6 +270,20 @@ def by_hand(browser, path, faults):
     faults.check("short" not in readout.inner_text(), "what is hidden is read")
     button.click()
     faults.check(button.get_attribute("aria-pressed") == "true" and shown() == 4, "it does not come back")
+
+    # Nothing is read where nothing is shown.
+    page.mouse.move(*at(0.5, 0.4))
+    faults.check("short" in readout.text_content(), "no readout")
+    for button in figure.locator(".legend button").all():
+        button.focus()
+        page.keyboard.press("Space")
+    page.mouse.move(*at(0.6, 0.4))
+    canvas.focus()
+    page.keyboard.press("ArrowRight")
+    faults.check(readout.text_content() == "" and not readout.is_visible(), f"read of nothing: {readout.text_content()}")
+    for button in figure.locator(".legend button").all():
+        button.focus()
+        page.keyboard.press("Space")
 
     # Export by keyboard: the values of the table, and a drawing by itself.
     name, text = downloaded(page, figure.locator("[data-do=csv]"))
@@ -312,19 +341,44 @@ def by_hand(browser, path, faults):
     page.context.close()
 
 
+def many(browser, path, faults):
+    """A page whose first figure has 41 series: the nearest are read, and nothing hangs over."""
+    for width in [1280, 390]:
+        page = opened(browser, path, faults, viewport={"width": width, "height": 900})
+        figure = page.locator("figure").first
+        canvas, readout = figure.locator(".canvas"), figure.locator(".readout")
+        canvas.focus()
+        for _ in range(20):
+            page.keyboard.press("ArrowRight")
+        said = readout.inner_text().splitlines()
+        told = len(said) - 2
+        faults.check(3 <= told <= 10 and said[-1] == f"{41 - told} more", f"{path} at {width} px: {said}")
+        inside = readout.evaluate("one => one.offsetTop >= 0 && one.offsetTop + one.offsetHeight <= one.parentElement.clientHeight")
+        still = canvas.evaluate("one => one.scrollHeight <= one.clientHeight")
+        faults.check(inside and still, f"{path} at {width} px: the readout hangs over")
+        page.context.close()
+
+
 def main(arguments):
     if not Path(CHROMIUM).exists():
         print("SKIPPED: no chromium")
         return 0
     faults = Faults()
-    quick = arguments.index("--quick") if "--quick" in arguments else len(arguments)
-    pages, driven = arguments[:quick], arguments[quick + 1:]
+    pages, driven, crowded = ([], [], [])
+    group = pages
+    for argument in arguments:
+        if argument.startswith("--"):
+            group = {"--quick": driven, "--many": crowded}[argument]
+        else:
+            group.append(argument)
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=CHROMIUM, args=SWITCHES)
         for path in pages + driven:
             everybody(browser, Path(path), faults)
         for path in driven:
             by_hand(browser, Path(path), faults)
+        for path in crowded:
+            many(browser, Path(path), faults)
         for path in pages + driven:
             files(browser, Path(path).parent / "figures", faults)
         browser.close()

@@ -60,8 +60,8 @@ pub struct Program {
 pub struct Pictures {
     /// The kind of stage by which a study says itself what is shown; with one of them nothing is added.
     pub reader: &'static str,
-    /// Kinds of stages, and the tables of each.
-    pub tables: &'static [(&'static str, &'static str)],
+    /// Kinds of stages, and the tables of a picture of each: the first one that the stage has.
+    pub tables: &'static [(&'static str, &'static [&'static str])],
 }
 
 impl Pictures {

@@ -15,27 +15,28 @@ for (const figure of all("figure")) {
   const drawn = all("path", data).map(path => [path, path.getAttribute("d")]);
   const named = all("text", data).map(text => [text, +text.getAttribute("x"), +text.getAttribute("y")]);
   const names = all(".name", axes), labels = all(".label", axes), flat = plot.cells && plot.cells.y.length < 2;
-  const whole = () => ({ x: { ...plot.x }, y: { ...plot.y } });
-  let view = whole(), stop = -1, at = null;
+  let view = plot, stop = -1, at = null;
   const share = (axis, value) => axis.log ? Math.log(value / axis.low) / Math.log(axis.high / axis.low)
     : (value - axis.low) / (axis.high - axis.low);
   const value = (axis, share) => axis.log ? axis.low * (axis.high / axis.low) ** share : axis.low + share * (axis.high - axis.low);
   const upright = share => plot.down ? share : 1 - share;
   const toX = (number, { x } = view) => left + width * share(x, number);
   const toY = (number, { y } = view) => top + height * upright(share(y, number));
-  const fits = axis => axis.high > axis.low && axis.high - axis.low > 1e-12 * Math.abs(axis.high);
+  // Points have six digits, and are drawn to a hundredth of a px of the whole: a thousandth of it has no more to show.
+  const part = (axis, all) => share(all, axis.high) - share(all, axis.low);
+  const fits = (axis, all, now) => part(axis, all) >= Math.min(part(now, all), 1e-3);
   const place = (element, lengths) => ["x", "y", "width", "height"].forEach((key, index) => element.setAttribute(key, lengths[index]));
   const scale = () => svg.getBoundingClientRect().width / svg.viewBox.baseVal.width;
   const redraw = () => {
-    const first = whole(), [x0, x1] = [toX(view.x.low, first), toX(view.x.high, first)];
-    const ends = [toY(view.y.low, first), toY(view.y.high, first)], [y0, y1] = [Math.min(...ends), Math.max(...ends)];
+    const [x0, x1] = [toX(view.x.low, plot), toX(view.x.high, plot)];
+    const ends = [toY(view.y.low, plot), toY(view.y.high, plot)], [y0, y1] = [Math.min(...ends), Math.max(...ends)];
     const [k, m] = [width / (x1 - x0), height / (y1 - y0)];
     const x = px => (left + (px - x0) * k).toFixed(2), y = py => (top + (py - y0) * m).toFixed(2);
     for (const [path, d] of drawn) path.setAttribute("d", d.replace(/([MLHV])(-?[\d.]+)(?: (-?[\d.]+))?/g, (_, letter, p, q) =>
       letter === "V" ? "V" + y(p) : letter === "H" ? "H" + x(p) : `${letter}${x(p)} ${y(q)}`));
     for (const [text, px, py] of named) { text.setAttribute("x", x(px)); text.setAttribute("y", y(py)); }
     // The whole has room for lines on its edge; of a part nothing runs over the axes.
-    const cut = JSON.stringify(view) === JSON.stringify(first) ? uncut : plot.frame.join(" ");
+    const cut = view === plot ? uncut : plot.frame.join(" ");
     data.setAttribute("viewBox", cut);
     place(data, cut.split(" "));
     axes.replaceChildren();
@@ -65,7 +66,7 @@ for (const figure of all("figure")) {
   const zoom = (x, y) => {
     if (plot.names.length) x = [view.x.low, view.x.high];
     const next = { x: { ...view.x, low: x[0], high: x[1] }, y: { ...view.y, low: y[0], high: y[1] } };
-    if (fits(next.x) && fits(next.y)) { view = next; redraw(); }
+    if (fits(next.x, plot.x, view.x) && fits(next.y, plot.y, view.y)) { view = next; redraw(); }
   };
   // By a factor, about what is read or the middle.
   const enlarge = factor => {
@@ -73,8 +74,8 @@ for (const figure of all("figure")) {
     const inside = at && [share(view.x, at[0]), share(view.y, at[1])];
     zoom(about(view.x, inside ? inside[0] : 0.5), about(view.y, inside ? inside[1] : 0.5));
   };
-  const reset = () => { view = whole(); redraw(); };
-  const hide = () => { layer.replaceChildren(); readout.hidden = true; stop = -1; at = null; };
+  const reset = () => { view = plot; redraw(); };
+  const hide = () => { layer.replaceChildren(); readout.replaceChildren(); stop = -1; at = null; };
   const series = () => plot.series.filter((_, index) => { const g = one(`[data-s=s${index}]`, data); return g && !g.style.display; });
   const inside = point => [toX(point[0]), toY(point[1])].every((px, axis) =>
     px > (axis ? top : left) - 4 && px < (axis ? top + height : left + width) + 4);
@@ -84,8 +85,7 @@ for (const figure of all("figure")) {
   };
   const tell = (px, py, rows) => {
     readout.replaceChildren(...rows);
-    readout.hidden = false;
-    const size = svg.getBoundingClientRect(), offset = svg.offsetLeft || size.left - canvas.getBoundingClientRect().left + canvas.scrollLeft;
+    const size = svg.getBoundingClientRect(), offset = size.left - canvas.getBoundingClientRect().left + canvas.scrollLeft;
     const x = px * scale(), y = py * scale(), onRight = x + readout.offsetWidth + 24 > size.width;
     readout.style.left = `${Math.max(0, offset + x + (onRight ? -readout.offsetWidth - 14 : 14))}px`;
     readout.style.top = `${Math.max(0, Math.min(y - readout.offsetHeight / 2, size.height - readout.offsetHeight))}px`;
@@ -112,15 +112,18 @@ for (const figure of all("figure")) {
     if (!found.length) return hide();
     const apart = y === undefined ? far : off, closest = found.reduce((a, b) => apart(b.point) < apart(a.point) ? b : a);
     at = closest.point;
-    const [px, py] = [toX(at[0]), toY(at[1])], along = point => shown(point[0], 5);
+    const [px, py] = [toX(at[0]), toY(at[1])], told = point => shown(point[0], 5);
     layer.replaceChildren();
     cross(px, py);
     for (const { point, series } of found) layer.append(tag("circle", { cx: toX(point[0]), cy: toY(point[1]), r: 4.5, style: `fill:${series.colour};stroke:var(--paper);stroke-width:1.5` }));
     const name = plot.names[at[0]] || named_value(plot.x, at[0]) + (Math.abs(px - x) > 1 ? ", nearest point" : "");
     const said = ({ point, series: { label } }) => `${label ? label + ": " : ""}${shown(point[1], 5)} ${plot.y.unit}`
-      + (along(point) === along(at) ? "" : ` at ${along(point)} ${plot.x.unit}`);
-    tell(px, py, [row(name), ...found.sort((a, b) => toY(a.point[1]) - toY(b.point[1])).map(entry =>
-      row(said(entry), entry.series.colour, entry === closest && found.length > 1))]);
+      + (told(point) === told(at) ? "" : ` at ${told(point)} ${plot.x.unit}`);
+    // No more rows than there is room for: those that are nearest.
+    const upwards = ({ point }) => toY(point[1]), most = Math.min(10, canvas.clientHeight / 18 - 3);
+    const left_out = found.sort((a, b) => Math.abs(upwards(a) - py) - Math.abs(upwards(b) - py)).splice(most).length;
+    tell(px, py, [row(name), ...found.sort((a, b) => upwards(a) - upwards(b)).map(entry =>
+      row(said(entry), entry.series.colour, entry === closest && found.length > 1)), ...left_out ? [row(left_out + " more")] : []]);
   };
   const where = event => {
     const size = svg.getBoundingClientRect();
@@ -167,7 +170,7 @@ for (const figure of all("figure")) {
     event.preventDefault();
     const points = plot.cells ? plot.cells.x.map(x => [x, plot.cells.y[plot.cells.y.length >> 1]]) : series().flatMap(series => series.points);
     const stops = [...new Set(points.filter(inside).map(point => point[0]))].sort((a, b) => a - b);
-    if (!stops.length) return;
+    if (!stops.length) return hide();
     const next = Math.max(0, Math.min(stops.length - 1, stop + step));
     read(toX(stops[next]), plot.cells ? top + height / 2 : undefined);
     stop = next;

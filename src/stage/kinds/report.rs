@@ -197,7 +197,10 @@ impl Stage for Report {
         let wrong = [found.as_ref().err(), compared.as_ref().err(), marked.as_ref().err()];
         Faults::all(wrong.into_iter().flatten().cloned().flatten().collect())?;
         let (found, compared) = (found?, compared?);
-        let marked: Vec<_> = marked?.into_iter().flatten().collect();
+        let marked = marked?;
+        let said = self.figures.iter().zip(&marked).flat_map(|(figure, marks)| figure.warned(inputs, marks));
+        said.for_each(|said| (context.warn)(said.into()));
+        let marked: Vec<_> = marked.into_iter().flatten().collect();
         let count = |verdict| found.iter().filter(|finding| finding.verdict == verdict).count();
         let counts = (1..).zip(Verdict::ALL).map(|(order, verdict)| CountRow { order, verdict, count: count(verdict) });
         let counts: Vec<_> = counts.collect();

@@ -84,6 +84,8 @@ fn the_page_shows_every_verdict_and_every_figure() {
         "2.867\u{202f}µm &gt; 2.316\u{202f}µm",
         "2.738×10⁸\u{202f}N&#x2f;m",
         "holds in",
+        // 0.2 % of the 68.5 % that were published.
+        "± 0.137\u{202f}points",
         "outside the fitted range",
         "one slice stands for all",
     ] {
@@ -204,6 +206,22 @@ fn a_missing_table_is_named() {
     tables.remove("ste.curve");
     let error = report::render(&manifest, &|name| tables.get(name).cloned()).err().expect("it cannot be drawn");
     assert!(error.to_string().contains("`ste.curve`"), "{error}");
+}
+
+/// What a stage found may be nothing: the figure says so in its place, and the others are drawn.
+#[test]
+fn a_figure_without_rows_says_so() {
+    let (manifest, mut tables) = study(published(), figures());
+    let schema = tables["stiffness.curve"].schema().clone();
+    tables.insert("stiffness.curve".to_owned(), Table::from_rows(schema, Vec::new()).unwrap());
+    let Rendered { html, figures } = render(&manifest, &tables);
+    check_tags(&html);
+    let told = |text: &str| text.contains(": table stiffness.curve has no rows</text>");
+    for RenderedFigure { name, svg, .. } in &figures {
+        assert_eq!(told(svg), name == "stiffness", "{svg}");
+    }
+    let figure = html.split("id=\"figure-stiffness\"").nth(1).and_then(|rest| rest.split("</figure>").next()).unwrap();
+    assert!(figures.len() == 6 && told(figure) && !figure.contains("data-do"), "{figure}");
 }
 
 #[test]

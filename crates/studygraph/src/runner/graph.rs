@@ -226,10 +226,11 @@ fn demand(
         // Nobody looks at thousands of figures; drawing them took forty times what all else did.
         let drawn = study.nodes.iter().enumerate().filter(|(_, node)| stages[node.kind.name] <= MANY);
         for (index, node) in drawn {
-            let shown = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name).map(|(_, table)| *table);
             // One gear alone has no mesh to draw; and what nobody asked for must not make a run long.
-            let is_there = |table: &str| outputs[index].iter().any(|schema| schema.name == table);
-            for table in shown.filter(|table| is_there(table) && rows_of(node, table) <= MOST_PICTURED) {
+            let is_there = |table: &&&str| outputs[index].iter().any(|schema| schema.name == **table);
+            let pictured = pictures.tables.iter().filter(|(kind, _)| *kind == node.kind.name);
+            let shown = pictured.filter_map(|(_, tables)| tables.iter().find(is_there).copied());
+            for table in shown.filter(|table| rows_of(node, table) <= MOST_PICTURED) {
                 demands[index].tables.entry(table.to_owned()).or_default();
             }
         }

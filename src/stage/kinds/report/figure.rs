@@ -4,6 +4,7 @@
 //! not know: how anything is drawn.
 
 mod checks;
+mod warned;
 
 use super::stated_figure::{Best, How, Logarithmic, StatedFigure, StatedFigureNames, StatedMark, Width, check_map};
 use crate::stage::{Ahead, Named};

@@ -1,9 +1,9 @@
 //! The stage as a whole, on small tables, with records built by hand.
 
+use std::sync::Mutex;
 use std::sync::atomic::AtomicBool;
 
 use super::stated::{Expected, StatedProof};
-use super::stated_figure::StatedMark;
 use super::*;
 use crate::stage::Demand;
 use declare::declared::record_of;
@@ -13,6 +13,8 @@ use declare::seed::Seed;
 use declare::work::Tally;
 use studygraph::table::data::Cell;
 use studygraph::table::schema::Column;
+
+mod figures;
 
 type Fields<'a> = &'a [(&'static str, Value)];
 
@@ -66,26 +68,37 @@ fn summary() -> Table {
 }
 
 fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String> {
+    run_on(&summary(), published, figures).map(|(tables, _)| tables)
+}
+
+/// The tables of the report on one table of another stage, and what it warns of.
+fn run_on(
+    summary: &Table,
+    published: Vec<Value>,
+    figures: Vec<Value>,
+) -> Result<(Vec<Table>, Vec<String>), String> {
     let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
     if let Some(found) = stage.wrong().first() {
         return Err(format!("study: {found}"));
     }
     let tables = stage.outputs().into_iter().map(|schema| (schema.name, BTreeSet::new())).collect();
     let (demand, stop) = (Demand { tables }, AtomicBool::new(false));
+    let warned = Mutex::new(Vec::new());
     let context = Context {
         seed: Seed::of_stage(1, "report"),
         demand: &demand,
         stop: &stop,
         progress: &|_| (),
-        warn: &|_| (),
+        warn: &|warning| warned.lock().unwrap().push(String::from(warning)),
         work: &Tally::default(),
     };
-    let summary = summary();
-    let inputs = Inputs { ports: [("ste".to_owned(), vec![&summary])].into() };
-    stage.run(&context, &inputs).map_err(|failure| match failure {
+    let inputs = Inputs { ports: [("ste".to_owned(), vec![summary])].into() };
+    let tables = stage.run(&context, &inputs).map_err(|failure| match failure {
         Failure::Study(wrong) => format!("line {}: {}", wrong.first.place.unwrap().line, wrong.first),
         other => other.to_string(),
-    })
+    })?;
+    let warned = warned.lock().unwrap().clone();
+    Ok((tables, warned))
 }
 
 fn verdict(fields: Fields) -> Result<(String, Table), String> {
@@ -333,63 +346,11 @@ fn entries_that_make_no_sense_are_refused_when_the_study_is_read() {
     }
 }
 
-fn figure(changes: Fields) -> Value {
-    let mut fields = vec![
-        ("name", text("sweep")),
-        ("title", text("Sweep")),
-        ("kind", Value::Choice("line")),
-        ("table", list(vec![text("ste.summary")])),
-        ("x", text("torque")),
-        ("y", list(vec![text("peak_to_peak")])),
-        ("series", text("design")),
-        ("log", Value::Choice("none")),
-    ];
-    for (name, value) in changes {
-        match fields.iter_mut().find(|(field, _)| field == name) {
-            Some(field) => field.1 = value.clone(),
-            None => fields.push((name, value.clone())),
-        }
-    }
-    group::<StatedFigure>(&fields)
-}
-
-#[test]
-fn figures_are_checked_and_their_points_put_in_the_axes_units() {
-    let mark =
-        group::<StatedMark>(&[("x", text("50000 N mm")), ("y", text("0.002316 mm")), ("label", text("unmodified"))]);
-    let across = group::<StatedMark>(&[("y", text("2.316 um")), ("label", text("Table 2"))]);
-    let tables = run(vec![], vec![figure(&[("published", list(vec![mark, across]))])]).unwrap();
-    let (figures, marks) = (&tables[2], &tables[3]);
-    assert_eq!(figures.texts("tables"), ["ste.summary"]);
-    assert!((marks.floats("x")[0] - 50.0).abs() < 1e-12 && marks.floats("x")[1].is_nan());
-    assert_eq!(marks.floats("y")[1].to_bits(), 2.316_f64.to_bits());
-    for (changes, message) in [
-        (("x", text("torq")), "did you mean `torque`?"),
-        (("x", text("design")), "holds texts"),
-        (("y", list(vec![text("peak_to_peak"), text("seconds")])), "different units"),
-        (("where", map(&[("design", "best")])), "no row has `design=best`"),
-        (
-            ("published", list(vec![group::<StatedMark>(&[("x", text("5 um")), ("label", text("p"))])])),
-            "`5 um` is a length, but the axis shows a torque",
-        ),
-        (("published", list(vec![group::<StatedMark>(&[("label", text("p"))])])), "needs `x`, `y`, or both"),
-        (("name", text("../x")), "not a name for a file"),
-        (("name", text("NUL")), "`NUL` is not a name for a file: Windows keeps it for a device"),
-        (("table", list(vec![text("ste")])), "is not a table"),
-        (("reference", text("ste")), "is not a table"),
-        (("reference", text("ste.summary")), "the reference must be one row; table `summary` has"),
-    ] {
-        let error = run(vec![], vec![figure(&[changes])]).unwrap_err();
-        assert!(error.contains(message), "{message}: {error}");
-    }
-    assert!(run(vec![], vec![figure(&[]), figure(&[])]).unwrap_err().contains("two figures are called `sweep`"));
-}
-
 #[test]
 fn ports_ask_for_each_table_once_with_the_columns_named() {
     let published = group::<Published>(&[("cell", text(ISO)), ("value", text("1 um"))]);
     let claim = group::<Published>(&[("claim", text("a < 2")), ("with", map(&[("a", "pair.summary.ratio")]))]);
-    let stage = (KIND.build)(&record(vec![published, claim], vec![figure(&[])])).unwrap();
+    let stage = (KIND.build)(&record(vec![published, claim], vec![figures::figure(&[])])).unwrap();
     let ports = stage.inputs();
     assert_eq!(ports.iter().map(|port| port.stage.as_str()).collect::<Vec<_>>(), ["ste", "pair"]);
     assert_eq!(ports[0].wants.len(), 1);

@@ -81,7 +81,7 @@ fn every_part_is_in_the_key_and_has_a_name() {
 }
 
 static DRAWN: Program = Program {
-    pictures: Pictures { reader: "report", tables: &[("plain", "detail")] },
+    pictures: Pictures { reader: "report", tables: &[("plain", &["sketch", "detail"])] },
     kinds: &[],
     foreign: &[],
     named: &[],
