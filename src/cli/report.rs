@@ -66,9 +66,9 @@ pub(super) fn report(
         if check {
             problems.extend(said.counts.complaints().into_iter().map(|words| format!("{}: {words}", study.name)));
         }
-        problems.extend(
-            stale.map(|problem| format!("{}: {problem}; first: gearstudy run {}", study.name, studies::shell_word(&study.path))),
-        );
+        problems.extend(stale.map(|problem| {
+            format!("{}: {problem}; first: gearstudy run {}", study.name, studies::shell_word(&study.path))
+        }));
     }
     if as_json {
         shapes::answer(&Value::Array(values));

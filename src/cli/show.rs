@@ -240,7 +240,8 @@ fn shown(
     };
     let table: Table = folder.table(record).map_err(|error| Ending::Usage(error.to_string()))?;
     let names = conditions.iter().map(|condition| condition.split('=').next().unwrap_or_default().trim());
-    let mut absent = names.chain(columns.iter().map(String::as_str)).filter(|name| table.schema().position(name).is_none());
+    let mut absent =
+        names.chain(columns.iter().map(String::as_str)).filter(|name| table.schema().position(name).is_none());
     if let Some(said) = absent.find_map(|column| studies::only_on_demand(study, &format!("{name}.{column}"))) {
         return Err(Ending::Usage(said));
     }

@@ -88,8 +88,7 @@ impl Plot {
                 let (left, right) = (at(x + offset + 0.5), at(x + offset + bar - 0.5));
                 let _ = write!(path, "M{left} {}H{right}V{}H{left}Z", at(base), at(y));
             }
-            let _ =
-                write!(svg, r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#, series.look.bar());
+            let _ = write!(svg, r#"<g data-s="s{index}"><path class="bar" {} d="{path}"/></g>"#, series.look.bar());
         }
     }
 }

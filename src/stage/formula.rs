@@ -100,10 +100,9 @@ fn unreadable(text: &str, error: &EvalexprError<DefaultNumericTypes>) -> String 
         return format!("`{text}` cannot be read: {error}");
     }
     let words: Vec<&str> = text.split_whitespace().collect();
-    let begins = |word: &str, of: fn(char) -> bool| word.starts_with(of);
     let with_unit = words.windows(2).find(|pair| {
         let is_number = pair[0].trim_start_matches(['(', '-']).parse::<f64>().is_ok();
-        is_number && begins(pair[1], |first| first.is_alphabetic() || first == '%' || first == '°')
+        is_number && pair[1].starts_with(|first: char| first.is_alphabetic() || first == '°')
     });
     match with_unit {
         Some(pair) => format!(
@@ -236,6 +235,17 @@ fn truth(node: &Node<DefaultNumericTypes>, names: Names) -> Result<bool, String>
     }
 }
 
+/// The dimension of values that are added, compared or chosen from; they stand at a sign, or in a function.
+fn of_one_sort(values: &[Number], at: &str, sign: &str) -> Result<Option<Dimension>, String> {
+    let Some((first, rest)) = values.split_first() else { return Ok(None) };
+    if let Some(other) = rest.iter().find(|other| !first.fits(**other)) {
+        let (a, b) = (described(first.dimension), described(other.dimension));
+        return Err(format!("{a} and {b} do not go together {at} `{sign}`"));
+    }
+    let all = rest.iter().fold(*first, |a, &b| Number { dimension: wider(a, b), ..b });
+    Ok(Some(all.dimension))
+}
+
 fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, String> {
     let children = node.children();
     let two = |sign: &str| match children {
@@ -244,11 +254,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
     };
     let alike = |sign: &str| {
         let (a, b) = two(sign)?;
-        if a.fits(b) {
-            Ok((a, b))
-        } else {
-            Err(format!("{} and {} do not go together at `{sign}`", described(a.dimension), described(b.dimension)))
-        }
+        of_one_sort(&[a, b], "at", sign).map(|_| (a, b))
     };
     let finite = |si: f64, dimension: Dimension| {
         if si.is_finite() {
@@ -322,10 +328,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
             let values =
                 arguments(children).into_iter().map(|child| number(child, names)).collect::<Result<Vec<_>, _>>()?;
             let (first, rest) = values.split_first().ok_or_else(|| format!("`{identifier}` needs a value"))?;
-            if let Some(other) = rest.iter().find(|other| !first.fits(**other)) {
-                let (a, b) = (described(first.dimension), described(other.dimension));
-                return Err(format!("{a} and {b} do not go together in `{identifier}`"));
-            }
+            of_one_sort(&values, "in", identifier)?;
             match identifier.as_str() {
                 "abs" => finite(first.si.abs(), first.dimension),
                 "sqrt" => finite(first.si.sqrt(), power(first.dimension, Number::plain(0.5))?),

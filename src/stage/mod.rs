@@ -21,8 +21,8 @@ pub mod rows;
 pub mod simpler;
 
 pub use studygraph::stage::{
-    Ahead, Context, Curves, Demand, Estimate, Inputs, KeysOf, Kind, Named, Omission, Others, Parts, Port, RowCount,
-    Saved, Stage, Want, omission,
+    Ahead, Context, Curves, Demand, DimensionOf, Estimate, Inputs, KeysOf, Kind, Named, Omission, Others, Parts, Port,
+    RowCount, Saved, Stage, Want, omission,
 };
 
 /// The kind called `name`.

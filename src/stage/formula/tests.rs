@@ -116,11 +116,39 @@ fn units_that_do_not_go_together_are_refused() {
     assert_eq!(value("F > 0 && b > 0"), Ok(Outcome::Truth(true)));
 }
 
+/// Tier: second method; what is said of dimensions alone is what comes of the values.
+#[test]
+fn dimensions_are_known_before_values_are() {
+    let of = |name: &str| if name == "list" { Some(LENGTH) } else { given(name).map(|number| number.dimension) };
+    let texts = "F + published; F > published; b > 3; b > 0; max(F, b); min(b, published); 2 ^ F; b ^ 2; b ^ 2 / b; sqrt(F); \
+                 sqrt(b * b); sin(F); sin(angle); abs(-b); F / (b * b); mean(list) - b; mean(list + F); rms(list) / b; 1 / 2; \
+                 b > 0 || F > b; F > 0 && b > 0; !(F > k1); -F; 2 * b + published; atan(b / published)";
+    for text in texts.split(';').map(str::trim) {
+        let said = Formula::parse(text, &NAMES).unwrap().dimension(&of);
+        match (value(text), said) {
+            (Ok(Outcome::Truth(_)), Ok(None)) => {}
+            (Ok(Outcome::Number(number)), Ok(Some(dimension))) => {
+                assert!(same_dimension(number.dimension, dimension), "{text}: {dimension:?}");
+            }
+            (Err(found), Err(said)) => assert_eq!(found, said, "{text}"),
+            (found, said) => panic!("{text}: {found:?}, and before {said:?}"),
+        }
+    }
+    // A name of which nothing is known, and a power of which only the value decides.
+    let unknown =
+        |text: &str| Formula::parse(text, &NAMES).unwrap().dimension(&|name| of(name).filter(|_| name != "F"));
+    assert_eq!(unknown("F + b"), Ok(None));
+    assert_eq!(unknown("b ^ angle"), Ok(None));
+    assert!(unknown("F > 0 && k1 > b").is_err());
+}
+
 #[test]
 fn what_is_no_formula_is_refused_when_it_is_read() {
     for (text, message) in [
         ("", "empty"),
         ("F /", "a value is missing at `/`"),
+        ("b <= 3 um", "a number with a unit, `3 um`; write a name there"),
+        ("b <= (3 um)", "`with: { limit: 3 um }`"),
         ("F b", "no function `F`"),
         ("F / k3", "`k3` is not given; did you mean `k1`?"),
         ("(F", "cannot be read"),

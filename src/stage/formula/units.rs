@@ -4,8 +4,8 @@
 
 use evalexpr::{DefaultNumericTypes, Node, Operator, Value};
 
-use super::{Formula, OVER_ROWS, arguments, comparison, plain};
-use crate::stage::quantity::{Number, described, power, product, wider};
+use super::{Formula, OVER_ROWS, arguments, comparison, of_one_sort, plain};
+use crate::stage::quantity::{Number, power, product};
 use declare::units::{Dimension, RATIO};
 
 /// A dimension, and a value where one stands in the formula; NaN elsewhere. None where nothing can be said.
@@ -38,23 +38,18 @@ fn known(node: &Node<DefaultNumericTypes>, of: &dyn Fn(&str) -> Option<Dimension
         nodes.into_iter().map(|node| known(node, of)).collect::<Result<Vec<Known>, String>>()
     };
     let sides = || all(node.children().iter().collect());
-    // The dimension of all, if each is known.
-    let alike = |values: Vec<Known>, place: String| {
-        let Some(values) = values.into_iter().collect::<Option<Vec<Number>>>() else { return Ok(None) };
-        let Some((first, rest)) = values.split_first() else { return Ok(None) };
-        if let Some(other) = rest.iter().find(|other| !first.fits(**other)) {
-            let (a, b) = (described(first.dimension), described(other.dimension));
-            return Err(format!("{a} and {b} do not go together {place}"));
-        }
-        Ok(some(rest.iter().fold(*first, |a, &b| Number { dimension: wider(a, b), ..b }).dimension))
+    // Of all, if each is known.
+    let alike = |values: Vec<Known>, at: &str, sign: &str| {
+        let values: Option<Vec<Number>> = values.into_iter().collect();
+        Ok::<_, String>(values.map(|values| of_one_sort(&values, at, sign)).transpose()?.flatten().and_then(some))
     };
     match node.operator() {
         Operator::Const { value: Value::Float(si) } => Ok(Some(Number { si: *si, dimension: RATIO })),
         Operator::Const { value: Value::Int(value) } => Ok(Some(Number { si: *value as f64, dimension: RATIO })),
         Operator::VariableIdentifierRead { identifier } => Ok(of(identifier).and_then(some)),
         Operator::RootNode | Operator::Neg => Ok(sides()?.pop().flatten()),
-        Operator::Add => alike(sides()?, "at `+`".to_owned()),
-        Operator::Sub => alike(sides()?, "at `-`".to_owned()),
+        Operator::Add => alike(sides()?, "at", "+"),
+        Operator::Sub => alike(sides()?, "at", "-"),
         Operator::Mul | Operator::Div => {
             let sign = if matches!(node.operator(), Operator::Mul) { 1 } else { -1 };
             let [Some(a), Some(b)] = sides()?[..] else { return Ok(None) };
@@ -69,13 +64,12 @@ fn known(node: &Node<DefaultNumericTypes>, of: &dyn Fn(&str) -> Option<Dimension
             Ok(some(power(base.dimension, exponent)?))
         }
         operator if comparison(operator).is_some() => {
-            let place = format!("at `{}`", comparison(operator).unwrap_or_default());
-            alike(sides()?, place).map(|_| None)
+            alike(sides()?, "at", comparison(operator).unwrap_or_default()).map(|_| None)
         }
         Operator::FunctionIdentifier { identifier } => {
             let mut values = all(arguments(node.children()))?;
             match identifier.as_str() {
-                "min" | "max" => alike(values, format!("in `{identifier}`")),
+                "min" | "max" => alike(values, "in", identifier),
                 "sqrt" => match values.pop().flatten() {
                     Some(value) => Ok(some(power(value.dimension, Number::plain(0.5))?)),
                     None => Ok(None),

@@ -16,7 +16,7 @@ mod verdict;
 
 use std::collections::BTreeSet;
 
-use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, RowCount, Stage, Want};
+use crate::stage::{Ahead, Context, Demand, DimensionOf, Estimate, Inputs, Kind, Named, Port, RowCount, Stage, Want};
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::Declared;
@@ -27,7 +27,6 @@ use figure::{Figure, figures, marks};
 use operand::Operand;
 use stated::Published;
 use stated_figure::StatedFigure;
-use studygraph::stage::DimensionOf;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
 use studygraph::table::schema::Schema;

@@ -255,7 +255,11 @@ fn kind_of(pair: &KeyValue, kinds: &[&'static Kind]) -> Result<&'static Kind, Di
 fn dedented(pair: &KeyValue, (name, kind): (&str, &'static Kind)) -> Option<Diagnostic> {
     let field = kind.fields.iter().find(|field| field.name == pair.key)?;
     let message = format!("{} stands among the stages, and is a field of {} above it", quote(field.name), quote(name));
-    Some(Diagnostic::new(message).at(pair.place).help(format!("indent it as deep as the other fields of {}", quote(name))))
+    Some(
+        Diagnostic::new(message)
+            .at(pair.place)
+            .help(format!("indent it as deep as the other fields of {}", quote(name))),
+    )
 }
 
 fn kind_named(node: &Tree, kinds: &[&'static Kind]) -> Result<&'static Kind, Diagnostic> {

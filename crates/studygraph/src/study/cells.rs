@@ -4,8 +4,8 @@
 //! Which values a key column is going to have often follows from the study alone: names of designs, torques of an axis. A
 //! condition on another value is refused before anything runs. Must not know: which columns these are, or what they mean.
 
-use super::blame::{Blame, Built};
 use super::Node;
+use super::blame::{Blame, Built};
 use super::named::Keys;
 use super::words::quote;
 use crate::stage::Named;
@@ -24,7 +24,7 @@ pub fn check(built: &[Built], blame: &mut Blame) {
                 blame.put(at, found.or_at(named.place));
             }
         }
-        for found in node.stage.at_odds(&|cell| numbers(table(&keys, cell)?.1.column(&cell.column)?)) {
+        for found in node.stage.at_odds(&|cell| dimension(table(&keys, cell)?.1.column(&cell.column)?)) {
             blame.put(at, found);
         }
     }
@@ -51,10 +51,13 @@ fn table<'a>(keys: &Keys<'a>, cell: &CellName) -> Option<(&'a Node, Schema)> {
     Some((node, node.stage.outputs().into_iter().find(|schema| schema.name == cell.table)?))
 }
 
+fn holds_numbers(column: &Column) -> bool {
+    matches!(column.kind, Type::Float | Type::Integer)
+}
+
 /// What a column's numbers are of, if it holds any.
-fn numbers(column: &Column) -> Option<Dimension> {
-    let holds_numbers = matches!(column.kind, Type::Float | Type::Integer);
-    holds_numbers.then(|| parse_unit(&column.unit).ok().map(|unit| unit.dimension))?
+fn dimension(column: &Column) -> Option<Dimension> {
+    holds_numbers(column).then(|| parse_unit(&column.unit).ok().map(|unit| unit.dimension))?
 }
 
 /// The conditions that fit no column, or that no row is going to meet.
@@ -99,12 +102,14 @@ fn several(keys: &Keys, Named { cell, is_one, .. }: &Named, schema: &Schema) -> 
 /// A column without numbers, or in another unit than what it is compared with.
 fn incomparable(named: &Named, column: &Column) -> Option<Diagnostic> {
     let name = quote(&column.name);
-    let Some(own) = numbers(column) else {
+    if !holds_numbers(column) {
         return Some(Diagnostic::new(format!("column {name} holds {}s, not numbers", column.kind.name())));
-    };
-    let (dimension, text, place) = named.beside.as_ref()?;
-    let message = format!("column {name} is {}, and {} is {}", described(own), quote(text), described(*dimension));
+    }
+    let (other, text, place) = named.beside.as_ref()?;
+    let own = dimension(column)?;
+    let message = format!("column {name} is {}, and {} is {}", described(own), quote(text), described(*other));
     let without_unit = !column.unit.is_empty() && text.trim().parse::<f64>().is_ok();
-    let help = without_unit.then(|| format!("{} has no unit: for example `{} {}`", quote(text), text.trim(), column.unit));
-    (!same_dimension(own, *dimension)).then(|| Diagnostic { help, ..Diagnostic::new(message).at(*place) })
+    let help =
+        without_unit.then(|| format!("{} has no unit: for example `{} {}`", quote(text), text.trim(), column.unit));
+    (!same_dimension(own, *other)).then(|| Diagnostic { help, ..Diagnostic::new(message).at(*place) })
 }

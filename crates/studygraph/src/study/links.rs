@@ -48,7 +48,8 @@ pub fn check_references(drafts: &[Draft], blame: &mut Blame) {
             } else {
                 let found = target.and_then(|target| drafts[target].kind).map(|kind| kind.name);
                 // Of those whose kind can be read.
-                let others = drafts.iter().filter(|other| other.kind.is_some() && fits(other) && other.name != draft.name);
+                let others =
+                    drafts.iter().filter(|other| other.kind.is_some() && fits(other) && other.name != draft.name);
                 let others = others.map(|other| other.name.as_str()).collect();
                 blame.put(at, does_not_fit(reference, found, others));
             }

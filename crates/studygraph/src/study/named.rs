@@ -24,7 +24,8 @@ pub(super) fn that_stand(pairs: &[KeyValue], program: &Program) -> Vec<Node> {
     let stages = Stages { pairs, kinds: program.kinds, foreign: program.foreign };
     let built = |pair: &KeyValue| {
         let mut is_wrong = false;
-        let Draft { name, place, kind, record, references, .. } = draft(pair, stages, &belong, None, |_| is_wrong = true);
+        let Draft { name, place, kind, record, references, .. } =
+            draft(pair, stages, &belong, None, |_| is_wrong = true);
         let (kind, record) = (kind?, record?);
         // No stage is built elsewhere before all that it refers to was found.
         let is_there = |stage: &str, kinds: &[&str]| {
@@ -89,7 +90,9 @@ impl<'a> Keys<'a> {
 #[must_use]
 pub fn on_demand(nodes: &[Node]) -> Vec<(String, String)> {
     let mut all = Vec::new();
-    for (node, schema) in nodes.iter().flat_map(|node| node.stage.outputs().into_iter().map(move |schema| (node, schema))) {
+    for (node, schema) in
+        nodes.iter().flat_map(|node| node.stage.outputs().into_iter().map(move |schema| (node, schema)))
+    {
         let table = format!("{}.{}", node.name, schema.name);
         let columns = schema.columns.iter().filter(|column| column.on_demand);
         all.extend(columns.map(|column| (format!("{table}.{}", column.name), column.description.clone())));

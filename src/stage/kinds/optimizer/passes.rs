@@ -173,7 +173,9 @@ impl<'a> Run<'a> {
         if *count > 0 {
             let share = 100.0 * *count as f64 / evaluations.max(1) as f64;
             let designs = if *count == 1 { "design does" } else { "designs do" };
-            let said = format!("{count} {designs} not fit, {share:.0} % of those that were tried, and the first because {why}");
+            let said = format!(
+                "{count} {designs} not fit, {share:.0} % of those that were tried, and the first because {why}"
+            );
             (self.context.warn)(said.into());
         }
     }

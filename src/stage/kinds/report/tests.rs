@@ -72,11 +72,7 @@ fn run(published: Vec<Value>, figures: Vec<Value>) -> Result<Vec<Table>, String>
 }
 
 /// The tables of the report on one table of another stage, and what it warns of.
-fn run_on(
-    summary: &Table,
-    published: Vec<Value>,
-    figures: Vec<Value>,
-) -> Result<(Vec<Table>, Vec<String>), String> {
+fn run_on(summary: &Table, published: Vec<Value>, figures: Vec<Value>) -> Result<(Vec<Table>, Vec<String>), String> {
     let stage = (KIND.build)(&record(published, figures)).map_err(|diagnostic| format!("study: {diagnostic}"))?;
     if let Some(found) = stage.wrong().first() {
         return Err(format!("study: {found}"));

@@ -24,7 +24,9 @@ impl LoadCase<'_> {
         if !matches!(self.regime, Regime::Pairs) || !self.touches_on_line() || self.flanks.is_surface {
             return None;
         }
-        let Elasticity::Linear(stiffness) = &self.cycle.elasticity else { return self.of_plain_pairs(positions, pairs) };
+        let Elasticity::Linear(stiffness) = &self.cycle.elasticity else {
+            return self.of_plain_pairs(positions, pairs);
+        };
         let alike = Alike { stiffness, piece: self.flanks.face.one_piece()? };
         match pairs {
             1 => Some(self.alike::<1, M>(&alike, positions)),

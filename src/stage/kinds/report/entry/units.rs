@@ -3,11 +3,13 @@
 //! Must not know: values.
 
 use super::{GIVEN, Operands, Proof, ReportEntry, Subject};
+use crate::stage::DimensionOf;
 use crate::stage::formula::Formula;
 use crate::stage::kinds::report::operand::Source;
+use crate::stage::kinds::report::stated::Target;
+use crate::stage::quantity::Number;
 use declare::error::{Diagnostic, Place};
-use declare::units::{Dimension, described, same_dimension};
-use studygraph::stage::DimensionOf;
+use declare::units::Dimension;
 
 /// What helps where a bare number stands beside a quantity.
 const NAME_IT: &str = "a number in a formula has no unit; write `limit` there, and beside it `with: { limit: 3 um }`";
@@ -20,15 +22,13 @@ impl ReportEntry {
         if let Subject::Formula(formula, with) | Subject::Claim(formula, with) = &self.subject {
             match dimension(formula, with, None, self.place, of) {
                 Err(wrong) => found.push(wrong),
-                Ok(Some(own)) => {
-                    if let Some(target) = &self.published
-                        && !same_dimension(own, target.stated.dimension)
-                    {
-                        let (computed, stated) = (described(own), described(target.stated.dimension));
-                        let text = &target.stated.text;
-                        let message = format!("what is computed is {computed}, but the published `{text}` is {stated}");
-                        found.push(Diagnostic::new(message).at(target.place));
-                    }
+                Ok(Some(dimension)) => {
+                    let number = Number { si: f64::NAN, dimension };
+                    let wrong = |target: &Target| {
+                        let message = target.stated.check_dimension(number).err()?;
+                        Some(Diagnostic::new(message).at(target.place))
+                    };
+                    found.extend(self.published.as_ref().and_then(wrong));
                 }
                 Ok(None) => {}
             }

@@ -164,7 +164,8 @@ mod tests {
                         let part = f64::from(index - 200) / 200.0;
                         let open = if part < 0.0 { -alone[1] } else { alone[0] } * (1.0 - (1.0 - part.abs()).powi(3));
                         let gaps = [f64::max(-open, 0.0), f64::max(open, 0.0)];
-                        let Some(Shared { approach, slope, share, penetration }) = shared(&laws, rate, gaps, load) else {
+                        let Some(Shared { approach, slope, share, penetration }) = shared(&laws, rate, gaps, load)
+                        else {
                             assert!(part.abs() > 0.98, "{part}");
                             continue;
                         };
@@ -197,7 +198,9 @@ mod tests {
         for gap in [0.0, 1e-6, 1e-5, 3e-5, 1e-3] {
             let one = shared(&laws, 1e-12, [0.0, gap], load).expect("both hold");
             let other = shared(&[laws[1], laws[0]], 1e-12, [gap, 0.0], load).expect("both hold");
-            assert!((one.approach / other.approach - 1.0).abs() < 1e-15 && (one.slope / other.slope - 1.0).abs() < 1e-13);
+            assert!(
+                (one.approach / other.approach - 1.0).abs() < 1e-15 && (one.slope / other.slope - 1.0).abs() < 1e-13
+            );
             assert!((one.share + other.share - 1.0).abs() < 1e-15, "{gap}");
             let most = one.share.max(1.0 - one.share) * load.number;
             for (last, holds) in [(most * 1.001, true), (most * 0.999, false)] {
