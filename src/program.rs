@@ -126,6 +126,14 @@ pub fn examine_text(text: &str, path: &Path) -> Result<Study, Refused> {
     study::examine_text(text, path, &PROGRAM)
 }
 
+/// The same with something set from outside.
+///
+/// # Errors
+/// As [`study::examine_changed_text`].
+pub fn examine_changed_text(text: &str, path: &Path, settings: &Settings) -> Result<Study, Refused> {
+    study::examine_changed_text(text, path, &PROGRAM, settings)
+}
+
 /// Checks a study of this program, whose text was read from `path`.
 ///
 /// # Errors

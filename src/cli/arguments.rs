@@ -30,7 +30,8 @@ pub struct Arguments {
     pub quiet: bool,
 }
 
-const CACHE: &str = ".gearstudy/cache";
+/// Where the cache is, if nobody says it.
+pub const CACHE: &str = ".gearstudy/cache";
 /// Where results are, if nobody says it.
 pub const RESULTS: &str = "results";
 

@@ -49,10 +49,6 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
         before.path().is_none() && repository.leaves_out(&folder.join(study).join(MANIFEST))
     };
     let not_kept = |file: &Path| Repository::around(file).is_ok_and(|repository| repository.leaves_out(file));
-    let curves = |of: &str, table: &str| {
-        let all = kind(of).map_or(&[][..], |kind| kind.curves);
-        all.iter().find(|curves| curves.table == table).map(|curves| (curves.along, curves.quantity))
-    };
     let options = Options {
         studies: &studies,
         tolerances: &tolerances,
@@ -84,6 +80,12 @@ pub(super) fn diff(asked: &Differences, places: &Places, quiet: bool) -> Result<
     } else {
         Ok(())
     }
+}
+
+/// Which tables of a kind hold sampled curves, as a comparison asks for them.
+pub(super) fn curves(of: &str, table: &str) -> Option<(&'static str, &'static str)> {
+    let all = kind(of).map_or(&[][..], |kind| kind.curves);
+    all.iter().find(|curves| curves.table == table).map(|curves| (curves.along, curves.quantity))
 }
 
 /// What a run would have to renew of those studies that lie in the folder of studies, where what is compared would be

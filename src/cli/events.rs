@@ -22,8 +22,10 @@ const FORMAT: u32 = 1;
 const SELDOM: Duration = Duration::from_millis(200);
 
 /// Watches one study.
-pub(super) struct Lines {
+pub(super) struct Lines<'a> {
     study: String,
+    /// Where events go.
+    say: &'a (dyn Fn(&Value) + Sync),
     running: Mutex<BTreeMap<String, Running>>,
 }
 
@@ -54,7 +56,8 @@ pub(super) fn ended(result: &Result<(), Ending>) {
     line(&value);
 }
 
-impl Lines {
+impl Lines<'static> {
+    /// Of a study that begins to run.
     pub(super) fn of(study: &Study) -> Self {
         line(&json!({
             "event": "started", "format": FORMAT, "program": PROGRAM.about.version, "study": study.name,
@@ -65,12 +68,19 @@ impl Lines {
 
     /// Of something that is announced elsewhere.
     pub(super) fn named(study: &str) -> Self {
-        Self { study: study.to_owned(), running: Mutex::default() }
+        Lines::telling(study, &line)
+    }
+}
+
+impl<'a> Lines<'a> {
+    /// For somebody who reads no lines.
+    pub(super) fn telling(study: &str, say: &'a (dyn Fn(&Value) + Sync)) -> Self {
+        Self { study: study.to_owned(), say, running: Mutex::default() }
     }
 
     /// A study has run; `said` of its results as they are now.
     pub(super) fn finished(&self, stages: usize, ran: usize, seconds: f64, folder: &Folder, said: &Counts) {
-        line(&json!({
+        (self.say)(&json!({
             "event": "finished", "study": self.study, "stages": stages, "ran": ran, "seconds": seconds,
             "results": folder.path().to_string_lossy(), "page": pages::path(folder).to_string_lossy(),
             "verdicts": json::verdicts(&said.verdicts), "comparisons": json::verdicts(&said.comparisons),
@@ -80,7 +90,7 @@ impl Lines {
 
     /// Something that a reader may want to know, and that is no event of a stage.
     pub(super) fn note(&self, message: &str) {
-        line(&json!({ "event": "note", "study": self.study, "message": message }));
+        (self.say)(&json!({ "event": "note", "study": self.study, "message": message }));
     }
 
     fn running(&self) -> MutexGuard<'_, BTreeMap<String, Running>> {
@@ -89,7 +99,7 @@ impl Lines {
 
     fn state(&self, stage: &str, state: &str, why: Option<&str>) {
         let seconds = self.running().remove(stage).map(|running| running.since.elapsed().as_secs_f64());
-        line(&json!({
+        (self.say)(&json!({
             "event": "stage", "study": self.study, "stage": stage, "state": state, "why": why, "seconds": seconds,
         }));
     }
@@ -102,18 +112,18 @@ impl Lines {
         }
         of_stage.told = Some(Instant::now());
         let elapsed = of_stage.since.elapsed().as_secs_f64();
-        line(&json!({
+        (self.say)(&json!({
             "event": "progress", "study": self.study, "stage": stage, "share": share, "seconds": elapsed,
             "seconds_left": left(share, elapsed, elapsed),
         }));
     }
 
     fn warned(&self, stage: Option<&str>, message: &str) {
-        line(&json!({ "event": "warning", "study": self.study, "stage": stage, "message": message }));
+        (self.say)(&json!({ "event": "warning", "study": self.study, "stage": stage, "message": message }));
     }
 }
 
-impl Observer for Lines {
+impl Observer for Lines<'_> {
     fn event(&self, event: &Event<'_>) {
         match event {
             Event::Hit { stage } => self.state(stage, "hit", None),
@@ -125,7 +135,7 @@ impl Observer for Lines {
             Event::Progressed { stage, share } => self.progressed(stage, *share),
             Event::Warned { stage, message } => self.warned(Some(stage), message),
             Event::Publishing { file } => {
-                line(&json!({ "event": "writing", "study": self.study, "file": file }));
+                (self.say)(&json!({ "event": "writing", "study": self.study, "file": file }));
             }
             Event::Finished { stage, .. } => self.state(stage, "done", None),
             Event::Failed { stage, fault } => self.state(stage, "failed", Some(&fault.to_string())),

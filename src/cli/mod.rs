@@ -7,6 +7,7 @@ pub mod arguments;
 mod complete;
 mod diff;
 pub mod draw;
+pub mod embedded;
 mod engine;
 mod events;
 mod gc;

@@ -65,20 +65,20 @@ pub(super) fn options(selection: &Selection, how: &How) -> Result<Options, Endin
         Some(names) if names.is_empty() => Force::All,
         Some(names) => Force::Stages(names.iter().cloned().collect()),
     };
-    let wanted = selection.want.iter().map(|name| wanted(name)).collect::<Result<_, _>>()?;
+    let wanted = selection.want.iter().map(|name| wanted(name).map_err(Ending::Usage)).collect::<Result<_, _>>()?;
     let (jobs, keep_going, limits) = (how.jobs.unwrap_or(0), how.keep_going, limits(&how.limits));
     Ok(Options { only: selection.only.clone(), force, wanted, jobs, keep_going, limits, ..Options::default() })
 }
 
-fn wanted(name: &str) -> Result<Wanted, Ending> {
+/// # Errors
+/// As [`options`].
+pub(super) fn wanted(name: &str) -> Result<Wanted, String> {
     let mut parts = name.split('.').map(str::to_owned);
     match (parts.next(), parts.next(), parts.next(), parts.next()) {
         (Some(stage), Some(table), column, None) => {
             Ok(Wanted { stage, want: Want { table, columns: column.into_iter().collect() } })
         }
-        _ => Err(Ending::Usage(format!(
-            "`{name}` is not a table or column; write `stage.table` or `stage.table.column`"
-        ))),
+        _ => Err(format!("`{name}` is not a table or column; write `stage.table` or `stage.table.column`")),
     }
 }
 
@@ -233,7 +233,7 @@ fn summed_up(study: &Study, outcome: &Outcome, folder: &Folder, verdicts: Option
 }
 
 /// A plan writes nothing: where there is no cache yet, an empty one elsewhere stands for it.
-fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, Ending> {
+pub(super) fn plan_of(study: &Study, places: &Places, options: &Options) -> Result<Plan, Ending> {
     let elsewhere;
     let root = if places.cache.exists() {
         places.cache.as_path()

@@ -7,29 +7,28 @@ mod article;
 mod construction;
 mod drawn;
 mod meshing;
+pub mod stated;
 mod valid;
-
-use std::f64::consts::FRAC_PI_4;
 
 use crate::stage::designs::Elements;
 use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, KeysOf, Kind, Port, RowCount, Saved, Stage, names, pair};
 use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults, Place};
 use declare::record::Record;
-use declare::units::{ANGLE, LENGTH};
+use declare::units::LENGTH;
 use declare::work::Work;
 use declare::{Declared, Words};
 use drawn::Drawn;
-use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
+use gearmesh::gear::geometry::error::{GeometryError, Subject};
 use gearmesh::gear::geometry::outline::Outline;
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
-use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::outline::tip;
 use gearmesh::gear::geometry::validity::Mating;
-use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
-use gearmesh::gear::material::Material;
+use gearmesh::gear::geometry::{Gear, GearPair, Side};
 use gearmesh::gear::modification::Design;
 use gearmesh::gear::work::OUTLINES;
+use stated::{StatedGear, StatedGears};
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::Schema;
 
@@ -54,57 +53,11 @@ gear: { teeth: 48, face_width: 18 mm, bore_radius: 38.823 mm }
 /// Two involute spur gears on their centre distance, or one alone: radii, contact ratio, full profiles.
 #[derive(Debug, Declared)]
 struct Stated {
-    /// Module m.
-    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, example = "3 mm")]
-    pub module: f64,
-    /// Pressure angle α of the basic rack.
-    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, default = "20 deg")]
-    pub pressure_angle: f64,
-    /// Basic rack that cuts both gears, in modules (ISO 53).
-    #[declared(default = "{}")]
-    pub rack: Rack,
-    /// Material of both gears.
-    #[declared(default = "{}")]
-    pub material: Material,
-    /// The gear the torque is given on.
-    pub pinion: StatedGear,
-    /// The mating gear; without it the pinion is a gear alone, to be drawn.
-    pub gear: Option<StatedGear>,
-    /// Centre distance a_w; zero backlash when it is not given.
-    #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH, example = "90 mm")]
-    pub centre_distance: Option<f64>,
+    #[declared(flatten)]
+    pub gears: StatedGears,
     /// The full profiles, as the tables `outline`, `junctions`, `validity` and `mesh_drawing` have them.
     #[declared(default = "{}")]
     pub outline: StatedOutline,
-}
-
-/// One of the gears.
-#[derive(Debug, Declared)]
-struct StatedGear {
-    /// Number of teeth z.
-    #[declared(minimum = 4, maximum = 10_000, example = "24")]
-    pub teeth: u32,
-    /// Face width b.
-    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, example = "20 mm")]
-    pub face_width: f64,
-    /// Radius of the bore, where the body is clamped.
-    #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
-    pub bore_radius: f64,
-    /// Profile shift coefficient x.
-    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
-    pub profile_shift: f64,
-    /// Tip radius r_a, when it is not m(z/2 + h_aP* + x).
-    #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH, example = "39 mm")]
-    pub tip_radius: Option<f64>,
-    /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
-    #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
-    pub tip_shortening: Option<f64>,
-    /// Root of this gear's teeth in its outline, when it is not the common one.
-    pub root: Option<Box<dyn Root>>,
-    /// Corners of this gear's tips, when they are not the common ones.
-    pub tip: Option<Box<dyn tip::Stated>>,
-    /// Material of this gear, when it is not the common one.
-    pub material: Option<Material>,
 }
 
 /// The full profiles.
@@ -149,58 +102,29 @@ struct Geometry {
 
 /// Where the study states what an error is about.
 fn place_of(error: &GeometryError, record: &Record) -> Place {
-    let (names, own) = (Stated::NAMES, StatedGear::NAMES);
-    let inside = |group, field| record.inside(group).place_of(field);
-    let gear = if error.side == Some(Side::Gear) { names.gear } else { names.pinion };
+    let (outline, own) = (record.inside(Stated::NAMES.outline), StatedOutline::NAMES);
     match error.subject() {
-        Subject::Parameter(parameter) => match parameter {
-            Parameter::Teeth => inside(gear, own.teeth),
-            Parameter::ProfileShift => inside(gear, own.profile_shift),
-            Parameter::TipRadius => inside(gear, own.tip_radius),
-            Parameter::FaceWidth => inside(gear, own.face_width),
-            Parameter::BoreRadius => inside(gear, own.bore_radius),
-            Parameter::Module => record.place_of(names.module),
-            Parameter::PressureAngle => record.place_of(names.pressure_angle),
-            Parameter::CentreDistance => record.place_of(names.centre_distance),
-            Parameter::RackAddendum => inside(names.rack, Rack::NAMES.addendum),
-            Parameter::RackDedendum => inside(names.rack, Rack::NAMES.dedendum),
-            Parameter::RackTipRadius => inside(names.rack, Rack::NAMES.tip_radius),
-            Parameter::YoungsModulus => inside(names.material, Material::NAMES.youngs_modulus),
-            Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
-        },
-        Subject::Root => inside(names.outline, StatedOutline::NAMES.root),
-        Subject::Tip if record.inside(gear).entry(own.tip).is_some() => inside(gear, own.tip),
-        Subject::Tip => inside(names.outline, StatedOutline::NAMES.tip),
-        Subject::Flank => inside(names.outline, StatedOutline::NAMES.flank),
+        Subject::Root => outline.place_of(own.root),
+        Subject::Tip if !StatedGears::says_tip(error, record) => outline.place_of(own.tip),
+        Subject::Flank => outline.place_of(own.flank),
+        Subject::Parameter(_) | Subject::Tip => StatedGears::place_of(error, record),
     }
 }
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let refused = |error: &GeometryError| Diagnostic::new(error.to_string()).at(place_of(error, record));
-    let given = [(Side::Pinion, Some(&stated.pinion)), (Side::Gear, stated.gear.as_ref())];
-    let given = || given.into_iter().filter_map(|(side, gear)| Some((side, gear?)));
-    for (side, gear) in given() {
-        if gear.tip_radius.is_some() && gear.tip_shortening.is_some() {
-            return Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
-                .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
-                .help("give one of them")
-                .into());
-        }
-    }
-    let pinion = stated.specification(&stated.pinion);
-    let (pair, design, built) = if let Some(gear) = &stated.gear {
-        let tips = [stated.tip(&stated.pinion), stated.tip(gear)];
-        let pair = GearPair::with_tips([pinion, stated.specification(gear)], tips, stated.centre_distance)
-            .map_err(|error| refused(&error))?;
+    let gears = &stated.gears;
+    gears.check(record)?;
+    let common = stated.outline.tip.tip();
+    let (pair, design, built) = if let Some(pair) = gears.pair(common).transpose().map_err(|error| refused(&error))? {
         let flank = stated.outline.flank.as_ref().map(Elements::template).transpose()?;
         let design = flank.map_or(Ok(Design::default()), |flank| flank.design(&pair, &[]))?;
         let built = vec![pair.pinion.clone(), pair.gear.clone()];
         (Some(pair), design, built)
     } else {
         stated.check_alone(record)?;
-        let gear = Gear::new(&pinion).and_then(|gear| gear.with_tip(stated.tip(&stated.pinion)));
-        let gear = gear.map_err(|error| refused(&error.on(Side::Pinion)))?;
+        let gear = gears.alone(common).map_err(|error| refused(&error.on(Side::Pinion)))?;
         (None, Design::default(), vec![gear])
     };
     let options = &stated.outline;
@@ -212,7 +136,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
             .map_err(|error| refused(&error.on(side)))?;
         Ok(Drawn { side, gear, outline })
     };
-    let gears = given().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
+    let gears = gears.each().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
     let density = Density { points: options.points, chord_error: options.chord_error };
     Ok(Box::new(Geometry { pair, gears, density, teeth: options.teeth }))
 }
@@ -225,36 +149,15 @@ impl Stated {
                 .at(record.place_of(field))
                 .help("add the mating gear as `gear`, or leave this out"))
         };
-        if self.centre_distance.is_some() {
-            return refused(record, Self::NAMES.centre_distance, "a gear alone has no centre distance");
+        if self.gears.centre_distance.is_some() {
+            let field = StatedGears::NAMES.centre_distance;
+            return refused(record, field, "a gear alone has no centre distance");
         }
         if self.outline.flank.is_some() {
             let why = "a modification is laid out on the flank down to where the mate's tip reaches";
             return refused(record.inside(Self::NAMES.outline), StatedOutline::NAMES.flank, why);
         }
         Ok(())
-    }
-
-    fn tip(&self, gear: &StatedGear) -> Tip {
-        gear.tip.as_ref().unwrap_or(&self.outline.tip).tip()
-    }
-
-    fn specification(&self, gear: &StatedGear) -> Specification {
-        let (module, rack) = (self.module, self.rack);
-        Specification {
-            teeth: gear.teeth,
-            module,
-            pressure_angle: self.pressure_angle,
-            profile_shift: gear.profile_shift,
-            rack,
-            tip_radius: gear.tip_radius.or_else(|| {
-                let height = rack.addendum + gear.profile_shift - gear.tip_shortening?;
-                Some(module * (0.5 * f64::from(gear.teeth) + height))
-            }),
-            face_width: gear.face_width,
-            bore_radius: gear.bore_radius,
-            material: gear.material.unwrap_or(self.material),
-        }
     }
 }
 

@@ -61,6 +61,16 @@ struct Stiffness {
     #[declared(kinds = ["geometry"])]
     pub pair: String,
     #[declared(flatten)]
+    pub deflection: Deflection,
+    /// Positions per base pitch; the ends of contact come on top.
+    #[declared(minimum = 8, maximum = 100_000, default = "64")]
+    pub positions: usize,
+}
+
+/// How a pair deflects, and how accurately that is to be known.
+#[derive(Debug, Declared)]
+pub struct Deflection {
+    #[declared(flatten)]
     pub teeth: Teeth,
     /// Whether loaded neighbours deflect each other through the gear bodies.
     #[declared(default = "body")]
@@ -72,14 +82,11 @@ struct Stiffness {
     /// it.
     #[declared(minimum = 1e-12, maximum = 0.1, dimension = RATIO, example = "0.1 %")]
     pub accuracy: Option<f64>,
-    /// Positions per base pitch; the ends of contact come on top.
-    #[declared(minimum = 8, maximum = 100_000, default = "64")]
-    pub positions: usize,
 }
 
 /// Whether a load on one tooth is felt by others.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
-enum Coupling {
+pub enum Coupling {
     /// pair stiffnesses are summed
     None,
     /// a load on one tooth moves its neighbours
@@ -94,10 +101,11 @@ const ANY_TORQUE: f64 = 1.0;
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stiffness = Stiffness::checked(record)?;
-    stiffness.teeth.check(record)?;
-    let contact = stiffness.teeth.contact();
-    if contact != ContactLaw::Linear && stiffness.torque.is_none() {
-        let said = if stiffness.teeth.contact.is_some() { "" } else { ", which goes with the method," };
+    let Deflection { teeth, torque, .. } = &stiffness.deflection;
+    teeth.check(record)?;
+    let contact = teeth.contact();
+    if contact != ContactLaw::Linear && torque.is_none() {
+        let said = if teeth.contact.is_some() { "" } else { ", which goes with the method," };
         return Err(Diagnostic::new(format!(
             "`contact: {}`{said} needs a `torque`: the stiffness depends on the load",
             contact.word()
@@ -222,10 +230,18 @@ fn stress_rows(stresses: Vec<RootStress>) -> Vec<StressRow> {
     stresses.into_iter().map(numbered).collect()
 }
 
-impl Stiffness {
-    fn assumptions(&self) -> Assumptions {
+impl Deflection {
+    /// What the method is to assume.
+    #[must_use]
+    pub fn assumptions(&self) -> Assumptions {
         let (torque, accuracy) = (self.torque, self.accuracy);
         Assumptions { torque, accuracy, ..self.teeth.assumptions(self.coupling == Coupling::Body) }
+    }
+}
+
+impl Stiffness {
+    fn assumptions(&self) -> Assumptions {
+        self.deflection.assumptions()
     }
 
     fn settings(&self) -> Settings {
@@ -233,7 +249,7 @@ impl Stiffness {
     }
 
     fn root_name(&self) -> &str {
-        if self.teeth.method.whole_pair() { "none" } else { self.teeth.root.word() }
+        if self.deflection.teeth.method.whole_pair() { "none" } else { self.deflection.teeth.root.word() }
     }
 }
 
@@ -250,7 +266,7 @@ impl Stage for Stiffness {
     fn outputs(&self) -> Vec<Schema> {
         let mut schemas = Vec::from(codec::schemas());
         schemas.extend([curve().schema(), summary().schema(), mesh().schema(), cost().schema(), iso().schema()]);
-        if self.teeth.method.root_stresses().is_some() {
+        if self.deflection.teeth.method.root_stresses().is_some() {
             schemas.extend([root_stress().schema(), root_influences::schema()]);
         }
         schemas
@@ -258,14 +274,14 @@ impl Stage for Stiffness {
 
     fn lacks(&self, table: &str) -> Option<&'static str> {
         let of_roots = table == ROOT_STRESS || table == names::root_influences::TABLE;
-        (of_roots && self.teeth.method.root_stresses().is_none())
+        (of_roots && self.deflection.teeth.method.root_stresses().is_none())
             .then_some("its method knows no stress at the root; `method: finite_element` does")
     }
 
     fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
-        let foreseen = self.teeth.method.foresee(self.assumptions());
+        let foreseen = self.deflection.teeth.method.foresee(self.assumptions());
         let curve = common::curve_rows(self.settings(), 0);
-        let meshed = self.teeth.method.root_stresses().is_some();
+        let meshed = self.deflection.teeth.method.root_stresses().is_some();
         let solves = Work::of(&CONTACT_SOLVES, 2 * curve);
         let mut estimate =
             Estimate::new(false).work(&foreseen.work, foreseen.times).work(&solves, 1.0).holding(foreseen.memory);
@@ -278,7 +294,7 @@ impl Stage for Stiffness {
                 "mesh" => RowCount::exact(if meshed { 2 } else { 0 }),
                 ROOT_STRESS => RowCount::about(32),
                 names::root_influences::TABLE => {
-                    let of_roots = self.teeth.method.root_stresses();
+                    let of_roots = self.deflection.teeth.method.root_stresses();
                     RowCount::about(of_roots.map_or(0, |method| method.foresee_influences(self.assumptions())))
                 }
                 _ => RowCount::exact(1),
@@ -286,7 +302,7 @@ impl Stage for Stiffness {
             estimate = estimate.rows(demand, schema, rows);
         }
         if demand.table(ROOT_STRESS) {
-            let meshes = if self.accuracy.is_some() { 6 } else { 2 };
+            let meshes = if self.deflection.accuracy.is_some() { 6 } else { 2 };
             estimate = estimate.work(&Work::of(&MESH_FACTORISATIONS, meshes), foreseen.times);
         }
         estimate
@@ -294,17 +310,18 @@ impl Stage for Stiffness {
 
     fn left_out(&self, _demand: &Demand) -> Vec<Omission> {
         let mut omissions = Vec::new();
-        if self.teeth.method.root_stresses().is_none() {
-            let reason = format!("method `{}` needs none", self.teeth.method.name());
+        if self.deflection.teeth.method.root_stresses().is_none() {
+            let reason = format!("method `{}` needs none", self.deflection.teeth.method.name());
             let saved = Some(Saved::Fixed(&MESH_FACTORISATIONS, USUAL_FACTORISATIONS));
             omissions.push(Omission::new("finite-element mesh and factorisation", reason).saving(saved));
         }
-        if self.teeth.method.whole_pair() {
-            let why = format!("method `{}` gives the stiffness of a pair as a whole", self.teeth.method.name());
+        if self.deflection.teeth.method.whole_pair() {
+            let why =
+                format!("method `{}` gives the stiffness of a pair as a whole", self.deflection.teeth.method.name());
             for what in ["root curve", "contact law", "influence of neighbouring teeth"] {
                 omissions.push(Omission::new(what, &why));
             }
-        } else if self.coupling == Coupling::None {
+        } else if self.deflection.coupling == Coupling::None {
             omissions.push(Omission::new("influence of neighbouring teeth", "coupling is `none`"));
         }
         omissions
@@ -317,7 +334,7 @@ impl Stage for Stiffness {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let pair = pair::of(inputs)?;
         let began = Instant::now();
-        let (method, assumptions) = (&self.teeth.method, self.assumptions());
+        let (method, assumptions) = (&self.deflection.teeth.method, self.assumptions());
         let roots = method.root_stresses().filter(|_| context.demand.table(names::root_influences::TABLE));
         let tabulated = match roots {
             Some(method) => method.tabulate_with_roots(&pair, assumptions).map(|(all, roots)| (all, Some(roots))),
@@ -330,21 +347,22 @@ impl Stage for Stiffness {
         for warning in warnings {
             (context.warn)(warning.into());
         }
-        if let Some(accuracy) = self.accuracy.filter(|accuracy| error_estimate > *accuracy) {
+        if let Some(accuracy) = self.deflection.accuracy.filter(|accuracy| error_estimate > *accuracy) {
             (context.warn)(format!(
                 "the compliances are accurate to {error_estimate:.1e} with the finest settings of the method `{}`, not to \
                  {accuracy:.1e}",
-                self.teeth.method.name()
+                self.deflection.teeth.method.name()
             ).into());
         }
         let failed = |error: TableError| Failure::new(error.to_string());
         let radii = [pair.pinion.base_radius, pair.gear.base_radius];
-        let mut tables =
-            Vec::from(codec::write(&compliance, radii, self.teeth.method.name(), self.root_name()).map_err(failed)?);
+        let mut tables = Vec::from(
+            codec::write(&compliance, radii, self.deflection.teeth.method.name(), self.root_name()).map_err(failed)?,
+        );
         context.check_stop()?;
 
         let cycle = MeshCycle::new(&pair, &compliance, self.settings())?;
-        let (points, of_curve) = stiffness(&cycle, self.torque.unwrap_or(ANY_TORQUE));
+        let (points, of_curve) = stiffness(&cycle, self.deflection.torque.unwrap_or(ANY_TORQUE));
         context.work.add(&cycle.work());
         let rows: Vec<CurveRow> = (1..).zip(points).collect();
         tables.push(curve().table(&rows).map_err(failed)?);
@@ -356,11 +374,13 @@ impl Stage for Stiffness {
         }
         if context.demand.table(ISO_6336) {
             // The standard's own factors where the method is another one.
-            let method = (self.teeth.method.as_ref() as &dyn Any).downcast_ref().cloned().unwrap_or_default();
+            let method =
+                (self.deflection.teeth.method.as_ref() as &dyn Any).downcast_ref().cloned().unwrap_or_default();
             let found = iso6336::stiffness(&iso6336::Inputs::of(&pair, &method));
             tables.push(iso().table(&[found]).map_err(failed)?);
         }
-        if let Some(method) = self.teeth.method.root_stresses().filter(|_| context.demand.table(ROOT_STRESS)) {
+        if let Some(method) = self.deflection.teeth.method.root_stresses().filter(|_| context.demand.table(ROOT_STRESS))
+        {
             let (found, work) =
                 method.root_stress(&pair, self.assumptions()).map_err(|error| Failure::new(error.to_string()))?;
             context.work.add(&work);

@@ -98,16 +98,27 @@ impl<W: Write + Send> Encoder<W> {
 
     /// Where the pages of a group end depends on how its rows are handed over: all of them at once.
     fn group(&mut self, columns: &[Data], rows: Range<usize>) -> Result<(), String> {
-        let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
-        let columns = columns.iter().map(|data| array(data, rows.clone())).collect();
-        let batch = RecordBatch::try_new_with_options(Arc::clone(&self.schema), columns, &options)
-            .map_err(|error| error.to_string())?;
-        self.writer.write(&batch).map_err(|error| error.to_string())
+        self.writer.write(&batch(&self.schema, columns, rows)?).map_err(|error| error.to_string())
     }
 
     fn close(self) -> Result<(), String> {
         self.writer.close().map(|_| ()).map_err(|error| error.to_string())
     }
+}
+
+/// Some rows as Arrow has them.
+fn batch(schema: &Arc<ArrowSchema>, columns: &[Data], rows: Range<usize>) -> Result<RecordBatch, String> {
+    let options = arrow_array::RecordBatchOptions::new().with_row_count(Some(rows.len()));
+    let columns = columns.iter().map(|data| array(data, rows.clone())).collect();
+    RecordBatch::try_new_with_options(Arc::clone(schema), columns, &options).map_err(|error| error.to_string())
+}
+
+/// A table as Arrow has it, with the metadata that its Parquet file has.
+///
+/// # Errors
+/// No table known makes it fail.
+pub fn in_memory(table: &Table) -> Result<RecordBatch, String> {
+    batch(&Arc::new(arrow_schema(table.schema())), table.columns(), 0..table.rows())
 }
 
 /// # Errors

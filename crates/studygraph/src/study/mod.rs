@@ -217,5 +217,18 @@ pub fn load_text(text: &str, path: &Path, program: &'static Program) -> Result<S
 /// # Errors
 /// As [`load`].
 pub fn examine_text(text: &str, path: &Path, program: &'static Program) -> Result<Study, Refused> {
-    changes::examine(text, path, program, &Settings::default())
+    examine_changed_text(text, path, program, &Settings::default())
+}
+
+/// The same with something set from outside.
+///
+/// # Errors
+/// As [`load_changed`].
+pub fn examine_changed_text(
+    text: &str,
+    path: &Path,
+    program: &'static Program,
+    set: &Settings,
+) -> Result<Study, Refused> {
+    changes::examine(text, path, program, set)
 }

@@ -1,0 +1,228 @@
+//! Studies: read, planned, run and compared, as the command line does it.
+//!
+//! Must not know: how any of it is decided.
+
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
+
+use pyo3::exceptions::{PyKeyError, PyKeyboardInterrupt};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use serde_json::Value;
+
+use declare::error::{Diagnostic, Faults, suggest};
+use gearstudy::cli::embedded::{self, Places, Problem};
+use gearstudy::program;
+use studygraph::runner::limits::{Limits, MOST_ROWS};
+use studygraph::runner::options::{Force, Options};
+use studygraph::store::manifest::Manifest;
+use studygraph::store::results::Folder;
+use studygraph::study::{self, Settings};
+
+use crate::errors::{bug, invalid_study, refused, run_failed};
+use crate::stopping;
+use crate::tables::Table;
+
+/// A study, read and checked, and where its results lie.
+#[pyclass(frozen, subclass, module = "gearstudy._gearstudy")]
+pub struct Study {
+    study: Arc<study::Study>,
+    places: Places,
+}
+
+/// What is asked of a run beside the study.
+fn options(
+    only: Vec<String>,
+    want: &[String],
+    force: &Bound<'_, PyAny>,
+    (jobs, keep_going): (usize, bool),
+    limits: (Option<u64>, Option<u64>),
+) -> PyResult<Options> {
+    let py = force.py();
+    let force = match force.extract::<bool>() {
+        Ok(true) => Force::All,
+        Ok(false) => Force::Nothing,
+        Err(_) => Force::Stages(force.extract::<Vec<String>>()?.into_iter().collect()),
+    };
+    let wanted = want.iter().map(|name| embedded::wanted(name)).collect::<Result<_, _>>();
+    let wanted = wanted.map_err(|wrong: String| refused(py, &Diagnostic::new(wrong)))?;
+    let limits = Limits { memory: limits.0, rows: limits.1.unwrap_or(MOST_ROWS) };
+    Ok(Options { jobs, keep_going, force, only, wanted, limits, ..Options::default() })
+}
+
+/// Tells a callable of Python what happens; what it raises stops the run.
+struct Telling<'a> {
+    callable: Option<&'a Py<PyAny>>,
+    stop: &'a AtomicBool,
+    raised: Mutex<Option<PyErr>>,
+}
+
+impl Telling<'_> {
+    fn tell(&self, event: &Value) {
+        let Some(callable) = self.callable.filter(|_| !self.stop.load(Ordering::Relaxed)) else { return };
+        // None while the interpreter ends: nobody is left to be told.
+        let told = Python::try_attach(|py| callable.call1(py, (from_json(py, event)?,)).map(drop));
+        match told {
+            Some(Ok(())) => {}
+            Some(Err(error)) => {
+                self.raised.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+                self.stop.store(true, Ordering::Relaxed);
+            }
+            None => self.stop.store(true, Ordering::Relaxed),
+        }
+    }
+}
+
+/// What Python's own reader makes of it.
+fn from_json<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {
+    py.import("json")?.call_method1("loads", (value.to_string(),))
+}
+
+fn problem(py: Python<'_>, study: &study::Study, problem: Problem) -> PyErr {
+    match problem {
+        Problem::Study(wrong) => match Faults::all(wrong) {
+            Err(wrong) => invalid_study(py, &study.refused(wrong)),
+            Ok(()) => bug("a study is refused, and nothing is wrong with it"),
+        },
+        Problem::Said(message) => run_failed(py, &message),
+        Problem::Stopped => PyKeyboardInterrupt::new_err(()),
+    }
+}
+
+#[pymethods]
+impl Study {
+    #[new]
+    #[pyo3(signature = (text, path, *, set = Vec::new(), name = None, results = PathBuf::from("results"), cache = None))]
+    fn new(
+        py: Python<'_>,
+        text: Option<&str>,
+        path: PathBuf,
+        set: Vec<String>,
+        name: Option<String>,
+        results: PathBuf,
+        cache: Option<PathBuf>,
+    ) -> PyResult<Self> {
+        let settings = Settings { set, name };
+        let read = py.detach(|| match text {
+            Some(text) => program::examine_changed_text(text, &path, &settings),
+            None => program::examine(&path, &settings),
+        });
+        let study = read.map_err(|refused| invalid_study(py, &refused.error()))?;
+        Ok(Self { study: Arc::new(study), places: Places::new(results, cache) })
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.study.name
+    }
+
+    #[getter]
+    fn title(&self) -> &str {
+        &self.study.title
+    }
+
+    /// The names of its stages, and the kind of each.
+    #[getter]
+    fn stages<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for node in &self.study.nodes {
+            all.set_item(&node.name, node.kind.name)?;
+        }
+        Ok(all)
+    }
+
+    /// The folder of its results.
+    #[getter]
+    fn folder(&self) -> PathBuf {
+        self.places.folder(&self.study.name).path().to_owned()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Study({:?}, stages={})", self.study.name, self.study.nodes.len())
+    }
+
+    #[pyo3(signature = (*, only, want, force, jobs, keep_going, limit_memory, limit_rows, progress))]
+    fn _run(
+        &self,
+        py: Python<'_>,
+        only: Vec<String>,
+        want: Vec<String>,
+        force: &Bound<'_, PyAny>,
+        jobs: usize,
+        keep_going: bool,
+        limit_memory: Option<u64>,
+        limit_rows: Option<u64>,
+        progress: Option<Py<PyAny>>,
+    ) -> PyResult<()> {
+        let options = options(only, &want, force, (jobs, keep_going), (limit_memory, limit_rows))?;
+        let (ran, raised) = stopping(py, |stop| {
+            let telling = Telling { callable: progress.as_ref(), stop, raised: Mutex::default() };
+            let ran = embedded::run(&self.study, &self.places, &options, &|event| telling.tell(event), stop);
+            (ran, telling.raised.into_inner().unwrap_or_else(PoisonError::into_inner))
+        })?;
+        if let Some(raised) = raised {
+            return Err(raised);
+        }
+        ran.map_err(|found| problem(py, &self.study, found))
+    }
+
+    /// What a run would do, as `gearstudy plan --format json` has it.
+    #[pyo3(signature = (*, only, want, force))]
+    fn _plan<'py>(
+        &self,
+        py: Python<'py>,
+        only: Vec<String>,
+        want: Vec<String>,
+        force: &Bound<'py, PyAny>,
+    ) -> PyResult<Bound<'py, PyAny>> {
+        let options = options(only, &want, force, (0, false), (None, None))?;
+        let plan = py.detach(|| embedded::plan(&self.study, &self.places, &options));
+        from_json(py, &plan.map_err(|found| problem(py, &self.study, found))?)
+    }
+
+    /// What differs between the results of this study and those of another one, as `gearstudy diff --format json` has it.
+    fn _diff<'py>(&self, py: Python<'py>, before: &Self) -> PyResult<Bound<'py, PyAny>> {
+        let one = |study: &Self| study.places.folder(&study.study.name);
+        let found = py.detach(|| embedded::diff(&one(before), &one(self)));
+        from_json(py, &found.map_err(|message| run_failed(py, &message))?)
+    }
+
+    /// The names of the tables that the last run published.
+    fn _tables<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
+        let manifest = self.manifest(py)?;
+        PyList::new(py, manifest.stages.iter().flat_map(|stage| &stage.tables).map(|table| table.name.as_str()))
+    }
+
+    fn _table(&self, py: Python<'_>, name: &str) -> PyResult<Table> {
+        let manifest = self.manifest(py)?;
+        let folder = self.places.folder(&self.study.name);
+        let all = || manifest.stages.iter().flat_map(|stage| &stage.tables);
+        let Some(record) = all().find(|record| record.name == name) else {
+            let help = suggest(name, all().map(|record| record.name.as_str()).collect::<Vec<_>>());
+            return Err(PyKeyError::new_err(format!("there is no table `{name}`; {help}")));
+        };
+        let table = py.detach(|| folder.table(record)).map_err(|error| run_failed(py, &error.to_string()))?;
+        Ok(Table::new(name, table))
+    }
+
+    /// The page; none where there is none.
+    #[getter]
+    fn report(&self) -> Option<PathBuf> {
+        Some(embedded::page(&self.places.folder(&self.study.name))).filter(|path| path.is_file())
+    }
+}
+
+impl Study {
+    fn manifest(&self, py: Python<'_>) -> PyResult<Manifest> {
+        let folder: Folder = self.places.folder(&self.study.name);
+        let read = py.detach(|| folder.read_manifest()).map_err(|error| run_failed(py, &error.to_string()))?;
+        read.ok_or_else(|| run_failed(py, &format!("`{}` has no results yet; run it first", self.study.name)))
+    }
+}
+
+/// Runs the program with these words.
+#[pyfunction]
+pub fn command_line(py: Python<'_>, words: Vec<String>) -> i32 {
+    py.detach(|| gearstudy::cli::main(words.into_iter().map(Into::into)))
+}

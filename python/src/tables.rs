@@ -1,0 +1,118 @@
+//! Tables of results: to pandas, polars, pyarrow and DuckDB by the Arrow PyCapsule interface, column by column as arrays.
+//!
+//! Must not know: which study they are of.
+
+use std::sync::Arc;
+
+use arrow_array::RecordBatchIterator;
+use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use numpy::IntoPyArray;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use pyo3::types::{PyCapsule, PyDict, PyList};
+
+use declare::error::suggest;
+use studygraph::store::parquet;
+use studygraph::table::data::{Data, Table as Inner};
+
+use crate::errors::run_failed;
+
+/// A table of a stage.
+#[pyclass(frozen, module = "gearstudy._gearstudy")]
+pub struct Table {
+    name: String,
+    table: Arc<Inner>,
+}
+
+impl Table {
+    pub fn new(name: &str, table: Inner) -> Self {
+        Self { name: name.to_owned(), table: Arc::new(table) }
+    }
+}
+
+#[pymethods]
+impl Table {
+    /// `stage.table`
+    #[getter]
+    fn name(&self) -> &str {
+        &self.name
+    }
+
+    #[getter]
+    fn description(&self) -> &str {
+        &self.table.schema().description
+    }
+
+    #[getter]
+    fn columns(&self) -> Vec<&str> {
+        self.table.schema().columns.iter().map(|column| column.name.as_str()).collect()
+    }
+
+    #[getter]
+    fn keys(&self) -> Vec<&str> {
+        self.table.schema().columns.iter().filter(|column| column.key).map(|column| column.name.as_str()).collect()
+    }
+
+    /// Unit by column, of those that have one.
+    #[getter]
+    fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.told(py, |column| &column.unit)
+    }
+
+    /// Description by column.
+    #[getter]
+    fn descriptions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        self.told(py, |column| &column.description)
+    }
+
+    fn __len__(&self) -> usize {
+        self.table.rows()
+    }
+
+    fn __repr__(&self) -> String {
+        format!("Table({:?}, rows={}, columns={:?})", self.name, self.table.rows(), self.columns())
+    }
+
+    /// A column as an array, texts as a list.
+    fn __getitem__<'py>(&self, py: Python<'py>, column: &str) -> PyResult<Bound<'py, PyAny>> {
+        let Some(data) = self.table.column(column) else {
+            let help = suggest(column, self.columns());
+            return Err(PyKeyError::new_err(format!("`{}` has no column `{column}`; {help}", self.name)));
+        };
+        Ok(match data {
+            Data::Float(values) => values.clone().into_pyarray(py).into_any(),
+            Data::Integer(values) => values.clone().into_pyarray(py).into_any(),
+            Data::Flag(values) => values.clone().into_pyarray(py).into_any(),
+            Data::Text(values) => PyList::new(py, values)?.into_any(),
+        })
+    }
+
+    /// The stream of the Arrow PyCapsule interface.
+    #[pyo3(signature = (requested_schema = None))]
+    fn __arrow_c_stream__<'py>(
+        &self,
+        py: Python<'py>,
+        requested_schema: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyCapsule>> {
+        // A reader that wants other types converts: the interface lets a producer do so.
+        let _ = requested_schema;
+        let batch = parquet::in_memory(&self.table).map_err(|error| run_failed(py, &error))?;
+        let schema = batch.schema();
+        let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
+        PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
+    }
+}
+
+impl Table {
+    fn told<'py>(
+        &self,
+        py: Python<'py>,
+        what: impl Fn(&studygraph::table::schema::Column) -> &String,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let all = PyDict::new(py);
+        for column in self.table.schema().columns.iter().filter(|column| !what(column).is_empty()) {
+            all.set_item(&column.name, what(column))?;
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,169 @@
+//! Gears as somebody states them, two of them or one alone, and the pair that they are.
+//!
+//! Must not know: outlines, tables.
+
+use std::f64::consts::FRAC_PI_4;
+
+use declare::Declared;
+use declare::error::Diagnostic;
+use declare::error::Place;
+use declare::record::Record;
+use declare::units::{ANGLE, LENGTH};
+use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
+use gearmesh::gear::geometry::outline::roots::Root;
+use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
+use gearmesh::gear::material::Material;
+
+/// Two involute spur gears on their centre distance, or one alone.
+#[derive(Debug, Declared)]
+pub struct StatedGears {
+    /// Module m.
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, example = "3 mm")]
+    pub module: f64,
+    /// Pressure angle α of the basic rack.
+    #[declared(minimum = 0.08, maximum = FRAC_PI_4, dimension = ANGLE, default = "20 deg")]
+    pub pressure_angle: f64,
+    /// Basic rack that cuts both gears, in modules (ISO 53).
+    #[declared(default = "{}")]
+    pub rack: Rack,
+    /// Material of both gears.
+    #[declared(default = "{}")]
+    pub material: Material,
+    /// The gear the torque is given on.
+    pub pinion: StatedGear,
+    /// The mating gear; without it the pinion is a gear alone, to be drawn.
+    pub gear: Option<StatedGear>,
+    /// Centre distance a_w; zero backlash when it is not given.
+    #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH, example = "90 mm")]
+    pub centre_distance: Option<f64>,
+}
+
+/// One of the gears.
+#[derive(Debug, Declared)]
+pub struct StatedGear {
+    /// Number of teeth z.
+    #[declared(minimum = 4, maximum = 10_000, example = "24")]
+    pub teeth: u32,
+    /// Face width b.
+    #[declared(minimum = 1e-6, maximum = 100.0, dimension = LENGTH, example = "20 mm")]
+    pub face_width: f64,
+    /// Radius of the bore, where the body is clamped.
+    #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
+    pub bore_radius: f64,
+    /// Profile shift coefficient x.
+    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
+    pub profile_shift: f64,
+    /// Tip radius r_a, when it is not m(z/2 + h_aP* + x).
+    #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH, example = "39 mm")]
+    pub tip_radius: Option<f64>,
+    /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
+    #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
+    pub tip_shortening: Option<f64>,
+    /// Root of this gear's teeth in its outline, when it is not the common one.
+    pub root: Option<Box<dyn Root>>,
+    /// Corners of this gear's tips, when they are not the common ones.
+    pub tip: Option<Box<dyn tip::Stated>>,
+    /// Material of this gear, when it is not the common one.
+    pub material: Option<Material>,
+}
+
+impl StatedGears {
+    /// Whether the gear that an error is about states a tip of its own.
+    #[must_use]
+    pub fn says_tip(error: &GeometryError, record: &Record) -> bool {
+        record.inside(Self::side(error)).entry(StatedGear::NAMES.tip).is_some()
+    }
+
+    fn side(error: &GeometryError) -> &'static str {
+        if error.side == Some(Side::Gear) { Self::NAMES.gear } else { Self::NAMES.pinion }
+    }
+
+    /// Where a record states what an error is about.
+    #[must_use]
+    pub fn place_of(error: &GeometryError, record: &Record) -> Place {
+        let (names, own) = (Self::NAMES, StatedGear::NAMES);
+        let inside = |group, field| record.inside(group).place_of(field);
+        let gear = Self::side(error);
+        match error.subject() {
+            Subject::Parameter(parameter) => match parameter {
+                Parameter::Teeth => inside(gear, own.teeth),
+                Parameter::ProfileShift => inside(gear, own.profile_shift),
+                Parameter::TipRadius => inside(gear, own.tip_radius),
+                Parameter::FaceWidth => inside(gear, own.face_width),
+                Parameter::BoreRadius => inside(gear, own.bore_radius),
+                Parameter::Module => record.place_of(names.module),
+                Parameter::PressureAngle => record.place_of(names.pressure_angle),
+                Parameter::CentreDistance => record.place_of(names.centre_distance),
+                Parameter::RackAddendum => inside(names.rack, Rack::NAMES.addendum),
+                Parameter::RackDedendum => inside(names.rack, Rack::NAMES.dedendum),
+                Parameter::RackTipRadius => inside(names.rack, Rack::NAMES.tip_radius),
+                Parameter::YoungsModulus => inside(names.material, Material::NAMES.youngs_modulus),
+                Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
+            },
+            Subject::Tip => inside(gear, own.tip),
+            Subject::Root | Subject::Flank => record.place,
+        }
+    }
+
+    /// Refuses fields of a gear that say the same.
+    ///
+    /// # Errors
+    /// Which of them, with its place in `record`.
+    pub fn check(&self, record: &Record) -> Result<(), Diagnostic> {
+        let twice = self.each().find(|(_, gear)| gear.tip_radius.is_some() && gear.tip_shortening.is_some());
+        twice.map_or(Ok(()), |(side, _)| {
+            Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
+                .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
+                .help("give one of them"))
+        })
+    }
+
+    /// The pinion, and the gear of a pair.
+    pub fn each(&self) -> impl Iterator<Item = (Side, &StatedGear)> {
+        [(Side::Pinion, Some(&self.pinion)), (Side::Gear, self.gear.as_ref())]
+            .into_iter()
+            .filter_map(|(side, gear)| Some((side, gear?)))
+    }
+
+    /// The pair, none of a gear alone; `common` is the tip of a gear that states none.
+    #[must_use]
+    pub fn pair(&self, common: Tip) -> Option<Result<GearPair, GeometryError>> {
+        let gear = self.gear.as_ref()?;
+        let gears = [&self.pinion, gear];
+        let (specifications, tips) = (gears.map(|gear| self.specification(gear)), gears.map(|gear| gear.tip(common)));
+        Some(GearPair::with_tips(specifications, tips, self.centre_distance))
+    }
+
+    /// The pinion without a mate.
+    ///
+    /// # Errors
+    /// When it cannot be.
+    pub fn alone(&self, common: Tip) -> Result<Gear, GeometryError> {
+        Gear::new(&self.specification(&self.pinion)).and_then(|gear| gear.with_tip(self.pinion.tip(common)))
+    }
+
+    fn specification(&self, gear: &StatedGear) -> Specification {
+        let (module, rack) = (self.module, self.rack);
+        Specification {
+            teeth: gear.teeth,
+            module,
+            pressure_angle: self.pressure_angle,
+            profile_shift: gear.profile_shift,
+            rack,
+            tip_radius: gear.tip_radius.or_else(|| {
+                let height = rack.addendum + gear.profile_shift - gear.tip_shortening?;
+                Some(module * (0.5 * f64::from(gear.teeth) + height))
+            }),
+            face_width: gear.face_width,
+            bore_radius: gear.bore_radius,
+            material: gear.material.unwrap_or(self.material),
+        }
+    }
+}
+
+impl StatedGear {
+    fn tip(&self, common: Tip) -> Tip {
+        self.tip.as_ref().map_or(common, |tip| tip.tip())
+    }
+}
