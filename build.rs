@@ -86,13 +86,15 @@ fn commit() -> Option<(String, bool)> {
 
 /// Debian's libhdf5 brings thirty other shared libraries along (its network driver needs curl, and that the rest), which
 /// cost every start 4 ms. Where the archive lies beside the shared library it is linked instead: the network driver is
-/// not used, so its object and curl stay out. Where anything is missing, nothing changes.
+/// not used, so its object and curl stay out. Where anything is missing, nothing changes. A development build takes the
+/// shared one: it makes Python's extension too, which the archive, at a fixed address, cannot be linked into.
 fn prefer_static_hdf5() -> io::Result<()> {
     let given = |name: &str| env::var_os(name).is_some();
     let elsewhere =
         given("HDF5_DIR") || given("CARGO_FEATURE_HDF5_STATIC") || env::var_os("HOST") != env::var_os("TARGET");
+    let is_release = env::var("PROFILE").is_ok_and(|profile| profile == "release");
     println!("cargo:rerun-if-env-changed=HDF5_DIR");
-    if elsewhere || !given("CARGO_FEATURE_HDF5") {
+    if elsewhere || !is_release || !given("CARGO_FEATURE_HDF5") {
         return Ok(());
     }
     let Ok(triplet) = Command::new("cc").arg("-print-multiarch").output() else { return Ok(()) };

@@ -296,8 +296,8 @@ pub fn declared<'py>(given: &Bound<'py, PyAny>) -> PyResult<Option<(Option<Strin
     }
     let Some(fields) = given.getattr_opt("fields")? else { return Ok(None) };
     let Ok(fields) = fields.cast_into::<PyDict>() else { return Ok(None) };
-    let name = given.getattr_opt("name")?.map(|name| name.extract()).transpose()?;
-    Ok(Some((name, fields)))
+    let name = given.getattr_opt("name")?.filter(|name| !name.is_none());
+    Ok(Some((name.map(|name| name.extract()).transpose()?, fields)))
 }
 
 /// A member of a family: its name, `{name: {fields}}`, or an object of `gearstudy.declared`; none of anything else.
