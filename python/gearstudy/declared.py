@@ -8,12 +8,13 @@ Written by python/generate from the program's own declarations; changes are made
 
 from __future__ import annotations
 
-from typing import Any, Literal, Mapping, Protocol, Sequence, Union
-
-import numpy
-import numpy.typing
+from typing import TYPE_CHECKING, Any, Literal, Mapping, Protocol, Sequence, Union
 
 from gearstudy import _gearstudy
+
+if TYPE_CHECKING:
+    import numpy
+    import numpy.typing
 
 __all__ = [
     "ArcRelief",
@@ -1006,7 +1007,7 @@ class Pair(_gearstudy.Pair):
         Material of both gears. Without it: the usual one.
     pinion : GearSpecification | Mapping[str, Any]
         The gear the torque is given on.
-    gear : GearSpecification | Mapping[str, Any], optional
+    gear : GearSpecification | Mapping[str, Any]
         The mating gear; without it the pinion is a gear alone, to be drawn.
     centre_distance : number [m], optional
         Centre distance a_w; zero backlash when it is not given. 1e-06 to 1000 m.
@@ -1017,10 +1018,10 @@ class Pair(_gearstudy.Pair):
         *,
         module: Quantity,
         pinion: GearSpecification | Mapping[str, Any],
+        gear: GearSpecification | Mapping[str, Any],
         pressure_angle: Quantity | None = None,
         rack: Rack | Mapping[str, Any] | None = None,
         material: Material | Mapping[str, Any] | None = None,
-        gear: GearSpecification | Mapping[str, Any] | None = None,
         centre_distance: Quantity | None = None,
     ) -> Pair:
         words: dict[str, Any] = dict(

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Callable, Sequence
-
-import numpy
+from typing import TYPE_CHECKING, Any, Callable, Sequence
 
 from gearstudy._gearstudy import Optimizer
 from gearstudy.declared import DifferentialEvolution, Search
 from gearstudy.errors import RunFailed
+
+if TYPE_CHECKING:
+    import numpy
+    import numpy.typing
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ def minimize(
     >>> bool(abs(found.point - [1, -2]).max() < 1e-3)
     True
     """
-    search = Optimizer(DifferentialEvolution() if method is None else method, [tuple(pair) for pair in bounds], seed=seed)
+    box = [(float(least), float(most)) for least, most in bounds]
+    search = Optimizer(DifferentialEvolution() if method is None else method, box, seed=seed)
     while not search.finished:
         points = search.ask()
         search.tell(function(points) if vectorized else [float(function(point)) for point in points])

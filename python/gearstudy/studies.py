@@ -129,17 +129,10 @@ def load(
     InvalidStudy
         With file, line and column, and in ``mistakes`` all that is wrong.
     """
-    places = {"results": Path(results), "cache": None if cache is None else Path(cache)}
-    if isinstance(study, Mapping):
-        try:
-            text = json.dumps(study, indent=1, ensure_ascii=False, allow_nan=False)
-        except (TypeError, ValueError) as error:
-            raise InvalidInput(f"the mapping cannot be a study: {error}") from error
-        path = Path("study.yaml")
-    else:
-        text, path = None, Path(study)
+    text, path = (_text(study), Path("study.yaml")) if isinstance(study, Mapping) else (None, Path(study))
     changes = [f"{path}={_written(value)}" for path, value in (set or {}).items()]
-    return Study(text, path, set=changes, name=name, **places)
+    kept = None if cache is None else Path(cache)
+    return Study(text, path, set=changes, name=name, results=Path(results), cache=kept)
 
 
 def run(
@@ -208,7 +201,7 @@ class Progress:
         if "ipykernel" in sys.modules:
             from IPython.display import display
 
-            self._display = display({"text/plain": ""}, raw=True, display_id=True)
+            self._display = display({"text/plain": ""}, raw=True, display_id=True)  # type: ignore[no-untyped-call]
         self._done = 0
 
     def __call__(self, event: Event) -> None:
@@ -234,6 +227,25 @@ class Progress:
 
 def _plain(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
+
+
+def _text(study: Mapping[str, Any]) -> str:
+    """A mapping as YAML: keys and stages on lines of their own, what is inside them as JSON, which YAML is too."""
+    lines = []
+    try:
+        for key, value in study.items():
+            if key == "stages" and isinstance(value, Mapping) and value:
+                lines.append("stages:")
+                lines += [f"  {_json(name)}: {_json(stage)}" for name, stage in value.items()]
+            else:
+                lines.append(f"{_json(key)}: {_json(value)}")
+    except (TypeError, ValueError) as error:
+        raise InvalidInput(f"the mapping cannot be a study: {error}") from error
+    return "\n".join(lines) + "\n"
+
+
+def _json(value: Any) -> str:
+    return json.dumps(value, ensure_ascii=False, allow_nan=False)
 
 
 def _written(value: Any) -> str:

@@ -216,8 +216,10 @@ fn described_value(given: &Bound<'_, PyAny>) -> String {
 /// A number that is within what a field declares.
 fn number_of(shape: &Shape, value: f64, name: &str) -> Result<Value, Diagnostic> {
     let (minimum, maximum, unit) = match *shape {
+        Shape::Quantity { dimension: RATIO, minimum, maximum } | Shape::Number { minimum, maximum } => {
+            (minimum, maximum, "")
+        }
         Shape::Quantity { dimension, minimum, maximum } => (minimum, maximum, dimension.si()),
-        Shape::Number { minimum, maximum } => (minimum, maximum, ""),
         _ => return Err(Diagnostic::new(format!("`{name}` is no number"))),
     };
     if !(minimum..=maximum).contains(&value) {

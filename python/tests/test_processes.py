@@ -1,0 +1,119 @@
+"""Threads, processes, pickles, memory: what surrounds the calls."""
+
+import copy
+import multiprocessing
+import pickle
+import resource
+import subprocess
+import sys
+import textwrap
+import threading
+
+import numpy as np
+import pytest
+
+import gearstudy as gs
+
+
+def value(stiffness, torque):
+    relief = gs.TipRelief(gear="both", amount=np.linspace(1e-6, 20e-6, 200), fraction=0.8)
+    return gs.peak_to_peak(stiffness, torque, relief, threads=2)
+
+
+@pytest.mark.parametrize("method", ["spawn", "fork"])
+def test_processes(stiffness, method):
+    # What a fork leaves behind is all there when it forks.
+    expected = [value(stiffness, torque) for torque in (40.0, 80.0)]
+    context = multiprocessing.get_context(method)
+    with context.Pool(2) as pool:
+        found = pool.starmap(value, [(stiffness, 40.0), (stiffness, 80.0)])
+    assert all((one == other).all() for one, other in zip(found, expected))
+
+
+def test_a_study_runs_in_a_forked_child(quick, tmp_path):
+    context = multiprocessing.get_context("fork")
+    child = context.Process(target=quick.run, kwargs={"force": True})
+    child.start()
+    child.join(120)
+    assert child.exitcode == 0
+
+
+def test_pickles_and_copies(pair, stiffness, relief):
+    for whole in (pair, stiffness, relief, gs.Design(pair, [relief]), gs.FiniteElement(elements_across=8)):
+        again = pickle.loads(pickle.dumps(whole))
+        assert type(again) is type(whole) and repr(again).split(" ")[0] == repr(whole).split(" ")[0]
+    other = copy.deepcopy(stiffness)
+    assert gs.peak_to_peak(other, 80.0, relief) == gs.peak_to_peak(stiffness, 80.0, relief)
+    error = pickle.loads(pickle.dumps(gs.InvalidStudy("wrong", help="so", file="a.yaml", line=3, column=4)))
+    assert str(error) == "a.yaml:3:4: wrong; so" and error.line == 3
+
+
+def test_threads_share_a_stiffness(stiffness):
+    expected = gs.peak_to_peak(stiffness, 80.0)
+    found, wrong = [], []
+
+    def call(positions):
+        try:
+            found.append(gs.transmission_error(stiffness, 80.0, positions=positions).peak_to_peak)
+        except Exception as error:  # noqa: BLE001
+            wrong.append(error)
+
+    threads = [threading.Thread(target=call, args=(64 + index,)) for index in range(16)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong and found == pytest.approx([expected] * 16, rel=1e-9)
+
+
+def test_a_search_is_one_threads():
+    search = gs.Optimizer("genetic", [(0.0, 1.0)])
+    with pytest.raises((gs.InvalidInput, RecursionError, TypeError)):
+        pickle.dumps(search)
+
+
+def test_many_calls_take_no_more_memory(stiffness):
+    """A tenth of a million calls of each kind; a leak of 100 bytes each would be 10 MB. `make bench` makes a million."""
+    relief = gs.TipRelief(gear="both", amount=12e-6, fraction=0.8)
+
+    def calls(count):
+        for _ in range(count):
+            gs.peak_to_peak(stiffness, 80.0, relief, positions=8)
+            try:
+                gs.peak_to_peak(stiffness, -1.0)
+            except gs.InvalidInput:
+                pass
+
+    calls(2_000)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    calls(10_000)
+    curve = gs.transmission_error(stiffness, 80.0, relief)
+    for _ in range(100_000):
+        curve.transmission_error  # noqa: B018
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 4_000
+
+
+def test_the_interpreter_may_end_while_something_runs(tmp_path):
+    code = """
+        import threading, gearstudy as gs, numpy as np
+        gear = lambda teeth: gs.GearSpecification(teeth=teeth, face_width=20e-3, bore_radius=10e-3)
+        stiffness = gs.Stiffness(gs.Pair(module=3e-3, pinion=gear(24), gear=gear(36)))
+        work = lambda: gs.peak_to_peak(stiffness, np.linspace(1, 100, 1_000_000), threads=2)
+        threading.Thread(target=work, daemon=True).start()
+        import time; time.sleep(0.3)
+    """
+    ended = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=60)
+    assert ended.returncode == 0 and "panic" not in ended.stderr, ended.stderr
+
+
+def test_nothing_but_numpy_is_imported(tmp_path):
+    code = """
+        import sys
+        before = set(sys.modules)
+        import gearstudy as gs
+        print(gs.minimize(lambda point: point[0], [(0.0, 1.0)], method="grid").value)
+        print(*{name.split(".")[0] for name in set(sys.modules) - before})
+    """
+    said = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=True).stdout
+    foreign = {name for name in said.split("\n")[1].split() if name not in sys.stdlib_module_names}
+    assert foreign <= {"gearstudy", "numpy"}, foreign
