@@ -276,8 +276,9 @@ impl<'a> LoadCase<'a> {
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
-        if let Some([state]) = self.together(&[position], pairs) {
-            return state;
+        let mut found = [Equilibrium::NONE];
+        if self.together(&[position], pairs, &mut found).is_some() {
+            return found[0];
         }
         self.in_general(position, pairs)
     }

@@ -14,7 +14,8 @@ impl LoadCase<'_> {
         &self,
         positions: &[f64; M],
         pairs: usize,
-    ) -> Option<[Equilibrium; M]> {
+        found: &mut [Equilibrium; M],
+    ) -> Option<()> {
         if !self.flanks.is_flat() {
             return None;
         }
@@ -23,27 +24,26 @@ impl LoadCase<'_> {
             (self.cycle.elasticity.plain_at_each(&places), self.gaps_on_line(&places))
         };
         let offset = self.flanks.offset();
-        let mut found = [Equilibrium::NONE; M];
         match pairs {
             1 => {
                 let (laws, gaps) = at(0);
                 for m in 0..M {
-                    found[m].unloaded = gaps[m] + offset;
-                    found[m].balance = self.alone_on(&laws[m])?;
+                    let balance = self.alone_on(&laws.at(m))?;
+                    found[m] = Equilibrium { unloaded: gaps[m] + offset, balance, peaks: None };
                 }
             }
             2 => {
                 let [(ones, gaps), (others, beside)] = [at(0), at(1)];
                 for m in 0..M {
                     let gap = gaps[m].min(beside[m]);
-                    found[m].unloaded = gap + offset;
-                    found[m].balance = self.both_on(&[ones[m], others[m]], [gaps[m] - gap, beside[m] - gap])?;
+                    let balance = self.both_on(&[ones.at(m), others.at(m)], [gaps[m] - gap, beside[m] - gap])?;
+                    found[m] = Equilibrium { unloaded: gap + offset, balance, peaks: None };
                 }
             }
             _ => return None,
         }
         self.count.solves(M);
-        Some(found)
+        Some(())
     }
 
     #[inline]
