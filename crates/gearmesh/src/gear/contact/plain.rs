@@ -42,6 +42,13 @@ impl<const M: usize> PlainLaws<M> {
     }
 }
 
+impl From<PlainLaw> for PlainLaws<1> {
+    #[inline]
+    fn from(law: PlainLaw) -> Self {
+        Self { totals: [law.total], rests: [law.rest], lasts: [law.last] }
+    }
+}
+
 impl PlainLaw {
     /// Of a place of which nothing is known.
     pub const NONE: Self = Self { total: 0.0, rest: 0.0, last: -1.0 };
