@@ -310,6 +310,11 @@ impl<'a> LoadCase<'a> {
         }
         let s = self.cycle.path_position(position, spring);
         let gap = self.gap(s)?;
+        if self.cycle.springs(pairs) == 2
+            && let Some(other) = self.of_plain_pair(position, 1 - spring)
+        {
+            return Some(other - gap);
+        }
         let mut nearest = None;
         let reach = self.within_reach(position, pairs, Some(spring), &mut nearest);
         if reach.springs().is_empty() {

@@ -28,6 +28,18 @@ impl LoadCase<'_> {
         Some(())
     }
 
+    /// How far one pair alone would approach at a cycle position, its gap included; nothing where there is more to it.
+    #[inline]
+    pub(super) fn of_plain_pair(&self, position: f64, spring: usize) -> Option<f64> {
+        if !self.holds_pairs_on_line() || !self.flanks.is_flat() {
+            return None;
+        }
+        let (laws, [gap]) = self.laws_and_gaps(&[position], spring);
+        let [approach, _] = self.alone_on(&laws.at(0))?;
+        self.count.solves(1);
+        Some(gap + approach)
+    }
+
     #[inline]
     fn laws_and_gaps<const M: usize>(&self, positions: &[f64; M], spring: usize) -> (PlainLaws<M>, [f64; M]) {
         let mut places = [0.0; M];

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::gear::transmission_error::load_case::Equilibrium;
+use crate::numeric::logarithm::Known;
 
 fn together<const M: usize>(loading: &LoadCase, positions: &[f64; M], pairs: usize) -> Option<[Equilibrium; M]> {
     let mut found = [Equilibrium::NONE; M];
@@ -73,6 +74,36 @@ fn pairs_of_logarithmic_laws_share_as_by_the_general_search() {
         }
     }
     assert!(100 * found > 85 * all, "{found} of {all}");
+}
+
+/// Tier: second method; how far a pair is pressed by another one that carries all of the load, from the other's law put
+/// together at its place and from gaps without copies. Next to tips of resolved contact that law is not known at once.
+#[test]
+fn one_pair_presses_another_as_its_own_law_says() {
+    let pair = pair();
+    let designs = [Design::default(), relief(&pair, 9e-6, 0.3), relief(&pair, 25e-6, 0.6)];
+    for (contact, least) in [(ContactLaw::LoadDependent, 1.0), (ContactLaw::Resolved, 0.6)] {
+        let compliance = PairCompliance { contact: Some(contact), ..varying() };
+        let cycle = cycle(&pair, &compliance);
+        let (mut quick, mut all) = (0, 0);
+        for (design, force) in designs.iter().flat_map(|design| [20.0, 700.0, 9000.0].map(|force| (design, force))) {
+            let loading = LoadCase::new(&cycle, design, torque(force));
+            let line_load = Known::new(force / cycle.face_width);
+            let zone = cycle.zones[0];
+            assert_eq!(zone.pairs, 2);
+            for (index, spring) in (1..100).flat_map(|index| [(index, 0), (index, 1)]) {
+                let position = zone.start + (zone.end - zone.start) * f64::from(index) / 100.0;
+                let [here, there] = [spring, 1 - spring].map(|spring| cycle.path_position(position, spring));
+                let [gap, beside] = [here, there].map(|s| loading.flanks.searched(s).expect("they touch on the line"));
+                let alone = cycle.elasticity.series(there, None).at_known_load(line_load.number, line_load.log).0;
+                let found = loading.pressed_by_others(position, 2, spring).expect("there is another");
+                assert!((found - (beside + alone - gap)).abs() < 1e-13 * (alone + beside + gap), "{position}");
+                quick += i32::from(loading.of_plain_pair(position, 1 - spring).is_some());
+                all += 1;
+            }
+        }
+        assert!(f64::from(quick) >= least * f64::from(all), "{contact:?}: {quick} of {all}");
+    }
 }
 
 /// Pairs of what is not alike are not put together.
