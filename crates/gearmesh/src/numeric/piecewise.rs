@@ -286,12 +286,23 @@ impl Piecewise {
             return None;
         }
         let piece = self.piece(x[0]).filter(|piece| x[M - 1] <= piece.upper)?;
-        let places = x.map(|x| (x - piece.middle) * piece.per_half);
+        let mut values = [0.0; M];
         match piece.follows {
-            Follows::Nothing => None,
-            Follows::Zero => Some([0.0; M]),
-            Follows::Few => Some(places.map(|t| few(&piece.coefficients, t))),
-            Follows::All => Some(places.map(|t| value(&piece.coefficients, t))),
+            Follows::Nothing => return None,
+            Follows::Zero => (),
+            Follows::Few => piece.each(x, &mut values, few),
+            Follows::All => piece.each(x, &mut values, value),
+        }
+        Some(values)
+    }
+}
+
+impl Piece {
+    /// The values of its polynomials at several places.
+    #[inline]
+    fn each<const M: usize>(&self, x: &[f64; M], values: &mut [f64; M], of: impl Fn(&[f64; TERMS], f64) -> f64) {
+        for m in 0..M {
+            values[m] = of(&self.coefficients, (x[m] - self.middle) * self.per_half);
         }
     }
 }

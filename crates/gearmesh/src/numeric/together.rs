@@ -17,13 +17,13 @@ const LAST_BIN: u32 = 255;
 /// Where polynomials are compared with the functions: between nodes, near both ends and near the middle.
 const PROBES: [f64; 5] = [-0.965, -0.61, 0.13, 0.61, 0.965];
 
-/// What is found of several functions at one place.
+/// What is found of several functions at several places.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Found<const N: usize> {
-    /// Of each function.
-    pub values: [f64; N],
-    /// A bound that is not copied, but kept as the least over a panel; none where there is no copy.
-    pub bound: Option<f64>,
+pub struct Found<const N: usize, const M: usize> {
+    /// At each place, of each function.
+    pub values: [[f64; N]; M],
+    /// A bound that is not copied, but kept as the least over a panel; −∞ where there is no copy.
+    pub bounds: [f64; M],
 }
 
 /// The copies.
@@ -41,7 +41,8 @@ struct Panel<const N: usize> {
     upper: f64,
     middle: f64,
     per_half: f64,
-    bound: Option<f64>,
+    /// −∞ where no polynomial follows.
+    bound: f64,
     /// Of powers of the distance from the middle, in halves of the panel; of all functions.
     coefficients: [[f64; N]; TERMS],
 }
@@ -64,21 +65,19 @@ impl<const N: usize> Together<N> {
         Self { lower, upper, per_bin: if width > 0.0 { 1.0 / width } else { 0.0 }, bins, panels }
     }
 
-    /// What they are at `x`.
-    #[must_use]
-    #[inline]
-    pub fn at(&self, x: f64) -> Found<N> {
-        self.panel(x).map_or(Found::NONE, |panel| panel.at(x))
-    }
-
     /// What they are at ascending places.
     #[must_use]
     #[inline]
-    pub fn at_each<const M: usize>(&self, places: &[f64; M]) -> [Found<N>; M] {
-        match self.panel(places[0]) {
-            Some(panel) if places[M - 1] <= panel.upper => places.map(|x| panel.at(x)),
-            _ => places.map(|x| self.at(x)),
+    pub fn at_each<const M: usize>(&self, places: &[f64; M]) -> Found<N, M> {
+        let mut found = Found { values: [[0.0; N]; M], bounds: [f64::NEG_INFINITY; M] };
+        let mut here: Option<&Panel<N>> = None;
+        for (m, &x) in places.iter().enumerate() {
+            // Mostly that of the place before.
+            here = here.filter(|panel| x <= panel.upper).or_else(|| self.panel(x));
+            let Some(panel) = here else { continue };
+            (found.values[m], found.bounds[m]) = (panel.at(x), panel.bound);
         }
+        found
     }
 
     #[inline]
@@ -93,26 +92,20 @@ impl<const N: usize> Together<N> {
     }
 }
 
-impl<const N: usize> Found<N> {
-    /// Where there is no copy.
-    const NONE: Self = Self { values: [0.0; N], bound: None };
-}
-
 impl<const N: usize> Panel<N> {
     #[inline]
-    fn at(&self, x: f64) -> Found<N> {
+    fn at(&self, x: f64) -> [f64; N] {
         let t = (x - self.middle) * self.per_half;
         let (t2, t4) = (t * t, (t * t) * (t * t));
         let t8 = t4 * t4;
         let [c0, c1, c2, c3, c4, c5, c6, c7, c8, c9, c10, c11] = &self.coefficients;
-        let values = std::array::from_fn(|n| {
+        std::array::from_fn(|n| {
             // Estrin's order: short chains of dependent operations.
             let low = (c0[n] + c1[n] * t) + (c2[n] + c3[n] * t) * t2;
             let middle = (c4[n] + c5[n] * t) + (c6[n] + c7[n] * t) * t2;
             let high = (c8[n] + c9[n] * t) + (c10[n] + c11[n] * t) * t2;
             (low + middle * t4) + high * t8
-        });
-        Found { values, bound: self.bound }
+        })
     }
 }
 
@@ -137,7 +130,7 @@ fn add<const N: usize>(
         upper,
         middle,
         per_half: if half > 0.0 { 1.0 / half } else { 0.0 },
-        bound: None,
+        bound: f64::NEG_INFINITY,
         coefficients: [[0.0; N]; TERMS],
     };
     for (n, values) in values.iter().enumerate() {
@@ -157,7 +150,7 @@ fn add<const N: usize>(
     };
     let bounds: Option<Vec<f64>> = PROBES.into_iter().chain([-1.0, 1.0]).map(follows).collect();
     if let Some(bounds) = bounds {
-        panel.bound = Some(bounds.into_iter().fold(least, f64::min));
+        panel.bound = bounds.into_iter().fold(least, f64::min);
         panels.push(panel);
     } else if halvings > 0 && middle > lower && middle < upper {
         for ends in [[lower, middle], [middle, upper]] {
@@ -181,18 +174,27 @@ mod tests {
         for index in 1..30_000 {
             let x = 1e-4 * f64::from(index);
             let (exact, bound) = function(x);
-            let Found { values, bound: Some(least) } = copies.at(x) else { continue };
-            assert!((values[0] - exact[0]).abs() < 2e-14 * exact[0].abs().max(1.0), "{x}");
-            assert!((values[1] / exact[1] - 1.0).abs() < 3e-14, "{x}");
+            let Found { values: [[one, other]], bounds: [least] } = copies.at_each(&[x]);
+            if least == f64::NEG_INFINITY {
+                continue;
+            }
+            assert!((one - exact[0]).abs() < 2e-14 * exact[0].abs().max(1.0), "{x}");
+            assert!((other / exact[1] - 1.0).abs() < 3e-14, "{x}");
             assert!(least <= bound * (1.0 + 1e-14) && least > 0.3 * bound, "{x}: {least} of {bound}");
             // Side by side, on one panel and across the next ones.
             let places = [x, (x + 1e-3).min(3.0), (x + 0.4).min(3.0)];
-            assert_eq!(copies.at_each(&places), places.map(|x| copies.at(x)), "{x}");
+            let found = copies.at_each(&places);
+            for (m, place) in places.into_iter().enumerate() {
+                let alone = copies.at_each(&[place]);
+                assert_eq!(found.values[m].map(f64::to_bits), alone.values[0].map(f64::to_bits), "{x}");
+                assert!(found.bounds[m].to_bits() == alone.bounds[0].to_bits(), "{x}");
+            }
             copied += 1;
         }
         assert!(copied > 29_800, "{copied}");
         for outside in [-1e-9, 3.0 + 1e-9, f64::NAN, 0.0, 3.0] {
-            assert!(copies.at(outside).bound.is_none(), "{outside}");
+            let found = copies.at_each(&[outside]);
+            assert!(found.bounds[0] == f64::NEG_INFINITY && found.values == [[0.0; 2]], "{outside}");
         }
     }
 
@@ -201,8 +203,8 @@ mod tests {
         let copies = Together::fit([1.0, 2.0], [1e-14], |x| ([1.0 / x], 7.0));
         for index in 0..=1000 {
             let x = 1.0 + 1e-3 * f64::from(index);
-            let found = copies.at(x.min(2.0));
-            assert!((found.values[0] * x - 1.0).abs() < 2e-14 && found.bound == Some(7.0), "{x}");
+            let Found { values: [[value]], bounds } = copies.at_each(&[x.min(2.0)]);
+            assert!((value * x - 1.0).abs() < 2e-14 && bounds[0].to_bits() == 7_f64.to_bits(), "{x}");
         }
         assert_eq!(copies.panels.len(), FIRST);
     }

@@ -19,6 +19,36 @@ pub struct PlainLaw {
     pub last: f64,
 }
 
+/// The same at several places, side by side.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlainLaws<const M: usize> {
+    /// T of each \[1/Pa\].
+    pub totals: [f64; M],
+    /// R of each, per load.
+    pub rests: [f64; M],
+    /// The load per width up to which each holds; below 0 where that is not known.
+    pub lasts: [f64; M],
+}
+
+impl<const M: usize> PlainLaws<M> {
+    /// Of places of which nothing is known.
+    pub const NONE: Self = Self { totals: [0.0; M], rests: [0.0; M], lasts: [-1.0; M] };
+
+    /// That of one of the places.
+    #[must_use]
+    #[inline]
+    pub fn at(&self, m: usize) -> PlainLaw {
+        PlainLaw { total: self.totals[m], rest: self.rests[m], last: self.lasts[m] }
+    }
+}
+
+impl From<PlainLaw> for PlainLaws<1> {
+    #[inline]
+    fn from(law: PlainLaw) -> Self {
+        Self { totals: [law.total], rests: [law.rest], lasts: [law.last] }
+    }
+}
+
 impl PlainLaw {
     /// Of a place of which nothing is known.
     pub const NONE: Self = Self { total: 0.0, rest: 0.0, last: -1.0 };

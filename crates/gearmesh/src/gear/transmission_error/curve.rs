@@ -242,6 +242,10 @@ impl LoadCase<'_> {
 
     #[inline]
     fn point(&self, position: f64, pairs: usize, state: &Equilibrium, wanted: Wanted) -> Point {
+        // What takes calls comes first, so that nothing else has to wait in memory.
+        let pressed = wanted.pressure.then(|| self.pressed(position, pairs, state));
+        let root_stress = (wanted.root_stress.then(|| self.root_stress(position, pairs, state)).flatten())
+            .map(|of_gears| of_gears.map(|root| root.stress));
         let cycle = self.cycle;
         let path_position = cycle.path_position(position, cycle.newest());
         let loads = state.balance.loads;
@@ -258,9 +262,8 @@ impl LoadCase<'_> {
             newest_load: loads[cycle.newest()],
             secant_stiffness: stiffness(self.force / state.balance.approach),
             tangent_stiffness: stiffness(state.balance.slope),
-            pressed: wanted.pressure.then(|| self.pressed(position, pairs, state)),
-            root_stress: (wanted.root_stress.then(|| self.root_stress(position, pairs, state)).flatten())
-                .map(|of_gears| of_gears.map(|root| root.stress)),
+            pressed,
+            root_stress,
         }
     }
 }

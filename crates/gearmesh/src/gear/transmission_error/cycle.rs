@@ -17,7 +17,7 @@ use super::root_stress::Roots;
 use super::trace::SpanRule;
 use crate::gear::compliance::{ContactLaw, PairCompliance, ToothCompliance};
 use crate::gear::contact::flattening::{Bodies, InSeries, Logarithmic, combined_radius};
-use crate::gear::contact::plain::PlainLaw;
+use crate::gear::contact::plain::{PlainLaw, PlainLaws};
 use crate::gear::contact::tip::{Ended, Tips};
 use crate::gear::contact::{CornerContact, SliceCoupling};
 use crate::gear::geometry::{GearPair, Side};
@@ -130,17 +130,19 @@ impl Elasticity {
     /// As far as the law of a pair is known beforehand, from A to E.
     #[inline]
     pub(super) fn plain(&self, s: f64) -> PlainLaw {
-        let [plain] = self.plain_at_each(&[s]);
-        plain
+        self.plain_at_each(&[s]).at(0)
     }
 
     /// The same at ascending places.
     #[inline]
-    pub(super) fn plain_at_each<const M: usize>(&self, places: &[f64; M]) -> [PlainLaw; M] {
-        let Self::Logarithmic { plain, .. } = self else { return [PlainLaw::NONE; M] };
-        plain.at_each(places).map(|Found { values: [total, rest], bound }| {
-            bound.map_or(PlainLaw::NONE, |last| PlainLaw { total, rest, last })
-        })
+    pub(super) fn plain_at_each<const M: usize>(&self, places: &[f64; M]) -> PlainLaws<M> {
+        let Self::Logarithmic { plain, .. } = self else { return PlainLaws::NONE };
+        let Found { values, bounds: lasts } = plain.at_each(places);
+        let mut laws = PlainLaws { lasts, ..PlainLaws::NONE };
+        for (m, of_place) in values.into_iter().enumerate() {
+            [laws.totals[m], laws.rests[m]] = of_place;
+        }
+        laws
     }
 
     /// Flanks and teeth of a pair in series, per width; of another compliance than the pair's own, if one is given.

@@ -3,9 +3,9 @@
 //! That is most of a cycle under a logarithmic law without coupling. Must not know: which positions are computed.
 
 use super::load_case::{Equilibrium, LoadCase};
-use crate::gear::contact::plain::PlainLaw;
 use crate::gear::contact::plain::shared::{Shared, shared};
-use crate::numeric::complementarity::{Balance, MOST_SPRINGS};
+use crate::gear::contact::plain::{PlainLaw, PlainLaws};
+use crate::numeric::complementarity::Balance;
 
 impl LoadCase<'_> {
     /// Equilibria at ascending cycle positions with `pairs` inside the path of contact; nothing where there is more to any.
@@ -14,58 +14,84 @@ impl LoadCase<'_> {
         &self,
         positions: &[f64; M],
         pairs: usize,
-    ) -> Option<[Equilibrium; M]> {
+        found: &mut [Equilibrium; M],
+    ) -> Option<()> {
         if !self.flanks.is_flat() {
             return None;
         }
-        let at = |spring: usize| {
-            let places = positions.map(|position| self.cycle.path_position(position, spring));
-            (self.cycle.elasticity.plain_at_each(&places), self.gaps_on_line(&places))
-        };
-        let offset = self.flanks.offset();
-        let mut found = [Equilibrium::NONE; M];
         match pairs {
-            1 => {
-                let (laws, gaps) = at(0);
-                for m in 0..M {
-                    found[m].unloaded = gaps[m] + offset;
-                    found[m].balance = self.alone_on(&laws[m])?;
-                }
-            }
-            2 => {
-                let [(ones, gaps), (others, beside)] = [at(0), at(1)];
-                for m in 0..M {
-                    let gap = gaps[m].min(beside[m]);
-                    found[m].unloaded = gap + offset;
-                    found[m].balance = self.both_on(&[ones[m], others[m]], [gaps[m] - gap, beside[m] - gap])?;
-                }
-            }
+            1 => self.of_one(positions, found)?,
+            2 => self.of_two(positions, found)?,
             _ => return None,
         }
         self.count.solves(M);
-        Some(found)
+        Some(())
     }
 
+    /// How far one pair alone would approach at a cycle position, its gap included; nothing where there is more to it.
     #[inline]
-    fn alone_on(&self, law: &PlainLaw) -> Option<Balance> {
-        let (rate, load) = (self.cycle.elasticity.rates()[0], self.line_load);
-        if !law.holds(load.number) {
+    pub(super) fn of_plain_pair(&self, position: f64, spring: usize) -> Option<f64> {
+        if !self.holds_pairs_on_line() || !self.flanks.is_flat() {
             return None;
         }
-        let [approach, rise, _] = law.rates_at(rate, load.number, load.log);
-        let mut balance = Balance { approach, slope: self.cycle.face_width / rise, ..Balance::EMPTY };
-        (balance.loads[0], balance.penetration[0]) = (self.force, approach);
-        Some(balance)
+        let (laws, [gap]) = self.laws_and_gaps(&[position], spring);
+        let [approach, _] = self.alone_on(&laws.at(0))?;
+        self.count.solves(1);
+        Some(gap + approach)
     }
 
     #[inline]
-    fn both_on(&self, laws: &[PlainLaw; 2], gaps: [f64; 2]) -> Option<Balance> {
-        let Shared { approach, slope, share, penetration } =
-            shared(laws, self.cycle.elasticity.rates()[0], gaps, self.line_load)?;
-        let (mut loads, mut penetrations) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
-        let first = share * self.force;
-        (loads[0], loads[1]) = (first, self.force - first);
-        (penetrations[0], penetrations[1]) = (penetration[0], penetration[1]);
-        Some(Balance { approach, loads, penetration: penetrations, slope: slope * self.cycle.face_width })
+    fn laws_and_gaps<const M: usize>(&self, positions: &[f64; M], spring: usize) -> (PlainLaws<M>, [f64; M]) {
+        let mut places = [0.0; M];
+        for m in 0..M {
+            places[m] = self.cycle.path_position(positions[m], spring);
+        }
+        (self.cycle.elasticity.plain_at_each(&places), self.gaps_on_line(&places))
+    }
+
+    #[inline]
+    fn of_one<const M: usize>(&self, positions: &[f64; M], found: &mut [Equilibrium; M]) -> Option<()> {
+        let (laws, gaps) = self.laws_and_gaps(positions, 0);
+        let offset = self.flanks.offset();
+        for m in 0..M {
+            let [approach, rise] = self.alone_on(&laws.at(m))?;
+            let mut balance = Balance { approach, slope: self.cycle.face_width / rise, ..Balance::EMPTY };
+            (balance.loads[0], balance.penetration[0]) = (self.force, approach);
+            found[m] = Equilibrium { unloaded: gaps[m] + offset, balance, peaks: None };
+        }
+        Some(())
+    }
+
+    /// The approach of a pair that carries all of the load, and d approach/d load per width.
+    #[inline]
+    fn alone_on(&self, law: &PlainLaw) -> Option<[f64; 2]> {
+        let (rate, load) = (self.cycle.elasticity.rates()[0], self.line_load);
+        let [approach, rise, _] = law.rates_at(rate, load.number, load.log);
+        law.holds(load.number).then_some([approach, rise])
+    }
+
+    #[inline]
+    fn of_two<const M: usize>(&self, positions: &[f64; M], found: &mut [Equilibrium; M]) -> Option<()> {
+        let (ones, near) = self.laws_and_gaps(positions, 0);
+        let (others, far) = self.laws_and_gaps(positions, 1);
+        let mut gaps = [near, far];
+        let mut smallest = [0.0; M];
+        for m in 0..M {
+            smallest[m] = near[m].min(far[m]);
+            gaps[0][m] = near[m] - smallest[m];
+            gaps[1][m] = far[m] - smallest[m];
+        }
+        let rate = self.cycle.elasticity.rates()[0];
+        let Shared { approach, slope, share } = shared(&[ones, others], rate, &gaps, self.line_load)?;
+        let offset = self.flanks.offset();
+        for m in 0..M {
+            let mut balance =
+                Balance { approach: approach[m], slope: slope[m] * self.cycle.face_width, ..Balance::EMPTY };
+            let first = share[m] * self.force;
+            (balance.loads[0], balance.loads[1]) = (first, self.force - first);
+            (balance.penetration[0], balance.penetration[1]) = (approach[m] - gaps[0][m], approach[m] - gaps[1][m]);
+            found[m] = Equilibrium { unloaded: smallest[m] + offset, balance, peaks: None };
+        }
+        Some(())
     }
 }

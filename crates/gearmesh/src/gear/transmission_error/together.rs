@@ -18,21 +18,34 @@ struct Alike<'a> {
 }
 
 impl LoadCase<'_> {
-    /// Equilibria at ascending positions with `pairs` inside the path of contact; nothing where there is more to them.
+    /// Fills in equilibria at ascending positions with `pairs` inside the path of contact; nothing of any worth where there is
+    /// more to them.
     #[inline]
-    pub(super) fn together<const M: usize>(&self, positions: &[f64; M], pairs: usize) -> Option<[Equilibrium; M]> {
-        if !matches!(self.regime, Regime::Pairs) || !self.touches_on_line() || self.flanks.is_surface {
+    pub(super) fn together<const M: usize>(
+        &self,
+        positions: &[f64; M],
+        pairs: usize,
+        found: &mut [Equilibrium; M],
+    ) -> Option<()> {
+        if !self.holds_pairs_on_line() {
             return None;
         }
         let Elasticity::Linear(stiffness) = &self.cycle.elasticity else {
-            return self.of_plain_pairs(positions, pairs);
+            return self.of_plain_pairs(positions, pairs, found);
         };
         let alike = Alike { stiffness, piece: self.flanks.face.one_piece()? };
         match pairs {
-            1 => Some(self.alike::<1, M>(&alike, positions)),
-            2 => Some(self.alike::<2, M>(&alike, positions)),
-            _ => None,
+            1 => self.alike::<1, M>(&alike, positions, found),
+            2 => self.alike::<2, M>(&alike, positions, found),
+            _ => return None,
         }
+        Some(())
+    }
+
+    /// Whether pairs hold themselves, touch on the line of action only, and have the same face at every position.
+    #[inline]
+    pub(super) fn holds_pairs_on_line(&self) -> bool {
+        matches!(self.regime, Regime::Pairs) && self.touches_on_line() && !self.flanks.is_surface
     }
 
     /// At ascending places on the line of action, where there always is one.
@@ -42,7 +55,12 @@ impl LoadCase<'_> {
     }
 
     #[inline]
-    fn alike<const N: usize, const M: usize>(&self, alike: &Alike, positions: &[f64; M]) -> [Equilibrium; M] {
+    fn alike<const N: usize, const M: usize>(
+        &self,
+        alike: &Alike,
+        positions: &[f64; M],
+        states: &mut [Equilibrium; M],
+    ) {
         self.count.solves(M);
         let (mut stiffness, mut gaps) = ([[0.0; M]; N], [[0.0; M]; N]);
         let mut smallest = [f64::INFINITY; M];
@@ -71,13 +89,13 @@ impl LoadCase<'_> {
         };
         let found = balances(responses, &gaps, self.force, above);
         let offset = self.flanks.offset();
-        std::array::from_fn(|m| {
+        for m in 0..M {
             let (mut loads, mut penetration) = ([0.0; MOST_SPRINGS], [0.0; MOST_SPRINGS]);
             for spring in 0..N {
                 (loads[spring], penetration[spring]) = (found.loads[spring][m], found.penetration[spring][m]);
             }
             let balance = Balance { approach: found.approach[m], loads, penetration, slope: found.slope[m] };
-            Equilibrium { unloaded: smallest[m] + offset, balance, peaks: None }
-        })
+            states[m] = Equilibrium { unloaded: smallest[m] + offset, balance, peaks: None };
+        }
     }
 }

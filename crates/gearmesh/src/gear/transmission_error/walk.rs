@@ -89,12 +89,10 @@ impl LoadCase<'_> {
         }
         let rows = &self.cycle.rows;
         let inside: [f64; NODES - 2] = std::array::from_fn(|node| span.position(rows, node + 1));
-        match self.together(&inside, span.pairs) {
-            Some(found) => states[1..NODES - 1].copy_from_slice(&found),
-            None => {
-                for (state, position) in states[1..NODES - 1].iter_mut().zip(inside) {
-                    *state = self.state(position, span.pairs);
-                }
+        let [_, found @ .., _] = &mut *states;
+        if self.together(&inside, span.pairs, found).is_none() {
+            for (state, position) in found.iter_mut().zip(inside) {
+                *state = self.state(position, span.pairs);
             }
         }
         if may_cut && let Some(cut) = self.change(span, states, &EACH) {

@@ -147,7 +147,9 @@ impl<'a> Outline<'a> {
 
     /// Tells the shape of every piece, and cuts waves where they turn. Parts have no break inside a piece if it is `whole`.
     fn find_pieces(&mut self, whole: bool) {
-        let mut cuts = vec![self.facing.start];
+        let mut cuts = Vec::with_capacity(self.cuts.len());
+        cuts.push(self.facing.start);
+        self.pieces.reserve(self.cuts.len());
         for ends in self.cuts.windows(2) {
             if let Some(quadratic) = if whole { self.quadratic(ends) } else { None } {
                 cuts.push(ends[1]);

@@ -1,6 +1,13 @@
 //! Equilibria at several positions at once.
 
 use super::*;
+use crate::gear::transmission_error::load_case::Equilibrium;
+use crate::numeric::logarithm::Known;
+
+fn together<const M: usize>(loading: &LoadCase, positions: &[f64; M], pairs: usize) -> Option<[Equilibrium; M]> {
+    let mut found = [Equilibrium::NONE; M];
+    loading.together(positions, pairs, &mut found).map(|()| found)
+}
 
 /// Tier: second method, to the last bit; each position alone. Over ends of reliefs and touches too, where some of the positions
 /// have one pair that carries load and others two.
@@ -17,7 +24,7 @@ fn positions_at_once_have_what_each_has_alone() {
                 let place = |index: u32| zone.start + (zone.end - zone.start) * f64::from(index) / 60.0;
                 for first in (0..=54).step_by(3) {
                     let positions: [f64; 6] = std::array::from_fn(|index| place(first + u32::try_from(index).unwrap()));
-                    let found = loading.together(&positions, zone.pairs).expect("they are alike");
+                    let found = together(&loading, &positions, zone.pairs).expect("they are alike");
                     for (position, state) in positions.into_iter().zip(found) {
                         let alone = loading.state(position, zone.pairs);
                         assert_eq!(state, alone, "{position} under {force}");
@@ -43,10 +50,10 @@ fn pairs_of_logarithmic_laws_share_as_by_the_general_search() {
             let loading = LoadCase::new(&cycle, design, torque(force));
             for zone in &cycle.zones {
                 let place = |index: u32| zone.start + (zone.end - zone.start) * f64::from(index) / 300.0;
-                for first in (0..300).step_by(2) {
-                    let positions = [first, first + 1].map(place);
+                for first in (0..300).step_by(3) {
+                    let positions = [first, first + 1, first + 2].map(place);
                     all += 1;
-                    let Some(both) = loading.together(&positions, zone.pairs) else { continue };
+                    let Some(both) = together(&loading, &positions, zone.pairs) else { continue };
                     found += 1;
                     for (position, state) in positions.into_iter().zip(both) {
                         assert_eq!(state, loading.state(position, zone.pairs), "{position} under {force}");
@@ -69,6 +76,36 @@ fn pairs_of_logarithmic_laws_share_as_by_the_general_search() {
     assert!(100 * found > 85 * all, "{found} of {all}");
 }
 
+/// Tier: second method; how far a pair is pressed by another one that carries all of the load, from the other's law put
+/// together at its place and from gaps without copies. Next to tips of resolved contact that law is not known at once.
+#[test]
+fn one_pair_presses_another_as_its_own_law_says() {
+    let pair = pair();
+    let designs = [Design::default(), relief(&pair, 9e-6, 0.3), relief(&pair, 25e-6, 0.6)];
+    for (contact, least) in [(ContactLaw::LoadDependent, 1.0), (ContactLaw::Resolved, 0.6)] {
+        let compliance = PairCompliance { contact: Some(contact), ..varying() };
+        let cycle = cycle(&pair, &compliance);
+        let (mut quick, mut all) = (0, 0);
+        for (design, force) in designs.iter().flat_map(|design| [20.0, 700.0, 9000.0].map(|force| (design, force))) {
+            let loading = LoadCase::new(&cycle, design, torque(force));
+            let line_load = Known::new(force / cycle.face_width);
+            let zone = cycle.zones[0];
+            assert_eq!(zone.pairs, 2);
+            for (index, spring) in (1..100).flat_map(|index| [(index, 0), (index, 1)]) {
+                let position = zone.start + (zone.end - zone.start) * f64::from(index) / 100.0;
+                let [here, there] = [spring, 1 - spring].map(|spring| cycle.path_position(position, spring));
+                let [gap, beside] = [here, there].map(|s| loading.flanks.searched(s).expect("they touch on the line"));
+                let alone = cycle.elasticity.series(there, None).at_known_load(line_load.number, line_load.log).0;
+                let found = loading.pressed_by_others(position, 2, spring).expect("there is another");
+                assert!((found - (beside + alone - gap)).abs() < 1e-13 * (alone + beside + gap), "{position}");
+                quick += i32::from(loading.of_plain_pair(position, 1 - spring).is_some());
+                all += 1;
+            }
+        }
+        assert!(f64::from(quick) >= least * f64::from(all), "{contact:?}: {quick} of {all}");
+    }
+}
+
 /// Pairs of what is not alike are not put together.
 #[test]
 fn what_has_more_to_it_is_left_to_others() {
@@ -76,9 +113,9 @@ fn what_has_more_to_it_is_left_to_others() {
     let logarithmic = PairCompliance { contact: Some(ContactLaw::LoadDependent), ..varying() };
     for (compliance, design) in [(coupled(), Design::default()), (logarithmic, crowned(&pair, 8e-6))] {
         let cycle = cycle(&pair, &compliance);
-        assert!(LoadCase::new(&cycle, &design, 30.0).together(&[1e-3], 2).is_none());
+        assert!(together(&LoadCase::new(&cycle, &design, 30.0), &[1e-3], 2).is_none());
     }
     let cycle = cycle(&pair, &varying());
     let design = Design::default();
-    assert!(LoadCase::new(&cycle, &design, 0.0).together(&[1e-3], 2).is_none(), "nothing is transmitted");
+    assert!(together(&LoadCase::new(&cycle, &design, 0.0), &[1e-3], 2).is_none(), "nothing is transmitted");
 }
