@@ -47,7 +47,7 @@ test: packages  ## format, lints, all tests, and the quick study run twice
 	@# One build for lints and tests, benches too: a check of its own would build most of the dependencies again. What
 	@# the cross-checks need of Python is installed meanwhile.
 	scripts/setup & python=$$!; status=0; \
-		$(LINTED) cargo test --locked --workspace --tests --benches --examples --no-run || status=$$?; \
+		$(LINTED) cargo test --locked --workspace --tests --benches --no-run || status=$$?; \
 		wait $$python; exit $$status
 	$(LINTED) cargo test --locked --workspace
 	@# The program that the tests were built with: another build would differ in features and take a minute.

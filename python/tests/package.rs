@@ -54,6 +54,7 @@ fn python_tests() {
         .env("PYTHONPATH", folder.path())
         .env("PYTHONDONTWRITEBYTECODE", "1")
         .env("GEARSTUDY_ROOT", root.parent().unwrap())
+        .env("GEARSTUDY_EXAMPLES", built().parent().unwrap().join("../examples"))
         .status()
         .unwrap_or_else(|error| panic!("{}: {error}", python.display()));
     assert!(status.success(), "python/tests");

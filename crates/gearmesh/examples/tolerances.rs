@@ -5,7 +5,7 @@
 use gearmesh::prelude::*;
 
 const SAMPLES: u32 = 1000;
-const LIMIT: f64 = 3.5e-6;
+const LIMIT: f64 = 0.9e-6;
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let gear = |teeth: u32, bore_radius: f64| Specification {

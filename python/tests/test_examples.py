@@ -1,0 +1,32 @@
+"""Notebooks are executed; what they print is what the examples in Rust print, where those are built."""
+
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from conftest import ROOT
+
+NOTEBOOKS = ["figure_4", "size_a_relief", "tolerances"]
+
+
+def printed(name, folder, kernel="python3"):
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    notebook = nbformat.read(ROOT / "examples" / f"{name}.ipynb", as_version=4)
+    assert not any(cell.get("outputs") for cell in notebook.cells), "outputs are not committed"
+    nbclient.NotebookClient(notebook, timeout=300, kernel_name=kernel, resources={"metadata": {"path": folder}}).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    return [line for output in outputs if output.get("name") == "stdout" for line in output["text"].splitlines()]
+
+
+@pytest.mark.parametrize("name", NOTEBOOKS)
+def test_notebooks(name, tmp_path):
+    lines = printed(name, tmp_path)
+    example = Path(os.environ.get("GEARSTUDY_EXAMPLES", ROOT / "target" / "debug" / "examples")) / name
+    if not example.exists():
+        pytest.skip(f"{example} is not built")
+    said = subprocess.run([example], capture_output=True, text=True, check=True).stdout.splitlines()
+    assert said and [line for line in lines if line in said] == said
