@@ -16,6 +16,7 @@ def printed(name, folder, kernel="python3"):
     nbclient = pytest.importorskip("nbclient")
     notebook = nbformat.read(ROOT / "examples" / f"{name}.ipynb", as_version=4)
     assert not any(cell.get("outputs") for cell in notebook.cells), "outputs are not committed"
+    # It listens on loopback, as kernels do unless they are told otherwise.
     nbclient.NotebookClient(notebook, timeout=300, kernel_name=kernel, resources={"metadata": {"path": folder}}).execute()
     outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
     assert any("image/png" in output.get("data", {}) for output in outputs)
