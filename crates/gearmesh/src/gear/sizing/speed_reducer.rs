@@ -5,8 +5,7 @@
 //! Multidisciplinary Optimization 23 (2002) 204; with the sum of what is broken as a third RE3-7-5 of Tanabe and Ishibuchi,
 //! Applied Soft Computing 89 (2020) 106078. The formulas have dimensions as printed: lengths in cm, volume in cm³ (most texts
 //! call it weight). Here points are in SI and are turned into cm; stresses are moments over 0.1 d³ in the sources' unit,
-//! which none of them names, so they stay plain numbers. Must not
-//! know: how anything is searched.
+//! which none of them names, so they stay plain numbers. Must not know: how anything is searched.
 
 use super::{Objective, Sizing};
 use crate::gear::problem::{Problem, Variable, Worth};
