@@ -11,7 +11,7 @@ use declare::number::{significant, with_unit};
 use studygraph::store::bundle::MANY;
 use studygraph::store::manifest::{Manifest, StageRecord};
 use studygraph::table::data::{Data, Table};
-use studygraph::table::schema::Column;
+use studygraph::table::schema::{Column, Type};
 
 /// Of the pair in mesh.
 const POINTS_OF_CONTACT: &str = "A: contact begins, at the root of the driving pinion; B and D: inner and outer point of \
@@ -153,8 +153,9 @@ fn of_transmission_error(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Ve
 /// The front of a search with several objectives, its balanced point named.
 fn of_front(stage: &str, draw: &Draw<'_>, tables: Tables<'_>) -> Option<Spec> {
     let table = tables(&format!("{stage}.front"))?;
-    // After its number and its name come the objectives, in the order of the study.
-    let mut objectives = table.schema().columns.iter().skip(2).map(|column| column.name.clone());
+    // After what it is called come the objectives, in the order of the study.
+    let numbers = table.schema().columns.iter().filter(|column| column.kind == Type::Float);
+    let mut objectives = numbers.map(|column| column.name.clone());
     let (x, y) = (objectives.next()?, objectives.next()?);
     let front = draw("front", "Designs that no other one beats", Kind::Front, "front", &x, &y);
     Some(Spec { marked: [format!("{stage}.best"), "objective".to_owned(), y], ..front })

@@ -34,6 +34,7 @@ mod scatter;
 mod schema;
 mod settings;
 mod shards;
+mod sizing;
 mod support;
 mod sweep;
 

@@ -34,6 +34,7 @@ pub const STIFFNESS: Dimension = dimension(0, 1, -2, 0);
 pub const SPECIFIC_STIFFNESS: Dimension = STRESS;
 pub const PER_AREA: Dimension = dimension(-2, 0, 0, 0);
 pub const AREA: Dimension = dimension(2, 0, 0, 0);
+pub const VOLUME: Dimension = dimension(3, 0, 0, 0);
 pub const TIME: Dimension = dimension(0, 0, 1, 0);
 
 impl Dimension {
@@ -67,6 +68,7 @@ impl Dimension {
             STIFFNESS => ("a stiffness or a load per width", &["N/m", "N/um", "N/mm"]),
             PER_AREA => ("a reciprocal squared length", &["1/um^2", "1/mm^2"]),
             AREA => ("an area", &["um^2", "mm^2"]),
+            VOLUME => ("a volume", &["mm^3", "cm^3"]),
             TIME => ("a time", &["s", "ms", "us"]),
             _ => ("a quantity", &[]),
         }

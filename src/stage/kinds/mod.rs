@@ -8,6 +8,7 @@ pub mod optimizer;
 pub mod report;
 pub mod root_optimizer;
 pub mod scatter;
+pub mod sizing;
 pub mod stability;
 pub mod ste;
 pub mod stiffness;
@@ -22,6 +23,7 @@ pub const KINDS: &[&Kind] = &[
     &stiffness::KIND,
     &optimizer::KIND,
     &root_optimizer::KIND,
+    &sizing::KIND,
     &ste::KIND,
     &sweep::KIND,
     &scatter::KIND,

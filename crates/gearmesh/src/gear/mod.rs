@@ -16,6 +16,7 @@ pub mod modification;
 pub mod problem;
 #[cfg(test)]
 pub(crate) mod random;
+pub mod sizing;
 pub mod stability;
 pub mod transmission_error;
 pub mod work;

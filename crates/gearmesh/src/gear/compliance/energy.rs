@@ -40,6 +40,16 @@ pub enum GearBody {
     Ring,
 }
 
+/// Where the formula's arm of the load on the gear body is counted from.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Words)]
+pub enum Arm {
+    /// the root circle, as in the source of the formula
+    #[default]
+    RootCircle,
+    /// the clamped end of the tooth, as in programs whose teeth end at the base circle
+    ClampedEnd,
+}
+
 /// Cantilever of varying section (bending, shear, compression) on an elastic gear body.
 #[derive(Clone, Debug, PartialEq, Declared)]
 #[declared(name = "energy")]
@@ -50,6 +60,9 @@ pub struct Energy {
     /// what the gear body under the tooth is taken from
     #[declared(default = "sainsot")]
     pub body: GearBody,
+    /// where the formula's arm of the load on the gear body is counted from
+    #[declared(default = "root_circle")]
+    pub arm: Arm,
     /// harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes
     #[declared(minimum = LEAST_HARMONICS, maximum = MOST_HARMONICS, default = "100")]
     pub harmonics: u32,
@@ -215,7 +228,8 @@ fn tabulate_side(
     let (foundation, warning) = if method.body == GearBody::Ring {
         (Foundation::Ring, None)
     } else {
-        let body = Body::new(root.half_angle, bore_ratio);
+        let mut body = Body::new(root.half_angle, bore_ratio);
+        body.foot = (method.arm == Arm::ClampedEnd).then(|| root.clamped_end(gear).height);
         if !(BORE_RATIOS[0]..=BORE_RATIOS[1]).contains(&bore_ratio) {
             return Err(ComplianceError::BoreOfFormula { side, bore_ratio, range: BORE_RATIOS });
         }

@@ -4,7 +4,7 @@
 //! formula, Journal of Mechanical Design 126 (2004) 748–752. Must not know: the tooth above the root circle.
 //!
 //! 1/k_f = cos²α_1/(E b)·[L q² + M q + P(1 + Q tan²α_1)], q = u_f/S_f, with u_f = r_b/cos α_1 − r_f from the root circle
-//! to where the load line crosses the centreline, and S_f = 2 r_f θ_f.
+//! to where the load line crosses the centreline, and S_f = 2 r_f θ_f. Some programs count u_f from elsewhere.
 
 use crate::gear::geometry::Gear;
 
@@ -25,6 +25,8 @@ pub struct Body {
     pub bore_ratio: f64,
     /// L, M, P, Q.
     pub polynomials: [f64; 4],
+    /// Height on the tooth's centreline that u_f is counted from \[m\], where that is not the root circle.
+    pub foot: Option<f64>,
 }
 
 impl Body {
@@ -34,7 +36,7 @@ impl Body {
         let (t, h) = (half_angle, bore_ratio);
         let terms = [1.0 / (t * t), h * h, h / t, 1.0 / t, h, 1.0];
         let polynomials = COEFFICIENTS.map(|row| row.iter().zip(terms).map(|(c, term)| c * term).sum());
-        Self { half_angle, bore_ratio, polynomials }
+        Self { half_angle, bore_ratio, polynomials, foot: None }
     }
 
     /// 1/k_f \[m/N\] for a load at a roll angle.
@@ -42,7 +44,8 @@ impl Body {
     pub fn compliance(&self, gear: &Gear, roll: f64) -> f64 {
         let (sine, cosine) = libm::sincos(gear.load_angle(roll));
         let [l, m, p, q] = self.polynomials;
-        let arm = (gear.base_radius / cosine - gear.root_radius) / (2.0 * gear.root_radius * self.half_angle);
+        let foot = self.foot.unwrap_or(gear.root_radius);
+        let arm = (gear.base_radius / cosine - foot) / (2.0 * gear.root_radius * self.half_angle);
         let bracket = cosine * cosine * ((l * arm + m) * arm + p) + p * q * sine * sine;
         bracket / (gear.specification.material.youngs_modulus * gear.specification.face_width)
     }

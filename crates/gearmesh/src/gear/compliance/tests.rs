@@ -2,6 +2,7 @@
 
 mod methods;
 mod reference;
+mod sampled;
 mod scaling;
 
 use super::energy::{Beam, Energy, GearBody};

@@ -128,8 +128,7 @@ impl Body {
     /// The body of a gear whose teeth have this root, held at its bore.
     #[must_use]
     pub fn new(gear: &Gear, root: &Root) -> Self {
-        let lowest = root.pieces.first().map(|piece| piece.section(piece.range().0));
-        let Section { half_thickness, height, .. } = lowest.unwrap_or_else(|| gear.flank(root.form_roll));
+        let Section { half_thickness, height, .. } = root.clamped_end(gear);
         let material = gear.specification.material;
         let shear_modulus = material.youngs_modulus / (2.0 * (1.0 + material.poisson_ratio));
         let (bore, rim) = (gear.base_radius / gear.specification.bore_radius, gear.base_radius / gear.root_radius);

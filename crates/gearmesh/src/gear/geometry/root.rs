@@ -39,6 +39,16 @@ pub struct Root {
     pub pieces: Vec<Piece>,
 }
 
+impl Root {
+    /// The clamped end of a tooth of this gear: where the root curve touches the root circle or, without one, where the
+    /// involute begins.
+    #[must_use]
+    pub fn clamped_end(&self, gear: &Gear) -> Section {
+        let lowest = self.pieces.first().map(|piece| piece.section(piece.range().0));
+        lowest.unwrap_or_else(|| gear.flank(self.form_roll))
+    }
+}
+
 /// A smooth piece of a root, from the clamped end upwards.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Piece {

@@ -18,7 +18,7 @@ use crate::gear::geometry::root::{Root, RootShape};
 use crate::gear::geometry::tip_path::{Corner, TipPath};
 use crate::gear::geometry::{Gear, GearPair, Rack, Side, Specification, trochoid};
 use crate::gear::material::Plane;
-use declare::units::{Dimension, RATIO};
+use declare::units::{Dimension, LENGTH, RATIO};
 use declare::{Declared, Words};
 
 /// Which root, and what is free of it.
@@ -162,6 +162,7 @@ impl Problem for Fillet {
         let maximum = largest * (1.0 - 1e-9);
         vec![Variable {
             name: if self.arc() { "radius" } else { "rack_tip_radius" },
+            dimension: LENGTH,
             minimum: LEAST_SHARE * maximum,
             maximum,
         }]
@@ -173,10 +174,10 @@ impl Problem for Fillet {
 
     fn worth(&self, point: &[f64]) -> Worth {
         let Ok((gear, root)) = self.shaped(point[0]) else {
-            return Worth { objective: f64::INFINITY, constraints: vec![f64::NAN; 2] };
+            return Worth { objective: f64::INFINITY, further: Vec::new(), constraints: vec![f64::NAN; 2] };
         };
         let objective = self.objective(&gear, &root).unwrap_or(f64::INFINITY);
-        Worth { objective, constraints: self.constraints(&gear, &root) }
+        Worth { objective, further: Vec::new(), constraints: self.constraints(&gear, &root) }
     }
 }
 

@@ -1,6 +1,7 @@
-//! Small design problems on one gear of a pair: variables in a box, an objective, constraints; and their registry.
+//! Small design problems: variables in a box, objectives, constraints; and the registry of those on one gear of a pair.
 //!
-//! An optimiser needs nothing else of them. Values in SI. Must not know: how anything is searched, tables.
+//! An optimiser needs nothing else of them. Problems without a pair are in `gear/sizing`. Values in SI. Must not know: how
+//! anything is searched, tables.
 
 pub mod fillet;
 pub mod root_arc;
@@ -13,14 +14,16 @@ use declare::declared::Registrable;
 use declare::registry;
 use declare::units::Dimension;
 
-/// A length that is free.
+/// A number that is free; on a gear of a pair it is a length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Variable {
-    /// Its symbol in the source, such as `r_c`.
+    /// Its symbol in the source, such as `r_c`, or its name.
     pub name: &'static str,
-    /// \[m\].
+    /// Of its values, which are in SI.
+    pub dimension: Dimension,
+    /// The least that it may be.
     pub minimum: f64,
-    /// \[m\].
+    /// The most that it may be.
     pub maximum: f64,
 }
 
@@ -29,7 +32,9 @@ pub struct Variable {
 pub struct Worth {
     /// To be made small.
     pub objective: f64,
-    /// Lengths \[m\]; each must not be negative.
+    /// What else is to be small, where there are several objectives; as many for every point.
+    pub further: Vec<f64>,
+    /// Each must not be negative; on a gear of a pair lengths \[m\], else shares of a limit.
     pub constraints: Vec<f64>,
 }
 
@@ -41,8 +46,13 @@ pub trait Problem: Send + Sync {
     /// What the constraints are called, in their order.
     fn constraints(&self) -> &'static [&'static str];
 
-    /// Objective and constraints at a point, one length \[m\] per variable; +∞ or NaN where there is nothing to judge.
+    /// Objectives and constraints at a point, one number per variable; +∞ or NaN where there is nothing to judge.
     fn worth(&self, point: &[f64]) -> Worth;
+
+    /// The point that was judged, where a variable takes only some of the values of the box.
+    fn resolved(&self, point: &[f64]) -> Vec<f64> {
+        point.to_vec()
+    }
 }
 
 /// A problem as it is stated: a declared struct, which anybody can make.

@@ -140,7 +140,7 @@ struct Printed(RootArc);
 
 impl Problem for Printed {
     fn variables(&self) -> Vec<Variable> {
-        let variable = |name, maximum| Variable { name, minimum: 0.0, maximum };
+        let variable = |name, maximum| Variable { name, dimension: LENGTH, minimum: 0.0, maximum };
         // The tooth and its space; two dedenda.
         let width = self.0.base.base_radius * libm::sin((2.0 * self.0.base.half_pitch).min(0.5 * PI));
         vec![variable("x_c", width), variable("r_c", 2.0 * self.0.dedendum)]
@@ -152,7 +152,8 @@ impl Problem for Printed {
 
     fn worth(&self, point: &[f64]) -> Worth {
         let circle = self.0.on_printed_line(point[0], point[1]);
-        Worth { objective: self.0.objective(circle), constraints: self.0.inequalities_printed(circle).to_vec() }
+        let constraints = self.0.inequalities_printed(circle).to_vec();
+        Worth { objective: self.0.objective(circle), further: Vec::new(), constraints }
     }
 }
 
@@ -162,7 +163,7 @@ impl Problem for Corrected {
     fn variables(&self) -> Vec<Variable> {
         let base = &self.0.base;
         let maximum = 2.0 * base.touching_radius().max(base.middle_radius());
-        vec![Variable { name: "r_c", minimum: 0.0, maximum }]
+        vec![Variable { name: "r_c", dimension: LENGTH, minimum: 0.0, maximum }]
     }
 
     fn constraints(&self) -> &'static [&'static str] {
@@ -172,7 +173,7 @@ impl Problem for Corrected {
     fn worth(&self, point: &[f64]) -> Worth {
         let base = &self.0.base;
         let gap = base.gap(base.tangent_circle(point[0]));
-        Worth { objective: gap.abs(), constraints: vec![base.middle_radius() - point[0]] }
+        Worth { objective: gap.abs(), further: Vec::new(), constraints: vec![base.middle_radius() - point[0]] }
     }
 }
 

@@ -20,7 +20,7 @@ use std::sync::Arc;
 pub use axis::{AXES, Axis, Point, axis, sample};
 pub use trap::{Continuity, continuity, traps};
 
-use super::compliance::energy::{Energy, GearBody};
+use super::compliance::energy::{Arm, Energy, GearBody};
 use super::compliance::{Assumptions, ContactLaw, Method, PairCompliance};
 use super::contact::{CornerContact, SliceCoupling};
 use super::geometry::{GearPair, Specification};
@@ -219,7 +219,8 @@ impl Case {
     /// Why the second evaluation does not cover it.
     fn not_covered(&self) -> Option<&'static str> {
         let Model { assumptions, settings, .. } = &self.model;
-        if self.model.energy().is_none_or(|energy| energy.body != GearBody::Sainsot) {
+        let is_known = |energy: &Energy| energy.body == GearBody::Sainsot && energy.arm == Arm::RootCircle;
+        if !self.model.energy().is_some_and(is_known) {
             Some("the second evaluation knows the energy method with the fitted gear body only")
         } else if assumptions.root != super::geometry::root::RootShape::Trochoid {
             Some("the second evaluation knows the generated root only")
