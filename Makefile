@@ -20,7 +20,7 @@ BASE ?= HEAD
 RELEASE := target/release/gearstudy
 STUDIES := $(sort $(wildcard studies/*.yaml))
 
-.PHONY: help setup packages release studies study test bench bench-peers results diff clean
+.PHONY: help setup packages release studies study test bench bench-peers results diff dist dist-again dist-test clean
 
 help:  ## list the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  make %-12s %s\n", $$1, $$2 }' $(MAKEFILE_LIST)
@@ -42,8 +42,9 @@ study: release  ## run one study: make study STUDY=energy_ga
 		echo "make study STUDY=name, where name is one of: $(patsubst studies/%.yaml,%,$(STUDIES))" >&2; exit 2; fi
 	$(RELEASE) run "studies/$(STUDY).yaml"
 
-test: packages  ## format, lints, all tests, and the quick study run twice
+test: packages  ## format, lints, licences of crates, all tests, and the quick study run twice
 	cargo fmt --all --check
+	scripts/check-crates
 	@# One build for lints and tests, benches too: a check of its own would build most of the dependencies again. What
 	@# the cross-checks need of Python is installed meanwhile.
 	scripts/setup & python=$$!; status=0; \
@@ -65,6 +66,15 @@ results: studies  ## refresh the results that are committed, and show what chang
 
 diff: release  ## what changed in the results since a commit, and why: make diff BASE=main
 	$(RELEASE) diff $(BASE)
+
+dist:  ## build what is handed out, into target/dist: tarball, Debian package, wheel; docs/releasing.md
+	nice scripts/dist
+
+dist-again:  ## build it once more in another folder, and compare every byte
+	nice scripts/dist again
+
+dist-test:  ## install what `make dist` made in a bare Debian, and run a study there
+	scripts/dist-test
 
 clean:  ## remove what was built and the cache; studies and results stay
 	rm -rf target .venv .gearstudy

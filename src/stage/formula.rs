@@ -9,7 +9,7 @@
 mod tests;
 mod units;
 
-use evalexpr::{DefaultNumericTypes, EvalexprError, Node, Operator, Value, build_operator_tree};
+use evalexpr::{EvalexprError, Node, Operator, Value, build_operator_tree};
 
 use super::quantity::{Number, described, power, product, shown, wider};
 use declare::error::suggest;
@@ -40,7 +40,7 @@ pub struct Names<'a> {
 #[derive(Debug)]
 pub struct Formula {
     pub text: String,
-    root: Node<DefaultNumericTypes>,
+    root: Node,
     is_claim: bool,
 }
 
@@ -56,7 +56,7 @@ impl Formula {
         if text.len() > LONGEST {
             return Err(format!("the formula has {} characters; at most {LONGEST} are read", text.len()));
         }
-        let root = build_operator_tree::<DefaultNumericTypes>(text).map_err(|error| unreadable(text, &error))?;
+        let root = build_operator_tree(text).map_err(|error| unreadable(text, &error))?;
         let is_claim = check(&root, names)?;
         Ok(Self { text: text.trim().to_owned(), root, is_claim })
     }
@@ -95,7 +95,7 @@ impl Formula {
 }
 
 /// Why there is no expression, in words of formulas rather than of trees.
-fn unreadable(text: &str, error: &EvalexprError<DefaultNumericTypes>) -> String {
+fn unreadable(text: &str, error: &EvalexprError) -> String {
     if !matches!(error, EvalexprError::AppendedToLeafNode) {
         return format!("`{text}` cannot be read: {error}");
     }
@@ -116,7 +116,7 @@ fn unreadable(text: &str, error: &EvalexprError<DefaultNumericTypes>) -> String 
 }
 
 /// Checks names, operators and functions; says whether the node is true or false rather than a number.
-fn check(node: &Node<DefaultNumericTypes>, names: &[&str]) -> Result<bool, String> {
+fn check(node: &Node, names: &[&str]) -> Result<bool, String> {
     let children = node.children();
     // Every side of an operator must be there and be of one sort: numbers, or something true or false.
     let sides = |sign: &str, count: usize, are_truths: bool| {
@@ -180,7 +180,7 @@ fn check(node: &Node<DefaultNumericTypes>, names: &[&str]) -> Result<bool, Strin
     }
 }
 
-fn row_by_row(node: &Node<DefaultNumericTypes>, name: &str) -> bool {
+fn row_by_row(node: &Node, name: &str) -> bool {
     match node.operator() {
         Operator::VariableIdentifierRead { identifier } => identifier == name,
         Operator::FunctionIdentifier { identifier } if OVER_ROWS.contains(&identifier.as_str()) => false,
@@ -188,7 +188,7 @@ fn row_by_row(node: &Node<DefaultNumericTypes>, name: &str) -> bool {
     }
 }
 
-fn comparison(operator: &Operator<DefaultNumericTypes>) -> Option<&'static str> {
+fn comparison(operator: &Operator) -> Option<&'static str> {
     match operator {
         Operator::Eq => Some("="),
         Operator::Neq => Some("≠"),
@@ -201,7 +201,7 @@ fn comparison(operator: &Operator<DefaultNumericTypes>) -> Option<&'static str> 
 }
 
 /// The arguments of a function: a bracket around one value, or around a tuple.
-fn arguments(children: &[Node<DefaultNumericTypes>]) -> Vec<&Node<DefaultNumericTypes>> {
+fn arguments(children: &[Node]) -> Vec<&Node> {
     match children {
         [only] => match only.operator() {
             Operator::RootNode => arguments(only.children()),
@@ -212,7 +212,7 @@ fn arguments(children: &[Node<DefaultNumericTypes>]) -> Vec<&Node<DefaultNumeric
     }
 }
 
-fn number(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Number, String> {
+fn number(node: &Node, names: Names) -> Result<Number, String> {
     match evaluate(node, names)? {
         Outcome::Number(number) => Ok(number),
         Outcome::Truth(_) => Err("a number was expected, not something true or false".to_owned()),
@@ -228,7 +228,7 @@ fn plain(value: Number, function: &str) -> Result<f64, String> {
     }
 }
 
-fn truth(node: &Node<DefaultNumericTypes>, names: Names) -> Result<bool, String> {
+fn truth(node: &Node, names: Names) -> Result<bool, String> {
     match evaluate(node, names)? {
         Outcome::Truth(truth) => Ok(truth),
         Outcome::Number(_) => Err("a comparison was expected, not a number".to_owned()),
@@ -246,7 +246,7 @@ fn of_one_sort(values: &[Number], at: &str, sign: &str) -> Result<Option<Dimensi
     Ok(Some(all.dimension))
 }
 
-fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, String> {
+fn evaluate(node: &Node, names: Names) -> Result<Outcome, String> {
     let children = node.children();
     let two = |sign: &str| match children {
         [a, b] => Ok((number(a, names)?, number(b, names)?)),
@@ -348,7 +348,7 @@ fn evaluate(node: &Node<DefaultNumericTypes>, names: Names) -> Result<Outcome, S
     }
 }
 
-fn with_numbers(node: &Node<DefaultNumericTypes>, names: Names, unit: &str) -> Result<String, String> {
+fn with_numbers(node: &Node, names: Names, unit: &str) -> Result<String, String> {
     let joined = |word: &str| {
         let parts =
             node.children().iter().map(|child| with_numbers(child, names, unit)).collect::<Result<Vec<_>, _>>()?;

@@ -3,6 +3,7 @@
 //!
 //! Eight of nine Rust programs measured have import cycles between their modules; nothing but a test prevents them.
 
+mod dangerous;
 mod owners;
 mod source;
 

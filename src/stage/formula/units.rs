@@ -2,7 +2,7 @@
 //!
 //! Must not know: values, but those that stand in the formula.
 
-use evalexpr::{DefaultNumericTypes, Node, Operator, Value};
+use evalexpr::{Node, Operator, Value};
 
 use super::{Formula, OVER_ROWS, arguments, comparison, of_one_sort, plain};
 use crate::stage::quantity::{Number, power, product};
@@ -27,16 +27,14 @@ impl Formula {
     }
 }
 
-fn has_numbers(node: &Node<DefaultNumericTypes>) -> bool {
+fn has_numbers(node: &Node) -> bool {
     matches!(node.operator(), Operator::Const { value: Value::Int(_) | Value::Float(_) })
         || node.children().iter().any(has_numbers)
 }
 
-fn known(node: &Node<DefaultNumericTypes>, of: &dyn Fn(&str) -> Option<Dimension>) -> Result<Known, String> {
+fn known(node: &Node, of: &dyn Fn(&str) -> Option<Dimension>) -> Result<Known, String> {
     let some = |dimension: Dimension| Some(Number { si: f64::NAN, dimension });
-    let all = |nodes: Vec<&Node<DefaultNumericTypes>>| {
-        nodes.into_iter().map(|node| known(node, of)).collect::<Result<Vec<Known>, String>>()
-    };
+    let all = |nodes: Vec<&Node>| nodes.into_iter().map(|node| known(node, of)).collect::<Result<Vec<Known>, String>>();
     let sides = || all(node.children().iter().collect());
     // Of all, if each is known.
     let alike = |values: Vec<Known>, at: &str, sign: &str| {

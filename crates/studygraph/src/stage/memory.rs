@@ -4,6 +4,8 @@
 //! where nothing else runs beside. Pages, fragments and what libraries take from the system themselves are not in it.
 //! The program installs it (`main.rs`); without it nothing is measured. Must not know: what is measured.
 
+#![expect(unsafe_code, reason = "an allocator is an unsafe trait; each call is handed on as it came")]
+
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicBool, AtomicIsize, Ordering};
 

@@ -106,22 +106,30 @@ fn started(process: u32) -> Option<u64> {
     fields.nth(18)?.parse().ok().filter(|_| !dead)
 }
 
-/// One publisher at a time in a folder. Nothing is left behind.
+/// One publisher at a time in a folder. Nothing is left behind where folders can be locked.
 ///
 /// # Errors
 /// [`StoreError::InUse`] when somebody else has it for too long; when the folder cannot be opened or locked.
 pub fn publisher(folder: &Path, told: Told) -> Result<Lock, StoreError> {
-    // Elsewhere neither folders can be opened nor processes be asked for.
-    if !cfg!(unix) {
-        return Ok(Lock { _kernel: None, file: None, told });
-    }
-    let kernel = File::open(folder).map_err(StoreError::io("open", folder))?;
+    let kernel = locked(folder).map_err(StoreError::io("open", folder))?;
     let path = folder.join(NAME);
     let mut wait = Wait::new(told, folder);
     let held = wait.kernel(&kernel, false, HERE, || read(&path).ok().flatten())?;
     wait.began = Instant::now();
     let file = own(&path, held, &mut wait)?;
     Ok(Lock { _kernel: held.then_some(kernel), file, told })
+}
+
+/// What the kernel's lock is on: the folder itself.
+#[cfg(unix)]
+fn locked(folder: &Path) -> io::Result<File> {
+    File::open(folder)
+}
+
+/// Windows opens no folders: a file that is there for nothing else, and stays.
+#[cfg(not(unix))]
+fn locked(folder: &Path) -> io::Result<File> {
+    File::options().write(true).create(true).truncate(false).open(folder.join(".lock.kernel"))
 }
 
 /// Many at a time hold it shared, or one alone: `lock` is a file for nothing else. Where the kernel knows no locks there

@@ -2,6 +2,8 @@
 //!
 //! Every call is under the library's one lock. Must not know: tables.
 
+#![expect(unsafe_code, reason = "the library is C, and these calls have no safe wrapper")]
+
 use std::ptr;
 
 use hdf5_metno::sync::sync;
