@@ -54,8 +54,13 @@ test: packages  ## format, lints, licences of crates, all tests, and the quick s
 	@# The program that the tests were built with: another build would differ in features and take a minute.
 	scripts/run-twice target/debug/gearstudy studies/quick.yaml
 
-bench: packages  ## measure the kernels and the program
+bench: packages  ## measure the kernels and the program, and calls from Python beside the same in Rust
 	cargo bench --locked
+	cargo build --release --locked -p gearmesh --example timed
+	scripts/setup
+	scripts/setup dist
+	PATH="$(CURDIR)/target/tools/python/bin:$$PATH" python/build --release
+	.venv/bin/python python/bench
 
 bench-peers: release  ## measure the runner beside make, ninja and, where they can be had, Snakemake, doit, DVC, redun
 	scripts/setup peers

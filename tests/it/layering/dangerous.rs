@@ -39,6 +39,6 @@ fn memory_is_handled_by_hand_in_two_files() {
 
 #[test]
 fn a_word_in_a_text_is_no_danger() {
-    assert_eq!(found("// unsafe\nlet a = \"unsafe\";"), []);
+    assert!(found("// unsafe\nlet a = \"unsafe\";").is_empty());
     assert_eq!(found("fn f() {\n    unsafe { g() }\n}\n#[allow(unsafe_code)]\nunsafe fn h() {}"), [2, 4, 5]);
 }
