@@ -84,7 +84,7 @@ fn golden_parts_of_keys_of_the_quick_study() {
     }
     let golden = [
         "pair 1 2e8baee4 f2fd8c6e   57866b65 ",
-        "stiffness 1 356aea1e d9913912   962a9226 pair",
+        "stiffness 1 356aea1e 1131e36c   962a9226 pair",
         "designs 1 22814846 ab93967f   6f955979 pair",
         "optimum 1 1b8876b5 ad7a9180  d2243232 4866e557 pair,stiffness",
         "ste 5 c46fabaa 56a9f616 8dec8e6f  2221bda4 pair,stiffness,designs_1,designs_2",
