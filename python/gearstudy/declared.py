@@ -1046,6 +1046,8 @@ class Energy(Declared):
         How much more a section shears than under a uniform shear stress. 1 to 2. Without it: 1.2.
     body : Literal["sainsot", "ring"], optional
         What the gear body under the tooth is taken from. Without it: sainsot.
+    arm : Literal["root_circle", "clamped_end"], optional
+        Where the formula's arm of the load on the gear body is counted from. Without it: root_circle.
     harmonics : int, optional
         Harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes.
         10 to 2000. Without it: 100.
@@ -1058,11 +1060,13 @@ class Energy(Declared):
         *,
         shear_factor: float | None = None,
         body: Literal["sainsot", "ring"] | None = None,
+        arm: Literal["root_circle", "clamped_end"] | None = None,
         harmonics: int | None = None,
     ) -> None:
         super().__init__(
             shear_factor=shear_factor,
             body=body,
+            arm=arm,
             harmonics=harmonics,
         )
 

@@ -107,7 +107,8 @@ fn every_study_in_the_documents_loads() {
 #[test]
 fn every_source_file_that_is_named_exists() {
     let top = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let folders = ["src", "crates", "python", "tests", "benches"].iter().flat_map(|folder| rust_files(&top.join(folder)));
+    let folders =
+        ["src", "crates", "python", "tests", "benches"].iter().flat_map(|folder| rust_files(&top.join(folder)));
     let sources: Vec<_> = folders.chain([top.join("build.rs")]).collect();
     let comments = sources.iter().map(|path| (path.clone(), fs::read_to_string(path).unwrap()));
     let mut missing = Vec::new();
