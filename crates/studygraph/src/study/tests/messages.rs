@@ -7,9 +7,10 @@ const CHANGES: &[(&str, &str, &str)] = &[
     ("module: 3 mm", "module: 3 N", "8:13: `3 N` is a force; a length (for example `3 mm`) is expected"),
     (
         "module: 3 mm",
-        "module: 3 mm^3",
-        "8:13: `3 mm^3` has a unit of another kind; a length (for example `3 mm`) is expected",
+        "module: 3 mm^4",
+        "8:13: `3 mm^4` has a unit of another kind; a length (for example `3 mm`) is expected",
     ),
+    ("module: 3 mm", "module: 3 mm^3", "8:13: `3 mm^3` is a volume; a length (for example `3 mm`) is expected"),
     (
         "module: 3 mm",
         "module: 3 furlong",
