@@ -156,6 +156,9 @@ class TipRelief(Modification):
         How the depth grows over the relief, with t from 0 at its start to 1 at its end. Without it: linear.
     exponent : number, or an array of shape (designs,), optional
         n of the curve `power`: 1 is linear, 2 has no kink at the start. 0.5 to 10.
+
+    >>> Design(pair, TipRelief(gear="both", amount=14e-6, fraction=0.8)).resolved[0][1]
+    'tip_relief'
     """
 
     name = "tip_relief"
@@ -213,6 +216,9 @@ class RootRelief(Modification):
         How the depth grows over the relief, with t from 0 at its start to 1 at its end. Without it: linear.
     exponent : number, or an array of shape (designs,), optional
         n of the curve `power`: 1 is linear, 2 has no kink at the start. 0.5 to 10.
+
+    >>> Design(pair, RootRelief(gear="pinion", amount="8 um", length="2 mm", curve="parabolic")).resolved[0][1]
+    'root_relief'
     """
 
     name = "root_relief"
@@ -264,6 +270,9 @@ class ArcRelief(Modification):
         Instead of `length_share`: diameter at which B lies. 0.0001 to 100 m.
     formulas : Literal["derived", "printed"], optional
         Which formulas give the curve. Without it: derived.
+
+    >>> Design(pair, ArcRelief(gear="both", tip_share=0.1, length_share=0.3)).resolved[0][1]
+    'arc'
     """
 
     name = "arc"
@@ -307,6 +316,9 @@ class ParabolaRelief(Modification):
         Instead of `length_share`: diameter at which B lies. 0.0001 to 100 m.
     formulas : Literal["derived", "printed"], optional
         Which formulas give the curve. Without it: derived.
+
+    >>> Design(pair, ParabolaRelief(gear="both", tip_share=0.1, length_share=0.3)).resolved[0][1]
+    'parabola'
     """
 
     name = "parabola"
@@ -340,6 +352,9 @@ class ProfileCrowning(Modification):
         Which gear is modified.
     amount : number [m], or an array of shape (designs,)
         C_α: depth at both ends of the active flank. 0 to 0.005 m.
+
+    >>> Design(pair, ProfileCrowning(gear="pinion", amount=5e-6)).resolved[0][1]
+    'profile_crowning'
     """
 
     name = "profile_crowning"
@@ -366,6 +381,9 @@ class ProfileSlope(Modification):
     amount : number [m], or an array of shape (designs,)
         C_Hα: positive takes material off at the tip, negative at the root end; the other end keeps it. -0.005 to
         0.005 m.
+
+    >>> Design(pair, ProfileSlope(gear="gear", amount=-3e-6)).resolved[0][1]
+    'profile_slope'
     """
 
     name = "profile_slope"
@@ -391,6 +409,9 @@ class LeadCrowning(Modification):
         Which gear is modified.
     amount : number [m], or an array of shape (designs,)
         C_β: depth at both ends of the gear's own face. 0 to 0.005 m.
+
+    >>> Design(pair, LeadCrowning(gear="pinion", amount=6e-6)).resolved[0][1]
+    'lead_crowning'
     """
 
     name = "lead_crowning"
@@ -417,6 +438,9 @@ class HelixSlope(Modification):
     amount : number [m], or an array of shape (designs,)
         C_Hβ over the face width: positive takes material off at z = +b/2, negative at z = −b/2; the other end
         keeps it. -0.005 to 0.005 m.
+
+    >>> Design(pair, HelixSlope(gear="gear", amount=10e-6)).resolved[0][1]
+    'helix_slope'
     """
 
     name = "helix_slope"
@@ -451,6 +475,9 @@ class EndRelief(Modification):
         How the depth grows over the relief, with t from 0 at its start to 1 at its end. Without it: linear.
     exponent : number, or an array of shape (designs,), optional
         n of the curve `power`: 1 is linear, 2 has no kink at the start. 0.5 to 10.
+
+    >>> Design(pair, EndRelief(gear="pinion", amount=10e-6, length=4e-3)).resolved[0][1]
+    'end_relief'
     """
 
     name = "end_relief"
@@ -506,6 +533,9 @@ class Genetic(Search):
         Ends after this many generations without improvement. 1 to 1e+06.
     least_improvement : number, optional
         Share of the best value below which a gain is not an improvement. 0 to 1. Without it: 0.
+
+    >>> Optimizer(Genetic(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "genetic"
@@ -561,6 +591,9 @@ class DifferentialEvolution(Search):
         Local search from the best individual. Without it: none.
     polish_evaluations : int, optional
         Most evaluations of the local search. 10 to 1e+07. Without it: 2000.
+
+    >>> Optimizer(DifferentialEvolution(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "differential_evolution"
@@ -604,6 +637,9 @@ class NelderMead(Search):
         Most restarts around the best point, or along a kink; with 0 it is not checked. 0 to 1000. Without it: 30.
     evaluations : int, optional
         Most evaluations. 10 to 1e+07. Without it: 5000.
+
+    >>> Optimizer(NelderMead(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "nelder_mead"
@@ -642,6 +678,9 @@ class Powell(Search):
         it: 30.
     evaluations : int, optional
         Most evaluations. 10 to 1e+07. Without it: 5000.
+
+    >>> Optimizer(Powell(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "powell"
@@ -681,6 +720,9 @@ class Nsga2(Search):
         Probability that a variable mutates; without it one in as many as there are variables. 0 to 1.
     mutation_index : number, optional
         Index of the mutation: the larger, the smaller its steps. 0 to 1000. Without it: 20.
+
+    >>> Optimizer(Nsga2(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "nsga2"
@@ -712,6 +754,9 @@ class Grid(Search):
     ----------
     levels : Sequence[int], optional
         Number of levels: one for all variables, or one for each. Without it: 11.
+
+    >>> Optimizer(Grid(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "grid"
@@ -733,6 +778,9 @@ class LatinHypercube(Search):
     ----------
     points : int, optional
         Number of points. 1 to 1.67772e+07. Without it: 256.
+
+    >>> Optimizer(LatinHypercube(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "latin_hypercube"
@@ -754,6 +802,9 @@ class Sobol(Search):
     ----------
     points : int, optional
         Number of points. 1 to 1.67772e+07. Without it: 256.
+
+    >>> Optimizer(Sobol(), [(0, 1), (2, 5)]).ask().shape[1]
+    2
     """
 
     name = "sobol"
@@ -775,6 +826,9 @@ class TrochoidRoot(Declared):
     ----------
     rack_tip : Literal["given", "sharp", "full_round"], optional
         Round of the rack's tip. Without it: given.
+
+    >>> TrochoidRoot().name
+    'trochoid'
     """
 
     name = "trochoid"
@@ -796,6 +850,9 @@ class ArcRoot(Declared):
     ----------
     formulas : Literal["derived", "printed"], optional
         Which sign equation 20 has. Without it: derived.
+
+    >>> ArcRoot().name
+    'arc'
     """
 
     name = "arc"
@@ -819,6 +876,9 @@ class TangentArcRoot(Declared):
         How large the arc is, where no radius is given. Without it: base_circle.
     radius : number [m], optional
         Radius of the arc. 0 to 100 m.
+
+    >>> TangentArcRoot().name
+    'tangent_arc'
     """
 
     name = "tangent_arc"
@@ -836,14 +896,22 @@ class TangentArcRoot(Declared):
 
 
 class OptimisedArcRoot(Declared):
-    """Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30)."""
+    """Arc tangent to the flank on the base circle that comes nearest to the root circle (zhai2020, 27 to 30).
+
+    >>> OptimisedArcRoot().name
+    'optimised_arc'
+    """
 
     name = "optimised_arc"
 
 
 
 class LandTip(Declared):
-    """The flank ends in a corner on the tip circle."""
+    """The flank ends in a corner on the tip circle.
+
+    >>> LandTip().name
+    'land'
+    """
 
     name = "land"
 
@@ -856,6 +924,9 @@ class ChamferTip(Declared):
     ----------
     size : number [m]
         How far it begins below the tip circle. 0 to 1 m.
+
+    >>> ChamferTip(size="0.3 mm").name
+    'chamfer'
     """
 
     name = "chamfer"
@@ -877,6 +948,9 @@ class RoundingTip(Declared):
     ----------
     radius : number [m]
         Radius of the arc. 0 to 1 m.
+
+    >>> RoundingTip(radius="0.3 mm").name
+    'rounding'
     """
 
     name = "rounding"
@@ -900,6 +974,12 @@ class Material(Declared):
         Young's modulus E. 1 to 1e+15 Pa. Without it: 206 GPa.
     poisson_ratio : number, optional
         Poisson's ratio ν. 0 to 0.4999. Without it: 0.3.
+
+    >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
+    >>> soft = Pair(module=3e-3, pinion=gear, gear=gear, material=Material(youngs_modulus=3e9, poisson_ratio=0.4))
+    >>> steel = Pair(module=3e-3, pinion=gear, gear=gear)
+    >>> Stiffness(soft).mesh(1.0)[2] < 0.02 * Stiffness(steel).mesh(1.0)[2]
+    True
     """
 
     def __init__(
@@ -937,6 +1017,10 @@ class GearSpecification(Declared):
         Corners of this gear's tips, when they are not the common ones.
     material : Material | Mapping[str, Any], optional
         Material of this gear, when it is not the common one.
+
+    >>> shifted = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3, profile_shift=0.2, tip=RoundingTip(radius=0.3e-3))
+    >>> Pair(module=3e-3, pinion=shifted, gear=shifted).pinion.profile_shift
+    0.2
     """
 
     def __init__(
@@ -976,6 +1060,11 @@ class Rack(Declared):
         Dedendum coefficient h_fP*. 0.1 to 4. Without it: 1.25.
     tip_radius : number, optional
         Tip radius coefficient ρ_fP*. 0 to 2. Without it: 0.38.
+
+    >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
+    >>> stub = Pair(module=3e-3, pinion=gear, gear=gear, rack=Rack(addendum=0.8, dedendum=1.05))
+    >>> f"{stub.pinion.tip_radius:.5f}"
+    '0.03840'
     """
 
     def __init__(
@@ -1008,9 +1097,13 @@ class Pair(_gearstudy.Pair):
     pinion : GearSpecification | Mapping[str, Any]
         The gear the torque is given on.
     gear : GearSpecification | Mapping[str, Any]
-        The mating gear; without it the pinion is a gear alone, to be drawn.
+        The mating gear.
     centre_distance : number [m], optional
         Centre distance a_w; zero backlash when it is not given. 1e-06 to 1000 m.
+
+    >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius="18 mm")
+    >>> f"{Pair(module=3e-3, pinion=gear, gear=gear).centre_distance:.6f}"
+    '0.072000'
     """
 
     def __new__(
@@ -1051,6 +1144,9 @@ class Energy(Declared):
     harmonics : int, optional
         Harmonics of the elastic ring, times the half root angle; where an accuracy is wanted, as many as it takes.
         10 to 2000. Without it: 100.
+
+    >>> Energy().name
+    'energy'
     """
 
     name = "energy"
@@ -1072,7 +1168,11 @@ class Energy(Declared):
 
 
 class WeberBanaschek(Declared):
-    """Cantilever of varying section in plane strain, clamped in a half plane, on a ring that winds up."""
+    """Cantilever of varying section in plane strain, clamped in a half plane, on a ring that winds up.
+
+    >>> WeberBanaschek().name
+    'weber_banaschek'
+    """
 
     name = "weber_banaschek"
 
@@ -1087,6 +1187,9 @@ class Iso6336(Declared):
         C_M: measured over theoretical stiffness. 0.1 to 2. Without it: 0.8.
     blank_factor : number, optional
         C_R: gear blank factor, 1 for solid discs, less for rims on webs. 0.1 to 2. Without it: 1.0.
+
+    >>> Iso6336().name
+    'iso6336'
     """
 
     name = "iso6336"
@@ -1113,6 +1216,9 @@ class FiniteElement(Declared):
     elements_across : int, optional
         Elements across a tooth, an even number; all other sizes follow from it; where an accuracy is wanted, from
         how many on. 6 to 64. Without it: 16.
+
+    >>> FiniteElement().name
+    'finite_element'
     """
 
     name = "finite_element"
@@ -1149,6 +1255,11 @@ class Stiffness(_gearstudy.Stiffness):
     accuracy : number, optional
         Wanted accuracy of the compliances, relative to a tooth's own; the method takes the cheapest settings that
         meet it. 1e-12 to 0.1.
+
+    >>> Stiffness(pair, method="energy", contact="load_dependent").contact
+    'load_dependent'
+    >>> Stiffness(pair, method=FiniteElement(elements_across=6), contact="resolved").error_estimate < 0.01
+    True
     """
 
     def __new__(

@@ -18,7 +18,11 @@ Source = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 
 class Tables(Mapping[str, Table]):
-    """The published tables of a study by name, ``stage.table``; each is read when it is asked for."""
+    """The published tables of a study by name, ``stage.table``; each is read when it is asked for.
+
+    >>> "ste.summary" in study.tables
+    True
+    """
 
     def __init__(self, study: _gearstudy.Study) -> None:
         self._study = study
@@ -37,7 +41,13 @@ class Tables(Mapping[str, Table]):
 
 
 class Study(_gearstudy.Study):
-    """A study, read and checked, and the results that lie in its folder."""
+    """A study, read and checked, and the results that lie in its folder; :func:`load` and :func:`run` make it.
+
+    >>> study.tables["ste.summary"].columns[:2]
+    ['design', 'torque']
+    >>> {row["verdict"] for row in study.verdicts}
+    {'holds'}
+    """
 
     @property
     def tables(self) -> Tables:
@@ -68,7 +78,11 @@ class Study(_gearstudy.Study):
         limit_rows: int | None = None,
         progress: bool | Callable[[Event], None] = False,
     ) -> Study:
-        """Computes what is missing, publishes tables and page, and gives the study back; see :func:`run`."""
+        """Computes what is missing, publishes tables and page, and gives the study back; see :func:`run`.
+
+        >>> study.run(only=["pair"]).name
+        'quick'
+        """
         tell = Progress() if progress is True else progress or None
         try:
             self._run(
@@ -89,12 +103,20 @@ class Study(_gearstudy.Study):
     def plan(
         self, *, only: Sequence[str] = (), want: Sequence[str] = (), force: bool | Sequence[str] = False
     ) -> dict[str, Any]:
-        """What a run would do and why, as ``gearstudy plan --format json`` has it (docs/json.md)."""
+        """What a run would do and why, as ``gearstudy plan --format json`` has it (docs/json.md).
+
+        >>> {stage["action"] for stage in study.plan()["stages"]}
+        {'hit'}
+        """
         force = force if isinstance(force, bool) else list(force)
         return self._plan(only=list(only), want=list(want), force=force)
 
     def diff(self, before: Study) -> dict[str, Any]:
-        """What differs between the results of another study and those of this one, as ``gearstudy diff --format json``."""
+        """What differs between the results of another study and those of this one, as ``gearstudy diff --format json``.
+
+        >>> study.diff(study)["state"]
+        'same'
+        """
         return self._diff(before)
 
     def _repr_html_(self) -> str:
@@ -128,6 +150,15 @@ def load(
     ------
     InvalidStudy
         With file, line and column, and in ``mistakes`` all that is wrong.
+
+    >>> gear = {"teeth": 24, "face_width": "20 mm", "bore_radius": "18 mm"}
+    >>> pair = {"kind": "geometry", "module": "3 mm", "pinion": gear, "gear": gear}
+    >>> load({"study": "drawn", "stages": {"pair": pair}}).stages
+    {'pair': 'geometry'}
+    >>> load({"study": "drawn", "stages": {"pair": {**pair, "modul": "3 mm"}}})
+    Traceback (most recent call last):
+        ...
+    gearstudy.errors.InvalidStudy: ...
     """
     text, path = (_text(study), Path("study.yaml")) if isinstance(study, Mapping) else (None, Path(study))
     changes = [f"{path}={_written(value)}" for path, value in (set or {}).items()]
@@ -179,6 +210,13 @@ def run(
         What is wrong; what is finished is kept.
     KeyboardInterrupt
         Ctrl-C; what is finished is kept, and the next run goes on from there.
+
+    >>> gear = {"teeth": 24, "face_width": "20 mm", "bore_radius": "18 mm"}
+    >>> pair = {"kind": "geometry", "module": "3 mm", "pinion": gear, "gear": gear}
+    >>> drawn = run({"study": "drawn", "stages": {"pair": pair}}, set={"pair.gear.teeth": 36}, results=folder, cache=folder / "cache")
+    >>> gears = drawn.tables["pair.gears"]
+    >>> gears["gear"], gears["teeth"]
+    (['gear', 'pinion'], array([36, 24]))
     """
     read = load(study, set=set, name=name, results=results, cache=cache)
     return read.run(

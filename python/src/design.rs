@@ -116,7 +116,23 @@ fn stated(given: &Bound<'_, PyAny>) -> PyResult<Stated> {
     Ok(Stated { family, record, columns })
 }
 
-/// Modifications on the gears of a pair.
+/// Modifications on the gears of a pair, checked once for many calls.
+///
+/// Parameters
+/// ----------
+/// pair : Pair
+///     What they are for.
+/// modifications : modification, or sequence of modifications
+///     Single values only.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     What does not fit the pair.
+///
+/// >>> design = Design(pair, TipRelief(gear="both", amount=14e-6, fraction=0.8))
+/// >>> bool(peak_to_peak(stiffness, 150.0, design) == peak_to_peak(stiffness, 150.0, relief))
+/// True
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct Design {
     built: Arc<modification::Design>,

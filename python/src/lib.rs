@@ -5,11 +5,14 @@
 
 // Words of one call of Python, each an argument, as PyO3 hands them over.
 #![allow(clippy::needless_pass_by_value, clippy::too_many_arguments)]
+// Docstrings are Python's.
+#![allow(clippy::doc_link_with_quotes)]
 
 mod curve;
 mod declarations;
 mod design;
 mod errors;
+mod many;
 mod pair;
 mod search;
 mod stiffness;
@@ -129,11 +132,13 @@ fn made_again<'py>(
 #[pymodule]
 mod _gearstudy {
     #[pymodule_export]
-    use super::curve::{TransmissionError, peak_to_peak, summaries, transmission_error};
+    use super::curve::{TransmissionError, transmission_error};
     #[pymodule_export]
     use super::declarations::declarations;
     #[pymodule_export]
     use super::design::Design;
+    #[pymodule_export]
+    use super::many::{peak_to_peak, summaries};
     #[pymodule_export]
     use super::pair::{GearFacts, Pair};
     #[pymodule_export]

@@ -19,6 +19,10 @@ use crate::values;
 /// What a pair is called in messages.
 const PAIR: &str = "a pair";
 
+/// Two spur gears on their centre distance; what it is made of, :class:`gearstudy.Pair` says.
+///
+/// >>> pair.contact_ratio > 1
+/// True
 #[pyclass(frozen, subclass, module = "gearstudy._gearstudy")]
 pub struct Pair {
     pub pair: Arc<GearPair>,
@@ -55,72 +59,88 @@ impl Pair {
         format!("Pair({z1}/{z2}, module={module}, contact_ratio={:.4})", self.pair.contact_ratio)
     }
 
-    /// a_w [m]
+    /// a_w: centre distance [m].
     #[getter]
     fn centre_distance(&self) -> f64 {
         self.pair.centre_distance
     }
 
-    /// α_w [rad]
+    /// α_w: working pressure angle [rad].
     #[getter]
     fn working_pressure_angle(&self) -> f64 {
         self.pair.working_pressure_angle
     }
 
-    /// p_b [m]
+    /// p_b: base pitch, the length of a mesh cycle on the line of action [m].
     #[getter]
     fn base_pitch(&self) -> f64 {
         self.pair.base_pitch
     }
 
-    /// ε_α
+    /// ε_α: transverse contact ratio.
     #[getter]
     fn contact_ratio(&self) -> f64 {
         self.pair.contact_ratio
     }
 
-    /// T1T2 [m]
+    /// T1T2: length of the line of action between the base circles [m].
     #[getter]
     fn tangent_length(&self) -> f64 {
         self.pair.tangent_length
     }
 
-    /// T1A [m]
+    /// T1A: where contact begins, from the base circle of the pinion along the line of action [m].
     #[getter]
     fn start_of_contact(&self) -> f64 {
         self.pair.start_of_contact
     }
 
-    /// T1E [m]
+    /// T1E: where contact ends, from the base circle of the pinion along the line of action [m].
     #[getter]
     fn end_of_contact(&self) -> f64 {
         self.pair.end_of_contact
     }
 
+    /// What follows for the pinion.
     #[getter]
     fn pinion(&self) -> GearFacts {
         GearFacts::of(&self.pair.pinion)
     }
 
+    /// What follows for the gear.
     #[getter]
     fn gear(&self) -> GearFacts {
         GearFacts::of(&self.pair.gear)
     }
 }
 
-/// What follows from what was stated of a gear.
+/// What was stated of a gear, and what follows from it; :class:`Pair` has one for each of its gears.
+///
+/// >>> pair.pinion.base_radius < pair.pinion.reference_radius < pair.pinion.tip_radius
+/// True
 #[pyclass(frozen, get_all, module = "gearstudy._gearstudy")]
 pub struct GearFacts {
+    /// z: number of teeth.
     teeth: u32,
+    /// b: face width [m].
     face_width: f64,
+    /// Radius of the bore [m].
     bore_radius: f64,
+    /// x: profile shift coefficient.
     profile_shift: f64,
+    /// r: reference radius [m].
     reference_radius: f64,
+    /// r_b: base radius [m].
     base_radius: f64,
+    /// r_a: tip radius [m].
     tip_radius: f64,
+    /// r_f: root radius [m].
     root_radius: f64,
+    /// r_Ff: root form radius, where the involute begins [m].
     form_radius: f64,
+    /// s_a: tooth thickness at the tip, along its circle [m].
     tip_thickness: f64,
+    /// Whether the tool removes a part of the involute at the root.
     undercut: bool,
 }
 

@@ -19,27 +19,54 @@ use gearmesh::optimize::search::Optimizer as Search;
 use crate::errors::{failed, refused};
 use crate::values;
 
-/// A search of a box by one of the methods, with one objective or several.
+/// A search of a box by one of the methods, with one objective or several: asked for points, told what they are worth.
+///
+/// Parameters
+/// ----------
+/// method : str or Search
+///     A name of a method, or one with settings such as ``DifferentialEvolution(population=40)``.
+/// bounds : sequence of (least, most)
+///     One pair for each variable.
+/// seed : int
+///     Where random numbers start; the same seed asks for the same points.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     Bounds or settings that make no sense.
+///
+/// >>> search = Optimizer("differential_evolution", [(-5, 5), (-5, 5)], seed=1)
+/// >>> while not search.finished:
+/// ...     points = search.ask()
+/// ...     search.tell((points**2).sum(axis=1))
+/// >>> search.best.value < 1e-3
+/// True
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct Optimizer {
     search: Mutex<Search>,
     variables: usize,
 }
 
-/// The best point of a search.
+/// The best point of a search; :attr:`Optimizer.best` has it.
+///
+/// >>> search = Optimizer("sobol", [(0, 1)])
+/// >>> search.tell(search.ask()[:, 0])
+/// >>> search.best.point.shape
+/// (1,)
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct Candidate {
     point: Vec<f64>,
-    /// The objective there.
+    /// The objective there; the first of several.
     #[pyo3(get)]
     value: f64,
-    /// The sum of what is broken of the constraints.
+    /// The sum of what constraints are below 0; 0 where all are kept.
     #[pyo3(get)]
     violation: f64,
 }
 
 #[pymethods]
 impl Candidate {
+    /// One value for each variable, shape (variables,).
     #[getter]
     fn point<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         self.point.clone().into_pyarray(py)
@@ -84,7 +111,8 @@ impl Optimizer {
         Ok(Self { search: Mutex::new(search), variables })
     }
 
-    /// The points to evaluate next, one a row; none when the search has ended.
+    /// The points to evaluate next, shape (points, variables); no points when the search has ended. Asked again before they
+    /// were told of, it gives the same.
     fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
         let search = self.held(py)?;
         let points = search.ask();
@@ -94,8 +122,21 @@ impl Optimizer {
         PyArray2::from_vec2(py, points).map_err(|error| crate::errors::bug(&error.to_string()))
     }
 
-    /// What the points that were asked for are worth: a number each, or a row each of several objectives. `constraints` are
-    /// kept where they are not negative.
+    /// Tells what the points that were asked for are worth.
+    ///
+    /// Parameters
+    /// ----------
+    /// values : array of shape (points,), or (points, objectives)
+    ///     The less the better; NaN or infinity where there is no value.
+    /// constraints : array of shape (points,), or (points, constraints), optional
+    ///     Kept where they are not negative.
+    ///
+    /// Raises
+    /// ------
+    /// InvalidInput
+    ///     Another shape.
+    /// RunFailed
+    ///     Another number of points than was asked for.
     #[pyo3(signature = (values, constraints = None))]
     fn tell(&self, py: Python<'_>, values: &Bound<'_, PyAny>, constraints: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
         let mut search = self.held(py)?;
@@ -115,29 +156,33 @@ impl Optimizer {
         search.tell_constrained(told).map_err(|failure| failed(py, &failure))
     }
 
+    /// Whether it has ended.
     #[getter]
     fn finished(&self, py: Python<'_>) -> PyResult<bool> {
         Ok(self.held(py)?.finished().is_some())
     }
 
-    /// Why it has ended.
+    /// Why it has ended; None before.
     #[getter]
     fn reason(&self, py: Python<'_>) -> PyResult<Option<String>> {
         Ok(self.held(py)?.finished().map(|reason| reason.to_string()))
     }
 
+    /// How many points it was told of.
     #[getter]
     fn evaluations(&self, py: Python<'_>) -> PyResult<usize> {
         Ok(self.held(py)?.evaluations())
     }
 
+    /// The best point so far; None where none has a value.
     #[getter]
     fn best(&self, py: Python<'_>) -> PyResult<Option<Candidate>> {
         let found = self.held(py)?.best().cloned();
         Ok(found.map(|best| Candidate { point: best.point, value: best.value, violation: best.violation }))
     }
 
-    /// Of several objectives: the points that no other one dominates, and their values.
+    /// Of several objectives: the points that no other one dominates, shape (points, variables), and their values, shape (points,
+    /// objectives).
     #[getter]
     fn front<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
         let search = self.held(py)?;

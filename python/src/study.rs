@@ -24,7 +24,10 @@ use crate::errors::{bug, invalid_study, refused, run_failed};
 use crate::stopping;
 use crate::tables::Table;
 
-/// A study, read and checked, and where its results lie.
+/// A study, read and checked, and where its results lie; :class:`gearstudy.Study` has the rest.
+///
+/// >>> study.stages["ste"]
+/// 'ste'
 #[pyclass(frozen, subclass, module = "gearstudy._gearstudy")]
 pub struct Study {
     study: Arc<study::Study>,
@@ -112,17 +115,19 @@ impl Study {
         Ok(Self { study: Arc::new(study), places: Places::new(results, cache) })
     }
 
+    /// Its name, that of its folder in the results.
     #[getter]
     fn name(&self) -> &str {
         &self.study.name
     }
 
+    /// Its title; empty where it has none.
     #[getter]
     fn title(&self) -> &str {
         &self.study.title
     }
 
-    /// The names of its stages, and the kind of each.
+    /// The names of its stages and the kind of each, in the order of the file.
     #[getter]
     fn stages<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
@@ -206,7 +211,7 @@ impl Study {
         Ok(Table::new(name, table))
     }
 
-    /// The page; none where there is none.
+    /// The page that shows its results; None before it was run.
     #[getter]
     fn report(&self) -> Option<PathBuf> {
         Some(embedded::page(&self.places.folder(&self.study.name))).filter(|path| path.is_file())
@@ -221,7 +226,10 @@ impl Study {
     }
 }
 
-/// Runs the program with these words.
+/// Runs the program with these words, the first being its own name, and gives its exit code.
+///
+/// >>> command_line(["gearstudy", "--version"])  # doctest: +SKIP
+/// 0
 #[pyfunction]
 pub fn command_line(py: Python<'_>, words: Vec<String>) -> i32 {
     py.detach(|| gearstudy::cli::main(words.into_iter().map(Into::into)))

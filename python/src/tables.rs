@@ -17,7 +17,17 @@ use studygraph::table::data::{Data, Table as Inner};
 
 use crate::errors::run_failed;
 
-/// A table of a stage.
+/// A table of a stage; :attr:`gearstudy.Study.tables` has them by name.
+///
+/// pandas, polars, pyarrow and DuckDB read it by the Arrow PyCapsule interface (``polars.DataFrame(table)``,
+/// ``pyarrow.table(table)``, ``pandas.DataFrame.from_arrow(table)``), with units in the metadata of its fields; pandas by itself
+/// knows no metadata of fields, which :meth:`to_pandas` gives it.
+///
+/// >>> table = study.tables["ste.summary"]
+/// >>> table["peak_to_peak"].shape == (len(table),)
+/// True
+/// >>> table.units["peak_to_peak"]
+/// 'um'
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct Table {
     name: String,
@@ -32,28 +42,31 @@ impl Table {
 
 #[pymethods]
 impl Table {
-    /// `stage.table`
+    /// The names of its stage and its own, ``stage.table``.
     #[getter]
     fn name(&self) -> &str {
         &self.name
     }
 
+    /// What it has, in a sentence.
     #[getter]
     fn description(&self) -> &str {
         &self.table.schema().description
     }
 
+    /// The names of its columns, in order.
     #[getter]
     fn columns(&self) -> Vec<&str> {
         self.table.schema().columns.iter().map(|column| column.name.as_str()).collect()
     }
 
+    /// The columns that tell its rows apart.
     #[getter]
     fn keys(&self) -> Vec<&str> {
         self.table.schema().columns.iter().filter(|column| column.key).map(|column| column.name.as_str()).collect()
     }
 
-    /// Unit by column, of those that have one.
+    /// Unit by column, of those that have one: that in which its values are.
     #[getter]
     fn units<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         self.told(py, |column| &column.unit)
@@ -73,7 +86,7 @@ impl Table {
         format!("Table({:?}, rows={}, columns={:?})", self.name, self.table.rows(), self.columns())
     }
 
-    /// A column as an array, texts as a list.
+    /// A column as an array of shape (rows,), texts as a list.
     fn __getitem__<'py>(&self, py: Python<'py>, column: &str) -> PyResult<Bound<'py, PyAny>> {
         let Some(data) = self.table.column(column) else {
             let help = suggest(column, self.columns());
@@ -85,6 +98,25 @@ impl Table {
             Data::Flag(values) => values.clone().into_pyarray(py).into_any(),
             Data::Text(values) => PyList::new(py, values)?.into_any(),
         })
+    }
+
+    /// A DataFrame of pandas, whose ``attrs`` have the table's ``name`` and ``description``, and ``units`` and ``descriptions`` by column.
+    ///
+    /// >>> frame = study.tables["ste.summary"].to_pandas()
+    /// >>> frame.attrs["units"]["torque"]
+    /// 'N m'
+    fn to_pandas<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+        let columns = PyDict::new(py);
+        for column in self.columns() {
+            columns.set_item(column, self.__getitem__(py, column)?)?;
+        }
+        let frame = py.import("pandas")?.call_method1("DataFrame", (columns,))?;
+        let attributes = frame.getattr("attrs")?;
+        attributes.set_item("name", self.name())?;
+        attributes.set_item("description", self.description())?;
+        attributes.set_item("units", self.units(py)?)?;
+        attributes.set_item("descriptions", self.descriptions(py)?)?;
+        Ok(frame)
     }
 
     /// The stream of the Arrow PyCapsule interface.

@@ -137,6 +137,21 @@ def test_designs_that_do_not_fit_are_told_or_left_out(stiffness):
     assert np.isnan(gs.summaries(stiffness, 80.0, relief, invalid="nan")["mean"]).tolist() == [False, True, False]
 
 
+def test_loads_beyond_the_model_are_told_or_left_out(stiffness):
+    torques = np.array([80.0, 1e8])
+    words = {"corner_contact": "exact"}
+    with pytest.raises(gs.RunFailed, match="^element 1: the gears approach farther than"):
+        gs.peak_to_peak(stiffness, torques, **words)
+    with pytest.raises(gs.RunFailed, match="^element 1: the gears approach farther than"):
+        gs.summaries(stiffness, torques, **words)
+    with pytest.raises(gs.RunFailed, match="^the gears approach farther than"):
+        gs.peak_to_peak(stiffness, 1e8, **words)
+    with pytest.raises(gs.RunFailed, match="^the gears approach farther than"):
+        gs.transmission_error(stiffness, 1e8, **words)
+    assert np.isnan(gs.peak_to_peak(stiffness, torques, invalid="nan", **words)).tolist() == [False, True]
+    assert np.isnan(gs.peak_to_peak(stiffness, 1e8, invalid="nan", **words))
+
+
 def test_errors_say_where_and_what_to_do(tmp_path):
     file = tmp_path / "wrong.yaml"
     file.write_text("study: wrong\nstages:\n  pair:\n    kind: geometry\n    module: 3 mm\n    pinion: { teeth: 24 }\n")

@@ -30,6 +30,8 @@ def test_tables_go_to_other_libraries_with_their_units(quick):
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame.from_arrow(table) if hasattr(pandas.DataFrame, "from_arrow") else read.to_pandas()
     assert (frame["peak_to_peak"].to_numpy() == expected).all()
+    told = table.to_pandas()
+    assert told.equals(frame) and told.attrs["units"] == table.units and told.attrs["name"] == "ste.summary"
     duckdb = pytest.importorskip("duckdb")
     largest = duckdb.sql("select max(peak_to_peak) from read").fetchall()[0][0]
     assert largest == expected.max()
@@ -105,6 +107,28 @@ def test_events_are_told_and_what_a_callback_raises_stops_the_run(tmp_path):
 def test_progress_in_lines(tmp_path, capsys):
     gs.run(QUICK, progress=True, results=tmp_path / "results", cache=tmp_path / "cache")
     assert "ste: done" in capsys.readouterr().err
+
+
+def test_progress_in_a_notebook(tmp_path):
+    """One line of its own, which changes: what a kernel sends, as a notebook receives it."""
+    nbformat = pytest.importorskip("nbformat")
+    nbclient = pytest.importorskip("nbclient")
+    places = f"results={str(tmp_path / 'results')!r}, cache={str(tmp_path / 'cache')!r}"
+    cell = nbformat.v4.new_code_cell(f"import gearstudy as gs\ngs.run({str(QUICK)!r}, progress=True, {places})")
+    notebook = nbformat.v4.new_notebook(cells=[cell])
+    received = []
+
+    class Client(nbclient.NotebookClient):
+        def process_message(self, message, *others):
+            received.append((message["msg_type"], message["content"]))
+            return super().process_message(message, *others)
+
+    Client(notebook, timeout=120, kernel_name="python3", resources={"metadata": {"path": tmp_path}}).execute()
+    updates = [content["data"]["text/plain"] for kind, content in received if kind == "update_display_data"]
+    assert len(updates) >= 6 and "ste: done" in " ".join(updates)
+    shown, value = cell["outputs"]
+    assert shown["data"]["text/plain"] == updates[-1] == "6 stages looked at"
+    assert "report.html" in value["data"]["text/html"]
 
 
 def test_the_command_line_is_there(tmp_path):

@@ -1,0 +1,246 @@
+//! What the curves of many designs come to.
+//!
+//! Must not know: studies.
+
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use numpy::{IntoPyArray, PyArray1};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
+
+use declare::error::Diagnostic;
+use gearmesh::gear::transmission_error::curve::Summary;
+use gearmesh::gear::transmission_error::cycle::MeshCycle;
+use gearmesh::gear::transmission_error::load_case::LoadCase;
+
+use crate::curve::{beyond, wanted};
+use crate::design::Designs;
+use crate::errors::{failed, refused, refused_at, run_failed};
+use crate::stiffness::{Stiffness, settings};
+use crate::{is_scalar, stopping, torques};
+
+/// Designs that a thread takes at once.
+const AT_ONCE: usize = 64;
+
+/// Why there is no number for a design.
+enum Missing {
+    /// It does not fit the pair.
+    Unfit(Diagnostic),
+    /// It is loaded beyond the model.
+    Beyond(String),
+}
+
+impl Missing {
+    /// Of the element of arrays that stands at an index, if there are any.
+    fn exception(&self, py: Python<'_>, index: Option<usize>) -> PyErr {
+        match (self, index) {
+            (Self::Unfit(wrong), Some(index)) => refused_at(py, index, wrong),
+            (Self::Unfit(wrong), None) => refused(py, wrong),
+            (Self::Beyond(message), Some(index)) => run_failed(py, &format!("element {index}: {message}")),
+            (Self::Beyond(message), None) => run_failed(py, message),
+        }
+    }
+}
+
+/// Designs and torques of one call, as many as the longest array has elements.
+struct Many {
+    designs: Designs,
+    torques: Vec<f64>,
+    count: usize,
+    is_single: bool,
+}
+
+impl Many {
+    fn read(torque: &Bound<'_, PyAny>, design: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        let py = torque.py();
+        let designs = Designs::read(design)?;
+        let single = is_scalar(torque)?;
+        let torques = torques(torque)?;
+        let count = designs.count((!single).then_some(torques.len())).map_err(|wrong| refused(py, &wrong))?;
+        Ok(Self { designs, torques, count: count.unwrap_or(1), is_single: count.is_none() })
+    }
+
+    fn torque(&self, index: usize) -> f64 {
+        if self.torques.len() == 1 { self.torques[0] } else { self.torques[index] }
+    }
+
+    /// What each comes to, in order, on so many threads; `of` has nothing for what is beyond the model. That and what does not fit
+    /// is none where it is kept, and ends it elsewhere.
+    fn each<T: Send + Clone>(
+        &self,
+        py: Python<'_>,
+        stiffness: &Stiffness,
+        cycle: &MeshCycle,
+        threads: usize,
+        keeps_invalid: bool,
+        of: impl Fn(&LoadCase<'_>) -> Option<T> + Sync,
+    ) -> PyResult<Vec<Option<T>>> {
+        let found = |index: usize| {
+            let design = self.designs.at(index, &stiffness.of).map_err(Missing::Unfit)?;
+            let loading = LoadCase::new(cycle, &design, self.torque(index));
+            of(&loading).ok_or_else(|| Missing::Beyond(beyond(&loading)))
+        };
+        let one = |index: usize| match found(index) {
+            Ok(found) => Ok(Some(found)),
+            Err(_) if keeps_invalid => Ok(None),
+            Err(missing) => Err((index, missing)),
+        };
+        let some = |stop: &AtomicBool, first: usize| {
+            if stop.load(Ordering::Relaxed) {
+                return Ok(Vec::new());
+            }
+            (first..self.count.min(first + AT_ONCE)).map(one).collect::<Result<Vec<_>, _>>()
+        };
+        let firsts: Vec<usize> = (0..self.count).step_by(AT_ONCE).collect();
+        let found: Result<Vec<Vec<Option<T>>>, (usize, Missing)> = match (firsts.len(), threads) {
+            // Not long enough for anybody to interrupt it.
+            (0 | 1, _) => py.detach(|| some(&AtomicBool::new(false), 0).map(|found| vec![found])),
+            (_, 1) => stopping(py, |stop| firsts.iter().map(|first| some(stop, *first)).collect())?,
+            // Of its own: those of everybody do not survive a fork.
+            _ => {
+                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+                let pool = pool.map_err(|error| run_failed(py, &format!("cannot start threads: {error}")))?;
+                stopping(py, |stop| pool.install(|| firsts.par_iter().map(|first| some(stop, *first)).collect()))?
+            }
+        };
+        found
+            .map(|found| found.concat())
+            .map_err(|(index, missing)| missing.exception(py, (!self.is_single).then_some(index)))
+    }
+}
+
+/// What becomes of a design that does not fit.
+fn is_kept(py: Python<'_>, invalid: &str) -> PyResult<bool> {
+    match invalid {
+        "raise" => Ok(false),
+        "nan" => Ok(true),
+        _ => Err(refused(py, &Diagnostic::new(format!("`invalid` is `{invalid}`")).help("it may be `raise` or `nan`"))),
+    }
+}
+
+/// The peak-to-peak transmission error [m] of one design under one torque, or of each of many.
+///
+/// Parameters
+/// ----------
+/// stiffness : Stiffness
+///     Of the pair.
+/// torque : number [N m], or an array of shape (designs,)
+///     On the pinion. 0 to 1e9 N m.
+/// design : Design, modification, sequence of modifications, optional
+///     With arrays of shape (designs,) in any of its numbers; unmodified teeth without it.
+/// positions : int
+///     Of the cycle, evenly spread. 8 to 100,000.
+/// threads : int
+///     On which designs are spread; 0 for as many as the machine has. They change no bit of any number.
+/// invalid : "raise" or "nan"
+///     What becomes of a design that does not fit the pair, or is loaded beyond the model.
+/// slices, corner_contact, slice_coupling
+///     As :func:`transmission_error` has them.
+///
+/// Returns
+/// -------
+/// float, or an array of shape (designs,) where anything was given as an array.
+///
+/// Raises
+/// ------
+/// InvalidInput
+///     What makes no sense, and which element of an array it is; arrays of different lengths.
+/// RunFailed
+///     Where the gears approach farther than corner contact is modelled for.
+/// KeyboardInterrupt
+///     Ctrl-C.
+///
+/// >>> import numpy as np
+/// >>> amounts = np.array([0.0, 7e-6, 14e-6])
+/// >>> found = peak_to_peak(stiffness, 150.0, TipRelief(gear="both", amount=amounts, fraction=0.8))
+/// >>> found.shape
+/// (3,)
+/// >>> bool(found[0] == peak_to_peak(stiffness, 150.0))
+/// True
+#[pyfunction]
+#[pyo3(signature = (stiffness, torque, design = None, *, positions = 64, threads = 1, invalid = "raise", **cycle))]
+pub fn peak_to_peak<'py>(
+    py: Python<'py>,
+    stiffness: &Bound<'py, Stiffness>,
+    torque: &Bound<'py, PyAny>,
+    design: Option<&Bound<'py, PyAny>>,
+    positions: usize,
+    threads: usize,
+    invalid: &str,
+    cycle: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let many = Many::read(torque, design)?;
+    let own = stiffness.get();
+    let settings = settings(py, cycle, positions)?;
+    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
+    let found = many.each(py, own, &cycle, threads, is_kept(py, invalid)?, |loading| {
+        Some(loading.peak_to_peak()).filter(|found| found.is_finite())
+    })?;
+    let found: Vec<f64> = found.into_iter().map(|found| found.unwrap_or(f64::NAN)).collect();
+    match found[..] {
+        [found] if many.is_single => Ok(found.into_pyobject(py)?.into_any()),
+        _ => Ok(found.into_pyarray(py).into_any()),
+    }
+}
+
+/// What the transmission errors of many designs come to.
+///
+/// Parameters are those of :func:`peak_to_peak`, with ``harmonics`` and ``pressure`` of :func:`transmission_error`.
+///
+/// Returns
+/// -------
+/// dict from name to an array of shape (designs,): ``peak_to_peak``, ``mean``, ``unloaded_peak_to_peak`` and ``harmonic_1`` on in
+/// metres, ``variance`` in square metres, ``loaded_contact_ratio``, ``largest_load_share``, and with ``pressure``
+/// ``largest_pressure`` in pascals. With ``invalid="nan"`` a design that does not fit, or approaches farther than corner contact
+/// is modelled for, has NaN throughout.
+///
+/// >>> found = summaries(stiffness, [100.0, 150.0], relief, harmonics=1)
+/// >>> sorted(found)[:3]
+/// ['harmonic_1', 'largest_load_share', 'loaded_contact_ratio']
+/// >>> bool(found["mean"][0] < found["mean"][1])
+/// True
+#[pyfunction]
+#[pyo3(signature = (stiffness, torque, design = None, *, positions = 64, harmonics = 8, pressure = false, threads = 1, invalid = "raise", **cycle))]
+pub fn summaries<'py>(
+    py: Python<'py>,
+    stiffness: &Bound<'py, Stiffness>,
+    torque: &Bound<'py, PyAny>,
+    design: Option<&Bound<'py, PyAny>>,
+    positions: usize,
+    harmonics: usize,
+    pressure: bool,
+    threads: usize,
+    invalid: &str,
+    cycle: Option<&Bound<'py, PyDict>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let many = Many::read(torque, design)?;
+    let own = stiffness.get();
+    let settings = settings(py, cycle, positions)?;
+    let wanted = wanted(py, harmonics, pressure)?;
+    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
+    let found = many.each(py, own, &cycle, threads, is_kept(py, invalid)?, |loading| {
+        let summary = loading.summary(wanted);
+        loading.holds(summary.largest.value).then_some(summary)
+    })?;
+    let all = PyDict::new(py);
+    let column = |value: &dyn Fn(&Summary) -> f64| -> Bound<'py, PyArray1<f64>> {
+        found.iter().map(|found| found.as_ref().map_or(f64::NAN, value)).collect::<Vec<_>>().into_pyarray(py)
+    };
+    all.set_item("peak_to_peak", column(&|summary| summary.peak_to_peak))?;
+    all.set_item("mean", column(&|summary| summary.mean))?;
+    all.set_item("variance", column(&|summary| summary.variance))?;
+    all.set_item("unloaded_peak_to_peak", column(&|summary| summary.unloaded_peak_to_peak))?;
+    all.set_item("loaded_contact_ratio", column(&|summary| summary.loaded_contact_ratio))?;
+    all.set_item("largest_load_share", column(&|summary| summary.largest_load_share))?;
+    if pressure {
+        let largest =
+            |summary: &Summary| summary.largest_pressure.as_ref().map_or(f64::NAN, |found| found.extremum.value);
+        all.set_item("largest_pressure", column(&largest))?;
+    }
+    for order in 0..harmonics {
+        all.set_item(format!("harmonic_{}", order + 1), column(&|summary| summary.harmonics[order]))?;
+    }
+    Ok(all)
+}
