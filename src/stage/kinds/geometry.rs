@@ -6,6 +6,7 @@
 mod article;
 mod construction;
 mod drawn;
+mod inspected;
 mod meshing;
 pub mod stated;
 mod valid;
@@ -183,11 +184,21 @@ impl Stage for Geometry {
         schemas.extend([drawn::outline_schema(), drawn::junctions().schema(), valid::columns(paired).schema()]);
         schemas.extend(paired.then(|| meshing::columns().schema()));
         schemas.extend([article::columns().schema(), construction::columns().schema()]);
+        schemas.push(inspected::inspection().schema());
+        if paired {
+            schemas.extend([inspected::path_points().schema(), inspected::working().schema()]);
+        }
         schemas
     }
 
     fn lacks(&self, table: &str) -> Option<&'static str> {
-        let of_a_pair = [pair::pair().schema(), meshing::columns().schema()].iter().any(|schema| schema.name == table);
+        let of_a_pair = [
+            pair::pair().schema(),
+            meshing::columns().schema(),
+            inspected::path_points().schema(),
+            inspected::working().schema(),
+        ];
+        let of_a_pair = of_a_pair.iter().any(|schema| schema.name == table);
         (of_a_pair && self.pair.is_none()).then_some("it has one gear, and this needs two: give it the mate as `gear`")
     }
 
@@ -216,7 +227,8 @@ impl Stage for Geometry {
                 }),
                 "root_arc" => RowCount::at_most(self.gears.len()),
                 "arc_drawing" => RowCount::at_most(halves().map(construction::maximum).sum()),
-                "pair" => RowCount::exact(1),
+                "path_points" => RowCount::exact(2 * inspected::POINTS),
+                "pair" | "working" => RowCount::exact(1),
                 _ => RowCount::exact(self.gears.len()),
             };
             estimate = if name == "outline" {
@@ -277,6 +289,12 @@ impl Stage for Geometry {
                 ("mesh_drawing", Some(pair)) => {
                     meshing::columns().table(&meshing::rows(pair, &self.gears, self.density))
                 }
+                ("inspection", _) => {
+                    let rows: Vec<_> = self.gears.iter().map(inspected::InspectedRow::new).collect();
+                    inspected::inspection().table(&rows)
+                }
+                ("path_points", Some(pair)) => inspected::path_points().table(&inspected::points(pair)),
+                ("working", Some(pair)) => inspected::working().table(&[pair]),
                 ("root_arc", _) => {
                     let rows: Vec<_> = self.gears.iter().filter_map(article::row).collect();
                     article::columns().table(&rows)

@@ -5,10 +5,12 @@
 pub mod error;
 pub mod flank_end;
 pub mod gear;
+pub mod inspection;
 pub mod involute;
 pub mod outline;
 pub mod pair;
 pub mod root;
+pub mod sliding;
 pub mod tip_path;
 pub mod trochoid;
 pub mod validity;

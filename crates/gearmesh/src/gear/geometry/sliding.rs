@@ -1,0 +1,62 @@
+//! How the flanks of a pair slide on each other, and what play they have.
+//!
+//! At path position s the flanks have radii of curvature s and L − s, and the sliding speed is proportional to the distance from
+//! the pitch point C. Lengths in m. Source: ISO 21771-1:2024, clauses on sliding conditions and backlash. Must not know: load.
+
+use super::{GearPair, Side};
+
+/// The play between the flanks that do not drive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Backlash {
+    /// j_wt: along the working pitch circles.
+    pub circumferential: f64,
+    /// j_bn: normal to the flanks.
+    pub normal: f64,
+    /// j_r: by how much the centre distance is larger than without backlash, by the tangent at the working angle.
+    pub radial: f64,
+}
+
+impl GearPair {
+    /// r_w: radius of a gear's working pitch circle.
+    #[must_use]
+    pub fn working_radius(&self, side: Side) -> f64 {
+        self.side(side).base_radius / libm::cos(self.working_pressure_angle)
+    }
+
+    /// ζ: specific sliding of a gear's flank at a path position, 1 − v_mate/v_own by the speeds of the contact along the flanks;
+    /// −∞ where its own stands still, at its tangent point.
+    #[must_use]
+    pub fn specific_sliding(&self, side: Side, s: f64) -> f64 {
+        let (own, mate) = (self.side(side), self.side(side.other()));
+        let rolling = |of: Side| match of {
+            Side::Pinion => s,
+            Side::Gear => self.tangent_length - s,
+        };
+        let ratio = f64::from(own.specification.teeth) / f64::from(mate.specification.teeth);
+        1.0 - ratio * rolling(side.other()) / rolling(side)
+    }
+
+    /// K_g: sliding speed over the speed of the working pitch circles at a path position, positive beyond the pitch point.
+    #[must_use]
+    pub fn sliding_factor(&self, s: f64) -> f64 {
+        let turning: f64 = [Side::Pinion, Side::Gear].map(|side| 1.0 / self.working_radius(side)).iter().sum();
+        (s - self.zone_points().c) * turning
+    }
+
+    /// j at the thicknesses that the teeth have.
+    #[must_use]
+    pub fn backlash(&self) -> Backlash {
+        let [pinion, gear] = [Side::Pinion, Side::Gear].map(|side| {
+            let radius = self.working_radius(side);
+            // The difference to half a pitch, so that no backlash comes out as none.
+            let of = self.side(side);
+            radius * (0.5 * std::f64::consts::PI / f64::from(of.specification.teeth) - of.half_angle(radius))
+        });
+        let circumferential = 2.0 * (pinion + gear);
+        let (sine, cosine) = libm::sincos(self.working_pressure_angle);
+        Backlash { circumferential, normal: circumferential * cosine, radial: 0.5 * circumferential * cosine / sine }
+    }
+}
+
+#[cfg(test)]
+mod tests;
