@@ -14,6 +14,8 @@ Kernels take SI numbers and numpy arrays; names are those of ISO 21771 and ISO 6
 >>> curve.peak_to_peak < 0.2 * gs.peak_to_peak(stiffness, 150.0)
 True
 
+Examples elsewhere take ``pair``, ``stiffness`` and ``relief`` from here, and the names of the package as they are.
+
 Studies are run as the command line runs them:
 
 >>> study = gs.run("studies/quick.yaml")                      # doctest: +SKIP
@@ -34,7 +36,7 @@ from gearstudy._gearstudy import (
 )
 from gearstudy import declared
 from gearstudy.declared import *  # noqa: F403
-from gearstudy.errors import GearstudyError, InvalidInput, InvalidStudy, RunFailed
+from gearstudy.errors import GearstudyError, InvalidInput, InvalidStudy, RunFailed, StudyWarning
 from gearstudy.searching import Minimum, minimize
 from gearstudy.studies import Progress, Study, Tables, load, run
 
@@ -50,6 +52,7 @@ __all__ = [
     "Progress",
     "RunFailed",
     "Study",
+    "StudyWarning",
     "Table",
     "Tables",
     "TransmissionError",

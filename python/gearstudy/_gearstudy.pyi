@@ -1,7 +1,7 @@
 """What is compiled. Lengths in metres, angles in radians, forces in newtons, pressures in pascals."""
 
 from pathlib import Path
-from typing import Any, Callable, Literal, Sequence
+from typing import Any, Callable, Iterator, Literal, Sequence
 
 import numpy
 import numpy.typing
@@ -117,7 +117,7 @@ class Stiffness:
         Parameters
         ----------
         torque : number [N m], optional
-            On the pinion; 1 N m without it. It matters where the contact law does not scale with load.
+            On the pinion; without it the one that was stated, or else 1 N m. It matters where the contact law depends on load.
         positions : int, optional
             Of the cycle, evenly spread. 8 to 100,000; 64 without it.
 
@@ -403,7 +403,7 @@ class Optimizer:
     True
     """
 
-    def __new__(cls, method: str | Search, bounds: Sequence[tuple[float, float]], *, seed: int = 0) -> Self: ...
+    def __new__(cls, method: str | Search, bounds: Sequence[tuple[float, float]] | Array, *, seed: int = 0) -> Self: ...
     def ask(self) -> Array:
         """The points to evaluate next, shape (points, variables); no points when the search has ended. Asked again before they
         were told of, it gives the same.
@@ -467,7 +467,7 @@ class Table:
     def columns(self) -> list[str]:
         """The names of its columns, in order."""
     @property
-    def keys(self) -> list[str]:
+    def key_columns(self) -> list[str]:
         """The columns that tell its rows apart."""
     @property
     def units(self) -> dict[str, str]:
@@ -477,6 +477,10 @@ class Table:
         """Description by column."""
     def __len__(self) -> int: ...
     def __getitem__(self, column: str) -> Any: ...
+    def __contains__(self, column: object) -> bool: ...
+    def __iter__(self) -> Iterator[str]: ...
+    def keys(self) -> list[str]:
+        """The names of its columns; with them ``dict(table)`` has all of it."""
     def to_pandas(self) -> Any:
         """A DataFrame of pandas, whose ``attrs`` have the table's ``name`` and ``description``, and ``units`` and ``descriptions`` by column.
 
@@ -529,7 +533,7 @@ class Study:
         limit_memory: int | None,
         limit_rows: int | None,
         progress: Callable[[dict[str, Any]], None] | None,
-    ) -> None: ...
+    ) -> list[str]: ...
     def _plan(self, *, only: list[str], want: list[str], force: bool | list[str]) -> dict[str, Any]:
         """What a run would do, as `gearstudy plan --format json` has it."""
     def _diff(self, before: Study) -> dict[str, Any]:

@@ -66,7 +66,10 @@ class HasUnits(Protocol):
     @property
     def magnitude(self) -> Any: ...
 
-    def to_base_units(self) -> Any: ...
+    @property
+    def dimensionality(self) -> Any: ...
+
+    def to(self, unit: str) -> Any: ...
 
 
 Quantity = Union[float, str, HasUnits]
@@ -80,16 +83,38 @@ class Declared:
     fields: dict[str, Any]
 
     def __init__(self, **fields: Any) -> None:
-        self.fields = {name: value for name, value in fields.items() if value is not None}
+        stated = {name: value for name, value in fields.items() if value is not None}
+        self.__dict__.update(fields=stated, _known=frozenset(fields))
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            """What was stated as the field of this name; None where nothing was."""
+            if name in self.__dict__.get("_known", ()):
+                return self.fields.get(name)
+            raise AttributeError(f"{type(self).__name__} has no {name!r}")
+
+        def __setattr__(self, name: str, value: Any) -> None:
+            raise AttributeError(f"{type(self).__name__} does not change; make another one")
 
     def __repr__(self) -> str:
         inside = ", ".join(f"{name}={value!r}" for name, value in self.fields.items())
         return f"{type(self).__name__}({inside})"
 
     def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and repr(self) == repr(other)
+        if type(self) is not type(other) or not isinstance(other, Declared):
+            return False
+        own, others = self.fields, other.fields
+        return own.keys() == others.keys() and all(_equal(own[name], others[name]) for name in own)
 
     __hash__ = None  # type: ignore[assignment]
+
+
+def _equal(one: Any, other: Any) -> bool:
+    if getattr(one, "shape", ()) != getattr(other, "shape", ()):
+        return False
+    found = one == other
+    return bool(found.all() if hasattr(found, "all") else found)
 
 
 class Modification(Declared):

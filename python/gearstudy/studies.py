@@ -5,13 +5,14 @@ from __future__ import annotations
 import json
 import os
 import sys
+import warnings
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Callable, Sequence, Union
 
 from gearstudy import _gearstudy
 from gearstudy._gearstudy import Table
-from gearstudy.errors import InvalidInput
+from gearstudy.errors import InvalidInput, StudyWarning
 
 Event = dict[str, Any]
 Source = Union[str, "os.PathLike[str]", Mapping[str, Any]]
@@ -69,9 +70,9 @@ class Study(_gearstudy.Study):
     def run(
         self,
         *,
-        only: Sequence[str] = (),
-        want: Sequence[str] = (),
-        force: bool | Sequence[str] = False,
+        only: str | Sequence[str] = (),
+        want: str | Sequence[str] = (),
+        force: bool | str | Sequence[str] = False,
         jobs: int = 0,
         keep_going: bool = False,
         limit_memory: int | None = None,
@@ -83,12 +84,14 @@ class Study(_gearstudy.Study):
         >>> study.run(only=["pair"]).name
         'quick'
         """
+        if not (isinstance(progress, bool) or callable(progress)):
+            raise InvalidInput(f"`progress` is {progress!r}; True, False or a callable is expected")
         tell = Progress() if progress is True else progress or None
         try:
-            self._run(
-                only=list(only),
-                want=list(want),
-                force=force if isinstance(force, bool) else list(force),
+            warned = self._run(
+                only=_names(only),
+                want=_names(want),
+                force=_forced(force),
                 jobs=jobs,
                 keep_going=keep_going,
                 limit_memory=limit_memory,
@@ -98,18 +101,20 @@ class Study(_gearstudy.Study):
         finally:
             if isinstance(tell, Progress):
                 tell.close()
+        if tell is None:
+            for text in warned:
+                warnings.warn(text, StudyWarning, stacklevel=2)
         return self
 
     def plan(
-        self, *, only: Sequence[str] = (), want: Sequence[str] = (), force: bool | Sequence[str] = False
+        self, *, only: str | Sequence[str] = (), want: str | Sequence[str] = (), force: bool | str | Sequence[str] = False
     ) -> dict[str, Any]:
         """What a run would do and why, as ``gearstudy plan --format json`` has it (docs/json.md).
 
         >>> {stage["action"] for stage in study.plan()["stages"]}
         {'hit'}
         """
-        force = force if isinstance(force, bool) else list(force)
-        return self._plan(only=list(only), want=list(want), force=force)
+        return self._plan(only=_names(only), want=_names(want), force=_forced(force))
 
     def diff(self, before: Study) -> dict[str, Any]:
         """What differs between the results of another study and those of this one, as ``gearstudy diff --format json``.
@@ -161,9 +166,12 @@ def load(
     gearstudy.errors.InvalidStudy: ...
     """
     text, path = (_text(study), Path("study.yaml")) if isinstance(study, Mapping) else (None, Path(study))
+    if not isinstance(set or {}, Mapping):
+        raise InvalidInput(f"`set` is {set!r}; a mapping from paths to values is expected")
     changes = [f"{path}={_written(value)}" for path, value in (set or {}).items()]
-    kept = None if cache is None else Path(cache)
-    return Study(text, path, set=changes, name=name, results=Path(results), cache=kept)
+    # Where they lie now: the process may go elsewhere before it is run.
+    kept = None if cache is None else Path(cache).absolute()
+    return Study(text, path, set=changes, name=name, results=Path(results).absolute(), cache=kept)
 
 
 def run(
@@ -173,9 +181,9 @@ def run(
     name: str | None = None,
     results: str | os.PathLike[str] = "results",
     cache: str | os.PathLike[str] | None = None,
-    only: Sequence[str] = (),
-    want: Sequence[str] = (),
-    force: bool | Sequence[str] = False,
+    only: str | Sequence[str] = (),
+    want: str | Sequence[str] = (),
+    force: bool | str | Sequence[str] = False,
     jobs: int = 0,
     keep_going: bool = False,
     limit_memory: int | None = None,
@@ -188,11 +196,11 @@ def run(
     ----------
     study, set, name, results, cache
         As :func:`load` has them.
-    only : sequence of str
+    only : str or sequence of str
         These stages and what they need.
-    want : sequence of str
+    want : str or sequence of str
         Tables and columns on demand, ``stage.table`` or ``stage.table.column``.
-    force : bool or sequence of str
+    force : bool, str or sequence of str
         Whether all, or which stages, are computed although they are known.
     jobs : int
         Threads; 0 for as many as the machine has. They change no bit of any result.
@@ -210,6 +218,11 @@ def run(
         What is wrong; what is finished is kept.
     KeyboardInterrupt
         Ctrl-C; what is finished is kept, and the next run goes on from there.
+
+    Warns
+    -----
+    StudyWarning
+        What a stage warns of, unless ``progress`` tells it.
 
     >>> gear = {"teeth": 24, "face_width": "20 mm", "bore_radius": "18 mm"}
     >>> pair = {"kind": "geometry", "module": "3 mm", "pinion": gear, "gear": gear}
@@ -277,18 +290,39 @@ def _text(study: Mapping[str, Any]) -> str:
                 lines += [f"  {_json(name)}: {_json(stage)}" for name, stage in value.items()]
             else:
                 lines.append(f"{_json(key)}: {_json(value)}")
-    except (TypeError, ValueError) as error:
+        text = "\n".join(lines) + "\n"
+        text.encode()
+    except (TypeError, ValueError, RecursionError) as error:
         raise InvalidInput(f"the mapping cannot be a study: {error}") from error
-    return "\n".join(lines) + "\n"
+    return text
 
 
 def _json(value: Any) -> str:
-    return json.dumps(value, ensure_ascii=False, allow_nan=False)
+    return json.dumps(value, ensure_ascii=False, allow_nan=False, default=_of_numpy)
+
+
+def _of_numpy(value: Any) -> Any:
+    """An array or a number of numpy as Python's own."""
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{value!r} of type {type(value).__name__} is nothing that a study can say")
 
 
 def _written(value: Any) -> str:
     """A value as a study writes it."""
-    return value if isinstance(value, str) else json.dumps(value)
+    try:
+        return value if isinstance(value, str) else _json(value)
+    except (TypeError, ValueError, RecursionError) as error:
+        raise InvalidInput(f"`set` has a value that no study can have: {error}") from error
+
+
+def _names(names: str | Sequence[str]) -> list[str]:
+    return [names] if isinstance(names, str) else list(names)
+
+
+def _forced(force: bool | str | Sequence[str]) -> bool | list[str]:
+    # A flag of numpy is one, too.
+    return bool(force) if isinstance(force, bool) or hasattr(force, "dtype") else _names(force)
 
 
 def _escaped(text: str) -> str:

@@ -7,14 +7,19 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use declare::error::{Diagnostic, Failure};
+use gearmesh::gear::contact::SliceCoupling;
 use gearmesh::gear::transmission_error::curve::{Point, Summary, Wanted};
+use gearmesh::gear::transmission_error::cycle::Settings;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 use crate::design::Designs;
 use crate::errors::{failed, refused};
 use crate::stiffness::{Stiffness, settings};
 use crate::torques;
+use crate::waiting::abandoning;
 
+/// Positions times slices from which on a thread of its own is worth while: some milliseconds.
+const LONG: usize = 200_000;
 /// The most harmonics, as a study may state them.
 const MOST_HARMONICS: usize = 200;
 
@@ -238,16 +243,24 @@ pub fn transmission_error(
     let settings = settings(py, cycle, positions)?;
     let wanted = wanted(py, harmonics, pressure)?;
     let design = designs.at(0, &own.of).map_err(wrong)?;
-    let made = py.detach(|| {
-        let cycle = own.cycle(settings)?;
+    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
+    let make = move || {
         let loading = LoadCase::new(&cycle, &design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
         if !loading.holds(summary.largest.value) {
             return Err(Failure::new(beyond(&loading)));
         }
         Ok(TransmissionError { points, summary })
-    });
+    };
+    let made = if is_long(settings, 1) { abandoning(py, move |_| make())? } else { py.detach(make) };
     made.map_err(|failure| failed(py, &failure))
+}
+
+/// Whether so many curves take longer than anybody waits for without the wish to interrupt them.
+pub fn is_long(settings: Settings, curves: usize) -> bool {
+    // Slices that hold each other are a problem for each position.
+    let each = if settings.slice_coupling == SliceCoupling::None { 1 } else { settings.slices };
+    curves.saturating_mul(settings.positions).saturating_mul(settings.slices).saturating_mul(each) > LONG
 }
 
 /// What a curve comes to, as the words of a call say.

@@ -25,7 +25,7 @@ pub struct Stated {
 
 /// One design, or several that differ by the elements of arrays.
 pub enum Designs {
-    Built(Arc<modification::Design>),
+    Built(Arc<modification::Design>, Arc<GearPair>),
     Stated(Vec<Stated>),
 }
 
@@ -37,7 +37,8 @@ impl Designs {
     pub fn read(given: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let Some(given) = given.filter(|given| !given.is_none()) else { return Ok(Self::Stated(Vec::new())) };
         if let Ok(design) = given.cast::<Design>() {
-            return Ok(Self::Built(Arc::clone(&design.get().built)));
+            let (built, pair) = (&design.get().built, &design.get().pair.get().pair);
+            return Ok(Self::Built(Arc::clone(built), Arc::clone(pair)));
         }
         let parts = match values::declared(given)? {
             Some(_) => vec![stated(given)?],
@@ -73,9 +74,13 @@ impl Designs {
     ///
     /// # Errors
     /// What does not fit the pair.
-    pub fn at(&self, index: usize, pair: &GearPair) -> Result<Arc<modification::Design>, Diagnostic> {
+    pub fn at(&self, index: usize, pair: &Arc<GearPair>) -> Result<Arc<modification::Design>, Diagnostic> {
         let parts = match self {
-            Self::Built(design) => return Ok(Arc::clone(design)),
+            Self::Built(design, own) if Arc::ptr_eq(own, pair) || own == pair => return Ok(Arc::clone(design)),
+            Self::Built(..) => {
+                let message = "`design` is that of another pair than `stiffness`";
+                return Err(Diagnostic::new(message).help("make the Design for the pair, or give the modifications"));
+            }
             Self::Stated(parts) => parts,
         };
         let mut design = modification::Design::default();
@@ -159,6 +164,10 @@ impl Design {
         let (py, own) = (slf.py(), slf.get());
         let given = PyTuple::new(py, [own.pair.bind(py).as_any(), own.modifications.bind(py)])?;
         PyTuple::new(py, [slf.get_type().as_any(), given.as_any()])
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        Ok(format!("Design({})", self.modifications.bind(py).repr()?))
     }
 
     /// Gear, family, name and value in SI of everything that was stated, and of what follows from it.

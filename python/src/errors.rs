@@ -2,7 +2,7 @@
 //!
 //! Must not know: what anybody was about.
 
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyException, PyRuntimeError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -71,6 +71,11 @@ pub fn failed(py: Python<'_>, failure: &Failure) -> PyErr {
 /// The same in other words.
 pub fn run_failed(py: Python<'_>, message: &str) -> PyErr {
     exception(py, "RunFailed", message, |_| Ok(()))
+}
+
+/// What is said of something that Python could not make sense of; a signal, or the end of the interpreter, stays what it is.
+pub fn unless_stopped(py: Python<'_>, raised: PyErr, otherwise: impl FnOnce() -> PyErr) -> PyErr {
+    if raised.is_instance_of::<PyException>(py) { otherwise() } else { raised }
 }
 
 /// A mistake of this program, never the user's.

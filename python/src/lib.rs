@@ -19,16 +19,10 @@ mod stiffness;
 mod study;
 mod tables;
 mod values;
-
-use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, RecvTimeoutError};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
-use std::time::Duration;
+mod waiting;
 
 use pyo3::prelude::*;
-use pyo3::types::{PyAnyMethods, PyDict, PyFloat, PyInt, PyTuple};
+use pyo3::types::{PyAnyMethods, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
 use declare::error::Diagnostic;
 use declare::units::TORQUE;
@@ -40,56 +34,13 @@ use errors::refused;
 #[global_allocator]
 static ALLOCATOR: cli::Allocator = cli::Allocator;
 
-/// How long a signal waits, at most, until what runs is told of it.
-const SIGNALS: Duration = Duration::from_millis(20);
 /// The largest torque that a study may state [N m].
 const MOST_TORQUE: f64 = 1e9;
-
-/// Does something that takes long, on a thread of its own; a signal of Python stops it.
-///
-/// # Errors
-/// What the signal raises.
-pub fn stopping<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
-    let stop = AtomicBool::new(false);
-    thread::scope(|scope| {
-        let (tell, told) = mpsc::channel();
-        // What waits without the interpreter's lock has it to itself.
-        let told = Mutex::new(told);
-        let stop = &stop;
-        let spawned = thread::Builder::new().name("gearstudy".to_owned()).spawn_scoped(scope, move || {
-            let _ = tell.send(catch_unwind(AssertUnwindSafe(|| work(stop))));
-        });
-        spawned.map_err(|error| errors::run_failed(py, &format!("cannot start a thread: {error}")))?;
-        let mut raised = None;
-        let done = loop {
-            let waited = || told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(SIGNALS);
-            match py.detach(waited) {
-                Ok(done) => break done,
-                Err(RecvTimeoutError::Timeout) => {
-                    if let Err(signal) = py.check_signals() {
-                        stop.store(true, Ordering::Relaxed);
-                        raised.get_or_insert(signal);
-                    }
-                }
-                Err(RecvTimeoutError::Disconnected) => return Err(errors::bug("a thread ended without a word")),
-            }
-        };
-        match (raised, done) {
-            (Some(raised), _) => Err(raised),
-            (None, Ok(done)) => Ok(done),
-            (None, Err(panic)) => {
-                let words =
-                    panic.downcast_ref::<String>().map(String::as_str).or(panic.downcast_ref::<&str>().copied());
-                Err(errors::bug(words.unwrap_or("a panic")))
-            }
-        }
-    })
-}
 
 /// A torque, or several, in SI and within what a study may state.
 fn torques(given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     let py = given.py();
-    let several = if is_scalar(given)? { None } else { values::array(given, "torque")? };
+    let several = if is_scalar(given)? { None } else { values::quantities(given, TORQUE, "torque")? };
     let is_one = several.is_none();
     let found = match several {
         Some(values) => values,
@@ -109,8 +60,12 @@ fn torques(given: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
 
 /// Whether something is one number.
 fn is_scalar(given: &Bound<'_, PyAny>) -> PyResult<bool> {
-    if given.is_instance_of::<PyFloat>() || given.is_instance_of::<PyInt>() {
+    if given.is_instance_of::<PyFloat>() || given.is_instance_of::<PyInt>() || given.is_instance_of::<PyString>() {
         return Ok(true);
+    }
+    // Each element may have a unit of its own.
+    if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
+        return Ok(false);
     }
     let magnitude = given.getattr_opt("magnitude")?;
     Ok(values::array(magnitude.as_ref().unwrap_or(given), "torque")?.is_none())
@@ -152,8 +107,16 @@ mod _gearstudy {
 
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use super::waiting::_end;
+
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let py = module.py();
+        // What cannot be loaded is told here, and not in the middle of a call.
+        py.import("numpy")?;
+        drop(numpy::PyArray1::<f64>::zeros(py, 0, false));
+        py.import("atexit")?.call_method1("register", (module.getattr("_end")?,))?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))
     }
 }

@@ -2,6 +2,7 @@
 //!
 //! Must not know: studies.
 
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use numpy::{IntoPyArray, PyArray1};
@@ -11,15 +12,17 @@ use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 
 use declare::error::Diagnostic;
+use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::transmission_error::curve::Summary;
 use gearmesh::gear::transmission_error::cycle::MeshCycle;
 use gearmesh::gear::transmission_error::load_case::LoadCase;
 
-use crate::curve::{beyond, wanted};
+use crate::curve::{beyond, is_long, wanted};
 use crate::design::Designs;
 use crate::errors::{failed, refused, refused_at, run_failed};
 use crate::stiffness::{Stiffness, settings};
-use crate::{is_scalar, stopping, torques};
+use crate::waiting::abandoning;
+use crate::{is_scalar, torques};
 
 /// Designs that a thread takes at once.
 const AT_ONCE: usize = 64;
@@ -68,46 +71,49 @@ impl Many {
 
     /// What each comes to, in order, on so many threads; `of` has nothing for what is beyond the model. That and what does not fit
     /// is none where it is kept, and ends it elsewhere.
-    fn each<T: Send + Clone>(
-        &self,
+    fn each<T: Send + Clone + 'static>(
+        self,
         py: Python<'_>,
-        stiffness: &Stiffness,
-        cycle: &MeshCycle,
+        pair: &Arc<GearPair>,
+        cycle: Arc<MeshCycle>,
         threads: usize,
         keeps_invalid: bool,
-        of: impl Fn(&LoadCase<'_>) -> Option<T> + Sync,
+        of: impl Fn(&LoadCase<'_>) -> Option<T> + Send + Sync + 'static,
     ) -> PyResult<Vec<Option<T>>> {
-        let found = |index: usize| {
-            let design = self.designs.at(index, &stiffness.of).map_err(Missing::Unfit)?;
-            let loading = LoadCase::new(cycle, &design, self.torque(index));
+        let (is_single, count, pair) = (self.is_single, self.count, Arc::clone(pair));
+        let is_short = count <= AT_ONCE && !is_long(cycle.settings, count);
+        // A thread looks between chunks whether anybody still waits.
+        let chunk = if is_long(cycle.settings, AT_ONCE) { 1 } else { AT_ONCE };
+        let found = move |index: usize| {
+            let design = self.designs.at(index, &pair).map_err(Missing::Unfit)?;
+            let loading = LoadCase::new(&cycle, &design, self.torque(index));
             of(&loading).ok_or_else(|| Missing::Beyond(beyond(&loading)))
         };
-        let one = |index: usize| match found(index) {
+        let one = move |index: usize| match found(index) {
             Ok(found) => Ok(Some(found)),
             Err(_) if keeps_invalid => Ok(None),
             Err(missing) => Err((index, missing)),
         };
-        let some = |stop: &AtomicBool, first: usize| {
+        let some = move |stop: &AtomicBool, first: usize| {
             if stop.load(Ordering::Relaxed) {
                 return Ok(Vec::new());
             }
-            (first..self.count.min(first + AT_ONCE)).map(one).collect::<Result<Vec<_>, _>>()
+            (first..count.min(first + chunk)).map(&one).collect::<Result<Vec<_>, _>>()
         };
-        let firsts: Vec<usize> = (0..self.count).step_by(AT_ONCE).collect();
-        let found: Result<Vec<Vec<Option<T>>>, (usize, Missing)> = match (firsts.len(), threads) {
-            // Not long enough for anybody to interrupt it.
-            (0 | 1, _) => py.detach(|| some(&AtomicBool::new(false), 0).map(|found| vec![found])),
-            (_, 1) => stopping(py, |stop| firsts.iter().map(|first| some(stop, *first)).collect())?,
+        let firsts: Vec<usize> = (0..count).step_by(chunk).collect();
+        let found: Result<Vec<Vec<Option<T>>>, (usize, Missing)> = if is_short {
+            py.detach(|| firsts.iter().map(|first| some(&AtomicBool::new(false), *first)).collect())
+        } else if threads == 1 {
+            abandoning(py, move |left| firsts.iter().map(|first| some(left, *first)).collect())?
+        } else {
             // Of its own: those of everybody do not survive a fork.
-            _ => {
-                let pool = ThreadPoolBuilder::new().num_threads(threads).build();
-                let pool = pool.map_err(|error| run_failed(py, &format!("cannot start threads: {error}")))?;
-                stopping(py, |stop| pool.install(|| firsts.par_iter().map(|first| some(stop, *first)).collect()))?
-            }
+            let pool = ThreadPoolBuilder::new().num_threads(threads).build();
+            let pool = pool.map_err(|error| run_failed(py, &format!("cannot start threads: {error}")))?;
+            abandoning(py, move |left| pool.install(|| firsts.par_iter().map(|first| some(left, *first)).collect()))?
         };
         found
             .map(|found| found.concat())
-            .map_err(|(index, missing)| missing.exception(py, (!self.is_single).then_some(index)))
+            .map_err(|(index, missing)| missing.exception(py, (!is_single).then_some(index)))
     }
 }
 
@@ -175,12 +181,13 @@ pub fn peak_to_peak<'py>(
     let own = stiffness.get();
     let settings = settings(py, cycle, positions)?;
     let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
-    let found = many.each(py, own, &cycle, threads, is_kept(py, invalid)?, |loading| {
+    let is_single = many.is_single;
+    let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| {
         Some(loading.peak_to_peak()).filter(|found| found.is_finite())
     })?;
     let found: Vec<f64> = found.into_iter().map(|found| found.unwrap_or(f64::NAN)).collect();
     match found[..] {
-        [found] if many.is_single => Ok(found.into_pyobject(py)?.into_any()),
+        [found] if is_single => Ok(found.into_pyobject(py)?.into_any()),
         _ => Ok(found.into_pyarray(py).into_any()),
     }
 }
@@ -220,7 +227,7 @@ pub fn summaries<'py>(
     let settings = settings(py, cycle, positions)?;
     let wanted = wanted(py, harmonics, pressure)?;
     let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
-    let found = many.each(py, own, &cycle, threads, is_kept(py, invalid)?, |loading| {
+    let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, move |loading| {
         let summary = loading.summary(wanted);
         loading.holds(summary.largest.value).then_some(summary)
     })?;

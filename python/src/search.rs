@@ -2,7 +2,8 @@
 //!
 //! Must not know: gears, studies.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::{Mutex, TryLockError};
 
 use numpy::{IntoPyArray, PyArray1, PyArray2};
 use pyo3::prelude::*;
@@ -18,6 +19,7 @@ use gearmesh::optimize::search::Optimizer as Search;
 
 use crate::errors::{failed, refused};
 use crate::values;
+use crate::waiting::outcome;
 
 /// A search of a box by one of the methods, with one objective or several: asked for points, told what they are worth.
 ///
@@ -45,6 +47,8 @@ use crate::values;
 pub struct Optimizer {
     search: Mutex<Search>,
     variables: usize,
+    name: &'static str,
+    finds_fronts: bool,
 }
 
 /// The best point of a search; :attr:`Optimizer.best` has it.
@@ -81,7 +85,7 @@ impl Candidate {
 impl Optimizer {
     #[new]
     #[pyo3(signature = (method, bounds, *, seed = 0))]
-    fn new(method: &Bound<'_, PyAny>, bounds: Vec<(f64, f64)>, seed: u64) -> PyResult<Self> {
+    fn new(method: &Bound<'_, PyAny>, bounds: &Bound<'_, PyAny>, seed: u64) -> PyResult<Self> {
         let py = method.py();
         let wrong = |wrong: Diagnostic| refused(py, &wrong);
         let (name, fields) = if let Ok(name) = method.cast::<PyString>() {
@@ -103,23 +107,24 @@ impl Optimizer {
             .ok_or_else(|| wrong(Diagnostic::new(format!("`method` is `{name}`")).help(suggest(&name, names()))))?;
         let record = values::record(found.member.fields, &fields, &format!("`{name}`"))?;
         (found.consistent)(&record).map_err(wrong)?;
+        let bounds = pairs(bounds)?;
         let variables = bounds.len();
         let bounds = Bounds::new(bounds).map_err(wrong)?;
         let method = (found.read)(&record);
+        let finds_fronts = method.finds_fronts();
         // As a stage of this name has it.
         let search = optimize::search(method.as_ref(), bounds, Seed::of_stage(seed, &name)).map_err(wrong)?;
-        Ok(Self { search: Mutex::new(search), variables })
+        Ok(Self { search: Mutex::new(search), variables, name: found.member.name, finds_fronts })
     }
 
     /// The points to evaluate next, shape (points, variables); no points when the search has ended. Asked again before they
     /// were told of, it gives the same.
     fn ask<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let search = self.held(py)?;
-        let points = search.ask();
+        let points = self.with(py, |search| search.ask().to_vec())?;
         if points.is_empty() {
             return Ok(PyArray2::zeros(py, [0, self.variables], false));
         }
-        PyArray2::from_vec2(py, points).map_err(|error| crate::errors::bug(&error.to_string()))
+        PyArray2::from_vec2(py, &points).map_err(|error| crate::errors::bug(&error.to_string()))
     }
 
     /// Tells what the points that were asked for are worth.
@@ -139,8 +144,11 @@ impl Optimizer {
     ///     Another number of points than was asked for.
     #[pyo3(signature = (values, constraints = None))]
     fn tell(&self, py: Python<'_>, values: &Bound<'_, PyAny>, constraints: Option<&Bound<'_, PyAny>>) -> PyResult<()> {
-        let mut search = self.held(py)?;
         let rows = table(values, "values")?;
+        if rows.first().is_some_and(|row| row.len() > 1) && !self.finds_fronts {
+            let message = format!("`values` has {} objectives, and `{}` minimises one", rows[0].len(), self.name);
+            return Err(refused(py, &Diagnostic::new(message).help("`nsga2` and samples take several")));
+        }
         let kept = constraints.map(|constraints| table(constraints, "constraints")).transpose()?;
         if kept.as_ref().is_some_and(|kept| kept.len() != rows.len()) {
             let message =
@@ -153,31 +161,36 @@ impl Optimizer {
             ..Evaluation::from(row[0])
         };
         let told = rows.iter().enumerate().map(evaluation).collect();
-        search.tell_constrained(told).map_err(|failure| failed(py, &failure))
+        self.with(py, |search| search.tell_constrained(told))?.map_err(|failure| failed(py, &failure))
+    }
+
+    fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
+        let evaluations = self.evaluations(py)?;
+        Ok(format!("Optimizer({:?}, variables={}, evaluations={evaluations})", self.name, self.variables))
     }
 
     /// Whether it has ended.
     #[getter]
     fn finished(&self, py: Python<'_>) -> PyResult<bool> {
-        Ok(self.held(py)?.finished().is_some())
+        self.with(py, |search| search.finished().is_some())
     }
 
     /// Why it has ended; None before.
     #[getter]
     fn reason(&self, py: Python<'_>) -> PyResult<Option<String>> {
-        Ok(self.held(py)?.finished().map(|reason| reason.to_string()))
+        self.with(py, |search| search.finished().map(|reason| reason.to_string()))
     }
 
     /// How many points it was told of.
     #[getter]
     fn evaluations(&self, py: Python<'_>) -> PyResult<usize> {
-        Ok(self.held(py)?.evaluations())
+        self.with(py, |search| search.evaluations())
     }
 
     /// The best point so far; None where none has a value.
     #[getter]
     fn best(&self, py: Python<'_>) -> PyResult<Option<Candidate>> {
-        let found = self.held(py)?.best().cloned();
+        let found = self.with(py, |search| search.best().cloned())?;
         Ok(found.map(|best| Candidate { point: best.point, value: best.value, violation: best.violation }))
     }
 
@@ -185,9 +198,8 @@ impl Optimizer {
     /// objectives).
     #[getter]
     fn front<'py>(&self, py: Python<'py>) -> PyResult<[Bound<'py, PyArray2<f64>>; 2]> {
-        let search = self.held(py)?;
-        let (points, values): (Vec<Vec<f64>>, Vec<Vec<f64>>) =
-            search.front(usize::MAX).into_iter().map(of_front).unzip();
+        let front = |search: &mut Search| search.front(usize::MAX).into_iter().map(of_front).unzip();
+        let (points, values): (Vec<Vec<f64>>, Vec<Vec<f64>>) = self.with(py, front)?;
         let array = |rows: &[Vec<f64>]| match rows {
             [] => Ok(PyArray2::zeros(py, [0, 0], false)),
             rows => PyArray2::from_vec2(py, rows).map_err(|error| crate::errors::bug(&error.to_string())),
@@ -197,16 +209,21 @@ impl Optimizer {
 }
 
 impl Optimizer {
-    /// The search, which one thread has at a time.
-    fn held(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, Search>> {
-        match self.search.try_lock() {
-            Ok(search) => Ok(search),
-            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
-            Err(TryLockError::WouldBlock) => {
-                let message = "another thread is telling this search its values";
-                Err(refused(py, &Diagnostic::new(message).help("a search is one thread's; make one for each")))
-            }
-        }
+    /// Does something with the search, which one thread has at a time, while other threads have the interpreter.
+    fn with<T: Send>(&self, py: Python<'_>, work: impl FnOnce(&mut Search) -> T + Send) -> PyResult<T> {
+        let done = py.detach(|| {
+            let mut search = match self.search.try_lock() {
+                Ok(search) => search,
+                Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
+                Err(TryLockError::WouldBlock) => return None,
+            };
+            Some(catch_unwind(AssertUnwindSafe(|| work(&mut search))))
+        });
+        let Some(done) = done else {
+            let message = "another thread is telling this search its values";
+            return Err(refused(py, &Diagnostic::new(message).help("a search is one thread's; make one for each")));
+        };
+        outcome(done)
     }
 }
 
@@ -218,16 +235,26 @@ fn of_front(Member { point, evaluation }: &Member) -> (Vec<f64>, Vec<f64>) {
 
 /// Rows of numbers: one of each row for an array of one dimension.
 fn table(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Vec<Vec<f64>>> {
-    let numpy = given.py().import("numpy")?;
-    let array = numpy.call_method1("asarray", (given, "float64")).map_err(|_| {
-        refused(given.py(), &Diagnostic::new(format!("`{name}` are no numbers")).help("an array is expected"))
-    })?;
-    match array.getattr("ndim")?.extract::<usize>()? {
-        1 => Ok(array.extract::<Vec<f64>>()?.into_iter().map(|value| vec![value]).collect()),
-        2 if array.getattr("shape")?.get_item(1)?.extract::<usize>()? > 0 => array.extract(),
+    let py = given.py();
+    let (array, kind, shape) = values::numpy_array(given, name)?;
+    let is_number = matches!(kind.as_str(), "f" | "i" | "u") || shape.contains(&0);
+    let floats = || array.call_method1("astype", ("float64",));
+    match shape[..] {
+        [_] if is_number => Ok(floats()?.extract::<Vec<f64>>()?.into_iter().map(|value| vec![value]).collect()),
+        [_, columns] if is_number && columns > 0 => floats()?.extract(),
         _ => {
-            let message = format!("`{name}` has the shape {}", array.getattr("shape")?);
-            Err(refused(given.py(), &Diagnostic::new(message).help("a number or a row of numbers for each point")))
+            let message = format!("`{name}` has the shape {shape:?} and the type {}", array.getattr("dtype")?);
+            Err(refused(py, &Diagnostic::new(message).help("a number or a row of numbers for each point")))
         }
     }
+}
+
+/// The least and the most of each variable.
+fn pairs(given: &Bound<'_, PyAny>) -> PyResult<Vec<(f64, f64)>> {
+    let rows = table(given, "bounds")?;
+    let pair = |row: &Vec<f64>| if let [least, most] = row[..] { Some((least, most)) } else { None };
+    rows.iter().map(pair).collect::<Option<_>>().ok_or_else(|| {
+        let message = "`bounds` has no pair for each variable";
+        refused(given.py(), &Diagnostic::new(message).help("the least and the most of each: shape (variables, 2)"))
+    })
 }

@@ -21,7 +21,8 @@ use gearstudy::stage::kinds::stiffness::Deflection;
 
 use crate::errors::{failed, refused};
 use crate::pair::Pair;
-use crate::{stopping, values};
+use crate::values;
+use crate::waiting::abandoning;
 
 type Floats<'py> = Bound<'py, PyArray1<f64>>;
 
@@ -38,6 +39,8 @@ pub struct Stiffness {
     pair: Py<Pair>,
     tabulated: Tabulated,
     contact: &'static str,
+    /// The torque that was stated \[N m\].
+    torque: Option<f64>,
     cycles: Mutex<Vec<Arc<MeshCycle>>>,
     fields: Py<PyDict>,
 }
@@ -54,12 +57,13 @@ impl Stiffness {
         let stated = Deflection::checked(&record).map_err(wrong)?;
         stated.teeth.check(&record).map_err(wrong)?;
         let of = Arc::clone(&pair.get().pair);
+        let (contact, torque) = (stated.teeth.contact().word(), stated.torque);
+        let own = Arc::clone(&of);
         // A mesh is factorised in one go.
-        let tabulated = stopping(py, |_| stated.teeth.method.tabulate(&of, stated.assumptions()))?;
+        let tabulated = abandoning(py, move |_| stated.teeth.method.tabulate(&own, stated.assumptions()))?;
         let tabulated = tabulated.map_err(|error| refused(py, &Diagnostic::new(error.to_string())))?;
-        let contact = stated.teeth.contact().word();
         let (pair, fields) = (pair.clone().unbind(), fields.copy()?.unbind());
-        Ok(Self { of, pair, tabulated, contact, cycles: Mutex::default(), fields })
+        Ok(Self { of, pair, tabulated, contact, torque, cycles: Mutex::default(), fields })
     }
 
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyTuple>> {
@@ -100,7 +104,7 @@ impl Stiffness {
     /// Parameters
     /// ----------
     /// torque : number [N m], optional
-    ///     On the pinion; 1 N m without it. It matters where the contact law does not scale with load.
+    ///     On the pinion; without it the one that was stated, or else 1 N m. It matters where the contact law depends on load.
     /// positions : int, optional
     ///     Of the cycle, evenly spread. 8 to 100,000; 64 without it.
     ///
@@ -120,8 +124,15 @@ impl Stiffness {
         torque: Option<&Bound<'_, PyAny>>,
         positions: Option<usize>,
     ) -> PyResult<(Floats<'py>, Floats<'py>, f64)> {
-        let torque = torque.map(|torque| crate::torques(torque)).transpose()?;
-        let torque = torque.as_deref().and_then(|torques| torques.first().copied()).unwrap_or(1.0);
+        let torque = match torque.map(|torque| crate::torques(torque)).transpose()?.as_deref() {
+            None => self.torque.unwrap_or(1.0),
+            Some([torque]) if *torque > 0.0 => *torque,
+            Some(several) => {
+                let message = if several.len() == 1 { "`torque` is 0" } else { "`torque` has several values" };
+                let help = "a mesh stiffness is that of one torque above 0";
+                return Err(refused(py, &Diagnostic::new(message).help(help)));
+            }
+        };
         let mut settings = Settings::default();
         settings.positions = positions.unwrap_or(settings.positions);
         checked(py, settings)?;

@@ -2,7 +2,9 @@
 //!
 //! Must not know: how any of it is decided.
 
-use std::path::PathBuf;
+use std::cell::RefCell;
+use std::ffi::OsString;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -21,8 +23,8 @@ use studygraph::store::results::Folder;
 use studygraph::study::{self, Settings};
 
 use crate::errors::{bug, invalid_study, refused, run_failed};
-use crate::stopping;
 use crate::tables::Table;
+use crate::waiting::stopping;
 
 /// A study, read and checked, and where its results lie; :class:`gearstudy.Study` has the rest.
 ///
@@ -54,18 +56,43 @@ fn options(
     Ok(Options { jobs, keep_going, force, only, wanted, limits, ..Options::default() })
 }
 
+thread_local! {
+    /// The folders whose runs have called what this thread is in.
+    static CALLED_BY: RefCell<Vec<PathBuf>> = const { RefCell::new(Vec::new()) };
+}
+
 /// Tells a callable of Python what happens; what it raises stops the run.
 struct Telling<'a> {
     callable: Option<&'a Py<PyAny>>,
+    /// Of the results.
+    folder: &'a Path,
     stop: &'a AtomicBool,
     raised: Mutex<Option<PyErr>>,
+    warnings: Mutex<Vec<String>>,
 }
 
 impl Telling<'_> {
     fn tell(&self, event: &Value) {
+        if event["event"] == "warning" {
+            let text = |key: &str| event[key].as_str();
+            let stage = text("stage").map_or_else(String::new, |stage| format!("{stage}: "));
+            let warning = stage + text("message").unwrap_or_default();
+            self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
+        }
         let Some(callable) = self.callable.filter(|_| !self.stop.load(Ordering::Relaxed)) else { return };
+        let process = std::process::id();
+        CALLED_BY.with_borrow_mut(|folders| folders.push(self.folder.to_owned()));
         // None while the interpreter ends: nobody is left to be told.
-        let told = Python::try_attach(|py| callable.call1(py, (from_json(py, event)?,)).map(drop));
+        let told = Python::try_attach(|py| {
+            let called = callable.call1(py, (from_json(py, event)?,)).map(drop);
+            if std::process::id() != process {
+                // Here are none of the threads that the run has.
+                eprintln!("gearstudy: a process that was forked in a callback cannot go on with the run");
+                std::process::exit(1);
+            }
+            called
+        });
+        CALLED_BY.with_borrow_mut(Vec::pop);
         match told {
             Some(Ok(())) => {}
             Some(Err(error)) => {
@@ -107,10 +134,10 @@ impl Study {
         cache: Option<PathBuf>,
     ) -> PyResult<Self> {
         let settings = Settings { set, name };
-        let read = py.detach(|| match text {
+        let read = stopping(py, |_| match text {
             Some(text) => program::examine_changed_text(text, &path, &settings),
             None => program::examine(&path, &settings),
-        });
+        })?;
         let study = read.map_err(|refused| invalid_study(py, &refused.error()))?;
         Ok(Self { study: Arc::new(study), places: Places::new(results, cache) })
     }
@@ -159,17 +186,26 @@ impl Study {
         limit_memory: Option<u64>,
         limit_rows: Option<u64>,
         progress: Option<Py<PyAny>>,
-    ) -> PyResult<()> {
+    ) -> PyResult<Vec<String>> {
         let options = options(only, &want, force, (jobs, keep_going), (limit_memory, limit_rows))?;
-        let (ran, raised) = stopping(py, |stop| {
-            let telling = Telling { callable: progress.as_ref(), stop, raised: Mutex::default() };
+        let folder = self.folder();
+        if CALLED_BY.with_borrow(|folders| folders.contains(&folder)) {
+            let message = format!("`{}` is running: what it calls cannot run it again", self.study.name);
+            return Err(run_failed(py, &message));
+        }
+        let (ran, raised, warnings) = stopping(py, |stop| {
+            let callable = progress.as_ref();
+            let (raised, warnings) = (Mutex::default(), Mutex::default());
+            let telling = Telling { callable, folder: &folder, stop, raised, warnings };
             let ran = embedded::run(&self.study, &self.places, &options, &|event| telling.tell(event), stop);
-            (ran, telling.raised.into_inner().unwrap_or_else(PoisonError::into_inner))
+            let raised = telling.raised.into_inner().unwrap_or_else(PoisonError::into_inner);
+            (ran, raised, telling.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
         })?;
         if let Some(raised) = raised {
             return Err(raised);
         }
-        ran.map_err(|found| problem(py, &self.study, found))
+        ran.map_err(|found| problem(py, &self.study, found))?;
+        Ok(warnings)
     }
 
     /// What a run would do, as `gearstudy plan --format json` has it.
@@ -182,14 +218,14 @@ impl Study {
         force: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = options(only, &want, force, (0, false), (None, None))?;
-        let plan = py.detach(|| embedded::plan(&self.study, &self.places, &options));
+        let plan = stopping(py, |_| embedded::plan(&self.study, &self.places, &options))?;
         from_json(py, &plan.map_err(|found| problem(py, &self.study, found))?)
     }
 
     /// What differs between the results of this study and those of another one, as `gearstudy diff --format json` has it.
     fn _diff<'py>(&self, py: Python<'py>, before: &Self) -> PyResult<Bound<'py, PyAny>> {
         let one = |study: &Self| study.places.folder(&study.study.name);
-        let found = py.detach(|| embedded::diff(&one(before), &one(self)));
+        let found = stopping(py, |_| embedded::diff(&one(before), &one(self)))?;
         from_json(py, &found.map_err(|message| run_failed(py, &message))?)
     }
 
@@ -207,7 +243,7 @@ impl Study {
             let help = suggest(name, all().map(|record| record.name.as_str()).collect::<Vec<_>>());
             return Err(PyKeyError::new_err(format!("there is no table `{name}`; {help}")));
         };
-        let table = py.detach(|| folder.table(record)).map_err(|error| run_failed(py, &error.to_string()))?;
+        let table = stopping(py, |_| folder.table(record))?.map_err(|error| run_failed(py, &error.to_string()))?;
         Ok(Table::new(name, table))
     }
 
@@ -231,6 +267,6 @@ impl Study {
 /// >>> command_line(["gearstudy", "--version"])  # doctest: +SKIP
 /// 0
 #[pyfunction]
-pub fn command_line(py: Python<'_>, words: Vec<String>) -> i32 {
-    py.detach(|| gearstudy::cli::main(words.into_iter().map(Into::into)))
+pub fn command_line(py: Python<'_>, words: Vec<OsString>) -> i32 {
+    py.detach(|| gearstudy::cli::main(words.into_iter()))
 }

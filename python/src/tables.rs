@@ -2,14 +2,14 @@
 //!
 //! Must not know: which study they are of.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
-use arrow_array::RecordBatchIterator;
 use arrow_array::ffi_stream::FFI_ArrowArrayStream;
+use arrow_array::{RecordBatch, RecordBatchIterator};
 use numpy::IntoPyArray;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
-use pyo3::types::{PyCapsule, PyDict, PyList};
+use pyo3::types::{PyCapsule, PyDict, PyIterator, PyList};
 
 use declare::error::suggest;
 use studygraph::store::parquet;
@@ -31,12 +31,14 @@ use crate::errors::run_failed;
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct Table {
     name: String,
-    table: Arc<Inner>,
+    held: Arc<Inner>,
+    /// The same for whoever reads Arrow, made when the first asks; all have the same memory.
+    arrow: OnceLock<RecordBatch>,
 }
 
 impl Table {
     pub fn new(name: &str, table: Inner) -> Self {
-        Self { name: name.to_owned(), table: Arc::new(table) }
+        Self { name: name.to_owned(), held: Arc::new(table), arrow: OnceLock::new() }
     }
 }
 
@@ -51,19 +53,19 @@ impl Table {
     /// What it has, in a sentence.
     #[getter]
     fn description(&self) -> &str {
-        &self.table.schema().description
+        &self.held.schema().description
     }
 
     /// The names of its columns, in order.
     #[getter]
     fn columns(&self) -> Vec<&str> {
-        self.table.schema().columns.iter().map(|column| column.name.as_str()).collect()
+        self.held.schema().columns.iter().map(|column| column.name.as_str()).collect()
     }
 
     /// The columns that tell its rows apart.
     #[getter]
-    fn keys(&self) -> Vec<&str> {
-        self.table.schema().columns.iter().filter(|column| column.key).map(|column| column.name.as_str()).collect()
+    fn key_columns(&self) -> Vec<&str> {
+        self.held.schema().columns.iter().filter(|column| column.key).map(|column| column.name.as_str()).collect()
     }
 
     /// Unit by column, of those that have one: that in which its values are.
@@ -79,16 +81,29 @@ impl Table {
     }
 
     fn __len__(&self) -> usize {
-        self.table.rows()
+        self.held.rows()
+    }
+
+    fn __contains__(&self, column: &Bound<'_, PyAny>) -> bool {
+        column.extract::<&str>().is_ok_and(|column| self.held.column(column).is_some())
+    }
+
+    /// The names of its columns; with them ``dict(table)`` has all of it.
+    fn keys(&self) -> Vec<&str> {
+        self.columns()
+    }
+
+    fn __iter__<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyIterator>> {
+        PyList::new(py, self.columns())?.try_iter()
     }
 
     fn __repr__(&self) -> String {
-        format!("Table({:?}, rows={}, columns={:?})", self.name, self.table.rows(), self.columns())
+        format!("Table({:?}, rows={}, columns={:?})", self.name, self.held.rows(), self.columns())
     }
 
-    /// A column as an array of shape (rows,), texts as a list.
+    /// A column as an array of shape (rows,) of its own, texts as a list.
     fn __getitem__<'py>(&self, py: Python<'py>, column: &str) -> PyResult<Bound<'py, PyAny>> {
-        let Some(data) = self.table.column(column) else {
+        let Some(data) = self.held.column(column) else {
             let help = suggest(column, self.columns());
             return Err(PyKeyError::new_err(format!("`{}` has no column `{column}`; {help}", self.name)));
         };
@@ -128,7 +143,13 @@ impl Table {
     ) -> PyResult<Bound<'py, PyCapsule>> {
         // A reader that wants other types converts: the interface lets a producer do so.
         let _ = requested_schema;
-        let batch = parquet::in_memory(&self.table).map_err(|error| run_failed(py, &error))?;
+        let batch = match self.arrow.get() {
+            Some(batch) => batch.clone(),
+            None => {
+                let made = parquet::in_memory(&self.held).map_err(|error| run_failed(py, &error))?;
+                self.arrow.get_or_init(|| made).clone()
+            }
+        };
         let schema = batch.schema();
         let stream = FFI_ArrowArrayStream::new(Box::new(RecordBatchIterator::new([Ok(batch)], schema)));
         PyCapsule::new_with_value(py, stream, c"arrow_array_stream")
@@ -142,7 +163,7 @@ impl Table {
         what: impl Fn(&studygraph::table::schema::Column) -> &String,
     ) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
-        for column in self.table.schema().columns.iter().filter(|column| !what(column).is_empty()) {
+        for column in self.held.schema().columns.iter().filter(|column| !what(column).is_empty()) {
             all.set_item(&column.name, what(column))?;
         }
         Ok(all)

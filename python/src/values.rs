@@ -4,6 +4,7 @@
 //! Must not know: what any parameter means.
 
 use numpy::{PyArray1, PyArrayMethods};
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
@@ -13,7 +14,7 @@ use declare::parameter::{Field, Member, Presence, Shape, Span};
 use declare::record::{PlacedValue, Record, Value};
 use declare::units::{Dimension, Quantity, RATIO, described, parse_quantity, same_dimension};
 
-use crate::errors::refused;
+use crate::errors::{refused, unless_stopped};
 
 /// A field that was given as many values as there are designs.
 pub type Column = (&'static str, Vec<f64>);
@@ -82,10 +83,7 @@ fn placed(value: Value) -> PlacedValue {
 /// A number, or an array of which each element is a design's own.
 fn varied(field: &Field, given: &Bound<'_, PyAny>, columns: &mut Vec<Column>) -> PyResult<Value> {
     let values = match &field.shape {
-        Shape::Quantity { dimension, .. } if has_units(given)? => {
-            let magnitude = magnitude(given, *dimension)?.ok_or_else(|| misfit(given, *dimension, field.name))?;
-            array(&magnitude, field.name)?
-        }
+        Shape::Quantity { dimension, .. } => quantities(given, *dimension, field.name)?,
         _ => array(given, field.name)?,
     };
     let Some(values) = values else { return one(&field.shape, given, field.name) };
@@ -100,10 +98,49 @@ fn varied(field: &Field, given: &Bound<'_, PyAny>, columns: &mut Vec<Column>) ->
     scalar(first).map_err(|wrong| refused(given.py(), &wrong))
 }
 
+/// The values in SI of an array, also one with units, or of a list of quantities and texts; none of what is a single value.
+///
+/// # Errors
+/// As [`array`] and [`number`].
+pub fn quantities(given: &Bound<'_, PyAny>, dimension: Dimension, name: &str) -> PyResult<Option<Vec<f64>>> {
+    if has_units(given)? {
+        let magnitude = magnitude(given, dimension)?.ok_or_else(|| misfit(given, dimension, name))?;
+        return array(&magnitude, name);
+    }
+    if given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() {
+        let items = given.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+        let has_unit = |item: &Bound<'_, PyAny>| Ok::<_, PyErr>(item.is_instance_of::<PyString>() || has_units(item)?);
+        if items.iter().map(has_unit).collect::<PyResult<Vec<_>>>()?.contains(&true) {
+            return items.iter().map(|item| number(item, dimension, name)).collect::<PyResult<_>>().map(Some);
+        }
+    }
+    array(given, name)
+}
+
+/// What numpy makes of something, its kind of numbers, and its shape; refused with a mask, which nothing here minds.
+///
+/// # Errors
+/// What numpy cannot take for an array.
+pub fn numpy_array<'py>(given: &Bound<'py, PyAny>, name: &str) -> PyResult<(Bound<'py, PyAny>, String, Vec<usize>)> {
+    let py = given.py();
+    let numpy = py.import("numpy")?;
+    let wrong =
+        |what: &str| refused(py, &Diagnostic::new(format!("`{name}` {what}")).help("an array of numbers is expected"));
+    if given.is_instance(&numpy.getattr("ma")?.getattr("MaskedArray")?)? {
+        return Err(wrong("is an array with a mask"));
+    }
+    let read = numpy
+        .call_method1("asarray", (given,))
+        .map_err(|raised| unless_stopped(py, raised, || wrong("is no array")))?;
+    let kind = read.getattr("dtype")?.getattr("kind")?.extract()?;
+    let shape = read.getattr("shape")?.extract()?;
+    Ok((read, kind, shape))
+}
+
 /// The values of an array, of any stride and any type of numbers, in one dimension; none of what is a single value.
 ///
 /// # Errors
-/// More than one dimension; elements that are no numbers.
+/// More than one dimension; elements that are no numbers; a mask.
 pub fn array(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Vec<f64>>> {
     let py = given.py();
     let is_single = |value: &Bound<'_, PyAny>| {
@@ -112,7 +149,7 @@ pub fn array(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Vec<f64>>>
     if is_single(given) {
         return Ok(None);
     }
-    if let Ok(array) = given.cast::<PyArray1<f64>>()
+    if let Ok(array) = given.cast_exact::<PyArray1<f64>>()
         && let Ok(values) = array.to_vec()
     {
         return Ok(Some(values));
@@ -120,18 +157,15 @@ pub fn array(given: &Bound<'_, PyAny>, name: &str) -> PyResult<Option<Vec<f64>>>
     if !(given.is_instance_of::<PyList>() || given.is_instance_of::<PyTuple>() || given.hasattr("__array__")?) {
         return Ok(None);
     }
-    let numpy = py.import("numpy")?;
-    let read = numpy.call_method1("asarray", (given,))?;
-    if read.getattr("ndim")?.extract::<usize>()? == 0 {
+    let (read, kind, shape) = numpy_array(given, name)?;
+    if shape.is_empty() {
         return Ok(None);
     }
-    let kind: String = read.getattr("dtype")?.getattr("kind")?.extract()?;
-    let shape: Vec<usize> = read.getattr("shape")?.extract()?;
     if shape.len() > 1 || !matches!(kind.as_str(), "f" | "i" | "u") {
         let wrong = format!("`{name}` is an array of shape {shape:?} and type {}", read.getattr("dtype")?);
         return Err(refused(py, &Diagnostic::new(wrong).help("numbers in one dimension are expected")));
     }
-    let values = numpy.call_method1("ascontiguousarray", (read, "float64"))?;
+    let values = py.import("numpy")?.call_method1("ascontiguousarray", (read, "float64"))?;
     Ok(Some(values.cast::<PyArray1<f64>>()?.to_vec()?))
 }
 
@@ -145,7 +179,7 @@ pub fn number(given: &Bound<'_, PyAny>, dimension: Dimension, name: &str) -> PyR
     if given.is_instance_of::<PyFloat>() {
         return finite(given.extract()?);
     }
-    if given.is_instance_of::<PyBool>() {
+    if is_flag(given)? {
         return Err(wrong(given.to_string()));
     }
     if let Ok(text) = given.cast::<PyString>() {
@@ -158,9 +192,16 @@ pub fn number(given: &Bound<'_, PyAny>, dimension: Dimension, name: &str) -> PyR
     }
     if has_units(given)? {
         let magnitude = magnitude(given, dimension)?.ok_or_else(|| misfit(given, dimension, name))?;
-        return magnitude.extract().map_or_else(|_| Err(misfit(given, dimension, name)), finite);
+        let misfit = |raised| unless_stopped(given.py(), raised, || misfit(given, dimension, name));
+        return magnitude.extract().map_err(misfit).and_then(finite);
     }
-    given.extract::<f64>().map_or_else(|_| Err(wrong(described_value(given))), finite)
+    let no_number = |raised| unless_stopped(given.py(), raised, || wrong(described_value(given)));
+    given.extract::<f64>().map_err(no_number).and_then(finite)
+}
+
+/// Whether it is true or false, be it numpy's.
+fn is_flag(given: &Bound<'_, PyAny>) -> PyResult<bool> {
+    Ok(given.is_instance_of::<PyBool>() || matches!(&*given.get_type().name()?.to_string_lossy(), "bool" | "bool_"))
 }
 
 /// What is said of a value that is none of a dimension.
@@ -176,14 +217,13 @@ fn misfit(given: &Bound<'_, PyAny>, dimension: Dimension, name: &str) -> PyErr {
 
 /// Whether it is a quantity of pint, or of what converts itself as those do.
 fn has_units(given: &Bound<'_, PyAny>) -> PyResult<bool> {
-    given.hasattr("to_base_units")
+    Ok(given.hasattr("dimensionality")? && given.hasattr("to")?)
 }
 
 /// The magnitude in SI of what converts itself; none of another dimension.
 fn magnitude<'py>(given: &Bound<'py, PyAny>, dimension: Dimension) -> PyResult<Option<Bound<'py, PyAny>>> {
-    let base = given.call_method0("to_base_units")?;
     let mut found = Dimension { angle: dimension.angle, ..RATIO };
-    let powers = given.py().import("builtins")?.getattr("dict")?.call1((base.getattr("dimensionality")?,))?;
+    let powers = given.py().import("builtins")?.getattr("dict")?.call1((given.getattr("dimensionality")?,))?;
     for (name, power) in powers.cast::<PyDict>()? {
         let power: f64 = power.extract()?;
         let name: String = name.extract()?;
@@ -204,7 +244,10 @@ fn magnitude<'py>(given: &Bound<'py, PyAny>, dimension: Dimension) -> PyResult<O
     if !same_dimension(found, dimension) {
         return Ok(None);
     }
-    base.getattr("magnitude").map(Some)
+    // Its base units may be others than those of SI.
+    let Dimension { length, mass, time, angle, .. } = dimension;
+    let unit = format!("meter ** {length} * kilogram ** {mass} * second ** {time} * radian ** {angle}");
+    given.call_method1("to", (unit,))?.getattr("magnitude").map(Some)
 }
 
 fn described_value(given: &Bound<'_, PyAny>) -> String {
@@ -245,11 +288,12 @@ fn one(shape: &Shape, given: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
             number_of(shape, number(given, RATIO, name)?, name).map_err(|wrong| refused(py, &wrong))
         }
         Shape::Integer { minimum, maximum, multiple } => {
-            let is_flag = given.is_instance_of::<PyBool>();
-            let found = given
-                .extract::<i64>()
-                .ok()
-                .filter(|found| !is_flag && (*minimum..=*maximum).contains(found) && found % multiple == 0);
+            let is_flag = is_flag(given)?;
+            let read = given.extract::<i64>().map(Some);
+            let read =
+                read.or_else(|raised| if raised.is_instance_of::<PyException>(py) { Ok(None) } else { Err(raised) });
+            let found =
+                read?.filter(|found| !is_flag && (*minimum..=*maximum).contains(found) && found % multiple == 0);
             let of = if *multiple == 1 { String::new() } else { format!(", a multiple of {multiple},") };
             let expected = format!("a whole number from {minimum} to {maximum}{of}");
             found.map(Value::Integer).ok_or_else(|| wrong(&expected))

@@ -162,3 +162,113 @@ def test_errors_say_where_and_what_to_do(tmp_path):
     with pytest.raises(gs.InvalidInput) as beyond:
         spur_pair(module=3.0)
     assert beyond.value.help == "it may be 0.00001 m to 1 m" and str(beyond.value).startswith("`module` is 3 m")
+
+
+def test_units_are_minded_in_arrays_and_whatever_base_they_have(stiffness):
+    pint = pytest.importorskip("pint")
+    expected = gs.peak_to_peak(stiffness, np.array([80.0, 100.0]))
+    for system in ("mks", "cgs", "imperial", "US"):
+        unit = pint.UnitRegistry(system=system)
+        assert gs.peak_to_peak(stiffness, np.array([80e3, 100e3]) * unit.N * unit.mm) == pytest.approx(expected, rel=1e-12)
+        assert gs.peak_to_peak(stiffness, 80 * unit.N * unit.m) == pytest.approx(expected[0], rel=1e-12)
+        assert gs.peak_to_peak(stiffness, [80 * unit.N * unit.m, "100 N m"]) == pytest.approx(expected, rel=1e-12)
+        assert spur_pair(module=3 * unit.mm).base_pitch == pytest.approx(stiffness.pair.base_pitch, rel=1e-12)
+        assert spur_pair(pressure_angle=20 * unit.degree).base_pitch == pytest.approx(stiffness.pair.base_pitch, rel=1e-12)
+        relief = gs.TipRelief(gear="both", amount=np.array([12.0]) * unit.um, fraction=0.9)
+        assert gs.peak_to_peak(stiffness, 80.0, relief)[0] == pytest.approx(gs.peak_to_peak(stiffness, 80.0, gs.TipRelief(**TIP)))
+        for wrong in (np.array([80, 100]) * unit.N, np.array([80.0]) * unit.dimensionless, 80 * unit.s):
+            with pytest.raises(gs.InvalidInput):
+                gs.peak_to_peak(stiffness, wrong)
+
+
+def test_what_only_looks_like_numbers(stiffness):
+    masked = np.ma.array([80.0, 100.0], mask=[False, True])
+    ragged = [[1.0], [1.0, 2.0]]
+    for wrong in (masked, np.True_, ragged, np.array([1j]), np.array([True])):
+        with pytest.raises(gs.InvalidInput):
+            gs.peak_to_peak(stiffness, wrong)
+    search = gs.Optimizer("sobol", np.array([[0.0, 1.0], [2.0, 3.0]]))
+    count = len(search.ask())
+    for wrong in ([1j] * count, ["1"] * count, [None] * count, [True] * count, np.ma.zeros(count)):
+        with pytest.raises(gs.InvalidInput):
+            search.tell(wrong)
+    assert search.evaluations == 0
+    for wrong in ([(0.0,)], [(0.0, 1.0, 2.0)], "ab", [0.0, 1.0], None):
+        with pytest.raises(gs.InvalidInput):
+            gs.Optimizer("sobol", wrong)
+
+
+def test_objectives_stay_as_many_as_they_were():
+    search = gs.Optimizer("nsga2", [(0, 1)] * 2)
+    search.tell(np.random.rand(len(search.ask()), 2))
+    for wrong in (1, 3):
+        with pytest.raises(gs.RunFailed, match="objectives"):
+            search.tell(np.random.rand(len(search.ask()), wrong))
+    search.tell(np.random.rand(len(search.ask()), 2))
+    assert search.front[1].shape[1] == 2
+    with pytest.raises(gs.InvalidInput, match="minimises one"):
+        single = gs.Optimizer("genetic", [(0, 1)])
+        single.tell(np.random.rand(len(single.ask()), 2))
+
+
+def test_signals_stay_what_they_are(stiffness):
+    class Stopping:
+        def __array__(self, *_, **__):
+            raise KeyboardInterrupt
+
+        def __float__(self):
+            raise KeyboardInterrupt
+
+        __index__ = __float__
+
+    for call in (
+        lambda: gs.Optimizer("sobol", [(0, 1)]).tell(Stopping()),
+        lambda: spur_pair(module=Stopping()),
+        lambda: spur_pair(pinion=gs.GearSpecification(teeth=Stopping(), face_width=1e-2, bore_radius=1e-2)),
+        lambda: gs.peak_to_peak(stiffness, Stopping()),
+    ):
+        with pytest.raises(KeyboardInterrupt):
+            call()
+
+
+def test_a_design_is_for_its_pair(stiffness):
+    design = gs.Design(spur_pair(module=3.1e-3), gs.TipRelief(**TIP))
+    with pytest.raises(gs.InvalidInput, match="another pair"):
+        gs.peak_to_peak(stiffness, 80.0, design)
+    same = gs.Design(spur_pair(), gs.TipRelief(**TIP))
+    assert gs.peak_to_peak(stiffness, 80.0, same) == gs.peak_to_peak(stiffness, 80.0, gs.TipRelief(**TIP))
+
+
+def test_what_is_stated_does_not_change():
+    relief = gs.TipRelief(**TIP)
+    assert relief.amount == 12e-6 and relief.length is None
+    with pytest.raises(AttributeError, match="does not change"):
+        relief.amount = 20e-6
+    with pytest.raises(AttributeError, match="amout"):
+        relief.amout
+    amounts = np.linspace(0, 1e-5, 2000)
+    other = amounts.copy()
+    other[1000] *= 2
+    assert gs.TipRelief(gear="both", amount=amounts, fraction=1) == gs.TipRelief(gear="both", amount=amounts.copy(), fraction=1)
+    assert gs.TipRelief(gear="both", amount=amounts, fraction=1) != gs.TipRelief(gear="both", amount=other, fraction=1)
+    assert gs.TipRelief(gear="both", amount=amounts, fraction=1) != gs.TipRelief(gear="both", amount=1e-5, fraction=1)
+
+
+def test_mesh_stiffness_is_that_of_the_torque_that_was_stated():
+    pair = spur_pair()
+    stated = gs.Stiffness(pair, contact="load_dependent", torque=80.0).mesh()[2]
+    assert stated == gs.Stiffness(pair, contact="load_dependent").mesh(80.0)[2]
+    assert stated > 1.02 * gs.Stiffness(pair, contact="load_dependent").mesh()[2]
+    for wrong in ([80.0, 90.0], 0.0):
+        with pytest.raises(gs.InvalidInput):
+            gs.Stiffness(pair).mesh(wrong)
+
+
+@pytest.mark.parametrize("torque", [5e-324, 1e-320, 1e-310, 1e-100])
+def test_the_least_torques_come_to_an_end(stiffness, torque):
+    slope = gs.HelixSlope(gear="both", amount=1e-4)
+    for words in ({}, {"corner_contact": "exact"}):
+        assert gs.peak_to_peak(stiffness, torque, **words) >= 0.0
+        assert gs.transmission_error(stiffness, torque, slope, positions=8, **words).mean >= 0.0
+    logarithmic = gs.Stiffness(stiffness.pair, contact="load_dependent")
+    assert gs.transmission_error(logarithmic, torque, slope, positions=8, corner_contact="exact").mean >= 0.0

@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 
 import gearstudy as gs
+from conftest import ROOT
 
 
 def value(stiffness, torque):
@@ -117,3 +118,70 @@ def test_nothing_but_numpy_is_imported(tmp_path):
     said = subprocess.run([sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, check=True).stdout
     foreign = {name for name in said.split("\n")[1].split() if name not in sys.stdlib_module_names}
     assert foreign <= {"gearstudy", "numpy"}, foreign
+
+
+@pytest.mark.parametrize("work", ["time.sleep(0.05)", "None", "threading.Event().wait(0.01)"])
+def test_the_interpreter_may_end_while_a_run_calls_back(tmp_path, work):
+    code = f"""
+        import threading, time, gearstudy as gs
+        words = dict(force=True, results="results", cache="cache", progress=lambda event: {work})
+        threading.Thread(target=lambda: gs.run({str(ROOT / "studies" / "quick.yaml")!r}, **words), daemon=True).start()
+        time.sleep(0.1)
+    """
+    for _ in range(3):
+        words = [sys.executable, "-c", textwrap.dedent(code)]
+        ended = subprocess.run(words, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+        assert ended.returncode == 0 and "panic" not in ended.stderr, ended.stderr
+
+
+def test_a_fork_in_a_callback_ends(tmp_path):
+    code = f"""
+        import os, gearstudy as gs
+        children = []
+        def fork(event):
+            if not children:
+                child = os.fork()
+                if child:
+                    children.append(child)
+        gs.run({str(ROOT / "studies" / "quick.yaml")!r}, results="results", cache="cache", progress=fork)
+        print(os.waitstatus_to_exitcode(os.waitpid(children[0], 0)[1]))
+    """
+    words = [sys.executable, "-c", textwrap.dedent(code)]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert ended.returncode == 0 and ended.stdout == "1\n" and "cannot go on with the run" in ended.stderr, ended
+
+
+def test_long_calls_are_interrupted(tmp_path):
+    code = """
+        import gearstudy as gs, signal, sys, threading, time, os
+        gear = lambda teeth: gs.GearSpecification(teeth=teeth, face_width=20e-3, bore_radius=10e-3)
+        pair = gs.Pair(module=3e-3, pinion=gear(24), gear=gear(36))
+        stiffness = gs.Stiffness(pair)
+        crown = gs.LeadCrowning(gear="pinion", amount=8e-6)
+        calls = [
+            lambda: gs.transmission_error(stiffness, 80.0, crown, positions=100_000, slices=1000),
+            lambda: gs.peak_to_peak(stiffness, 80.0, crown, positions=5000, slices=100, slice_coupling="plate"),
+            lambda: gs.peak_to_peak(stiffness, [80.0] * 60, crown, positions=20_000, slices=101),
+            lambda: gs.peak_to_peak(stiffness, [80.0] * 60, crown, positions=20_000, slices=101, threads=2),
+            lambda: gs.Stiffness(pair, method=gs.FiniteElement(elements_across=64)),
+        ]
+        sent = []
+        def send():
+            sent.append(time.perf_counter())
+            os.kill(os.getpid(), signal.SIGINT)
+        for call in calls:
+            threading.Timer(0.15, send).start()
+            try:
+                call()
+                print("ended")
+            except KeyboardInterrupt:
+                print(time.perf_counter() - sent[-1])
+        sys.stdout.flush()
+        os._exit(0)
+    """
+    words = [sys.executable, "-c", textwrap.dedent(code)]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    waits = ended.stdout.split()
+    # A call that ended before the signal came, on a quick machine, says nothing; 0.1 s is asked for, of a machine that is idle.
+    assert ended.returncode == 0 and len(waits) == 5, ended.stderr
+    assert all(float(wait) < 1.0 for wait in waits), waits

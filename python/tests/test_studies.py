@@ -19,7 +19,7 @@ QUICK = ROOT / "studies" / "quick.yaml"
 
 def test_tables_go_to_other_libraries_with_their_units(quick):
     table = quick.tables["ste.summary"]
-    assert table.units["peak_to_peak"] == "um" and "torque" in table.keys
+    assert table.units["peak_to_peak"] == "um" and "torque" in table.key_columns
     expected = table["peak_to_peak"]
     pyarrow = pytest.importorskip("pyarrow")
     read = pyarrow.table(table)
@@ -129,6 +129,50 @@ def test_progress_in_a_notebook(tmp_path):
     shown, value = cell["outputs"]
     assert shown["data"]["text/plain"] == updates[-1] == "6 stages looked at"
     assert "report.html" in value["data"]["text/html"]
+
+
+def test_what_a_stage_warns_of_is_heard(tmp_path):
+    gear = {"teeth": 24, "face_width": "20 mm", "bore_radius": "5 mm"}
+    pair = {"kind": "geometry", "module": "3 mm", "pinion": gear, "gear": gear}
+    study = {"study": "warned", "stages": {"pair": pair, "stiffness": {"kind": "stiffness", "pair": "pair", "contact": "linear"}}}
+    with pytest.warns(gs.StudyWarning, match="stiffness"):
+        gs.run(study, results=tmp_path / "results", cache=tmp_path / "cache")
+
+
+def test_a_study_is_where_it_was_when_it_was_read(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    study = gs.load(QUICK, results="results", cache="cache")
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    study.run(only="pair", want="pair.validity")
+    assert (tmp_path / "results" / "quick").is_dir() and len(study.tables["pair.validity"]) == 2
+
+
+def test_names_words_and_numbers_of_numpy(tmp_path):
+    changed = gs.load(QUICK, set={"pair.gear.teeth": np.int64(37), "stiffness.coupling": np.str_("none")}, cache=tmp_path)
+    assert changed.name != "quick"
+    for wrong in (lambda: gs.load(QUICK, set=["a=b"]), lambda: gs.load(QUICK, set={"pair.gear.teeth": object()}),
+                  lambda: gs.load({"study": "\ud800", "stages": {}}), lambda: gs.load(QUICK).run(progress=3)):
+        with pytest.raises(gs.InvalidInput):
+            wrong()
+
+
+def test_a_table_is_a_mapping_whose_memory_is_shared(quick):
+    table = quick.tables["ste.summary"]
+    assert list(table) == table.columns and "torque" in table and "tork" not in table and 3 not in table
+    assert dict(table)["torque"].tolist() == table["torque"].tolist()
+    pyarrow = pytest.importorskip("pyarrow")
+    address = lambda: pyarrow.table(table)["torque"].chunk(0).buffers()[1].address
+    assert address() == address()
+
+
+def test_a_run_cannot_be_run_by_its_own_callback(tmp_path):
+    places = {"results": tmp_path / "results", "cache": tmp_path / "cache"}
+    with pytest.raises(gs.RunFailed, match="what it calls cannot run it again"):
+        gs.run(QUICK, progress=lambda event: gs.run(QUICK, **places), **places)
+    inner = []
+    gs.run(QUICK, progress=lambda event: inner or inner.append(gs.run(QUICK, name="other", **places)), **places)
+    assert inner[0].plan()["up_to_date"]
 
 
 def test_the_command_line_is_there(tmp_path):

@@ -101,6 +101,8 @@ pub struct Optimizer {
     reference: Vec<f64>,
     watch: Option<Watch>,
     has_settled: bool,
+    /// How many further objectives and constraints an evaluation has; known from the first batch on.
+    counts: Option<[usize; 2]>,
 }
 
 /// Of a front with more than two objectives as many points tell how far it has come: the hypervolume of all takes too long.
@@ -130,6 +132,7 @@ impl Optimizer {
             reference: Vec::new(),
             watch: None,
             has_settled: false,
+            counts: None,
         };
         optimizer.take_batch();
         optimizer
@@ -183,6 +186,7 @@ impl Optimizer {
         if let Some(at) = evaluations.iter().position(|evaluation| evaluation.value == f64::NEG_INFINITY) {
             return Err(Failure::new(format!("the objective is minus infinity at {:?}", self.batch[at])));
         }
+        self.check_counts(&evaluations)?;
         for evaluation in evaluations.iter_mut().filter(|evaluation| !evaluation.admissible()) {
             *evaluation = Evaluation::from(f64::INFINITY);
         }
@@ -198,6 +202,24 @@ impl Optimizer {
         self.next_round();
         self.settle();
         self.take_batch();
+        Ok(())
+    }
+
+    /// Every point of a search that has values at all has as many objectives and constraints.
+    fn check_counts(&mut self, evaluations: &[Evaluation]) -> Result<(), Failure> {
+        let mut known = self.counts;
+        for evaluation in evaluations.iter().filter(|evaluation| evaluation.admissible()) {
+            let counts = [evaluation.further.len(), evaluation.constraints.len()];
+            let [further, constraints] = *known.get_or_insert(counts);
+            if counts != [further, constraints] {
+                let (objectives, own) = (further + 1, counts[0] + 1);
+                return Err(Failure::new(format!(
+                    "a point has {own} objectives and {} constraints, and others of this search have {objectives} and {constraints}",
+                    counts[1]
+                )));
+            }
+        }
+        self.counts = known;
         Ok(())
     }
 

@@ -83,7 +83,7 @@ pub fn profile_shift_of_balls(specification: &Specification, diameter: f64, over
 
 /// By what a dimension over two balls is smaller than over opposite ones.
 fn odd(teeth: u32) -> f64 {
-    if teeth % 2 == 0 { 1.0 } else { libm::cos(FRAC_PI_2 / f64::from(teeth)) }
+    if teeth.is_multiple_of(2) { 1.0 } else { libm::cos(FRAC_PI_2 / f64::from(teeth)) }
 }
 
 impl Gear {

@@ -7,6 +7,7 @@ use proptest::prelude::*;
 
 use super::{choice, integer, run, search, with};
 use crate::optimize::bounds::Bounds;
+use crate::optimize::constraints::Evaluation;
 use crate::optimize::search::{Optimizer, Reason};
 use crate::optimize::{self, METHODS, members};
 use declare::declared::{entry, record_of};
@@ -289,6 +290,15 @@ fn senseless_answers_are_refused() {
         let count = search.ask().len();
         let message = search.tell(&vec![1.0; count + 1]).unwrap_err().to_string();
         assert_eq!(message, format!("{} values were told for {count} points", count + 1));
+        let several = |further: usize| -> Vec<Evaluation> {
+            (0..count).map(|_| Evaluation { further: vec![1.0; further], ..Evaluation::from(1.0) }).collect()
+        };
+        let mut mixed = several(1);
+        mixed[count - 1] = Evaluation { further: vec![1.0; 2], ..Evaluation::from(1.0) };
+        if count > 1 {
+            let message = search.tell_constrained(mixed).unwrap_err().to_string();
+            assert!(message.starts_with("a point has 3 objectives and 0 constraints, and others"), "{message}");
+        }
         assert!(search.tell(&vec![f64::NEG_INFINITY; count]).unwrap_err().to_string().contains("minus infinity"));
         // Refused values are as if never told.
         assert_eq!((search.ask().len(), search.evaluations()), (count, 0));
