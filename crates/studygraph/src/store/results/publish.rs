@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::ErrorKind;
+use std::sync::Arc;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FileState, Folder, Known, MANIFEST, PAGE, held_text, here, is_drawn, split};
@@ -34,7 +35,7 @@ pub type Pieces<'a> = Box<dyn Iterator<Item = Result<Table, StoreError>> + 'a>;
 /// Gives the table of (stage, table) in pieces, where it comes so.
 pub type PiecesOf<'a> = &'a dyn Fn(&str, &str) -> Option<Pieces<'a>>;
 /// Gives a published table by its name, `stage.table`; of many stages as one, `_kind.table`.
-pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 /// Draws page and figures of a manifest and its tables.
 pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
 /// Hears which file is made next, and says whether to go on: all of them can take minutes.
@@ -126,7 +127,10 @@ impl Folder {
         fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
         let _lock = self.lock()?;
         // Another run may have published while this one waited; mostly none has, and what was found still holds.
-        if let Some((old, new, changes)) = before.filter(|(old, _, _)| old.is_still_so()) {
+        if let Some((old, new, changes)) = before
+            && let Some(text) = old.still()
+        {
+            self.strike(&old, Some(text), &changes)?;
             return self.write(Some(&old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
         }
         // A damaged manifest is written anew; one that cannot be read at the moment lists files that nobody would know of
@@ -145,6 +149,9 @@ impl Folder {
         match old {
             Some(old) if changes == Changes::default() => Ok(nothing(old)),
             old => {
+                if let Some(old) = &old {
+                    self.strike(old, old.text(), &changes)?;
+                }
                 let new = if let Cow::Owned(new) = new { Some(new) } else { None };
                 self.write(old.as_ref(), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
             }
@@ -174,10 +181,11 @@ impl Folder {
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
         let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
         let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
+        self.strike(&old, old.text(), &changes)?;
         self.write(Some(&old), new, changes, None::<fn() -> Facts>, source).map(Some)
     }
 
-    /// The folder is locked.
+    /// The folder is locked, and what is about to be replaced is struck from the manifest.
     fn write(
         &self,
         old: Option<&Known>,
@@ -187,9 +195,6 @@ impl Folder {
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
         file::sweep(self.path());
-        if let Some(old) = old {
-            self.strike(old, &changes)?;
-        }
         let mut listed = Listed::default();
         let (tables, files): (HashSet<&String>, HashSet<&String>) =
             (changes.tables.iter().collect(), changes.files.iter().collect());
@@ -200,9 +205,9 @@ impl Folder {
         for (_, table) in bundle::published(&new) {
             if let Some(members) = bundles.get(table.file.as_str()).filter(|_| tables.contains(&table.file)) {
                 (source.next)(&table.file)?;
-                let bytes = self.bundle(old, members, source)?;
-                self.put(&mut listed, &table.file, &bytes, table.varies())?;
-                self.opened.clear();
+                let all = self.bundle(old, members, source)?;
+                self.put(&mut listed, &table.file, &parquet::write(&all)?, table.varies())?;
+                self.opened.put(&table.file, all);
             } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
@@ -272,6 +277,7 @@ impl Folder {
                 }
             }
         }
+        self.opened.clear();
         self.remove(&changes.remove)?;
         new.files = listed.files;
         let text = new.text().map_err(unwritten)?;
@@ -284,8 +290,8 @@ impl Folder {
     }
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
-    /// for the old one.
-    fn strike(&self, old: &Known, changes: &Changes) -> Result<(), StoreError> {
+    /// for the old one. `text` is the manifest's, where it has one that is whole.
+    fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
@@ -295,13 +301,11 @@ impl Folder {
         if files.len() == earlier.len() {
             return Ok(());
         }
-        let path = self.path().join(MANIFEST);
-        let text = file::read(&path, file::MOST_MANIFEST).ok().filter(|text| index::digest(text) == old.digest);
         let text = match text.and_then(|text| Manifest::with_other_files(&text, &files)) {
             Some(text) => text,
             None => old.manifest.text_with(&files).map_err(unwritten)?,
         };
-        file::write(&path, &text, Durability::Synced)
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
     pub(super) fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
@@ -327,7 +331,7 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record), &|file| self.whole(file))?;
+        let bytes = hdf5_bytes(&name, manifest, &|record| self.shared(record))?;
         // Its bytes depend on the version of libhdf5 as well.
         self.put(listed, &name, &bytes, true)
     }
@@ -382,6 +386,7 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
 }
 
 /// The HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
+/// `table` gives what is published for a record: of a bundle all of it.
 ///
 /// # Errors
 /// When a table cannot be had, or holds what HDF5 cannot.
@@ -389,8 +394,7 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
 pub fn hdf5_bytes(
     name: &str,
     manifest: &Manifest,
-    table: &dyn Fn(&TableRecord) -> Result<Table, StoreError>,
-    whole: &dyn Fn(&str) -> Result<Table, StoreError>,
+    table: &dyn Fn(&TableRecord) -> Result<Arc<Table>, StoreError>,
 ) -> Result<Vec<u8>, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
@@ -398,8 +402,7 @@ pub fn hdf5_bytes(
             writer.leave_out(group, record)?;
             continue;
         }
-        let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)? };
-        writer.add(group, &table)?;
+        writer.add(group, &*table(record)?)?;
     }
     writer.finish()
 }
