@@ -21,13 +21,13 @@ struct Data<'a> {
     equal: bool,
     ratio: Option<f64>,
     names: &'a [String],
-    series: Vec<Points<'a>>,
+    series: Vec<Drawn<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cells: Option<Value>,
 }
 
 #[derive(Serialize)]
-struct Points<'a> {
+struct Drawn<'a> {
     label: &'a str,
     colour: String,
     points: Vec<[f64; 2]>,
@@ -38,7 +38,7 @@ impl Plot {
     pub(super) fn data(&self, frame: &Frame) -> String {
         let series = self.series.iter().map(|series| {
             let points = series.runs.iter().flatten().filter(|point| frame.place(**point).is_some());
-            Points {
+            Drawn {
                 label: &series.label,
                 colour: series.look.colour.value(),
                 points: points.map(|point| [rounded(point.0, 6), rounded(point.1, 6)]).collect(),

@@ -397,7 +397,7 @@ mod tests {
                 "best.summary" => vec![9.0.into(), 2.0e8.into()],
                 _ => return None,
             };
-            Some(Table::from_rows(Schema::new("summary", "Summary.", columns), vec![row]).unwrap())
+            Some(Table::from_rows(Schema::new("summary", "Summary.", columns), vec![row]).unwrap().into())
         };
         let words = |reference| {
             [

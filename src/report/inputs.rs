@@ -74,7 +74,8 @@ mod tests {
             left_out: Vec::new(),
             tables: Vec::new(),
         };
-        let inputs = Inputs::of(&Manifest { stages: vec![stage], ..Manifest::default() });
+        let manifest = Manifest { stages: vec![stage], ..Manifest::default() };
+        let inputs = Inputs::of(&manifest);
         for cell in
             ["pair.gears[gear=pinion].teeth", "pair.gears[gear=gear].module", "pair.gears[gear=gear].rack_addendum"]
         {

@@ -259,7 +259,7 @@ impl Manifest {
 
     /// The text of a manifest with another list of files; none where it was not written as this program does.
     #[must_use]
-    pub fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+    pub fn with_other_files(text: Vec<u8>, files: &[FileRecord]) -> Option<Vec<u8>> {
         wire::with_other_files(text, files)
     }
 

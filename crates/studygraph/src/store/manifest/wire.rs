@@ -174,17 +174,17 @@ pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<
 /// Where the list of files begins, which is the last: no text in a manifest has a line of its own.
 const FILES: &[u8] = b"\n \"files\": ";
 
-/// As [`Manifest::with_other_files`]: what stands before the list is copied and not read.
-pub(super) fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+/// As [`Manifest::with_other_files`]: what stands before the list is kept and not read.
+pub(super) fn with_other_files(mut text: Vec<u8>, files: &[FileRecord]) -> Option<Vec<u8>> {
     let at = text.windows(FILES.len()).rposition(|window| window == FILES)? + FILES.len();
     if !text.ends_with(b"\n}\n") || !text.starts_with(b"{\n \"format\": ") {
         return None;
     }
-    let mut new = text[..at].to_vec();
+    text.truncate(at);
     let lines = Lines::inside(1);
-    files.serialize(&mut serde_json::Serializer::with_formatter(&mut new, lines)).ok()?;
-    new.extend_from_slice(b"\n}\n");
-    Some(new)
+    files.serialize(&mut serde_json::Serializer::with_formatter(&mut text, lines)).ok()?;
+    text.extend_from_slice(b"\n}\n");
+    Some(text)
 }
 
 /// Names for schemas: that of kind and table, with a number where that is taken.

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use super::{Folder, MANIFEST, here};
 use crate::store::file;
 use crate::store::index::{self, Index, Seen};
-use crate::store::manifest::{FileRecord, Manifest, TableRecord};
+use crate::store::manifest::{FileRecord, Manifest, StageRecord, TableRecord};
 
 /// What became of a published file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,6 +86,12 @@ impl Known {
     pub(super) fn text(&self) -> Option<Vec<u8>> {
         let text = file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).ok()?;
         (index::digest(&text) == self.digest).then_some(text)
+    }
+
+    /// The stages of the manifest, which are no longer known here.
+    pub(super) fn take_stages(&mut self) -> Vec<StageRecord> {
+        self.tables.clear();
+        std::mem::take(&mut self.manifest.stages)
     }
 
     /// A file as it was last looked at.

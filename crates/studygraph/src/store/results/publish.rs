@@ -131,7 +131,7 @@ impl Folder {
             && let Some(text) = old.still()
         {
             self.strike(&old, Some(text), &changes)?;
-            return self.write(Some(&old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
+            return self.write(Some(old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
         }
         // A damaged manifest is written anew; one that cannot be read at the moment lists files that nobody would know of
         // afterwards.
@@ -153,7 +153,7 @@ impl Folder {
                     self.strike(old, old.text(), &changes)?;
                 }
                 let new = if let Cow::Owned(new) = new { Some(new) } else { None };
-                self.write(old.as_ref(), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
+                self.write(old, new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
             }
         }
     }
@@ -182,13 +182,13 @@ impl Folder {
         let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
         let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
         self.strike(&old, old.text(), &changes)?;
-        self.write(Some(&old), new, changes, None::<fn() -> Facts>, source).map(Some)
+        self.write(Some(old), new, changes, None::<fn() -> Facts>, source).map(Some)
     }
 
     /// The folder is locked, and what is about to be replaced is struck from the manifest.
     fn write(
         &self,
-        old: Option<&Known>,
+        mut old: Option<Known>,
         mut new: Manifest,
         mut changes: Changes,
         facts: Option<impl FnOnce() -> Facts>,
@@ -205,13 +205,13 @@ impl Folder {
         for (_, table) in bundle::published(&new) {
             if let Some(members) = bundles.get(table.file.as_str()).filter(|_| tables.contains(&table.file)) {
                 (source.next)(&table.file)?;
-                let all = self.bundle(old, members, source)?;
+                let all = self.bundle(old.as_ref(), members, source)?;
                 self.put(&mut listed, &table.file, &parquet::write(&all)?, table.varies())?;
                 self.opened.put(&table.file, all);
             } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
-                let kept = self.kept_by_bundle(old, table);
+                let kept = self.kept_by_bundle(old.as_ref(), table);
                 let pieces = source.pieces.filter(|_| kept.is_none()).and_then(|pieces| pieces(stage, name));
                 if let Some(pieces) = pieces {
                     listed.add(self.put_pieces(&table.file, pieces)?, table.varies());
@@ -220,30 +220,33 @@ impl Folder {
                 let bytes = kept.map_or_else(|| (source.bytes)(stage, name), |kept| parquet::write(&kept))?;
                 self.put(&mut listed, &table.file, &bytes, table.varies())?;
             } else {
-                let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
-                listed.keep(old, &table.file, is_good.then(|| table.varies()));
+                let is_good = old.as_ref().is_some_and(|old| old.table_state(table) == FileState::Intact);
+                listed.keep(old.as_ref(), &table.file, is_good.then(|| table.varies()));
             }
             let wanted: Vec<&String> = table.files.iter().filter(|file| files.contains(file)).collect();
             if let Some(first) = wanted.first() {
                 (source.next)(first)?;
                 self.put_held(&mut listed, table, &wanted)?;
             }
-            table.files.iter().filter(|file| !wanted.contains(file)).for_each(|file| listed.keep(old, file, None));
+            let others = table.files.iter().filter(|file| !wanted.contains(file));
+            others.for_each(|file| listed.keep(old.as_ref(), file, None));
         }
+        let stands = old.as_ref().is_some_and(|old| say_the_same(&old.manifest, &new));
+        // Thousands of them are a fifth of what is held, and nobody asks for them from here on.
+        let stages = old.as_mut().map(Known::take_stages).filter(|_| stands);
         if changes.hdf5 {
             (source.next)(&self.hdf5_file())?;
             self.put_hdf5(&mut listed, &new)?;
         } else if cfg!(feature = "hdf5") {
-            listed.keep(old, &self.hdf5_file(), None);
+            listed.keep(old.as_ref(), &self.hdf5_file(), None);
         }
         new.files.clear();
-        new = match (old, facts) {
+        new = match (old.as_ref().zip(stages), facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
-            (Some(old), _) if say_the_same(&old.manifest, &new) => {
+            (Some((old, stages)), _) => {
                 let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
                 let (program, study_folder) = (program.clone(), study_folder.clone());
                 let (machine, written) = (machine.clone(), written.clone());
-                let stages = old.manifest.stages.clone();
                 Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {
@@ -258,8 +261,8 @@ impl Folder {
             old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
         match source.draw.filter(|_| changes.drawn) {
             None => {
-                drawn_by = old.map_or_else(String::new, |old| old.drawn_by().to_owned());
-                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old, file, None));
+                drawn_by = old.as_ref().map_or_else(String::new, |old| old.drawn_by().to_owned());
+                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old.as_ref(), file, None));
             }
             Some(draw) => {
                 (source.next)(PAGE)?;
@@ -301,7 +304,7 @@ impl Folder {
         if files.len() == earlier.len() {
             return Ok(());
         }
-        let text = match text.and_then(|text| Manifest::with_other_files(&text, &files)) {
+        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
             Some(text) => text,
             None => old.manifest.text_with(&files).map_err(unwritten)?,
         };
