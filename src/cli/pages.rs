@@ -3,6 +3,7 @@
 //! Must not know: how anything is drawn, where and when files are written.
 
 use std::path::PathBuf;
+use std::sync::Arc;
 
 use super::progress::plain;
 use crate::report;
@@ -38,7 +39,7 @@ pub(super) fn draw(manifest: &Manifest, tables: Tables<'_>) -> Result<Vec<Drawn>
 }
 
 /// The tables of this name that report stages gave.
-fn of_reports(manifest: &Manifest, tables: Tables<'_>, name: &str) -> Vec<Table> {
+fn of_reports(manifest: &Manifest, tables: Tables<'_>, name: &str) -> Vec<Arc<Table>> {
     let reports = manifest.stages.iter().filter(|stage| stage.kind == "report");
     reports.filter_map(|stage| tables(&format!("{}.{name}", stage.name))).collect()
 }
@@ -144,15 +145,15 @@ fn sentence(counts: &[Count], what: &str) -> String {
 }
 
 /// The tables of a folder of results, for those who read it.
-pub(super) fn read<'a>(folder: &'a Folder, manifest: &'a Manifest) -> impl Fn(&str) -> Option<Table> + 'a {
+pub(super) fn read<'a>(folder: &'a Folder, manifest: &'a Manifest) -> impl Fn(&str) -> Option<Arc<Table>> + 'a {
     |name| {
         let records = manifest.stages.iter().flat_map(|stage| &stage.tables);
-        records.filter(|record| record.name == name).find_map(|record| folder.table(record).ok())
+        records.filter(|record| record.name == name).find_map(|record| folder.table(record).ok().map(Arc::new))
     }
 }
 
 /// The tables of verdicts and of comparisons of a run.
-pub(super) fn verdict_tables(manifest: &Manifest, tables: Tables<'_>) -> [Vec<Table>; 2] {
+pub(super) fn verdict_tables(manifest: &Manifest, tables: Tables<'_>) -> [Vec<Arc<Table>>; 2] {
     ["verdicts", "comparisons"].map(|name| of_reports(manifest, tables, name))
 }
 

@@ -3,6 +3,7 @@
 //! Must not know: how verdicts are found, how anything is drawn.
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -23,7 +24,7 @@ use studygraph::table::data::Table;
 struct Said {
     counts: Counts,
     /// Of verdicts, and of comparisons.
-    tables: [Vec<Table>; 2],
+    tables: [Vec<Arc<Table>>; 2],
     /// Both with their reasons.
     text: String,
 }
@@ -111,7 +112,7 @@ fn stale(study: &Study, folder: &Folder) -> Result<Option<String>, Ending> {
 
 fn value(study: &Study, folder: &Folder, said: &Said, stale: Option<&str>, check: bool) -> Value {
     let [entries, comparisons] =
-        said.tables.each_ref().map(|tables| tables.iter().flat_map(objects).collect::<Vec<Value>>());
+        said.tables.each_ref().map(|tables| tables.iter().flat_map(|table| objects(table)).collect::<Vec<Value>>());
     let mut value = json!({
         "study": study.name, "file": study.path.to_string_lossy(), "page": pages::path(folder).to_string_lossy(),
         "verdicts": shapes::verdicts(&said.counts.verdicts), "needs_attention": said.counts.attention(),

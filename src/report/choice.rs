@@ -4,10 +4,10 @@
 
 use serde::Serialize;
 
+use super::figure::Tables;
 use super::{ReportError, flags, floats, seconds, texts};
 use declare::number::significant;
 use studygraph::store::manifest::Manifest;
-use studygraph::table::data::Table;
 
 /// A row of the page.
 #[derive(Serialize)]
@@ -24,7 +24,7 @@ pub struct Choice {
 
 /// # Errors
 /// When a table is of another shape.
-pub fn choices(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Vec<Choice>, ReportError> {
+pub fn choices(manifest: &Manifest, tables: Tables<'_>) -> Result<Vec<Choice>, ReportError> {
     let mut all = Vec::new();
     for stage in manifest.stages.iter().filter(|stage| stage.kind == "accuracy") {
         // What is left of an earlier run is shown, and nothing is where there is none.

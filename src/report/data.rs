@@ -2,6 +2,7 @@
 //!
 //! Must not know: how the figure is drawn.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::cells::Cells;
@@ -10,18 +11,39 @@ use super::plot::{Axis, Kind, Plot};
 use super::scale::Scale;
 use declare::number::unit_symbol;
 
+/// What the script reads, by its names. Points may be thousands: they are no tree of JSON.
+#[derive(Serialize)]
+struct Data<'a> {
+    frame: [f64; 4],
+    x: Value,
+    y: Value,
+    down: bool,
+    equal: bool,
+    ratio: Option<f64>,
+    names: &'a [String],
+    series: Vec<Drawn<'a>>,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    cells: Option<Value>,
+}
+
+#[derive(Serialize)]
+struct Drawn<'a> {
+    label: &'a str,
+    colour: String,
+    points: Vec<[f64; 2]>,
+}
+
 impl Plot {
     /// As JSON.
     pub(super) fn data(&self, frame: &Frame) -> String {
-        let series: Vec<Value> = self
-            .series
-            .iter()
-            .map(|series| {
-                let points = series.runs.iter().flatten().filter(|point| frame.place(**point).is_some());
-                let points: Vec<[f64; 2]> = points.map(|point| [rounded(point.0, 6), rounded(point.1, 6)]).collect();
-                json!({ "label": series.label, "colour": series.look.colour.value(), "points": points })
-            })
-            .collect();
+        let series = self.series.iter().map(|series| {
+            let points = series.runs.iter().flatten().filter(|point| frame.place(**point).is_some());
+            Drawn {
+                label: &series.label,
+                colour: series.look.colour.value(),
+                points: points.map(|point| [rounded(point.0, 6), rounded(point.1, 6)]).collect(),
+            }
+        });
         let axis = |axis: &Axis, scale: &Scale, ticks: usize| {
             json!({
                 "label": axis.label,
@@ -33,21 +55,19 @@ impl Plot {
             })
         };
         let [x_ticks, y_ticks] = frame.layout.ticks;
-        let place = [frame.left, frame.top, frame.width, frame.height].map(|length| rounded(length, 6));
-        let mut data = json!({
-            "frame": place,
-            "x": axis(&self.x, &frame.x, x_ticks),
-            "y": axis(&self.y, &frame.y, y_ticks),
-            "down": frame.is_downward,
-            "equal": self.kind == Kind::Drawing,
-            "ratio": frame.exaggeration,
-            "names": if self.kind == Kind::Bar { &self.categories[..] } else { &[] },
-            "series": series,
-        });
-        if let Some(cells) = &self.cells {
-            data["cells"] = of_cells(cells);
-        }
-        data.to_string()
+        let data = Data {
+            frame: [frame.left, frame.top, frame.width, frame.height].map(|length| rounded(length, 6)),
+            x: axis(&self.x, &frame.x, x_ticks),
+            y: axis(&self.y, &frame.y, y_ticks),
+            down: frame.is_downward,
+            equal: self.kind == Kind::Drawing,
+            ratio: frame.exaggeration,
+            names: if self.kind == Kind::Bar { &self.categories } else { &[] },
+            series: series.collect(),
+            cells: self.cells.as_ref().map(of_cells),
+        };
+        // Nothing here can fail to be JSON.
+        serde_json::to_string(&data).unwrap_or_default()
     }
 }
 

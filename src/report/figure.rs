@@ -3,6 +3,8 @@
 //! Must not know: SVG, HTML. A jump is kept a jump: a line is interrupted where the declared column changes, and where
 //! two points share an abscissa.
 
+use std::sync::Arc;
+
 use super::cells::Cells;
 use super::order::Order;
 use super::plot::{Axis, Kind, Mark, Named, Of, Plot, Series};
@@ -29,7 +31,7 @@ pub struct Figure {
 }
 
 /// A table by its full name, `stage.table`.
-pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 
 /// Reads the tables `figures` and `figure_published` of a report stage.
 ///
@@ -395,7 +397,7 @@ mod tests {
                 "best.summary" => vec![9.0.into(), 2.0e8.into()],
                 _ => return None,
             };
-            Some(Table::from_rows(Schema::new("summary", "Summary.", columns), vec![row]).unwrap())
+            Some(Table::from_rows(Schema::new("summary", "Summary.", columns), vec![row]).unwrap().into())
         };
         let words = |reference| {
             [

@@ -3,23 +3,20 @@
 //! Must not know: what any field means. A cell is an input where the configuration of its stage has a field of the name of
 //! its column, `teeth` or, inside `rack`, `rack_addendum`.
 
-use std::collections::BTreeMap;
+use std::cell::OnceCell;
+use std::collections::HashMap;
 
 use serde_json::Value;
-use studygraph::store::manifest::Manifest;
+use studygraph::store::manifest::{Config, Manifest, StageRecord};
 
-/// Names of fields with a value, by stage.
-pub struct Inputs(BTreeMap<String, Vec<String>>);
+/// Names of fields with a value, by stage; found where somebody asks for a stage.
+pub struct Inputs<'a>(HashMap<&'a str, (&'a Config, OnceCell<Vec<String>>)>);
 
-impl Inputs {
+impl<'a> Inputs<'a> {
     #[must_use]
-    pub fn of(manifest: &Manifest) -> Self {
-        let fields = |config: &Value| {
-            let mut found = Vec::new();
-            collect("", config, &mut found);
-            found
-        };
-        Self(manifest.stages.iter().map(|stage| (stage.name.clone(), fields(&stage.config))).collect())
+    pub fn of(manifest: &'a Manifest) -> Self {
+        let stage = |stage: &'a StageRecord| (stage.name.as_str(), (&stage.config, OnceCell::new()));
+        Self(manifest.stages.iter().map(stage).collect())
     }
 
     /// Whether a cell, `stage.table[…].column`, is one of them.
@@ -27,8 +24,17 @@ impl Inputs {
     pub fn has(&self, cell: &str) -> bool {
         let (stage, column) = (cell.split('.').next().unwrap_or_default(), cell.rsplit('.').next().unwrap_or_default());
         let is_cell = cell.split('.').count() > 2 && !cell.contains(' ') || cell.contains('[');
-        is_cell && self.0.get(stage).is_some_and(|fields| fields.iter().any(|field| field == column))
+        let names = |(config, known): &'_ (&Config, OnceCell<Vec<String>>)| {
+            known.get_or_init(|| fields(config)).iter().any(|field| field == column)
+        };
+        is_cell && self.0.get(stage).is_some_and(names)
     }
+}
+
+fn fields(config: &Config) -> Vec<String> {
+    let mut found = Vec::new();
+    collect("", &config.value(), &mut found);
+    found
 }
 
 fn collect(group: &str, config: &Value, found: &mut Vec<String>) {
@@ -50,7 +56,6 @@ mod tests {
     use super::*;
     use serde_json::json;
     use std::collections::BTreeMap;
-    use studygraph::store::manifest::StageRecord;
 
     #[test]
     fn a_cell_is_an_input_where_its_stage_has_the_field() {
@@ -69,7 +74,8 @@ mod tests {
             left_out: Vec::new(),
             tables: Vec::new(),
         };
-        let inputs = Inputs::of(&Manifest { stages: vec![stage], ..Manifest::default() });
+        let manifest = Manifest { stages: vec![stage], ..Manifest::default() };
+        let inputs = Inputs::of(&manifest);
         for cell in
             ["pair.gears[gear=pinion].teeth", "pair.gears[gear=gear].module", "pair.gears[gear=gear].rack_addendum"]
         {

@@ -37,6 +37,7 @@ mod verdict;
 mod warnings;
 
 use std::cell::RefCell;
+use std::sync::Arc;
 
 use figure::{Figure, Tables};
 use order::Order;
@@ -80,15 +81,15 @@ pub enum ReportError {
 ///
 /// # Errors
 /// When a report stage's table, or one that a figure draws, is missing or of another shape.
-pub fn render(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Rendered, ReportError> {
+pub fn render(manifest: &Manifest, tables: Tables<'_>) -> Result<Rendered, ReportError> {
     // Figures of one table follow each other: it is read and checked once.
-    let last: RefCell<Option<(String, Table)>> = RefCell::default();
+    let last: RefCell<Option<(String, Arc<Table>)>> = RefCell::default();
     let tables = &|name: &str| {
         let mut last = last.borrow_mut();
         if last.as_ref().is_none_or(|(known, _)| known != name) {
             *last = Some((name.to_owned(), tables(name)?));
         }
-        last.as_ref().map(|(_, table)| table.clone())
+        last.as_ref().map(|(_, table)| Arc::clone(table))
     };
     let stages: Vec<&StageRecord> = manifest.stages.iter().filter(|stage| stage.kind == "report").collect();
     let order = Order::of(manifest, tables);
@@ -129,9 +130,9 @@ fn part(stage: &str, order: &Order, tables: Tables<'_>) -> Result<page::ReportPa
         let name = format!("{stage}.{name}");
         tables(&name).ok_or(ReportError::Missing(name))
     };
-    let figures = figure::figures(&table("figures")?, &table("figure_published")?, order, tables)?;
+    let figures = figure::figures(&*table("figures")?, &*table("figure_published")?, order, tables)?;
     let (verdicts, counts) = (table("verdicts")?, table("verdict_counts")?);
-    let comparisons = comparison::rows(&table("comparisons")?)?;
+    let comparisons = comparison::rows(&*table("comparisons")?)?;
     Ok(page::ReportPart { stage: stage.to_owned(), verdicts, counts, comparisons, figures })
 }
 

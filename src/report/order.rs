@@ -4,11 +4,13 @@
 //! know: figures.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use super::figure::Tables;
 use super::spec::Spec;
+use studygraph::store::bundle;
 use studygraph::store::manifest::Manifest;
-use studygraph::table::data::Data;
+use studygraph::table::data::{Data, Table};
 
 /// The values of columns, by the column's name, in their order.
 #[derive(Default)]
@@ -18,19 +20,30 @@ impl Order {
     #[must_use]
     pub fn of(manifest: &Manifest, tables: Tables<'_>) -> Self {
         let mut found: BTreeMap<String, Vec<String>> = BTreeMap::new();
+        let mut bundles: BTreeMap<&str, Option<Arc<Table>>> = BTreeMap::new();
         for record in manifest.stages.iter().flat_map(|stage| &stage.tables) {
             let mut keys = record.columns.iter().filter(|column| column.key);
             let (Some(key), None) = (keys.next(), keys.next()) else { continue };
             if key.kind != "text" || !record.columns.iter().any(|column| column.name == "order") {
                 continue;
             }
-            let Some(table) = tables(&record.name) else { continue };
+            // Of a bundle all rows are had at once.
+            let all = bundles.entry(&record.file).or_insert_with(|| {
+                let name = record.file.strip_suffix(".parquet").filter(|_| bundle::is_bundle(&record.file));
+                name.and_then(tables)
+            });
+            let own = if all.is_none() { tables(&record.name) } else { None };
+            let Some(table) = all.as_ref().or(own.as_ref()) else { continue };
+            let rows = match &*all {
+                Some(all) => bundle::rows_of(all, record.stage()).unwrap_or_default(),
+                None => 0..table.rows(),
+            };
             let (Some(Data::Text(words)), Some(Data::Integer(places))) =
                 (table.column(&key.name), table.column("order"))
             else {
                 continue;
             };
-            let mut rows: Vec<usize> = (0..table.rows()).collect();
+            let mut rows: Vec<usize> = rows.collect();
             rows.sort_by_key(|&row| places[row]);
             let known = found.entry(key.name.clone()).or_default();
             for row in rows {

@@ -3,6 +3,7 @@
 //! Must not know: how a figure is drawn. Everything that differs from run to run stands behind the template's last mark.
 
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 use minijinja::Environment;
 use minijinja::syntax::SyntaxConfig;
@@ -34,8 +35,8 @@ type Said = (String, String, String);
 /// What one report stage contributes, beside its figures.
 pub struct ReportPart {
     pub stage: String,
-    pub verdicts: Table,
-    pub counts: Table,
+    pub verdicts: Arc<Table>,
+    pub counts: Arc<Table>,
     pub comparisons: Vec<comparison::Row>,
     pub figures: Vec<Figure>,
 }

@@ -3,13 +3,13 @@
 //! As elements of the page they were half of it. What differs from run to run is not packed, or the page would too. Must not
 //! know: figures, verdicts.
 
-use std::io::Write;
+use std::io::{self, Write};
+use std::sync::Arc;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::{Compression, GzBuilder};
-use serde::Serialize;
-use serde_json::{Value, json};
+use serde::{Serialize, Serializer};
 
 use super::ReportError;
 use super::figure::Tables;
@@ -58,13 +58,55 @@ pub struct Records<'a> {
     pub packed: String,
 }
 
+/// A table of which the page shows something.
+struct Found<'a> {
+    name: String,
+    record: &'a TableRecord,
+    rows: usize,
+    /// Bytes of its values as JSON.
+    size: usize,
+    table: Option<Arc<Table>>,
+}
+
+/// A table as the page's script has it.
+#[derive(Serialize)]
+struct Entry<'a> {
+    name: &'a str,
+    rows: usize,
+    columns: Vec<ColumnView<'a>>,
+    values: Vec<Values<'a>>,
+}
+
+#[derive(Serialize)]
+struct ColumnView<'a> {
+    name: &'a str,
+    unit: String,
+    kind: &'a str,
+    meaning: String,
+}
+
+impl<'a> Entry<'a> {
+    fn of(Found { name, record, rows, table, .. }: &'a Found<'_>) -> Self {
+        let is_bundle = bundle::is_bundle(&record.file);
+        let values = table.as_ref().map_or_else(Vec::new, |table| shown(record, table, is_bundle));
+        Entry { name, rows: *rows, columns: columns(record, is_bundle), values }
+    }
+}
+
+/// The first values of a column; nulls where there is nothing to be shown.
+#[derive(Clone, Copy)]
+struct Values<'t> {
+    data: Option<&'t Data>,
+    rows: usize,
+}
+
 /// # Errors
 /// When it cannot be compressed, which is a mistake of this program.
 pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records<'a>, ReportError> {
-    let failed = |error: std::io::Error| ReportError::Page(error.to_string());
-    let mut entries: Vec<(Value, (usize, Vec<Value>))> = Vec::new();
+    let failed = |error: io::Error| ReportError::Page(error.to_string());
     let mut stages: Vec<StageTables> = manifest.stages.iter().map(StageTables::of).collect();
     // Those of many stages of a kind stand behind those of single stages, as one.
+    let mut found: Vec<Found> = Vec::new();
     for (group, record) in bundle::published(manifest) {
         let is_bundle = bundle::is_bundle(&record.file);
         let name = format!("{group}.{}", record.table());
@@ -79,87 +121,98 @@ pub fn records<'a>(manifest: &'a Manifest, tables: Tables<'_>) -> Result<Records
             });
             stages.len() - 1
         });
-        let rows = table.as_ref().filter(|_| is_bundle).map_or(record.rows, Table::rows);
+        let rows = table.as_ref().filter(|_| is_bundle).map_or(record.rows, |table| table.rows());
         let is_stored = table.is_some() || is_long;
-        let shown = table.map_or((0, Vec::new()), |table| {
-            let own = shown(record, &table, is_bundle);
-            // What has no room at all need not be written to know it.
-            let size = own.iter().map(|data| length(*data, table.rows())).sum();
-            let rows = if size > ROOM { table.rows().min(FIRST_ROWS) } else { table.rows() };
-            (size, own.into_iter().map(|data| values(data, rows)).collect())
-        });
-        entries.push((described(record, &name, rows, is_bundle), shown));
-        stages[at].tables.push(TableView { record, name, rows, is_stored });
+        let size = table.as_ref().map_or(0, |table| length(&shown(record, table, is_bundle)));
+        // What has no room need not be held either.
+        let table = table.map(|table| if size > ROOM { first_rows(&table) } else { table });
+        stages[at].tables.push(TableView { record, name: name.clone(), rows, is_stored });
+        found.push(Found { name, record, rows, size, table });
     }
-    let sizes: Vec<usize> = entries.iter().map(|(_, (size, _))| *size).collect();
+    // Of thousands of stages few have tables of their own.
+    stages.retain(|stage| !stage.tables.is_empty() || !stage.files.is_empty());
+    let mut entries: Vec<Entry> = found.iter().map(Entry::of).collect();
+    let sizes: Vec<usize> = found.iter().map(|found| found.size).collect();
     let mut by_size: Vec<usize> = (0..entries.len()).collect();
     by_size.sort_by_key(|&entry| sizes[entry]);
     let mut room = ROOM;
     for entry in by_size {
         let fits = sizes[entry] <= room;
         room = if fits { room - sizes[entry] } else { 0 };
-        for values in entries[entry].1.1.iter_mut().filter(|_| !fits).filter_map(Value::as_array_mut) {
-            values.truncate(FIRST_ROWS);
+        for values in entries[entry].values.iter_mut().filter(|_| !fits) {
+            values.rows = values.rows.min(FIRST_ROWS);
         }
     }
-    let all: Vec<Value> = entries
-        .into_iter()
-        .map(|(mut entry, (_, values))| {
-            entry["values"] = Value::Array(values);
-            entry
-        })
-        .collect();
     let mut packer = GzBuilder::new().write(Vec::new(), Compression::best());
-    packer.write_all(Value::Array(all).to_string().as_bytes()).map_err(failed)?;
+    let text = serde_json::to_vec(&entries).map_err(io::Error::from).map_err(failed)?;
+    packer.write_all(&text).map_err(failed)?;
     Ok(Records { stages, packed: STANDARD.encode(packer.finish().map_err(failed)?) })
 }
 
 /// The script says a column that differs from run to run by a dash.
-fn described(record: &TableRecord, name: &str, rows: usize, is_bundle: bool) -> Value {
-    let column = |column: &ColumnRecord| {
+fn columns(record: &TableRecord, is_bundle: bool) -> Vec<ColumnView<'_>> {
+    fn view(column: &ColumnRecord) -> ColumnView<'_> {
         let mut meaning = column.description.clone();
         for (is, remark) in [(column.key, "part of the key"), (column.volatile, "varies from run to run")] {
             if is {
                 meaning = format!("{meaning} ({remark})");
             }
         }
-        json!({ "name": column.name, "unit": unit_symbol(&column.unit), "kind": column.kind, "meaning": meaning })
-    };
-    let stage = json!({ "name": bundle::STAGE, "unit": "", "kind": "text", "meaning": "Name of the stage." });
-    let stage = is_bundle.then_some(stage);
-    let columns: Vec<Value> = stage.into_iter().chain(record.columns.iter().map(column)).collect();
-    json!({ "name": name, "rows": rows, "columns": columns })
+        ColumnView { name: &column.name, unit: unit_symbol(&column.unit), kind: &column.kind, meaning }
+    }
+    let stage =
+        ColumnView { name: bundle::STAGE, unit: String::new(), kind: "text", meaning: "Name of the stage.".to_owned() };
+    is_bundle.then_some(stage).into_iter().chain(record.columns.iter().map(view)).collect()
 }
 
 /// By the record's columns, and only what it says; none where it says nothing.
-fn shown<'t>(record: &TableRecord, table: &'t Table, is_bundle: bool) -> Vec<Option<&'t Data>> {
+fn shown<'t>(record: &TableRecord, table: &'t Table, is_bundle: bool) -> Vec<Values<'t>> {
     let stage = is_bundle.then(|| table.column(bundle::STAGE));
     let own = record.columns.iter().map(|column| table.column(&column.name).filter(|_| !column.volatile));
-    stage.into_iter().chain(own).collect()
+    stage.into_iter().chain(own).map(|data| Values { data, rows: table.rows() }).collect()
 }
 
-fn value(data: &Data, row: usize) -> Value {
-    match data {
-        // JSON has no NaN: null says "not applicable here".
-        Data::Float(values) => serde_json::Number::from_f64(values[row]).map_or(Value::Null, Value::Number),
-        Data::Integer(values) => json!(values[row]),
-        Data::Text(values) => json!(values[row]),
-        Data::Flag(values) => json!(values[row]),
+impl Serialize for Values<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.data {
+            None => serializer.collect_seq((0..self.rows).map(|_| ())),
+            // JSON has no NaN: null says "not applicable here".
+            Some(Data::Float(values)) => serializer.collect_seq(&values[..self.rows]),
+            Some(Data::Integer(values)) => serializer.collect_seq(&values[..self.rows]),
+            Some(Data::Text(values)) => serializer.collect_seq(&values[..self.rows]),
+            Some(Data::Flag(values)) => serializer.collect_seq(&values[..self.rows]),
+        }
     }
 }
 
-fn values(data: Option<&Data>, rows: usize) -> Value {
-    Value::Array((0..rows).map(|row| data.map_or(Value::Null, |data| value(data, row))).collect())
-}
-
-/// Bytes of so many values as JSON; where they are more than there is room, only that they are.
-fn length(data: Option<&Data>, rows: usize) -> usize {
-    let mut length = "[]".len() + rows.saturating_sub(1);
-    for row in 0..rows {
-        length += data.map_or("null".len(), |data| value(data, row).to_string().len());
-        if length > ROOM {
+/// Bytes of columns as JSON; where they are more than there is room, only that they are.
+fn length(columns: &[Values]) -> usize {
+    let mut length = Length(0);
+    for values in columns {
+        // It refuses nothing but what has no room.
+        if serde_json::to_writer(&mut length, values).is_err() {
             break;
         }
     }
-    length
+    length.0
+}
+
+fn first_rows(table: &Arc<Table>) -> Arc<Table> {
+    let columns = table.columns().iter().map(|data| data.slice(0..FIRST_ROWS.min(table.rows()))).collect();
+    let first = Table::from_columns(Arc::clone(table.shared_schema()), columns);
+    first.map_or_else(|_| Arc::clone(table), Arc::new)
+}
+
+/// Counts what is written, up to what there is room for.
+struct Length(usize);
+
+impl Write for Length {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0 += bytes.len();
+        if self.0 > ROOM { Err(io::ErrorKind::StorageFull.into()) } else { Ok(bytes.len()) }
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }

@@ -8,6 +8,7 @@ mod panels;
 use serde::Serialize;
 
 use self::panels::Named;
+use super::figure::Tables;
 use super::{ReportError, floats, integers, texts};
 use declare::number::{significant, unit_symbol};
 use studygraph::store::manifest::{Manifest, StageRecord};
@@ -41,14 +42,14 @@ struct Heading {
 
 /// # Errors
 /// When a table is of another shape.
-pub fn sweeps(manifest: &Manifest, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Vec<Sweep>, ReportError> {
+pub fn sweeps(manifest: &Manifest, tables: Tables<'_>) -> Result<Vec<Sweep>, ReportError> {
     let stages = manifest.stages.iter().filter(|stage| stage.kind == "sweep");
     // What is left of an earlier run is shown, and nothing is where there is none.
     let found = stages.filter_map(|stage| of_stage(stage, tables).transpose());
     found.collect()
 }
 
-fn of_stage(stage: &StageRecord, tables: &dyn Fn(&str) -> Option<Table>) -> Result<Option<Sweep>, ReportError> {
+fn of_stage(stage: &StageRecord, tables: Tables<'_>) -> Result<Option<Sweep>, ReportError> {
     let table = |name: &str| tables(&format!("{}.{name}", stage.name));
     let rows = stage.tables.iter().find(|table| table.table() == "rows").map_or(0, |table| table.rows);
     let (Some(best), Some(effects), Some(shares), Some(map), Some(distribution), Some(invalid)) =

@@ -1,15 +1,85 @@
 //! A figure for those who want to go on with it: Vega-Lite, with its values, as Altair reads it.
 //!
-//! Source: the grammar of Vega-Lite 6 (<https://vega.github.io/vega-lite/docs/>). Must not know: SVG, the page.
+//! Source: the grammar of Vega-Lite 6 (<https://vega.github.io/vega-lite/docs/>). Rows are written as they stand: thousands of
+//! them as trees of JSON took a tenth of a small run. Must not know: SVG, the page.
 
+use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::cells::Cells;
 use super::look::Look;
-use super::plot::{Axis, Kind, Plot, Size};
+use super::plot::{Axis, Kind, Plot, Series, Size};
 use declare::number::unit_symbol;
 
 const SCHEMA: &str = "https://vega.github.io/schema/vega-lite/v6.json";
+
+#[derive(Serialize)]
+struct Spec<'a> {
+    #[serde(rename = "$schema")]
+    schema: &'static str,
+    title: &'a str,
+    width: u32,
+    height: u32,
+    layer: Vec<Layer<'a>>,
+    resolve: Value,
+}
+
+#[derive(Serialize)]
+struct Layer<'a> {
+    data: Values<'a>,
+    mark: Value,
+    encoding: Value,
+}
+
+#[derive(Serialize)]
+struct Values<'a> {
+    values: Vec<Row<'a>>,
+}
+
+/// JSON has no NaN: a number that is none is written as null, which interrupts a line.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Row<'a> {
+    Point {
+        n: usize,
+        series: &'a str,
+        run: usize,
+        x: Place<'a>,
+        y: f64,
+    },
+    /// Of a histogram.
+    Bar {
+        n: usize,
+        series: &'a str,
+        x: f64,
+        x2: f64,
+        y: f64,
+    },
+    /// Of a tornado.
+    Named {
+        n: usize,
+        series: &'a str,
+        x: f64,
+        y: Option<&'a String>,
+    },
+    /// Of a map.
+    Cell {
+        n: usize,
+        x: f64,
+        x2: f64,
+        y: f64,
+        y2: f64,
+        value: f64,
+    },
+    Published(Value),
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Place<'a> {
+    Number(f64),
+    Category(&'a str),
+}
 
 impl Plot {
     /// As JSON, indented.
@@ -21,49 +91,48 @@ impl Plot {
             Size::Page => (720, 320),
             Size::Column => (260, 180),
         };
-        let spec = json!({
-            "$schema": SCHEMA,
-            "title": self.title,
-            "width": width,
-            "height": height,
-            "layer": layers,
-            "resolve": { "scale": { "color": "independent", "shape": "independent" } },
-        });
-        // `{:#}` indents every number of every row.
-        let mut text = spec.to_string().replace("{\"n\":", "\n{\"n\":");
+        let spec = Spec {
+            schema: SCHEMA,
+            title: &self.title,
+            width,
+            height,
+            layer: layers,
+            resolve: json!({ "scale": { "color": "independent", "shape": "independent" } }),
+        };
+        // Indented, every number of every row would have a line of its own. Nothing here can fail to be JSON.
+        let mut text = serde_json::to_string(&spec).unwrap_or_default().replace("{\"n\":", "\n{\"n\":");
         text.push('\n');
         text
     }
 
-    fn computed(&self) -> Value {
-        let names: Vec<&str> = self.series.iter().map(|series| series.label.as_str()).collect();
-        let mut values = Vec::new();
-        let mut count = 0;
-        for series in &self.series {
-            for (run, points) in series.runs.iter().enumerate() {
+    fn rows(&self) -> Vec<Row<'_>> {
+        let mut rows = Vec::new();
+        for Series { label, runs, .. } in &self.series {
+            for (run, points) in runs.iter().enumerate() {
                 if self.kind == Kind::Histogram {
                     let (Some(from), Some(to)) = (points.first(), points.last()) else { continue };
-                    let (x, x2, y) = (number(from.0), number(to.0), number(from.1));
-                    values.push(json!({ "n": count, "series": series.label, "x": x, "x2": x2, "y": y }));
-                    count += 1;
+                    rows.push(Row::Bar { n: rows.len(), series: label, x: from.0, x2: to.0, y: from.1 });
                     continue;
                 }
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index
+                let category = |place: f64| self.categories.get(place as usize);
                 for &(x, y) in points {
-                    if self.kind == Kind::Tornado {
-                        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index
-                        let name = self.categories.get(y as usize);
-                        values.push(json!({ "n": count, "series": series.label, "x": number(x), "y": name }));
-                        count += 1;
-                        continue;
-                    }
-                    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // an index
-                    let category = self.categories.get(x as usize).filter(|_| self.kind == Kind::Bar);
-                    let x = category.map_or_else(|| number(x), |category| json!(category));
-                    values.push(json!({ "n": count, "series": series.label, "run": run, "x": x, "y": number(y) }));
-                    count += 1;
+                    let n = rows.len();
+                    rows.push(if self.kind == Kind::Tornado {
+                        Row::Named { n, series: label, x, y: category(y) }
+                    } else {
+                        let name = category(x).filter(|_| self.kind == Kind::Bar);
+                        let x = name.map_or(Place::Number(x), |name| Place::Category(name));
+                        Row::Point { n, series: label, run, x, y }
+                    });
                 }
             }
         }
+        rows
+    }
+
+    fn computed(&self) -> Layer<'_> {
+        let names: Vec<&str> = self.series.iter().map(|series| series.label.as_str()).collect();
         let x_type = if self.kind == Kind::Bar { "nominal" } else { "quantitative" };
         let mut x = channel("x", &self.x, x_type);
         let mut y = channel("y", &self.y, if self.kind == Kind::Tornado { "nominal" } else { "quantitative" });
@@ -120,33 +189,27 @@ impl Plot {
                 json!({ "type": "line" })
             }
         };
-        json!({ "data": { "values": values }, "mark": mark, "encoding": encoding })
+        Layer { data: Values { values: self.rows() }, mark, encoding }
     }
 
-    fn map(&self, cells: &Cells) -> Value {
+    fn map(&self, cells: &Cells) -> Layer<'_> {
         let columns = cells.xs.len() - 1;
-        let cell = |(index, value): (usize, &f64)| {
-            let (i, j) = (index % columns, index / columns);
-            json!({
-                "n": index, "x": cells.xs[i], "x2": cells.xs[i + 1], "y": cells.ys[j], "y2": cells.ys[j + 1],
-                "value": number(*value),
-            })
+        let cell = |(n, &value): (usize, &f64)| {
+            let (i, j) = (n % columns, n / columns);
+            Row::Cell { n, x: cells.xs[i], x2: cells.xs[i + 1], y: cells.ys[j], y2: cells.ys[j + 1], value }
         };
-        let values: Vec<Value> = cells.values.iter().enumerate().map(cell).collect();
+        let values = cells.values.iter().enumerate().map(cell).collect();
         let value = Axis { label: cells.label.clone(), unit: cells.unit.clone(), is_log: false };
         let [mut x, mut y] = [channel("x", &self.x, "quantitative"), channel("y", &self.y, "quantitative")];
         (x["scale"]["zero"], y["scale"]["zero"]) = (json!(false), json!(false));
-        json!({
-            "data": { "values": values },
-            "mark": { "type": "rect" },
-            "encoding": {
-                "x": x, "x2": { "field": "x2" }, "y": y, "y2": { "field": "y2" },
-                "color": channel("value", &value, "quantitative"),
-            },
-        })
+        let encoding = json!({
+            "x": x, "x2": { "field": "x2" }, "y": y, "y2": { "field": "y2" },
+            "color": channel("value", &value, "quantitative"),
+        });
+        Layer { data: Values { values }, mark: json!({ "type": "rect" }), encoding }
     }
 
-    fn published(&self) -> Vec<Value> {
+    fn published(&self) -> Vec<Layer<'_>> {
         let mark = |mark: &super::plot::Mark| {
             let mut row = json!({ "n": 0, "label": mark.label });
             let mut encoding = json!({});
@@ -164,7 +227,7 @@ impl Plot {
                 json!({ "type": "rule", "strokeDash": [7, 5], "color": colour })
             };
             encoding["tooltip"] = json!({ "field": "label" });
-            json!({ "data": { "values": [row] }, "mark": shape, "encoding": encoding })
+            Layer { data: Values { values: vec![Row::Published(row)] }, mark: shape, encoding }
         };
         self.marks.iter().map(mark).collect()
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 use serde_json::json;
 
 use gearstudy::program::load_text;
-use studygraph::study::settings::shown;
+use studygraph::study::settings::Shown;
 
 #[test]
 fn fields_are_shown_as_they_would_be_written() {
@@ -13,7 +13,7 @@ fn fields_are_shown_as_they_would_be_written() {
     let study = load_text(text, Path::new("quick.yaml")).unwrap();
     let stage = |name: &str| {
         let node = study.nodes.iter().find(|node| node.name == name).unwrap();
-        shown(node.kind.fields, &node.record)
+        serde_json::to_value(Shown { fields: node.kind.fields, record: &node.record }).unwrap()
     };
     let pair = stage("pair");
     assert_eq!(pair["module"], "3 mm");

@@ -8,6 +8,7 @@ mod tables;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io::Write;
+use std::sync::Arc;
 
 use declare::record::Value;
 use flate2::Compression;
@@ -204,7 +205,8 @@ fn a_page_needs_no_report_stage_and_says_what_failed() {
 fn a_missing_table_is_named() {
     let (manifest, mut tables) = study(published(), figures());
     tables.remove("ste.curve");
-    let error = report::render(&manifest, &|name| tables.get(name).cloned()).err().expect("it cannot be drawn");
+    let error =
+        report::render(&manifest, &|name| tables.get(name).cloned().map(Arc::new)).err().expect("it cannot be drawn");
     assert!(error.to_string().contains("`ste.curve`"), "{error}");
 }
 

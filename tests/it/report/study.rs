@@ -1,6 +1,7 @@
 //! The stage `report` run on the tables, and the manifest of the study they would belong to.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 
 use super::record::list;
@@ -52,12 +53,12 @@ pub fn manifest(tables: &BTreeMap<String, Table>) -> Manifest {
         keys: vec![KeyRecord {
             key: Digest([0x8f; 32]),
             config: start,
-            fields: Vec::new(),
+            fields: Arc::default(),
             axis: None,
             code: start,
             seed: None,
             demand: start,
-            inputs: Vec::new(),
+            inputs: Arc::default(),
         }],
         config: serde_json::Value::Null.into(),
         status: status.to_owned(),
@@ -131,5 +132,5 @@ pub fn study(published: Vec<Value>, figures: Vec<Value>) -> (Manifest, BTreeMap<
 }
 
 pub fn render(manifest: &Manifest, tables: &BTreeMap<String, Table>) -> Rendered {
-    report::render(manifest, &|name| tables.get(name).cloned()).unwrap()
+    report::render(manifest, &|name| tables.get(name).cloned().map(Arc::new)).unwrap()
 }

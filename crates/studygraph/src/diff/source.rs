@@ -27,12 +27,13 @@ pub fn tables(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecord
 fn giver<'a>(run: &'a Manifest, stage: &StageRecord, port: &str, far: usize) -> Option<&'a StageRecord> {
     let find = |name: &str| run.stages.iter().find(|stage| stage.name == name);
     let named = |value: &Json| find(value.as_str()?);
-    if let Some(found) = stage.config.get(port).and_then(named) {
+    let config = stage.config.value();
+    if let Some(found) = config.get(port).and_then(named) {
         return Some(found);
     }
     // The second of `designs: [ours, optimum]` comes in through `designs_2`.
     if let Some((field, number)) = port.rsplit_once('_')
-        && let (Some(value), Ok(number)) = (stage.config.get(field), number.parse::<usize>())
+        && let (Some(value), Ok(number)) = (config.get(field), number.parse::<usize>())
     {
         let one = if value.is_array() { value.get(number.checked_sub(1)?) } else { Some(value) };
         if let Some(found) = one.and_then(named) {
@@ -40,7 +41,7 @@ fn giver<'a>(run: &'a Manifest, stage: &StageRecord, port: &str, far: usize) -> 
         }
     }
     // Read from what another stage reads.
-    let fields = stage.config.as_object().into_iter().flat_map(|fields| fields.values());
+    let fields = config.as_object().into_iter().flat_map(|fields| fields.values());
     let through = || fields.filter_map(named).find_map(|next| giver(run, next, port, far.checked_sub(1)?));
     through().or_else(|| find(port))
 }

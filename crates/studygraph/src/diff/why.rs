@@ -35,14 +35,15 @@ pub fn reasons(before: (&Manifest, &StageRecord), after: (&Manifest, &StageRecor
     }
     let (Some(first), Some(second)) = (old.keys.first(), new.keys.first()) else { return why };
     if old.kind == new.kind {
+        let (was, is) = (old.config.value(), new.config.value());
         for name in differing(&first.fields, &second.fields) {
-            why.extend(config(&name, old.config.get(&name), new.config.get(&name)));
+            why.extend(config(&name, was.get(&name), is.get(&name)));
         }
         let axes = |stage: &StageRecord| stage.keys.iter().map(|key| key.axis).collect::<Vec<_>>();
         if axes(old) != axes(new) {
-            let axis = axis(old, first).or_else(|| axis(new, second));
-            let value = |stage: &StageRecord| axis.as_ref().and_then(|name| stage.config.get(name).cloned());
-            why.extend(config(axis.as_deref().unwrap_or("axis"), value(old).as_ref(), value(new).as_ref()));
+            let axis = axis(&was, first).or_else(|| axis(&is, second));
+            let [before, after] = [&was, &is].map(|fields| axis.as_ref().and_then(|name| fields.get(name)));
+            why.extend(config(axis.as_deref().unwrap_or("axis"), before, after));
         }
         if first.config != second.config && why.is_empty() {
             why.push(Reason {
@@ -132,9 +133,9 @@ fn differing(before: &[(String, Short)], after: &[(String, Short)]) -> Vec<Strin
 }
 
 /// The field along which a stage is cut: the one that is shown but has no digest of its own.
-fn axis(stage: &StageRecord, key: &KeyRecord) -> Option<String> {
+fn axis(config: &Json, key: &KeyRecord) -> Option<String> {
     key.axis?;
-    let mut fields = stage.config.as_object()?.keys();
+    let mut fields = config.as_object()?.keys();
     fields.find(|name| !key.fields.iter().any(|(field, _)| field == *name)).cloned()
 }
 

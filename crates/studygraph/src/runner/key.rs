@@ -6,11 +6,13 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt;
+use std::sync::Arc;
 
 use super::chunk::{Chunks, chunks};
 use super::graph::{Graph, Input};
 use crate::stage::{Demand, Kind};
 use crate::store::entry::StoredTable;
+use crate::store::hexadecimal;
 use crate::store::manifest::{KeyRecord, Short};
 use crate::study::{Node, Study};
 use declare::digest::{Digest, Writer};
@@ -183,7 +185,14 @@ impl Parts<'_> {
             }
         }
         let seed = self.seed.map(|seed| seed.digest());
-        Common { code: self.code, config: config.finish(), fields, seed, demand: demand.finish(), inputs: &self.inputs }
+        Common {
+            code: self.code,
+            config: config.finish(),
+            fields: fields.into(),
+            seed,
+            demand: demand.finish(),
+            inputs: &self.inputs,
+        }
     }
 }
 
@@ -191,7 +200,7 @@ impl Parts<'_> {
 pub struct Common<'a> {
     code: Digest,
     config: Digest,
-    fields: Vec<(String, Short)>,
+    fields: Arc<[(String, Short)]>,
     seed: Option<Digest>,
     demand: Digest,
     inputs: &'a [(String, Digest)],
@@ -204,18 +213,18 @@ impl Common<'_> {
         let mut key = Writer::new("gearstudy 1 key");
         for part in [Some(&self.code), Some(&self.config), axis, self.seed.as_ref(), Some(&self.demand)] {
             match part {
-                Some(digest) => key.text(&digest.to_string()),
+                Some(digest) => key.text(&hexadecimal::text(digest)),
                 None => key.text(""),
             };
         }
         key.count(self.inputs.len());
         for (port, digest) in self.inputs {
-            key.text(port).text(&digest.to_string());
+            key.text(port).text(&hexadecimal::text(digest));
         }
         KeyRecord {
             key: key.finish(),
             config: Short::from(&self.config),
-            fields: self.fields.clone(),
+            fields: Arc::clone(&self.fields),
             axis: axis.map(Short::from),
             code: Short::from(&self.code),
             seed: self.seed.as_ref().map(Short::from),

@@ -16,10 +16,11 @@ use crate::store::cache::Cache;
 use crate::store::entry::StoredTable;
 use crate::store::error::StoreError;
 use crate::store::manifest::{
-    Described, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
+    Config, Described, FORMAT, KeyRecord, Manifest, OmissionRecord, Source, StageRecord, TableRecord,
 };
 use crate::store::parquet;
-use crate::study::{Study, settings};
+use crate::study::Study;
+use crate::study::settings::Shown;
 use crate::table::data::Table;
 use crate::table::schema::Schema;
 use declare::digest::Digest;
@@ -57,7 +58,7 @@ pub struct StageOutcome {
     pub left_out: Vec<Omission>,
     pub keys: Vec<KeyRecord>,
     /// As the manifest keeps it.
-    pub config: Arc<serde_json::Value>,
+    pub config: Config,
     /// The demanded tables, in the order of the stage; empty unless it was a hit or ran.
     pub tables: Vec<(Arc<Schema>, StoredTable)>,
     parts: Vec<Digest>,
@@ -94,7 +95,7 @@ impl Outcome {
                 warnings: progress.warnings(|_| true),
                 left_out: left_out(board, node),
                 keys: progress.parts.iter().map(|part| part.record.clone()).collect(),
-                config: settings::shown(of_study.kind.fields, &of_study.record).into(),
+                config: Config::of(&Shown { fields: of_study.kind.fields, record: &of_study.record }),
                 tables: if progress.state.has_tables() { tables.collect() } else { Vec::new() },
                 parts: progress.parts.iter().map(|part| part.key).collect(),
                 whole: progress.whole,
@@ -235,7 +236,7 @@ impl StageOutcome {
             kind: self.kind.to_owned(),
             version: self.version,
             keys: self.keys.clone(),
-            config: Arc::clone(&self.config),
+            config: self.config.clone(),
             status: status.to_owned(),
             why: self.why.clone(),
             seconds: self.seconds,

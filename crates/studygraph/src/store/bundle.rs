@@ -6,7 +6,7 @@
 
 use std::collections::HashMap;
 use std::ops::Range;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::manifest::{Manifest, TableRecord, own_file};
 use crate::table::data::{Data, Table, TableError};
@@ -166,7 +166,7 @@ pub fn part(bundle: &Table, stage: &str) -> Result<Table, String> {
     Table::from_columns(schema, columns).map_err(|error| error.to_string())
 }
 
-/// Bundles that were read, so that each is read once for all its tables.
+/// Tables that were read, so that each file is read once for all who ask for what it holds.
 #[derive(Debug, Default)]
 pub struct Opened(Mutex<HashMap<String, Arc<Table>>>);
 
@@ -185,22 +185,35 @@ impl Opened {
         if !is_bundle(&record.file) {
             return read();
         }
-        let known = self.0.lock().unwrap_or_else(PoisonError::into_inner).get(place).cloned();
-        let bundle = match known {
-            Some(bundle) => bundle,
-            None => {
-                let bundle = Arc::new(read()?);
-                let mut opened = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-                opened.insert(place.to_owned(), Arc::clone(&bundle));
-                bundle
-            }
-        };
-        part(&bundle, record.stage()).map_err(damaged)
+        part(&*self.whole(place, read)?, record.stage()).map_err(damaged)
+    }
+
+    /// All that a file holds.
+    ///
+    /// # Errors
+    /// Those of `read`.
+    pub fn whole<E>(&self, place: &str, read: impl FnOnce() -> Result<Table, E>) -> Result<Arc<Table>, E> {
+        let known = self.all().get(place).cloned();
+        match known {
+            Some(known) => Ok(known),
+            None => Ok(self.put(place, read()?)),
+        }
+    }
+
+    /// Notes what a file holds.
+    pub fn put(&self, place: &str, table: Table) -> Arc<Table> {
+        let table = Arc::new(table);
+        self.all().insert(place.to_owned(), Arc::clone(&table));
+        table
     }
 
     /// Files may be others by now.
     pub fn clear(&self) {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner).clear();
+        self.all().clear();
+    }
+
+    fn all(&self) -> MutexGuard<'_, HashMap<String, Arc<Table>>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

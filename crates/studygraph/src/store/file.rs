@@ -111,8 +111,9 @@ pub fn read(path: &Path, maximum: u64) -> io::Result<Vec<u8>> {
     if metadata.len() > maximum {
         return wrong(format!("it has {} bytes, more than {} MiB", metadata.len(), maximum >> 20));
     }
-    let mut bytes = Vec::new();
-    // A file of the system may say that it has no bytes, and another may grow meanwhile.
+    // One byte more than it says, so that its end is met without asking for more room. A file of the system may say that it
+    // has no bytes, and another may grow meanwhile.
+    let mut bytes = Vec::with_capacity(usize::try_from(metadata.len()).unwrap_or(0) + 1);
     File::open(path)?.take(maximum + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > maximum { wrong(format!("it has more than {} MiB", maximum >> 20)) } else { Ok(bytes) }
 }

@@ -4,9 +4,11 @@
 //! how keys are made.
 
 use std::fmt;
+use std::sync::Arc;
 
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::Error};
 
+use super::shared;
 use declare::digest::Digest;
 
 /// The beginning of a digest: twelve hexadecimal digits.
@@ -77,8 +79,8 @@ pub struct KeyRecord {
     /// All fields but the chunked axis.
     pub config: Short,
     /// Field, and its digest: which part of `config` it was that changed.
-    #[serde(default)]
-    pub fields: Vec<(String, Short)>,
+    #[serde(default, serialize_with = "shared::serialize", deserialize_with = "shared::all")]
+    pub fields: Arc<[(String, Short)]>,
     /// The values of the chunked axis; none for a stage that runs in one piece.
     #[serde(default, with = "optional")]
     pub axis: Option<Short>,
@@ -89,7 +91,8 @@ pub struct KeyRecord {
     pub seed: Option<Short>,
     pub demand: Short,
     /// Port, and the digest of what came in through it.
-    pub inputs: Vec<(String, Short)>,
+    #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::all")]
+    pub inputs: Arc<[(String, Short)]>,
 }
 
 /// Nothing is an empty text.
@@ -125,12 +128,12 @@ mod tests {
         let record = KeyRecord {
             key: digest,
             config: start,
-            fields: vec![("teeth".to_owned(), start)],
+            fields: vec![("teeth".to_owned(), start)].into(),
             axis: Some(start),
             code: start,
             seed: None,
             demand: start,
-            inputs: vec![("pair".to_owned(), start)],
+            inputs: vec![("pair".to_owned(), start)].into(),
         };
         let text = serde_json::to_string(&record).unwrap();
         assert_eq!(serde_json::from_str::<KeyRecord>(&text).unwrap(), record);

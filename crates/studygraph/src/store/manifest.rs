@@ -2,6 +2,7 @@
 //!
 //! Must not know: how any of it was computed. Field names are read by other programs: additions only, or another format.
 
+mod config;
 mod lines;
 mod wire;
 
@@ -11,8 +12,11 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+pub use config::Config;
+
 use super::entry::{StoredColumn, StoredTable};
 pub use super::key_record::{KeyRecord, Short};
+use super::{hexadecimal, shared};
 use crate::table::schema::{Column, Schema};
 use declare::digest::Digest;
 
@@ -125,8 +129,7 @@ pub struct StageRecord {
     pub keys: Vec<KeyRecord>,
     /// The fields after defaults as a reader would write them, so that two runs can say *from what to what*. No part of
     /// any key; null in manifests of earlier versions.
-    #[serde(serialize_with = "shared::serialize")]
-    pub config: Arc<serde_json::Value>,
+    pub config: Config,
     /// `hit`, `ran`, `failed`, `skipped`.
     pub status: String,
     /// Why it ran.
@@ -199,25 +202,6 @@ pub struct ColumnRecord {
     pub relative_tolerance: f64,
 }
 
-/// What many records share.
-mod shared {
-    use std::sync::Arc;
-
-    use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-    pub fn serialize<T: Serialize + ?Sized, S: Serializer>(value: &Arc<T>, serializer: S) -> Result<S::Ok, S::Error> {
-        (**value).serialize(serializer)
-    }
-
-    pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<str>, D::Error> {
-        String::deserialize(deserializer).map(Arc::from)
-    }
-
-    pub fn all<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Arc<[T]>, D::Error> {
-        Vec::deserialize(deserializer).map(Arc::from)
-    }
-}
-
 #[allow(clippy::trivially_copy_pass_by_ref)] // as serde calls it
 fn is_zero(number: &f64) -> bool {
     *number == 0.0
@@ -225,7 +209,7 @@ fn is_zero(number: &f64) -> bool {
 
 /// The name of the file that a table has by itself.
 pub(super) fn own_file(table: &str) -> String {
-    format!("{table}.parquet")
+    [table, ".parquet"].concat()
 }
 
 impl Manifest {
@@ -246,7 +230,7 @@ impl Manifest {
         let mut shared: HashMap<*const ColumnRecord, Arc<[ColumnRecord]>> = HashMap::new();
         for (stage, same) in self.stages.iter_mut().zip(&other.stages) {
             if stage.config == same.config {
-                stage.config = Arc::clone(&same.config);
+                stage.config = same.config.clone();
             }
         }
         for stage in &mut self.stages {
@@ -275,7 +259,7 @@ impl Manifest {
 
     /// The text of a manifest with another list of files; none where it was not written as this program does.
     #[must_use]
-    pub fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+    pub fn with_other_files(text: Vec<u8>, files: &[FileRecord]) -> Option<Vec<u8>> {
         wire::with_other_files(text, files)
     }
 
@@ -312,17 +296,18 @@ impl TableRecord {
     /// The same where it is known what the manifest says of the schema.
     #[must_use]
     pub fn described(stage: &str, described: &Described, table: &StoredTable) -> Self {
-        let on_demand = table.columns.iter().map(|column| (column.name.clone(), column.content.to_string()));
-        let parts = PartsRecord { base: table.base.to_string(), on_demand: on_demand.collect() };
+        let on_demand = table.columns.iter().map(|column| (column.name.clone(), hexadecimal::text(&column.content)));
+        let parts = || PartsRecord { base: hexadecimal::text(&table.base), on_demand: on_demand.collect() };
+        let name = [stage, ".", &table.name].concat();
         Self {
-            name: format!("{stage}.{}", table.name),
+            file: own_file(&name),
+            name,
             description: Arc::clone(&described.description),
             rows: table.rows,
-            content: table.content.to_string(),
-            file: format!("{stage}.{}.parquet", table.name),
+            content: hexadecimal::text(&table.content),
             columns: Arc::clone(&described.columns),
             files: described.files.iter().map(|name| format!("{stage}.{name}")).collect(),
-            parts: (!table.columns.is_empty()).then_some(parts),
+            parts: (!table.columns.is_empty()).then(parts),
         }
     }
 

@@ -22,3 +22,4 @@ pub mod manifest;
 pub mod parquet;
 pub mod results;
 pub mod shards;
+mod shared;

@@ -24,7 +24,7 @@ pub use known::{FileState, Known};
 pub use publish::hdf5_bytes;
 pub use publish::{Bytes, Draw, Drawn, Pieces, Published, Source, Tables};
 
-use super::bundle::Opened;
+use super::bundle::{Opened, is_bundle};
 use super::error::StoreError;
 use super::file;
 use super::lock::{self, Lock, Told};
@@ -37,6 +37,9 @@ pub const PAGE: &str = "report.html";
 pub const FIGURES: &str = "figures";
 /// Figures of what was measured: they differ from run to run.
 pub const MEASURED: &str = "figures/measured";
+
+/// Cells of a table that is kept once it was read.
+const MOST_KEPT: usize = 1 << 14;
 
 /// Where the results of one study lie.
 #[derive(Clone, Debug)]
@@ -125,6 +128,18 @@ impl Folder {
         } else {
             Err(damaged("its values are not those that the manifest names".to_owned()))
         }
+    }
+
+    /// What is published for a record, of a bundle all of it. One that is not large is read once for all who ask, until the
+    /// folder is locked anew.
+    fn shared(&self, record: &TableRecord) -> Result<Arc<Table>, StoreError> {
+        if is_bundle(&record.file) {
+            return self.opened.whole(&record.file, || self.whole(&record.file));
+        }
+        if record.rows * record.columns.len() > MOST_KEPT {
+            return self.table(record).map(Arc::new);
+        }
+        self.opened.whole(&record.file, || self.table(record))
     }
 
     fn damaged(&self, file: &str, problem: &str) -> StoreError {

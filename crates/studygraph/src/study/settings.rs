@@ -2,7 +2,8 @@
 //!
 //! For showing what differs between two runs; never read back, never part of a key. Must not know: any kind by name.
 
-use serde_json::{Map, Value as Json, json};
+use serde::{Serialize, Serializer};
+use serde_json::{Value as Json, json};
 
 use super::words;
 use declare::parameter::{Field, Shape};
@@ -10,47 +11,81 @@ use declare::record::varied::{Axis, Form, Spread, Values};
 use declare::record::{Record, Value};
 use declare::units::{RATIO, in_unit};
 
-/// The fields of `record`, which were declared by `fields`.
-#[must_use]
-pub fn shown(fields: &[Field], record: &Record) -> Json {
-    let one = |field: &Field| Some((field.name.to_owned(), value(&field.shape, &record.entry(field.name)?.value)));
-    Json::Object(fields.iter().filter_map(one).collect())
+/// The fields of a record, by their declarations.
+pub struct Shown<'a> {
+    pub fields: &'a [Field],
+    pub record: &'a Record,
 }
 
-fn value(shape: &Shape, value: &Value) -> Json {
-    match value {
-        Value::Quantity(si) | Value::Number(si) => number(shape, *si),
-        Value::AnyQuantity { .. } => json!(any_quantity(value)),
-        Value::Axis(values) => values.iter().map(|si| number(shape, *si)).collect(),
-        Value::Range(minimum, maximum) => json!({ "least": number(shape, *minimum), "most": number(shape, *maximum) }),
-        Value::Integer(value) => json!(value),
-        Value::Flag(value) => json!(value),
-        Value::Text(text) | Value::Reference(text) => json!(text),
-        Value::Choice(name) => json!(name),
-        Value::List(entries) => {
-            let Shape::List(item) = shape else { return Json::Null };
-            entries.iter().map(|entry| self::value(item, &entry.value)).collect()
+/// One value of a shape.
+struct Member<'a>(&'a Shape, &'a Value);
+
+/// A number of a shape.
+struct Number<'a>(&'a Shape, f64);
+
+impl Serialize for Shown<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let fields = self.fields.iter();
+        serializer.collect_map(fields.filter_map(|field| {
+            let entry = self.record.entry(field.name)?;
+            Some((field.name, Member(&field.shape, &entry.value)))
+        }))
+    }
+}
+
+impl Serialize for Number<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self.0 {
+            Shape::Quantity { dimension, .. } if *dimension != RATIO => {
+                serializer.serialize_str(&words::quantity(self.1, *dimension))
+            }
+            _ => serializer.serialize_f64(self.1),
         }
-        Value::Map(entries) => {
-            let Shape::Map(item) = shape else { return Json::Null };
-            entries.iter().map(|(name, entry)| (name.clone(), self::value(item, &entry.value))).collect()
-        }
-        Value::Group(record) => match shape {
-            Shape::Group(fields) => shown(fields, record),
-            _ => Json::Null,
-        },
-        // The rest is that of the other stage, which the manifest shows as well.
-        Value::Variant(variant) => json!(variant.written),
-        Value::Varied(varied) => {
-            Json::Object(varied.axes.iter().map(|axis| (axis.name.clone(), axis_shown(axis))).collect())
-        }
-        Value::Member(name, record) => {
-            let Shape::Member(family) = shape else { return Json::Null };
-            match family().iter().find(|member| member.name == *name) {
-                Some(member) if !record.fields.is_empty() => {
-                    Json::Object(Map::from_iter([((*name).to_owned(), shown(member.fields, record))]))
+    }
+}
+
+impl Serialize for Member<'_> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let Self(shape, value) = *self;
+        let number = |si: &f64| Number(shape, *si);
+        match value {
+            Value::Quantity(si) | Value::Number(si) => number(si).serialize(serializer),
+            Value::AnyQuantity { .. } => serializer.serialize_str(&any_quantity(value)),
+            Value::Axis(values) => serializer.collect_seq(values.iter().map(number)),
+            Value::Range(minimum, maximum) => {
+                serializer.collect_map([("least", number(minimum)), ("most", number(maximum))])
+            }
+            Value::Integer(value) => value.serialize(serializer),
+            Value::Flag(value) => value.serialize(serializer),
+            Value::Text(text) | Value::Reference(text) => text.serialize(serializer),
+            Value::Choice(name) => name.serialize(serializer),
+            Value::List(entries) => match shape {
+                Shape::List(item) => serializer.collect_seq(entries.iter().map(|entry| Member(item, &entry.value))),
+                _ => serializer.serialize_unit(),
+            },
+            Value::Map(entries) => match shape {
+                Shape::Map(item) => {
+                    serializer.collect_map(entries.iter().map(|(name, entry)| (name, Member(item, &entry.value))))
                 }
-                _ => json!(name),
+                _ => serializer.serialize_unit(),
+            },
+            Value::Group(record) => match shape {
+                Shape::Group(fields) => Shown { fields, record }.serialize(serializer),
+                _ => serializer.serialize_unit(),
+            },
+            // The rest is that of the other stage, which the manifest shows as well.
+            Value::Variant(variant) => variant.written.serialize(serializer),
+            Value::Varied(varied) => {
+                serializer.collect_map(varied.axes.iter().map(|axis| (&axis.name, axis_shown(axis))))
+            }
+            Value::Member(name, record) => {
+                let Shape::Member(family) = shape else { return serializer.serialize_unit() };
+                match family().iter().find(|member| member.name == *name) {
+                    Some(member) if !record.fields.is_empty() => {
+                        serializer.collect_map([(name, Shown { fields: member.fields, record })])
+                    }
+                    _ => name.serialize(serializer),
+                }
             }
         }
     }
@@ -92,13 +127,6 @@ fn spread_shown(spread: &Spread, one: &dyn Fn(f64) -> Json) -> Json {
         }
     }
     shown
-}
-
-fn number(shape: &Shape, si: f64) -> Json {
-    match shape {
-        Shape::Quantity { dimension, .. } if *dimension != RATIO => json!(words::quantity(si, *dimension)),
-        _ => json!(si),
-    }
 }
 
 /// A quantity in the unit it was written in; other values give no text.

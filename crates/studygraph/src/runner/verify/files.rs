@@ -5,6 +5,7 @@
 use std::collections::BTreeMap;
 use std::io::{Read, Seek};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::{Agreement, VerifiedFile, VerifyError, archived};
 use crate::store::archive::open::Archive;
@@ -106,9 +107,9 @@ impl<R: Read + Seek> Files<'_, R> {
         let listed = self.bytes.keys().filter(|file| is_drawn(file));
         let table = |name: &str| {
             if is_bundle(name) {
-                return self.whole(&format!("{name}.parquet")).ok();
+                return self.whole(&format!("{name}.parquet")).ok().map(Arc::new);
             }
-            self.table(self.records().find(|record| record.name == name)?).ok()
+            self.table(self.records().find(|record| record.name == name)?).ok().map(Arc::new)
         };
         match draw(self.manifest, &table) {
             Err(problem) => vec![VerifiedFile { file: PAGE.to_owned(), agreement: other(&problem) }],
@@ -150,20 +151,19 @@ impl<R: Read + Seek> Files<'_, R> {
         let is_there = |record: &TableRecord| record.files.is_empty() && !is_long(record.rows);
         for (group, record) in published(self.manifest).filter(|(_, record)| is_there(record)) {
             let table = if is_bundle(&record.file) { self.whole(&record.file)? } else { self.table(record)? };
-            tables.push((group, record, table));
+            tables.push((group, record, Arc::new(table)));
         }
-        let found = |wanted: &str| {
-            let (_, _, table) = tables.iter().find(|(_, record, _)| record.file == wanted).ok_or_else(|| {
+        let found = |wanted: &TableRecord| {
+            let (_, _, table) = tables.iter().find(|(_, record, _)| record.file == wanted.file).ok_or_else(|| {
                 crate::store::error::StoreError::Format {
-                    table: wanted.to_owned(),
+                    table: wanted.file.clone(),
                     problem: "it is missing".to_owned(),
                 }
             })?;
-            Ok(table.clone())
+            Ok(Arc::clone(table))
         };
-        let of_record = |record: &TableRecord| found(&record.file);
         // A manifest may list what no file can hold; its tables are looked at all the same.
-        if hdf5_bytes(&name, self.manifest, &of_record, &found).is_ok_and(|bytes| *archived == bytes) {
+        if hdf5_bytes(&name, self.manifest, &found).is_ok_and(|bytes| *archived == bytes) {
             return Ok(Some(VerifiedFile { file: name, agreement: Agreement::Identical }));
         }
         let path = work.join("archived.h5");

@@ -91,7 +91,7 @@ fn cleaning_keeps_what_journals_name_and_waits_for_nobody() {
     let cache = filled(folder.path());
     cache.put(key("b"), &[&everything(3)], OfRun::default()).unwrap();
     let start = Short::from(&key("part"));
-    let (fields, inputs) = (Vec::new(), Vec::new());
+    let (fields, inputs) = (Arc::default(), Arc::default());
     let (config, code, demand) = (start, start, start);
     let record = KeyRecord { key: key("a"), config, fields, axis: None, code, seed: None, demand, inputs };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
@@ -192,12 +192,12 @@ fn the_longest_unused_goes_first_and_what_is_kept_never() {
     let record = KeyRecord {
         key: key("used"),
         config: short,
-        fields: Vec::new(),
+        fields: Arc::default(),
         axis: None,
         code: short,
         seed: None,
         demand: short,
-        inputs: Vec::new(),
+        inputs: Arc::default(),
     };
     let stage = JournalStage { name: "s".into(), keys: vec![record], ..JournalStage::default() };
     cache.put_journal("study", &Journal { stages: vec![stage] });

@@ -17,9 +17,9 @@ pub(super) struct Lines {
 }
 
 impl Lines {
-    /// Of a value of the outermost object.
-    pub(super) fn inside() -> Self {
-        Self { depth: 1, has_value: false }
+    /// Of a value with so many lists and objects around it.
+    pub(super) fn inside(depth: usize) -> Self {
+        Self { depth, has_value: false }
     }
 
     fn open<W: ?Sized + io::Write>(&mut self, writer: &mut W, bracket: &[u8]) -> io::Result<()> {

@@ -12,11 +12,12 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::lines::Lines;
 use super::{
-    ColumnRecord, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
+    ColumnRecord, Config, FileRecord, Machine, Manifest, OmissionRecord, PartsRecord, Program, Source, StageRecord,
     StudyFolder, TableRecord,
 };
 use crate::store::journal::Failed;
 use crate::store::key_record::{KeyRecord, Short};
+use crate::store::shared;
 
 #[derive(Serialize, Deserialize)]
 pub(super) struct Text<'a> {
@@ -48,9 +49,9 @@ struct Schemas(Vec<(String, TableSchema)>);
 
 #[derive(Clone, Serialize, Deserialize)]
 struct TableSchema {
-    #[serde(with = "super::shared")]
+    #[serde(with = "shared")]
     description: Arc<str>,
-    #[serde(serialize_with = "super::shared::serialize", deserialize_with = "super::shared::all")]
+    #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::all")]
     columns: Arc<[ColumnRecord]>,
 }
 
@@ -60,8 +61,8 @@ struct Stage<'a> {
     kind: Cow<'a, str>,
     version: u32,
     keys: Vec<Keys>,
-    #[serde(default, skip_serializing_if = "is_null")]
-    config: Cow<'a, serde_json::Value>,
+    #[serde(default, skip_serializing_if = "Config::is_null")]
+    config: Config,
     status: Cow<'a, str>,
     why: Cow<'a, str>,
     seconds: f64,
@@ -74,21 +75,18 @@ struct Stage<'a> {
     tables: Vec<Table<'a>>,
 }
 
-fn is_null(value: &serde_json::Value) -> bool {
-    value.is_null()
-}
-
 /// The keys of chunks that differ by their axis alone. Format 1 has one `key` and `axis` for each.
 #[derive(Serialize, Deserialize)]
 struct Keys {
     config: Short,
-    #[serde(default)]
-    fields: Vec<(String, Short)>,
+    #[serde(default, serialize_with = "shared::serialize", deserialize_with = "shared::all")]
+    fields: Arc<[(String, Short)]>,
     code: Short,
     #[serde(default, skip_serializing_if = "Nothing::is_empty")]
     seed: Nothing,
     demand: Short,
-    inputs: Vec<(String, Short)>,
+    #[serde(serialize_with = "shared::serialize", deserialize_with = "shared::all")]
+    inputs: Arc<[(String, Short)]>,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     key: Option<Failed>,
     #[serde(default, skip_serializing_if = "Nothing::is_empty")]
@@ -176,17 +174,17 @@ pub(super) fn text<'a>(manifest: &'a Manifest, files: &'a [FileRecord]) -> Text<
 /// Where the list of files begins, which is the last: no text in a manifest has a line of its own.
 const FILES: &[u8] = b"\n \"files\": ";
 
-/// As [`Manifest::with_other_files`]: what stands before the list is copied and not read.
-pub(super) fn with_other_files(text: &[u8], files: &[FileRecord]) -> Option<Vec<u8>> {
+/// As [`Manifest::with_other_files`]: what stands before the list is kept and not read.
+pub(super) fn with_other_files(mut text: Vec<u8>, files: &[FileRecord]) -> Option<Vec<u8>> {
     let at = text.windows(FILES.len()).rposition(|window| window == FILES)? + FILES.len();
     if !text.ends_with(b"\n}\n") || !text.starts_with(b"{\n \"format\": ") {
         return None;
     }
-    let mut new = text[..at].to_vec();
-    let lines = Lines::inside();
-    files.serialize(&mut serde_json::Serializer::with_formatter(&mut new, lines)).ok()?;
-    new.extend_from_slice(b"\n}\n");
-    Some(new)
+    text.truncate(at);
+    let lines = Lines::inside(1);
+    files.serialize(&mut serde_json::Serializer::with_formatter(&mut text, lines)).ok()?;
+    text.extend_from_slice(b"\n}\n");
+    Some(text)
 }
 
 /// Names for schemas: that of kind and table, with a number where that is taken.
@@ -195,18 +193,21 @@ struct Named {
     schemas: Vec<(String, TableSchema)>,
     /// Of kind and table, the places of those that were met.
     met: HashMap<(String, String), Vec<usize>>,
-    /// Names by kind and by the columns' place in memory, which alike tables share; it stays theirs while the manifest does.
-    quick: HashMap<(*const ColumnRecord, *const u8, String), String>,
+    /// The last name of these columns' place in memory, which alike tables share, with its kind and table; the place stays
+    /// theirs while the manifest does.
+    quick: HashMap<(*const ColumnRecord, *const u8), (String, String, String)>,
 }
 
 impl Named {
     fn name(&mut self, kind: &str, table: &TableRecord) -> String {
-        let place = (table.columns.as_ptr(), table.description.as_ptr(), format!("{kind}.{}", table.table()));
-        if let Some(name) = self.quick.get(&place) {
+        let place = (table.columns.as_ptr(), table.description.as_ptr());
+        if let Some((of, own, name)) = self.quick.get(&place)
+            && (of.as_str(), own.as_str()) == (kind, table.table())
+        {
             return name.clone();
         }
         let name = self.compared(kind, table);
-        self.quick.insert(place, name.clone());
+        self.quick.insert(place, (kind.to_owned(), table.table().to_owned(), name.clone()));
         name
     }
 
@@ -249,7 +250,7 @@ impl<'a> Stage<'a> {
             kind: Cow::Borrowed(&stage.kind),
             version: stage.version,
             keys: keys(&stage.keys),
-            config: Cow::Borrowed(&*stage.config),
+            config: stage.config.clone(),
             status: Cow::Borrowed(&stage.status),
             why: Cow::Borrowed(&stage.why),
             seconds: stage.seconds,
@@ -273,11 +274,11 @@ fn keys(records: &[KeyRecord]) -> Vec<Keys> {
             (Some(Keys { chunks, .. }), Some(axis)) if !chunks.is_empty() => chunks.push((Failed(*key), *axis)),
             (_, axis) => all.push(Keys {
                 config: *config,
-                fields: fields.clone(),
+                fields: Arc::clone(fields),
                 code: *code,
                 seed: Nothing(*seed),
                 demand: *demand,
-                inputs: inputs.clone(),
+                inputs: Arc::clone(inputs),
                 key: axis.is_none().then_some(Failed(*key)),
                 axis: Nothing(None),
                 chunks: axis.iter().map(|axis| (Failed(*key), *axis)).collect(),
@@ -344,12 +345,12 @@ impl Stage<'_> {
             let record = move |(Failed(key), axis)| KeyRecord {
                 key,
                 config: keys.config,
-                fields: keys.fields.clone(),
+                fields: Arc::clone(&keys.fields),
                 axis,
                 code: keys.code,
                 seed: keys.seed.0,
                 demand: keys.demand,
-                inputs: keys.inputs.clone(),
+                inputs: Arc::clone(&keys.inputs),
             };
             single.into_iter().chain(chunks).map(record)
         });
@@ -358,7 +359,7 @@ impl Stage<'_> {
             name: self.name.into_owned(),
             kind: self.kind.into_owned(),
             version: self.version,
-            config: Arc::new(self.config.into_owned()),
+            config: self.config,
             status: self.status.into_owned(),
             why: self.why.into_owned(),
             seconds: self.seconds,

@@ -12,21 +12,18 @@ use crate::store::{file, index, parquet};
 use crate::table::data::Table;
 
 impl Folder {
-    /// The file of a bundle. What its file, or a table's own, has already is taken from there: of a bundle whose bytes are
+    /// All rows of a bundle. What its file, or a table's own, has already is taken from there: of a bundle whose bytes are
     /// those that were written, its rows are what the manifest says.
     pub(super) fn bundle(
         &self,
         old: Option<&Known>,
         members: &[&TableRecord],
         source: Source<'_>,
-    ) -> Result<Vec<u8>, StoreError> {
-        let file = members.first().map_or("", |record| record.file.as_str());
-        let earlier: HashMap<&str, &TableRecord> = old
-            .iter()
-            .flat_map(|old| &old.manifest.stages)
-            .flat_map(|stage| &stage.tables)
-            .map(|table| (&*table.name, table))
-            .collect();
+    ) -> Result<Table, StoreError> {
+        let (file, own) = members.first().map_or(("", ""), |record| (record.file.as_str(), record.table()));
+        let earlier = old.iter().flat_map(|old| &old.manifest.stages).flat_map(|stage| &stage.tables);
+        let earlier: HashMap<&str, &TableRecord> =
+            earlier.filter(|table| table.table() == own).map(|table| (table.stage(), table)).collect();
         let whole = old.and_then(|old| self.as_written(old, file));
         let table = |record: &TableRecord, kept: Option<&TableRecord>| {
             let (stage, name) = split(&record.name);
@@ -41,10 +38,10 @@ impl Folder {
             }
         };
         let mut ordered = members.to_vec();
-        ordered.sort_by_key(|record| record.stage());
+        ordered.sort_by_cached_key(|record| record.stage());
         let mut parts: Vec<Rows> = Vec::new();
         for record in ordered {
-            let kept = earlier.get(&*record.name).copied();
+            let kept = earlier.get(record.stage()).copied();
             let kept = kept.filter(|kept| (&kept.content, &kept.columns) == (&record.content, &record.columns));
             let rows = kept.filter(|kept| kept.file == file).zip(whole.as_ref());
             let rows = rows.and_then(|(_, whole)| bundle::rows_of(whole, record.stage()));
@@ -55,9 +52,8 @@ impl Folder {
             }
         }
         let whole = whole.filter(|_| parts.iter().any(|part| matches!(part, Rows::Of(_))));
-        let all = bundle::together(whole.as_ref(), &parts)
-            .map_err(|error| StoreError::Format { table: file.to_owned(), problem: error.to_string() })?;
-        parquet::write(&all)
+        bundle::together(whole.as_ref(), &parts)
+            .map_err(|error| StoreError::Format { table: file.to_owned(), problem: error.to_string() })
     }
 
     /// What a file holds whose bytes are those that were written, whatever its stamp says.

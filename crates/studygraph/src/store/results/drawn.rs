@@ -5,6 +5,7 @@
 use std::cell::RefCell;
 use std::collections::{HashMap, HashSet};
 use std::fs;
+use std::sync::Arc;
 
 use super::publish::{Draw, Drawn, Listed, is_absent, worse};
 use super::{FIGURES, Folder, MEASURED, PAGE, here, is_drawn};
@@ -20,8 +21,9 @@ impl Folder {
             manifest.stages.iter().flat_map(|stage| &stage.tables).map(|record| (&*record.name, record)).collect();
         let table = |name: &str| {
             let found = match records.get(name) {
-                Some(record) => self.table(record),
-                None if is_bundle(name) => self.whole(&own_file(name)),
+                Some(record) if is_bundle(&record.file) => self.table(record).map(Arc::new),
+                Some(record) => self.shared(record),
+                None if is_bundle(name) => self.opened.whole(&own_file(name), || self.whole(&own_file(name))),
                 None => return None,
             };
             found.map_err(|error| worse(&mut fault.borrow_mut(), error)).ok()

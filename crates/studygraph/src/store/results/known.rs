@@ -63,20 +63,35 @@ impl Known {
         };
         let records = places(&mut manifest.files.iter().map(|record| &record.file));
         let noted = places(&mut index.files.iter().map(|seen| &seen.file));
-        let of_stage = |(stage, record): (usize, &StageRecord)| {
-            let files = record.tables.iter().map(|table| table.file.clone()).enumerate();
-            files.map(move |(table, file)| (file, (stage, table))).collect::<Vec<_>>()
-        };
-        let tables = manifest.stages.iter().enumerate().flat_map(of_stage).collect();
+        // Tables that share a file are alike in what is asked of one.
+        let mut tables = HashMap::new();
+        for (stage, record) in manifest.stages.iter().enumerate() {
+            for (table, own) in record.tables.iter().enumerate() {
+                if !tables.contains_key(&own.file) {
+                    tables.insert(own.file.clone(), (stage, table));
+                }
+            }
+        }
         Self { manifest, folder, digest, index, records, noted, tables, belongs, moment, states, looked, values }
     }
 
-    /// Whether manifest and index are still the ones that were read.
-    pub(super) fn is_still_so(&self) -> bool {
-        let digest =
-            file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).map(|text| index::digest(&text));
+    /// The manifest's text, where it and the index are still what was read.
+    pub(super) fn still(&self) -> Option<Vec<u8>> {
+        let text = self.text()?;
         let index = Index::read(self.folder.path()).map(|(index, _)| index).unwrap_or_default();
-        digest.is_ok_and(|digest| digest == self.digest) && index == self.index
+        (index == self.index).then_some(text)
+    }
+
+    /// The manifest's text, where that is still what was read.
+    pub(super) fn text(&self) -> Option<Vec<u8>> {
+        let text = file::read(&self.folder.path().join(MANIFEST), file::MOST_MANIFEST).ok()?;
+        (index::digest(&text) == self.digest).then_some(text)
+    }
+
+    /// The stages of the manifest, which are no longer known here.
+    pub(super) fn take_stages(&mut self) -> Vec<StageRecord> {
+        self.tables.clear();
+        std::mem::take(&mut self.manifest.stages)
     }
 
     /// A file as it was last looked at.

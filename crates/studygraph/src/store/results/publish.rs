@@ -10,6 +10,7 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fs;
 use std::io::ErrorKind;
+use std::sync::Arc;
 
 use super::changes::{compare, say_the_same, with_earlier_tables};
 use super::{Changes, FileState, Folder, Known, MANIFEST, PAGE, held_text, here, is_drawn, split};
@@ -34,7 +35,7 @@ pub type Pieces<'a> = Box<dyn Iterator<Item = Result<Table, StoreError>> + 'a>;
 /// Gives the table of (stage, table) in pieces, where it comes so.
 pub type PiecesOf<'a> = &'a dyn Fn(&str, &str) -> Option<Pieces<'a>>;
 /// Gives a published table by its name, `stage.table`; of many stages as one, `_kind.table`.
-pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Table>;
+pub type Tables<'a> = &'a dyn Fn(&str) -> Option<Arc<Table>>;
 /// Draws page and figures of a manifest and its tables.
 pub type Draw<'a> = &'a dyn Fn(&Manifest, Tables<'_>) -> Result<Vec<Drawn>, String>;
 /// Hears which file is made next, and says whether to go on: all of them can take minutes.
@@ -126,8 +127,11 @@ impl Folder {
         fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
         let _lock = self.lock()?;
         // Another run may have published while this one waited; mostly none has, and what was found still holds.
-        if let Some((old, new, changes)) = before.filter(|(old, _, _)| old.is_still_so()) {
-            return self.write(Some(&old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
+        if let Some((old, new, changes)) = before
+            && let Some(text) = old.still()
+        {
+            self.strike(&old, Some(text), &changes)?;
+            return self.write(Some(old), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source);
         }
         // A damaged manifest is written anew; one that cannot be read at the moment lists files that nobody would know of
         // afterwards.
@@ -145,8 +149,11 @@ impl Folder {
         match old {
             Some(old) if changes == Changes::default() => Ok(nothing(old)),
             old => {
+                if let Some(old) = &old {
+                    self.strike(old, old.text(), &changes)?;
+                }
                 let new = if let Cow::Owned(new) = new { Some(new) } else { None };
-                self.write(old.as_ref(), new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
+                self.write(old, new.unwrap_or_else(|| manifest.into_owned()), changes, Some(facts), source)
             }
         }
     }
@@ -174,22 +181,20 @@ impl Folder {
         let changes = Changes { manifest: true, drawn: true, ..Changes::default() };
         let nothing = |_: &str, _: &str| Err(StoreError::InUse { path: String::new(), who: String::new() });
         let source = Source { draw: Some(&|_, _| Ok(drawn.clone())), code, ..Source::of(&nothing) };
-        self.write(Some(&old), new, changes, None::<fn() -> Facts>, source).map(Some)
+        self.strike(&old, old.text(), &changes)?;
+        self.write(Some(old), new, changes, None::<fn() -> Facts>, source).map(Some)
     }
 
-    /// The folder is locked.
+    /// The folder is locked, and what is about to be replaced is struck from the manifest.
     fn write(
         &self,
-        old: Option<&Known>,
+        mut old: Option<Known>,
         mut new: Manifest,
         mut changes: Changes,
         facts: Option<impl FnOnce() -> Facts>,
         source: Source<'_>,
     ) -> Result<Published, StoreError> {
         file::sweep(self.path());
-        if let Some(old) = old {
-            self.strike(old, &changes)?;
-        }
         let mut listed = Listed::default();
         let (tables, files): (HashSet<&String>, HashSet<&String>) =
             (changes.tables.iter().collect(), changes.files.iter().collect());
@@ -200,13 +205,13 @@ impl Folder {
         for (_, table) in bundle::published(&new) {
             if let Some(members) = bundles.get(table.file.as_str()).filter(|_| tables.contains(&table.file)) {
                 (source.next)(&table.file)?;
-                let bytes = self.bundle(old, members, source)?;
-                self.put(&mut listed, &table.file, &bytes, table.varies())?;
-                self.opened.clear();
+                let all = self.bundle(old.as_ref(), members, source)?;
+                self.put(&mut listed, &table.file, &parquet::write(&all)?, table.varies())?;
+                self.opened.put(&table.file, all);
             } else if tables.contains(&table.file) {
                 let (stage, name) = split(&table.name);
                 (source.next)(&table.file)?;
-                let kept = self.kept_by_bundle(old, table);
+                let kept = self.kept_by_bundle(old.as_ref(), table);
                 let pieces = source.pieces.filter(|_| kept.is_none()).and_then(|pieces| pieces(stage, name));
                 if let Some(pieces) = pieces {
                     listed.add(self.put_pieces(&table.file, pieces)?, table.varies());
@@ -215,30 +220,33 @@ impl Folder {
                 let bytes = kept.map_or_else(|| (source.bytes)(stage, name), |kept| parquet::write(&kept))?;
                 self.put(&mut listed, &table.file, &bytes, table.varies())?;
             } else {
-                let is_good = old.is_some_and(|old| old.table_state(table) == FileState::Intact);
-                listed.keep(old, &table.file, is_good.then(|| table.varies()));
+                let is_good = old.as_ref().is_some_and(|old| old.table_state(table) == FileState::Intact);
+                listed.keep(old.as_ref(), &table.file, is_good.then(|| table.varies()));
             }
             let wanted: Vec<&String> = table.files.iter().filter(|file| files.contains(file)).collect();
             if let Some(first) = wanted.first() {
                 (source.next)(first)?;
                 self.put_held(&mut listed, table, &wanted)?;
             }
-            table.files.iter().filter(|file| !wanted.contains(file)).for_each(|file| listed.keep(old, file, None));
+            let others = table.files.iter().filter(|file| !wanted.contains(file));
+            others.for_each(|file| listed.keep(old.as_ref(), file, None));
         }
+        let stands = old.as_ref().is_some_and(|old| say_the_same(&old.manifest, &new));
+        // Thousands of them are a fifth of what is held, and nobody asks for them from here on.
+        let stages = old.as_mut().map(Known::take_stages).filter(|_| stands);
         if changes.hdf5 {
             (source.next)(&self.hdf5_file())?;
             self.put_hdf5(&mut listed, &new)?;
         } else if cfg!(feature = "hdf5") {
-            listed.keep(old, &self.hdf5_file(), None);
+            listed.keep(old.as_ref(), &self.hdf5_file(), None);
         }
         new.files.clear();
-        new = match (old, facts) {
+        new = match (old.as_ref().zip(stages), facts) {
             // Files that were missing are there again, and nothing else is new: the record of who computed it stands.
-            (Some(old), _) if say_the_same(&old.manifest, &new) => {
+            (Some((old, stages)), _) => {
                 let Manifest { program, study_folder, machine, written, seconds, .. } = &old.manifest;
                 let (program, study_folder) = (program.clone(), study_folder.clone());
                 let (machine, written) = (machine.clone(), written.clone());
-                let stages = old.manifest.stages.clone();
                 Manifest { program, study_folder, machine, written, seconds: *seconds, stages, ..new }
             }
             (_, Some(facts)) => {
@@ -253,8 +261,8 @@ impl Folder {
             old.iter().flat_map(|old| &old.manifest.files).map(|record| record.file.clone()).collect();
         match source.draw.filter(|_| changes.drawn) {
             None => {
-                drawn_by = old.map_or_else(String::new, |old| old.drawn_by().to_owned());
-                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old, file, None));
+                drawn_by = old.as_ref().map_or_else(String::new, |old| old.drawn_by().to_owned());
+                earlier.iter().filter(|file| is_drawn(file)).for_each(|file| listed.keep(old.as_ref(), file, None));
             }
             Some(draw) => {
                 (source.next)(PAGE)?;
@@ -272,6 +280,7 @@ impl Folder {
                 }
             }
         }
+        self.opened.clear();
         self.remove(&changes.remove)?;
         new.files = listed.files;
         let text = new.text().map_err(unwritten)?;
@@ -284,8 +293,8 @@ impl Folder {
     }
 
     /// Takes whatever is about to be replaced from the list: if this run is killed, the next one must not take a new file
-    /// for the old one.
-    fn strike(&self, old: &Known, changes: &Changes) -> Result<(), StoreError> {
+    /// for the old one. `text` is the manifest's, where it has one that is whole.
+    fn strike(&self, old: &Known, text: Option<Vec<u8>>, changes: &Changes) -> Result<(), StoreError> {
         let written: HashSet<&String> = changes.tables.iter().chain(&changes.files).collect();
         let replaced = |file: &String| {
             written.contains(file) || (changes.hdf5 && *file == self.hdf5_file()) || (changes.drawn && is_drawn(file))
@@ -295,13 +304,11 @@ impl Folder {
         if files.len() == earlier.len() {
             return Ok(());
         }
-        let path = self.path().join(MANIFEST);
-        let text = file::read(&path, file::MOST_MANIFEST).ok().filter(|text| index::digest(text) == old.digest);
-        let text = match text.and_then(|text| Manifest::with_other_files(&text, &files)) {
+        let text = match text.and_then(|text| Manifest::with_other_files(text, &files)) {
             Some(text) => text,
             None => old.manifest.text_with(&files).map_err(unwritten)?,
         };
-        file::write(&path, &text, Durability::Synced)
+        file::write(&self.path().join(MANIFEST), &text, Durability::Synced)
     }
 
     pub(super) fn put(&self, listed: &mut Listed, file: &str, bytes: &[u8], varies: bool) -> Result<(), StoreError> {
@@ -327,7 +334,7 @@ impl Folder {
     #[cfg(feature = "hdf5")]
     fn put_hdf5(&self, listed: &mut Listed, manifest: &Manifest) -> Result<(), StoreError> {
         let name = self.hdf5_file();
-        let bytes = hdf5_bytes(&name, manifest, &|record| self.table(record), &|file| self.whole(file))?;
+        let bytes = hdf5_bytes(&name, manifest, &|record| self.shared(record))?;
         // Its bytes depend on the version of libhdf5 as well.
         self.put(listed, &name, &bytes, true)
     }
@@ -382,6 +389,7 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
 }
 
 /// The HDF5 file of all tables, but for those of files, which lie beside it already, and long ones, of which it says so.
+/// `table` gives what is published for a record: of a bundle all of it.
 ///
 /// # Errors
 /// When a table cannot be had, or holds what HDF5 cannot.
@@ -389,8 +397,7 @@ pub(super) fn worse(fault: &mut Option<StoreError>, other: StoreError) {
 pub fn hdf5_bytes(
     name: &str,
     manifest: &Manifest,
-    table: &dyn Fn(&TableRecord) -> Result<Table, StoreError>,
-    whole: &dyn Fn(&str) -> Result<Table, StoreError>,
+    table: &dyn Fn(&TableRecord) -> Result<Arc<Table>, StoreError>,
 ) -> Result<Vec<u8>, StoreError> {
     let mut writer = hdf5::Writer::new(name)?;
     for (group, record) in bundle::published(manifest).filter(|(_, record)| record.files.is_empty()) {
@@ -398,8 +405,7 @@ pub fn hdf5_bytes(
             writer.leave_out(group, record)?;
             continue;
         }
-        let table = if is_bundle(&record.file) { whole(&record.file)? } else { table(record)? };
-        writer.add(group, &table)?;
+        writer.add(group, &*table(record)?)?;
     }
     writer.finish()
 }

@@ -160,12 +160,12 @@ fn cleaning_rewrites_packs() {
     let record = |index| KeyRecord {
         key: name(index),
         config: start,
-        fields: Vec::new(),
+        fields: Arc::default(),
         axis: None,
         code: start,
         seed: None,
         demand: start,
-        inputs: Vec::new(),
+        inputs: Arc::default(),
     };
     let wanted = [0, ALONE + 1, MANY - 1];
     let stage = JournalStage { name: "s".into(), keys: wanted.map(record).into(), ..JournalStage::default() };
