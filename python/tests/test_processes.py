@@ -134,6 +134,37 @@ def test_the_interpreter_may_end_while_a_run_calls_back(tmp_path, work):
         assert ended.returncode == 0 and "panic" not in ended.stderr, ended.stderr
 
 
+def test_waiting_for_another_run_is_interrupted(tmp_path):
+    code = f"""
+        import os, signal, subprocess, sys, threading, time, gearstudy as gs
+        study = {str(ROOT / "studies" / "quick.yaml")!r}
+        words = dict(force=True, results="results")
+        if len(sys.argv) > 1:
+            def slow(event):
+                if event["event"] == "writing":
+                    print("writing", flush=True)
+                    time.sleep(8)
+            gs.run(study, cache="other", progress=slow, **words)
+        else:
+            other = subprocess.Popen([sys.executable, __file__, "other"], stdout=subprocess.PIPE, text=True)
+            other.stdout.readline()
+            sent = []
+            def send():
+                sent.append(time.perf_counter())
+                os.kill(os.getpid(), signal.SIGINT)
+            threading.Timer(1.5, send).start()
+            try:
+                gs.run(study, cache="cache", **words)
+            except KeyboardInterrupt:
+                print(time.perf_counter() - sent[0])
+            other.kill()
+    """
+    program = tmp_path / "program.py"
+    program.write_text(textwrap.dedent(code))
+    ended = subprocess.run([sys.executable, program], capture_output=True, text=True, timeout=60, cwd=tmp_path)
+    assert ended.returncode == 0 and float(ended.stdout) < 1.0, ended
+
+
 def test_a_fork_in_a_callback_ends(tmp_path):
     code = f"""
         import os, gearstudy as gs

@@ -85,6 +85,7 @@ pub fn run(
                 table: Some(&table),
                 draw,
                 next: &next,
+                waits: &go_on,
                 code: study.program.about.code,
             },
         )

@@ -32,6 +32,8 @@ const UNWRITTEN: Duration = Duration::from_secs(1);
 
 /// Hears why it takes long, and what went wrong that does no harm.
 pub type Told = fn(&str);
+/// Asked, with the path of what is waited for, whether to wait on: an error ends it.
+pub type Waits<'a> = &'a dyn Fn(&str) -> Result<(), StoreError>;
 
 /// A lock that is held until it is dropped.
 #[derive(Debug)]
@@ -109,11 +111,11 @@ fn started(process: u32) -> Option<u64> {
 /// One publisher at a time in a folder. Nothing is left behind where folders can be locked.
 ///
 /// # Errors
-/// [`StoreError::InUse`] when somebody else has it for too long; when the folder cannot be opened or locked.
-pub fn publisher(folder: &Path, told: Told) -> Result<Lock, StoreError> {
+/// [`StoreError::InUse`] when somebody else has it for too long; when the folder cannot be opened or locked; what `waits` says.
+pub fn publisher(folder: &Path, told: Told, waits: Waits<'_>) -> Result<Lock, StoreError> {
     let kernel = locked(folder).map_err(StoreError::io("open", folder))?;
     let path = folder.join(NAME);
-    let mut wait = Wait::new(told, folder);
+    let mut wait = Wait::new(told, folder, waits);
     let held = wait.kernel(&kernel, false, HERE, || read(&path).ok().flatten())?;
     wait.began = Instant::now();
     let file = own(&path, held, &mut wait)?;
@@ -138,7 +140,7 @@ fn locked(folder: &Path) -> io::Result<File> {
 /// # Errors
 /// [`StoreError::InUse`] when it cannot be had for so long; when it cannot be locked.
 pub fn hold(lock: &File, path: &Path, shared: bool, patience: Duration) -> Result<(), StoreError> {
-    Wait::new(|_| {}, path).kernel(lock, shared, patience, || None).map(drop)
+    Wait::new(|_| {}, path, &|_| Ok(())).kernel(lock, shared, patience, || None).map(drop)
 }
 
 /// Makes the lock file; none where nothing can be made, and so nothing be published either.
@@ -236,14 +238,15 @@ impl Drop for Lock {
 struct Wait<'a> {
     told: Told,
     folder: &'a Path,
+    waits: Waits<'a>,
     began: Instant,
     pause: Duration,
     silent: bool,
 }
 
 impl<'a> Wait<'a> {
-    fn new(told: Told, folder: &'a Path) -> Self {
-        Self { told, folder, began: Instant::now(), pause: Duration::from_millis(1), silent: true }
+    fn new(told: Told, folder: &'a Path, waits: Waits<'a>) -> Self {
+        Self { told, folder, waits, began: Instant::now(), pause: Duration::from_millis(1), silent: true }
     }
 
     /// Takes the kernel's lock; false where there is no such thing.
@@ -287,6 +290,7 @@ impl<'a> Wait<'a> {
             self.silent = false;
             (self.told)(&format!("waiting for `{folder}`: {}", who.unwrap_or_else(|| "another run has it".to_owned())));
         }
+        (self.waits)(&folder.to_string())?;
         std::thread::sleep(self.pause);
         self.pause = (self.pause * 2).min(Duration::from_millis(50));
         Ok(())
@@ -344,7 +348,7 @@ mod tests {
     fn a_lock_names_its_owner_and_leaves_nothing() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(NAME);
-        let lock = publisher(folder.path(), |_| {}).unwrap();
+        let lock = publisher(folder.path(), |_| {}, &|_| Ok(())).unwrap();
         assert_eq!(read(&path).unwrap().map(|owner| owner.process), Some(std::process::id()));
         // Another one on this computer finds the kernel's lock.
         let kernel = File::open(folder.path()).unwrap();
@@ -353,7 +357,7 @@ mod tests {
         drop(lock);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
         // Not ours any more.
-        let lock = publisher(folder.path(), |_| {}).unwrap();
+        let lock = publisher(folder.path(), |_| {}, &|_| Ok(())).unwrap();
         let other = serde_json::to_string(&owner(|it| it.host = "b".into())).unwrap();
         fs::write(&path, &other).unwrap();
         drop(lock);
@@ -372,7 +376,7 @@ mod tests {
         let killed = serde_json::to_string(&owner(|it| it.started += 1)).unwrap();
         for text in [killed.as_str(), "", "{ \"host\": ", "\0\0\0\0"] {
             old(text);
-            drop(publisher(folder.path(), |message| panic!("{message}")).unwrap());
+            drop(publisher(folder.path(), |message| panic!("{message}"), &|_| Ok(())).unwrap());
             assert!(!path.exists(), "{text}");
         }
     }
@@ -383,7 +387,7 @@ mod tests {
         let path = folder.path().join(NAME);
         let other = owner(|it| (it.host, it.boot, it.process) = ("elsewhere".into(), "other".into(), 77));
         fs::write(&path, serde_json::to_string(&other).unwrap()).unwrap();
-        let mut wait = Wait::new(|_| {}, folder.path());
+        let mut wait = Wait::new(|_| {}, folder.path(), &|_| Ok(()));
         wait.began = Instant::now().checked_sub(ELSEWHERE).unwrap();
         let message = own(&path, true, &mut wait).unwrap_err().to_string();
         for words in ["process 77 on the computer `elsewhere`", "since 2", "delete `"] {

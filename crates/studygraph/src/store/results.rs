@@ -178,7 +178,15 @@ impl Folder {
     /// # Errors
     /// As [`lock::publisher`].
     pub fn lock(&self) -> Result<Lock, StoreError> {
-        let lock = lock::publisher(&self.path, self.told)?;
+        self.lock_while(&|_| Ok(()))
+    }
+
+    /// The same; `waits` is asked with the folder's path while somebody else has it, and what it says ends the wait.
+    ///
+    /// # Errors
+    /// As [`lock::publisher`].
+    pub fn lock_while(&self, waits: &dyn Fn(&str) -> Result<(), StoreError>) -> Result<Lock, StoreError> {
+        let lock = lock::publisher(&self.path, self.told, waits)?;
         // Somebody else may have published until now.
         self.opened.clear();
         Ok(lock)

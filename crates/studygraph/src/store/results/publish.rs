@@ -51,6 +51,8 @@ pub struct Source<'a> {
     pub table: Option<TableOf<'a>>,
     pub draw: Option<Draw<'a>>,
     pub next: Next<'a>,
+    /// Asked while somebody else has the folder: whether this run waits on.
+    pub waits: Next<'a>,
     /// The digest of the code that draws.
     pub code: &'a str,
 }
@@ -59,7 +61,7 @@ impl<'a> Source<'a> {
     /// Tables without a page, all in one go.
     #[must_use]
     pub fn of(bytes: Bytes<'a>) -> Self {
-        Self { bytes, pieces: None, table: None, draw: None, next: &|_| Ok(()), code: "" }
+        Self { bytes, pieces: None, table: None, draw: None, next: &|_| Ok(()), waits: &|_| Ok(()), code: "" }
     }
 }
 
@@ -125,7 +127,7 @@ impl Folder {
             before = Some((old, new, changes));
         }
         fs::create_dir_all(self.path()).map_err(StoreError::io("make the results folder", self.path()))?;
-        let _lock = self.lock()?;
+        let _lock = self.lock_while(source.waits)?;
         // Another run may have published while this one waited; mostly none has, and what was found still holds.
         if let Some((old, new, changes)) = before
             && let Some(text) = old.still()

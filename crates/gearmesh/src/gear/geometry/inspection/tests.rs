@@ -118,7 +118,7 @@ fn the_constant_chord_is_that_of_the_rack() {
         let cosine = libm::cos(gear.specification.pressure_angle);
         let Chord { length, height } = gear.constant_chord();
         // The thickness is a difference of involute functions times a radius of a hundred modules.
-            assert!((length / (0.5 * PI * 3e-3 * cosine * cosine) - 1.0).abs() < 1e-12);
+        assert!((length / (0.5 * PI * 3e-3 * cosine * cosine) - 1.0).abs() < 1e-12);
         assert!((height - 3e-3 + 0.5 * length * libm::tan(gear.specification.pressure_angle)).abs() < 1e-15);
     }
 }
