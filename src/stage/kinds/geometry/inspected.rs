@@ -37,14 +37,16 @@ pub fn inspection<'a>() -> Columns<InspectedRow<'a>> {
     let usual = "Diameter D_M of the ball that touches the V-circle.";
     let chord = |row: &InspectedRow| -> Chord { row.gear.chord(row.gear.reference_radius) };
     let columns = of_gear(Columns::new("inspection", description), |row: &InspectedRow| row.side)
-        .float("reference_diameter", "mm", "d.", |row| 2.0 * row.gear.reference_radius)
-        .float("base_diameter", "mm", "d_b.", |row| 2.0 * row.gear.base_radius)
-        .float("tip_diameter", "mm", "d_a.", |row| 2.0 * row.gear.tip_radius)
-        .float("tip_form_diameter", "mm", "d_Fa, where the flank ends towards the tip.", |row| {
+        .float("reference_diameter", "mm", "Reference diameter d.", |row| 2.0 * row.gear.reference_radius)
+        .float("base_diameter", "mm", "Base diameter d_b.", |row| 2.0 * row.gear.base_radius)
+        .float("tip_diameter", "mm", "Tip diameter d_a.", |row| 2.0 * row.gear.tip_radius)
+        .float("tip_form_diameter", "mm", "Tip form diameter d_Fa, where the flank ends towards the tip.", |row| {
             2.0 * row.gear.radius_at(row.gear.flank_end.roll)
         })
-        .float("root_form_diameter", "mm", "d_Ff, where the generated flank begins.", |row| 2.0 * row.gear.form_radius)
-        .float("root_diameter", "mm", "d_f.", |row| 2.0 * row.gear.root_radius)
+        .float("root_form_diameter", "mm", "Root form diameter d_Ff, where the generated flank begins.", |row| {
+            2.0 * row.gear.form_radius
+        })
+        .float("root_diameter", "mm", "Root diameter d_f.", |row| 2.0 * row.gear.root_radius)
         .float("tooth_thickness", "mm", "Arc thickness s on the reference circle.", |row| {
             row.gear.thickness_at(row.gear.reference_radius)
         })
@@ -67,11 +69,11 @@ pub fn inspection<'a>() -> Columns<InspectedRow<'a>> {
     columns
         .float("ball_diameter", "mm", usual, |row| row.balls(|balls| balls.diameter))
         .but(maybe)
-        .float("ball_contact_diameter", "mm", "d_M, where the ball touches the flanks.", |row| {
+        .float("ball_contact_diameter", "mm", "Diameter d_M at which the ball touches the flanks.", |row| {
             row.balls(|balls| 2.0 * balls.contact_radius)
         })
         .but(maybe)
-        .float("radial_dimension_over_ball", "mm", "M_rK, from the gear's centre over one ball.", |row| {
+        .float("radial_dimension_over_ball", "mm", "Dimension M_rK from the gear's centre over one ball.", |row| {
             row.balls(|balls| balls.radial)
         })
         .but(maybe)
@@ -106,15 +108,15 @@ pub fn points(pair: &GearPair) -> Vec<PointRow<'_>> {
 #[must_use]
 pub fn path_points<'a>() -> Columns<PointRow<'a>> {
     let description = "The points A to E of the path of contact on each gear (ISO 21771).";
-    let position = "T1 to the point along the line of action, T1 being the pinion's tangent point.";
-    let sliding = "ζ: specific sliding of this gear's flank.";
-    let factor = "K_g: sliding speed over that of the working pitch circles; at A K_gf and at E K_ga of the pinion.";
+    let position = "Path position of the point, from the pinion's tangent point T1.";
+    let sliding = "Specific sliding ζ of this gear's flank.";
+    let factor = "Sliding factor K_g: sliding speed over that of the working pitch circles; K_gf at A and K_ga at E for the pinion.";
     let roll = |row: &PointRow| row.pair.roll(row.side, row.s);
     of_gear(Columns::new("path_points", description), |row: &PointRow| row.side)
         .text("point", "A, B, C, D or E.", |row| row.name)
         .key()
         .float("path_position", "mm", position, |row| row.s)
-        .float("diameter", "mm", "Of the circle through the point.", move |row| {
+        .float("diameter", "mm", "Diameter of the circle through the point.", move |row| {
             2.0 * row.pair.side(row.side).radius_at(roll(row))
         })
         .float("roll_angle", "deg", "Roll angle of this gear.", roll)
@@ -137,26 +139,45 @@ pub fn working<'a>() -> Columns<&'a GearPair> {
         pair.centre_distance - pair.side(side).root_radius - pair.side(side.other()).tip_radius
     };
     Columns::new("working", "The pair on its centre distance: what follows for both gears (ISO 21771).")
-        .float("pinion_working_diameter", "mm", "d_w1.", |pair: &&GearPair| 2.0 * pair.working_radius(Side::Pinion))
-        .float("gear_working_diameter", "mm", "d_w2.", |pair| 2.0 * pair.working_radius(Side::Gear))
-        .float("length_of_contact", "mm", "g_α, from A to E.", |pair| pair.end_of_contact - pair.start_of_contact)
-        .float("pinion_addendum_contact_ratio", "", "ε_1, from C to E.", move |pair| tip(pair, Side::Pinion))
-        .float("gear_addendum_contact_ratio", "", "ε_2, from A to C.", move |pair| tip(pair, Side::Gear))
-        .float("pinion_clearance", "mm", "c_1, from the pinion's root circle to the gear's tip circle.", move |pair| {
-            clearance(pair, Side::Pinion)
+        .float("pinion_working_diameter", "mm", "Working pitch diameter d_w1.", |pair: &&GearPair| {
+            2.0 * pair.working_radius(Side::Pinion)
         })
+        .float("gear_working_diameter", "mm", "Working pitch diameter d_w2.", |pair| {
+            2.0 * pair.working_radius(Side::Gear)
+        })
+        .float("length_of_contact", "mm", "Length of contact g_α, from A to E.", |pair| {
+            pair.end_of_contact - pair.start_of_contact
+        })
+        .float("pinion_addendum_contact_ratio", "", "Addendum contact ratio ε_1, from C to E.", move |pair| {
+            tip(pair, Side::Pinion)
+        })
+        .float("gear_addendum_contact_ratio", "", "Addendum contact ratio ε_2, from A to C.", move |pair| {
+            tip(pair, Side::Gear)
+        })
+        .float(
+            "pinion_clearance",
+            "mm",
+            "Clearance c_1 from the pinion's root circle to the gear's tip circle.",
+            move |pair| clearance(pair, Side::Pinion),
+        )
         .but(|column| column.tolerance(1e-9, 1e-9))
-        .float("gear_clearance", "mm", "c_2, from the gear's root circle to the pinion's tip circle.", move |pair| {
-            clearance(pair, Side::Gear)
-        })
+        .float(
+            "gear_clearance",
+            "mm",
+            "Clearance c_2 from the gear's root circle to the pinion's tip circle.",
+            move |pair| clearance(pair, Side::Gear),
+        )
         .but(|column| column.tolerance(1e-9, 1e-9))
-        .float("circumferential_backlash", "um", "j_wt, on the working pitch circles.", |pair| {
-            pair.backlash().circumferential
-        })
+        .float(
+            "circumferential_backlash",
+            "um",
+            "Circumferential backlash j_wt on the working pitch circles.",
+            |pair| pair.backlash().circumferential,
+        )
         .but(|column| column.tolerance(1e-6, 1e-9))
-        .float("normal_backlash", "um", "j_bn, normal to the flanks.", |pair| pair.backlash().normal)
+        .float("normal_backlash", "um", "Normal backlash j_bn.", |pair| pair.backlash().normal)
         .but(|column| column.tolerance(1e-6, 1e-9))
-        .float("radial_backlash", "um", "j_r = j_wt/(2 tan α_w).", |pair| pair.backlash().radial)
+        .float("radial_backlash", "um", "Radial backlash j_r = j_wt/(2 tan α_w).", |pair| pair.backlash().radial)
         .but(|column| column.tolerance(1e-6, 1e-9))
         .on_demand()
 }
