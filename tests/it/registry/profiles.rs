@@ -106,7 +106,10 @@ fn a_gear_alone_is_drawn_over_the_whole_range() {
                     };
                     let ran = walk(&study);
                     let names: Vec<_> = ran["one"].tables.iter().map(Table::name).collect();
-                    assert_eq!(names, ["gears", "outline", "junctions", "validity", "root_arc", "arc_drawing"]);
+                    assert_eq!(
+                        names,
+                        ["gears", "outline", "junctions", "validity", "root_arc", "arc_drawing", "inspection"]
+                    );
                     assert!(ran["one"].tables[..4].iter().all(|table| table.rows() > 0), "{text}");
                     let jumps = ran["one"].tables[2].floats("position_jump");
                     let size = f64::from(teeth) * module.parse::<f64>().unwrap() * 1e3;
