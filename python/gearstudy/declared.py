@@ -122,7 +122,7 @@ class Modification(Declared):
 
 
 class IsoAmount(Declared):
-    """What `iso_amount` states.
+    """Instead of `amount`: Δ_max = K_A F_t / (b ε_α c_γ).
 
     Parameters
     ----------
@@ -991,7 +991,7 @@ class RoundingTip(Declared):
 
 
 class Material(Declared):
-    """What `material` states.
+    """Material of this gear, when it is not the common one.
 
     Parameters
     ----------
@@ -1075,7 +1075,7 @@ class GearSpecification(Declared):
 
 
 class Rack(Declared):
-    """What `rack` states.
+    """Basic rack that cuts both gears, in modules (ISO 53).
 
     Parameters
     ----------

@@ -201,9 +201,13 @@ pub fn beyond(loading: &LoadCase<'_>) -> String {
 ///     How many mesh harmonics. 0 to 200.
 /// pressure : bool
 ///     Whether Hertzian pressures are found.
-/// slices, corner_contact, slice_coupling
-///     How a face width with modifications along it is sliced, whether teeth touch beyond the path of contact, whether slices
-///     support one another: as the fields of a study's ``static_transmission_error``.
+/// slices : int
+///     Across the face, where modifications vary along it and nothing is known in closed form; 17 without it.
+/// corner_contact : "none" or "exact"
+///     Whether teeth touch before and beyond the path of contact too, with the corners of their tips; "none" without it.
+/// slice_coupling : "none" or "plate"
+///     Whether slices support one another, as the tooth of a plate does; "none" without it. These three are fields of a study's
+///     ``ste`` too.
 ///
 /// Raises
 /// ------
