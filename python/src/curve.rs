@@ -14,7 +14,7 @@ use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 use crate::design::Designs;
 use crate::errors::{failed, refused};
-use crate::stiffness::{Stiffness, settings};
+use crate::stiffness::Stiffness;
 use crate::torques;
 use crate::waiting::abandoning;
 
@@ -244,10 +244,10 @@ pub fn transmission_error(
         let message = "a curve is that of one design, and a modification has an array";
         return Err(wrong(Diagnostic::new(message).help("`peak_to_peak` and `summaries` take arrays")));
     }
-    let settings = settings(py, cycle, positions)?;
+    let cycle = own.asked(py, cycle, positions)?;
     let wanted = wanted(py, harmonics, pressure)?;
     let design = designs.at(0, &own.of).map_err(wrong)?;
-    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
+    let is_long = is_long(cycle.settings, 1);
     let make = move || {
         let loading = LoadCase::new(&cycle, &design, torque);
         let (points, summary) = loading.curve_and_summary(wanted);
@@ -256,7 +256,7 @@ pub fn transmission_error(
         }
         Ok(TransmissionError { points, summary })
     };
-    let made = if is_long(settings, 1) { abandoning(py, move |_| make())? } else { py.detach(make) };
+    let made = if is_long { abandoning(py, move |_| make())? } else { py.detach(make) };
     made.map_err(|failure| failed(py, &failure))
 }
 

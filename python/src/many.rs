@@ -19,8 +19,8 @@ use gearmesh::gear::transmission_error::load_case::LoadCase;
 
 use crate::curve::{beyond, is_long, wanted};
 use crate::design::Designs;
-use crate::errors::{failed, refused, refused_at, run_failed};
-use crate::stiffness::{Stiffness, settings};
+use crate::errors::{refused, refused_at, run_failed};
+use crate::stiffness::Stiffness;
 use crate::waiting::abandoning;
 use crate::{is_scalar, torques};
 
@@ -179,8 +179,7 @@ pub fn peak_to_peak<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let many = Many::read(torque, design)?;
     let own = stiffness.get();
-    let settings = settings(py, cycle, positions)?;
-    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
+    let cycle = own.asked(py, cycle, positions)?;
     let is_single = many.is_single;
     let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, |loading| {
         Some(loading.peak_to_peak()).filter(|found| found.is_finite())
@@ -224,9 +223,8 @@ pub fn summaries<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let many = Many::read(torque, design)?;
     let own = stiffness.get();
-    let settings = settings(py, cycle, positions)?;
+    let cycle = own.asked(py, cycle, positions)?;
     let wanted = wanted(py, harmonics, pressure)?;
-    let cycle = own.cycle(settings).map_err(|failure| failed(py, &failure))?;
     let found = many.each(py, &own.of, cycle, threads, is_kept(py, invalid)?, move |loading| {
         let summary = loading.summary(wanted);
         loading.holds(summary.largest.value).then_some(summary)

@@ -157,7 +157,7 @@ fn checked(py: Python<'_>, settings: Settings) -> PyResult<()> {
 ///
 /// # Errors
 /// What is no such word, or out of its range.
-pub fn settings(py: Python<'_>, given: Option<&Bound<'_, PyDict>>, positions: usize) -> PyResult<Settings> {
+fn settings(py: Python<'_>, given: Option<&Bound<'_, PyDict>>, positions: usize) -> PyResult<Settings> {
     let usual = Settings { positions, ..Settings::default() };
     let Some(given) = given.filter(|given| !given.is_empty()) else {
         return checked(py, usual).map(|()| usual);
@@ -185,6 +185,19 @@ pub const CYCLE: &[Field] = {
 impl Stiffness {
     pub fn compliance(&self) -> &PairCompliance {
         &self.tabulated.compliance
+    }
+
+    /// The mesh cycle that the words of a call ask for.
+    ///
+    /// # Errors
+    /// As [`settings`] and [`Stiffness::cycle`].
+    pub fn asked(
+        &self,
+        py: Python<'_>,
+        words: Option<&Bound<'_, PyDict>>,
+        positions: usize,
+    ) -> PyResult<Arc<MeshCycle>> {
+        self.cycle(settings(py, words, positions)?).map_err(|failure| failed(py, &failure))
     }
 
     /// The mesh cycle with these settings; kept, since no modification changes it.
