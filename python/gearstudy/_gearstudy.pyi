@@ -160,8 +160,9 @@ class Design:
 class TransmissionError:
     """A curve over one mesh cycle, and what it comes to; :func:`transmission_error` makes it.
 
+    Numbers of the whole cycle are there unless the call said ``summary=False``; asking for one then raises InvalidInput.
     Arrays of a curve have shape (points,), in the order of positions. There are as many points as :func:`len` says: those that
-    were asked for and, on either side of each place where contact begins or ends, two more. An array is made when it is asked
+    were asked for and, on either side of each place where contact begins or ends, two more, and with a summary the extrema. An array is made when it is asked
     for.
 
     >>> curve = transmission_error(stiffness, 150.0, relief)
@@ -238,6 +239,7 @@ def transmission_error(
     positions: int = 64,
     harmonics: int = 8,
     pressure: bool = False,
+    summary: bool = True,
     slices: int = 17,
     corner_contact: Literal["none", "exact"] = "none",
     slice_coupling: Literal["none", "plate"] = "none",
@@ -258,6 +260,8 @@ def transmission_error(
         How many mesh harmonics. 0 to 200.
     pressure : bool
         Whether Hertzian pressures are found.
+    summary : bool
+        Whether extrema between positions, means and harmonics are found; they take about half of the time.
     slices : int
         Across the face, where modifications vary along it and nothing is known in closed form; 17 without it.
     corner_contact : "none" or "exact"

@@ -25,8 +25,9 @@ const MOST_HARMONICS: usize = 200;
 
 /// A curve over one mesh cycle, and what it comes to; :func:`transmission_error` makes it.
 ///
+/// Numbers of the whole cycle are there unless the call said ``summary=False``; asking for one then raises InvalidInput.
 /// Arrays of a curve have shape (points,), in the order of positions. There are as many points as :func:`len` says: those that
-/// were asked for and, on either side of each place where contact begins or ends, two more. An array is made when it is asked
+/// were asked for and, on either side of each place where contact begins or ends, two more, and with a summary the extrema. An array is made when it is asked
 /// for.
 ///
 /// >>> curve = transmission_error(stiffness, 150.0, relief)
@@ -38,7 +39,8 @@ const MOST_HARMONICS: usize = 200;
 #[pyclass(frozen, module = "gearstudy._gearstudy")]
 pub struct TransmissionError {
     points: Vec<Point>,
-    summary: Summary,
+    /// None where the call did without.
+    summary: Option<Summary>,
 }
 
 type Floats<'py> = Bound<'py, PyArray1<f64>>;
@@ -52,6 +54,11 @@ impl TransmissionError {
         let values: Option<Vec<f64>> = self.points.iter().map(value).collect();
         values.map(|values| values.into_pyarray(py))
     }
+
+    fn summary(&self, py: Python<'_>) -> PyResult<&Summary> {
+        let none = || Diagnostic::new("this curve has no summary, since its call said `summary=False`");
+        self.summary.as_ref().ok_or_else(|| refused(py, &none().help("a call without that word finds it")))
+    }
 }
 
 #[pymethods]
@@ -61,8 +68,10 @@ impl TransmissionError {
     }
 
     fn __repr__(&self) -> String {
-        let Summary { peak_to_peak, mean, .. } = self.summary;
-        format!("TransmissionError(points={}, peak_to_peak={peak_to_peak:e}, mean={mean:e})", self.points.len())
+        let found = self.summary.as_ref().map_or_else(String::new, |Summary { peak_to_peak, mean, .. }| {
+            format!(", peak_to_peak={peak_to_peak:e}, mean={mean:e}")
+        });
+        format!("TransmissionError(points={}{found})", self.points.len())
     }
 
     /// Position in the mesh cycle along the line of action [m], from 0, shape (points,).
@@ -132,50 +141,50 @@ impl TransmissionError {
 
     /// Largest less least transmission error of the cycle [m], found between points too.
     #[getter]
-    fn peak_to_peak(&self) -> f64 {
-        self.summary.peak_to_peak
+    fn peak_to_peak(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.peak_to_peak)
     }
 
     /// Mean of the transmission error over the cycle [m].
     #[getter]
-    fn mean(&self) -> f64 {
-        self.summary.mean
+    fn mean(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.mean)
     }
 
     /// Mean square deviation of the transmission error from its mean over the cycle [m^2].
     #[getter]
-    fn variance(&self) -> f64 {
-        self.summary.variance
+    fn variance(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.variance)
     }
 
     /// Amplitudes of the mesh harmonics of the transmission error [m], the first first, shape (harmonics,).
     #[getter]
-    fn harmonics<'py>(&self, py: Python<'py>) -> Floats<'py> {
-        self.summary.harmonics.clone().into_pyarray(py)
+    fn harmonics<'py>(&self, py: Python<'py>) -> PyResult<Floats<'py>> {
+        self.summary(py).map(|found| found.harmonics.clone().into_pyarray(py))
     }
 
     /// Largest less least transmission error without load [m].
     #[getter]
-    fn unloaded_peak_to_peak(&self) -> f64 {
-        self.summary.unloaded_peak_to_peak
+    fn unloaded_peak_to_peak(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.unloaded_peak_to_peak)
     }
 
     /// Share of the cycle, summed over the pairs, in which a pair carries load; the contact ratio under load.
     #[getter]
-    fn loaded_contact_ratio(&self) -> f64 {
-        self.summary.loaded_contact_ratio
+    fn loaded_contact_ratio(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.loaded_contact_ratio)
     }
 
     /// Largest share of the normal force on one pair, up to 1.
     #[getter]
-    fn largest_load_share(&self) -> f64 {
-        self.summary.largest_load_share
+    fn largest_load_share(&self, py: Python<'_>) -> PyResult<f64> {
+        self.summary(py).map(|found| found.largest_load_share)
     }
 
     /// Largest Hertzian pressure of the cycle [Pa]; None unless the call said ``pressure=True``.
     #[getter]
-    fn largest_pressure(&self) -> Option<f64> {
-        self.summary.largest_pressure.as_ref().map(|found| found.extremum.value)
+    fn largest_pressure(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        self.summary(py).map(|found| found.largest_pressure.as_ref().map(|found| found.extremum.value))
     }
 }
 
@@ -201,6 +210,8 @@ pub fn beyond(loading: &LoadCase<'_>) -> String {
 ///     How many mesh harmonics. 0 to 200.
 /// pressure : bool
 ///     Whether Hertzian pressures are found.
+/// summary : bool
+///     Whether extrema between positions, means and harmonics are found; they take about half of the time.
 /// slices : int
 ///     Across the face, where modifications vary along it and nothing is known in closed form; 17 without it.
 /// corner_contact : "none" or "exact"
@@ -222,7 +233,7 @@ pub fn beyond(loading: &LoadCase<'_>) -> String {
 /// >>> bool(1e-6 < curve.mean < 100e-6)
 /// True
 #[pyfunction]
-#[pyo3(signature = (stiffness, torque, design = None, *, positions = 64, harmonics = 8, pressure = false, **cycle))]
+#[pyo3(signature = (stiffness, torque, design = None, *, positions = 64, harmonics = 8, pressure = false, summary = true, **cycle))]
 pub fn transmission_error(
     py: Python<'_>,
     stiffness: &Bound<'_, Stiffness>,
@@ -231,6 +242,7 @@ pub fn transmission_error(
     positions: usize,
     harmonics: usize,
     pressure: bool,
+    summary: bool,
     cycle: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<TransmissionError> {
     let own = stiffness.get();
@@ -250,8 +262,16 @@ pub fn transmission_error(
     let is_long = is_long(cycle.settings, 1);
     let make = move || {
         let loading = LoadCase::new(&cycle, &design, torque);
-        let (points, summary) = loading.curve_and_summary(wanted);
-        if !loading.holds(summary.largest.value) {
+        let (points, summary, largest) = if summary {
+            let (points, summary) = loading.curve_and_summary(wanted);
+            let largest = summary.largest.value;
+            (points, Some(summary), largest)
+        } else {
+            let points = loading.curve(wanted);
+            let largest = points.iter().map(|point| point.transmission_error).fold(f64::NEG_INFINITY, f64::max);
+            (points, None, largest)
+        };
+        if !loading.holds(largest) {
             return Err(Failure::new(beyond(&loading)));
         }
         Ok(TransmissionError { points, summary })

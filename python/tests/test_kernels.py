@@ -43,6 +43,20 @@ def test_harmonics_are_those_of_the_curve(stiffness, relief):
     assert curve.mean == pytest.approx(even.mean(), rel=1e-6)
 
 
+def test_a_curve_alone_is_the_same_curve(stiffness):
+    relief = gs.TipRelief(gear="both", amount=20e-6, fraction=0.7)
+    whole, alone = (gs.transmission_error(stiffness, 80.0, relief, summary=summary) for summary in (True, False))
+    both, of_whole, of_alone = np.intersect1d(whole.cycle_position, alone.cycle_position, return_indices=True)
+    assert 64 <= len(both) < len(alone) < len(whole), "integrals need more points than values do"
+    assert (whole.transmission_error[of_whole] == alone.transmission_error[of_alone]).all()
+    between = np.interp(alone.cycle_position, whole.cycle_position, whole.transmission_error)
+    assert alone.transmission_error == pytest.approx(between, rel=1e-3)
+    assert "peak_to_peak" in repr(whole) and "peak_to_peak" not in repr(alone)
+    for name in ("peak_to_peak", "mean", "variance", "harmonics", "largest_pressure", "largest_load_share"):
+        with pytest.raises(gs.InvalidInput, match="no summary.*summary=False"):
+            getattr(alone, name)
+
+
 def test_mesh_stiffness_is_force_over_approach_of_unmodified_gears(pair, stiffness):
     _, stiff, mean = stiffness.mesh()
     curve = gs.transmission_error(stiffness, 50.0)

@@ -9,6 +9,7 @@ use std::sync::mpsc::{self, Receiver, RecvTimeoutError};
 use std::sync::{Arc, Condvar, Mutex, PoisonError};
 use std::time::Duration;
 
+use notify::event::{AccessKind, AccessMode, ModifyKind};
 use notify::{EventKind, RecursiveMode, Watcher};
 use serde_json::json;
 
@@ -25,6 +26,9 @@ use studygraph::store::results::Folder;
 const PAUSE: Duration = Duration::from_millis(100);
 /// An editor saves in several steps: those that follow each other within this are one.
 const SETTLED: Duration = Duration::from_millis(15);
+/// How long whoever writes a file may hold it open before it is read as it is. A save empties the file first; a busy system
+/// may leave it so for longer than steps of a save are apart.
+const UNCLOSED: Duration = Duration::from_secs(2);
 
 /// What the page is to show.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -96,32 +100,58 @@ pub(super) fn watch(
             last = text;
             renew(&file, changes, places, selection, (as_json, quiet), &stop, &board)?;
         }
-        loop {
+        let mut step = loop {
             if stop.load(Ordering::Relaxed) {
                 return Err(Ending::Stopped);
             }
             match saves.1.recv_timeout(PAUSE) {
-                Ok(()) => break,
+                Ok(step) => break step,
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
                     return Err(Ending::Usage("the system tells of no more saves".to_owned()));
                 }
             }
+        };
+        while let Ok(next) = saves.1.recv_timeout(if step == Step::Last { SETTLED } else { UNCLOSED }) {
+            step = next;
         }
-        while saves.1.recv_timeout(SETTLED).is_ok() {}
+    }
+}
+
+/// What the system tells of a save.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Step {
+    /// The file may still be written to.
+    Early,
+    /// It was closed, put in the place of another, or removed.
+    Last,
+}
+
+impl Step {
+    /// None where nothing changes.
+    fn of(kind: EventKind) -> Option<Self> {
+        match kind {
+            EventKind::Access(AccessKind::Close(AccessMode::Write))
+            | EventKind::Modify(ModifyKind::Name(_))
+            | EventKind::Remove(_) => Some(Self::Last),
+            EventKind::Access(_) => None,
+            // Only Linux tells when a file is closed.
+            _ if cfg!(target_os = "linux") => Some(Self::Early),
+            _ => Some(Self::Last),
+        }
     }
 }
 
 /// Tells of saves of a file while the first is kept. Its folder is watched: an editor may put another file in its place.
-fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<()>), notify::Error> {
+fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<Step>), notify::Error> {
     let (saved, saves) = mpsc::channel();
     let name = file.file_name().map(std::ffi::OsStr::to_owned);
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
         let Ok(event) = event else { return };
         let is_ours = event.paths.iter().any(|path| path.file_name() == name.as_deref());
-        if is_ours && !matches!(event.kind, EventKind::Access(_)) {
+        if let Some(step) = Step::of(event.kind).filter(|_| is_ours) {
             // Nobody listens any more once the program ends.
-            let _ = saved.send(());
+            let _ = saved.send(step);
         }
     })?;
     let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));

@@ -107,6 +107,21 @@ fn the_page_follows_what_is_saved() {
     assert_eq!(watching.after(6), (7, String::new()));
 }
 
+/// A busy system empties the file and writes it much later.
+#[test]
+fn a_save_is_awaited_to_its_end() {
+    let desk = Desk::with("quick.yaml");
+    let watching = Watching::start(&desk);
+    assert_eq!(watching.after(0), (1, String::new()));
+    let quick = fs::read_to_string(desk.path("quick.yaml")).unwrap();
+    let mut file = fs::File::create(desk.path("quick.yaml")).unwrap();
+    std::thread::sleep(Duration::from_millis(300));
+    file.write_all(quick.replace("title: Tip relief for a torque range", "title: Another").as_bytes()).unwrap();
+    drop(file);
+    assert_eq!(watching.after(1), (2, String::new()));
+    assert!(watching.ask("/").1.contains("Another"));
+}
+
 #[test]
 fn what_is_not_there_is_not_waited_for() {
     let desk = Desk::with("quick.yaml");
