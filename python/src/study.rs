@@ -63,7 +63,7 @@ thread_local! {
 
 /// Tells a callable of Python what happens; what it raises stops the run.
 struct Telling<'a> {
-    callable: Option<&'a Py<PyAny>>,
+    callable: Option<Py<PyAny>>,
     /// Of the results.
     folder: &'a Path,
     stop: &'a AtomicBool,
@@ -79,7 +79,7 @@ impl Telling<'_> {
             let warning = stage + text("message").unwrap_or_default();
             self.warnings.lock().unwrap_or_else(PoisonError::into_inner).push(warning);
         }
-        let Some(callable) = self.callable.filter(|_| !self.stop.load(Ordering::Relaxed)) else { return };
+        let Some(callable) = self.callable.as_ref().filter(|_| !self.stop.load(Ordering::Relaxed)) else { return };
         let process = std::process::id();
         CALLED_BY.with_borrow_mut(|folders| folders.push(self.folder.to_owned()));
         // None while the interpreter ends: nobody is left to be told.
@@ -126,7 +126,7 @@ impl Study {
     #[pyo3(signature = (text, path, *, set = Vec::new(), name = None, results = PathBuf::from("results"), cache = None))]
     fn new(
         py: Python<'_>,
-        text: Option<&str>,
+        text: Option<String>,
         path: PathBuf,
         set: Vec<String>,
         name: Option<String>,
@@ -134,8 +134,8 @@ impl Study {
         cache: Option<PathBuf>,
     ) -> PyResult<Self> {
         let settings = Settings { set, name };
-        let read = stopping(py, |_| match text {
-            Some(text) => program::examine_changed_text(text, &path, &settings),
+        let read = stopping(py, move |_| match text {
+            Some(text) => program::examine_changed_text(&text, &path, &settings),
             None => program::examine(&path, &settings),
         })?;
         let study = read.map_err(|refused| invalid_study(py, &refused.error()))?;
@@ -193,11 +193,11 @@ impl Study {
             let message = format!("`{}` is running: what it calls cannot run it again", self.study.name);
             return Err(run_failed(py, &message));
         }
-        let (ran, raised, warnings) = stopping(py, |stop| {
-            let callable = progress.as_ref();
+        let (study, places) = self.own();
+        let (ran, raised, warnings) = stopping(py, move |stop| {
             let (raised, warnings) = (Mutex::default(), Mutex::default());
-            let telling = Telling { callable, folder: &folder, stop, raised, warnings };
-            let ran = embedded::run(&self.study, &self.places, &options, &|event| telling.tell(event), stop);
+            let telling = Telling { callable: progress, folder: &folder, stop, raised, warnings };
+            let ran = embedded::run(&study, &places, &options, &|event| telling.tell(event), stop);
             let raised = telling.raised.into_inner().unwrap_or_else(PoisonError::into_inner);
             (ran, raised, telling.warnings.into_inner().unwrap_or_else(PoisonError::into_inner))
         })?;
@@ -218,14 +218,16 @@ impl Study {
         force: &Bound<'py, PyAny>,
     ) -> PyResult<Bound<'py, PyAny>> {
         let options = options(only, &want, force, (0, false), (None, None))?;
-        let plan = stopping(py, |_| embedded::plan(&self.study, &self.places, &options))?;
+        let (study, places) = self.own();
+        let plan = stopping(py, move |_| embedded::plan(&study, &places, &options))?;
         from_json(py, &plan.map_err(|found| problem(py, &self.study, found))?)
     }
 
     /// What differs between the results of this study and those of another one, as `gearstudy diff --format json` has it.
     fn _diff<'py>(&self, py: Python<'py>, before: &Self) -> PyResult<Bound<'py, PyAny>> {
         let one = |study: &Self| study.places.folder(&study.study.name);
-        let found = stopping(py, |_| embedded::diff(&one(before), &one(self)))?;
+        let (before, after) = (one(before), one(self));
+        let found = stopping(py, move |_| embedded::diff(&before, &after))?;
         from_json(py, &found.map_err(|message| run_failed(py, &message))?)
     }
 
@@ -239,11 +241,12 @@ impl Study {
         let manifest = self.manifest(py)?;
         let folder = self.places.folder(&self.study.name);
         let all = || manifest.stages.iter().flat_map(|stage| &stage.tables);
-        let Some(record) = all().find(|record| record.name == name) else {
+        let Some(record) = all().find(|record| record.name == name).cloned() else {
             let help = suggest(name, all().map(|record| record.name.as_str()).collect::<Vec<_>>());
             return Err(PyKeyError::new_err(format!("there is no table `{name}`; {help}")));
         };
-        let table = stopping(py, |_| folder.table(record))?.map_err(|error| run_failed(py, &error.to_string()))?;
+        let table =
+            stopping(py, move |_| folder.table(&record))?.map_err(|error| run_failed(py, &error.to_string()))?;
         Ok(Table::new(name, table))
     }
 
@@ -255,6 +258,11 @@ impl Study {
 }
 
 impl Study {
+    /// For what may go on after its call.
+    fn own(&self) -> (Arc<study::Study>, Places) {
+        (Arc::clone(&self.study), self.places.clone())
+    }
+
     fn manifest(&self, py: Python<'_>) -> PyResult<Manifest> {
         let folder: Folder = self.places.folder(&self.study.name);
         let read = py.detach(|| folder.read_manifest()).map_err(|error| run_failed(py, &error.to_string()))?;

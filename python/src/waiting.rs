@@ -75,35 +75,24 @@ pub fn _end(py: Python<'_>) {
 
 type Outcome<T> = thread::Result<T>;
 
-fn spawned(failed: &std::io::Error, py: Python<'_>) -> PyErr {
-    errors::run_failed(py, &format!("cannot start a thread: {failed}"))
-}
-
-/// Does something that takes long; a signal of Python tells it to stop, and is raised when it has.
+/// Does something that takes long and hears when it is to stop; a signal of Python tells it so, and is raised at once. What is
+/// left then comes to its end by itself, and the interpreter's end waits for it.
 ///
 /// # Errors
 /// What the signal raises.
-pub fn stopping<T: Send>(py: Python<'_>, work: impl FnOnce(&AtomicBool) -> T + Send) -> PyResult<T> {
+pub fn stopping<T: Send + 'static>(
+    py: Python<'_>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> PyResult<T> {
     let listed = Listed::new();
-    let stop = &*listed.0;
-    thread::scope(|scope| {
-        let (tell, told) = mpsc::channel();
-        let spawning = thread::Builder::new().name("gearstudy".to_owned()).spawn_scoped(scope, move || {
-            caught(&tell, || work(stop));
-        });
-        spawning.map_err(|failed| spawned(&failed, py))?;
-        let mut raised = None;
-        let done = waited(py, told, |signal| {
-            stop.store(true, Ordering::Relaxed);
-            raised.get_or_insert(signal);
-            None
-        })?;
-        raised.map_or_else(|| outcome(done), Err)
+    let stop = Arc::clone(&listed.0);
+    left_behind(py, stop, move |stop| {
+        let _listed = listed;
+        work(stop)
     })
 }
 
-/// The same of something that has no ear for signals and touches nothing of Python: it is left behind, and what it comes to
-/// is of no use to anybody. It may look whether that has happened.
+/// The same of something that touches nothing of Python: nobody waits for it, and what it comes to is of no use to anybody.
 ///
 /// # Errors
 /// What the signal raises.
@@ -111,42 +100,35 @@ pub fn abandoning<T: Send + 'static>(
     py: Python<'_>,
     work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
 ) -> PyResult<T> {
-    let left = Arc::new(AtomicBool::new(false));
+    left_behind(py, Arc::default(), work)
+}
+
+fn left_behind<T: Send + 'static>(
+    py: Python<'_>,
+    left: Arc<AtomicBool>,
+    work: impl FnOnce(&AtomicBool) -> T + Send + 'static,
+) -> PyResult<T> {
     let (tell, told) = mpsc::channel();
     let own = Arc::clone(&left);
     let spawning = thread::Builder::new().name("gearstudy".to_owned()).spawn(move || caught(&tell, || work(&own)));
-    spawning.map_err(|failed| spawned(&failed, py))?;
-    outcome(waited(py, told, |signal| {
-        left.store(true, Ordering::Relaxed);
-        Some(signal)
-    })?)
+    spawning.map_err(|failed| errors::run_failed(py, &format!("cannot start a thread: {failed}")))?;
+    // What waits without the interpreter's lock has it to itself.
+    let told: Mutex<Receiver<Outcome<T>>> = Mutex::new(told);
+    loop {
+        let waited = || told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(SIGNALS);
+        match py.detach(waited) {
+            Ok(done) => return outcome(done),
+            Err(RecvTimeoutError::Timeout) => {
+                py.check_signals().inspect_err(|_| left.store(true, Ordering::Relaxed))?;
+            }
+            Err(RecvTimeoutError::Disconnected) => return Err(errors::bug("a thread ended without a word")),
+        }
+    }
 }
 
 fn caught<T>(tell: &Sender<Outcome<T>>, work: impl FnOnce() -> T) {
     // Nobody listens to what was left behind.
     let _ = tell.send(catch_unwind(AssertUnwindSafe(work)));
-}
-
-/// Waits with the interpreter's lock given back; `signal` hears what signals raise, and what it gives ends the wait.
-fn waited<T: Send>(
-    py: Python<'_>,
-    told: Receiver<Outcome<T>>,
-    mut signal: impl FnMut(PyErr) -> Option<PyErr>,
-) -> PyResult<Outcome<T>> {
-    // What waits without the interpreter's lock has it to itself.
-    let told = Mutex::new(told);
-    loop {
-        let waited = || told.lock().unwrap_or_else(PoisonError::into_inner).recv_timeout(SIGNALS);
-        match py.detach(waited) {
-            Ok(done) => return Ok(done),
-            Err(RecvTimeoutError::Timeout) => {
-                if let Some(ended) = py.check_signals().err().and_then(&mut signal) {
-                    return Err(ended);
-                }
-            }
-            Err(RecvTimeoutError::Disconnected) => return Err(errors::bug("a thread ended without a word")),
-        }
-    }
 }
 
 /// What it came to; a panic is a mistake of ours.

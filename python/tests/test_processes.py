@@ -165,6 +165,44 @@ def test_waiting_for_another_run_is_interrupted(tmp_path):
     assert ended.returncode == 0 and float(ended.stdout) < 1.0, ended
 
 
+def test_an_interrupted_run_is_left_to_its_end_and_run_again(tmp_path):
+    """Ctrl-C at several moments is heard at once; the next run waits for what is left, takes it over, and gives the same bytes."""
+    code = f"""
+        import os, signal, sys, threading, time, gearstudy as gs
+        study = {str(ROOT / "studies" / "methods.yaml")!r}
+        for seconds in (0.05, 0.3, 0.9, 1.5):
+            sent = []
+            def send():
+                sent.append(time.perf_counter())
+                os.kill(os.getpid(), signal.SIGINT)
+            timer = threading.Timer(seconds, send)
+            timer.start()
+            try:
+                gs.run(study, results="results", cache="cache")
+                timer.cancel()
+            except KeyboardInterrupt:
+                print(time.perf_counter() - sent[0])
+        gs.run(study, results="results", cache="cache")
+        gs.run(study, results="whole", cache="other")
+        try:
+            gs.run(study, results="left", cache="third", progress=lambda event: os.kill(os.getpid(), signal.SIGINT))
+        except KeyboardInterrupt:
+            print("0 at the end")
+    """
+    words = [sys.executable, "-c", textwrap.dedent(code)]
+    ended = subprocess.run(words, capture_output=True, text=True, timeout=120, cwd=tmp_path)
+    assert ended.returncode == 0 and ended.stdout.endswith("0 at the end\n"), ended
+    # A thirtieth of it when the machine is quiet.
+    assert all(float(line.split()[0]) < 0.8 for line in ended.stdout.splitlines()), ended.stdout
+
+    def files(folder):
+        found = (tmp_path / folder / "methods").rglob("*.parquet")
+        # What a computation took is never the same.
+        return {file.name: file.read_bytes() for file in found if ".cost." not in file.name}
+
+    assert files("results") == files("whole") and len(files("whole")) > 10
+
+
 def test_a_fork_in_a_callback_ends(tmp_path):
     code = f"""
         import os, gearstudy as gs
