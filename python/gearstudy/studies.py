@@ -103,7 +103,7 @@ class Study(_gearstudy.Study):
                 tell.close()
         if tell is None:
             for text in warned:
-                warnings.warn(text, StudyWarning, stacklevel=2)
+                warnings.warn(text, StudyWarning, stacklevel=_callers_level())
         return self
 
     def plan(
@@ -242,6 +242,14 @@ def run(
         limit_rows=limit_rows,
         progress=progress,
     )
+
+
+def _callers_level() -> int:
+    """How far above whoever asks the first code is that is not of this package: where a warning belongs."""
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").split(".")[0] == __package__:
+        level, frame = level + 1, frame.f_back
+    return level
 
 
 class Progress:

@@ -16,6 +16,7 @@ use crate::design::Designs;
 use crate::errors::{failed, refused};
 use crate::stiffness::Stiffness;
 use crate::torques;
+use crate::values;
 use crate::waiting::abandoning;
 
 /// Positions times slices from which on a thread of its own is worth while: some milliseconds.
@@ -239,8 +240,8 @@ pub fn transmission_error(
     stiffness: &Bound<'_, Stiffness>,
     torque: &Bound<'_, PyAny>,
     design: Option<&Bound<'_, PyAny>>,
-    positions: usize,
-    harmonics: usize,
+    #[pyo3(from_py_with = values::count)] positions: usize,
+    #[pyo3(from_py_with = values::count)] harmonics: usize,
     pressure: bool,
     summary: bool,
     cycle: Option<&Bound<'_, PyDict>>,

@@ -21,6 +21,7 @@ use crate::curve::{beyond, is_long, wanted};
 use crate::design::Designs;
 use crate::errors::{refused, refused_at, run_failed};
 use crate::stiffness::Stiffness;
+use crate::values;
 use crate::waiting::abandoning;
 use crate::{is_scalar, torques};
 
@@ -172,8 +173,8 @@ pub fn peak_to_peak<'py>(
     stiffness: &Bound<'py, Stiffness>,
     torque: &Bound<'py, PyAny>,
     design: Option<&Bound<'py, PyAny>>,
-    positions: usize,
-    threads: usize,
+    #[pyo3(from_py_with = values::count)] positions: usize,
+    #[pyo3(from_py_with = values::count)] threads: usize,
     invalid: &str,
     cycle: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyAny>> {
@@ -214,10 +215,10 @@ pub fn summaries<'py>(
     stiffness: &Bound<'py, Stiffness>,
     torque: &Bound<'py, PyAny>,
     design: Option<&Bound<'py, PyAny>>,
-    positions: usize,
-    harmonics: usize,
+    #[pyo3(from_py_with = values::count)] positions: usize,
+    #[pyo3(from_py_with = values::count)] harmonics: usize,
     pressure: bool,
-    threads: usize,
+    #[pyo3(from_py_with = values::count)] threads: usize,
     invalid: &str,
     cycle: Option<&Bound<'py, PyDict>>,
 ) -> PyResult<Bound<'py, PyDict>> {

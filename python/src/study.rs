@@ -24,6 +24,7 @@ use studygraph::study::{self, Settings};
 
 use crate::errors::{bug, invalid_study, refused, run_failed};
 use crate::tables::Table;
+use crate::values;
 use crate::waiting::stopping;
 
 /// A study, read and checked, and where its results lie; :class:`gearstudy.Study` has the rest.
@@ -181,7 +182,7 @@ impl Study {
         only: Vec<String>,
         want: Vec<String>,
         force: &Bound<'_, PyAny>,
-        jobs: usize,
+        #[pyo3(from_py_with = values::count)] jobs: usize,
         keep_going: bool,
         limit_memory: Option<u64>,
         limit_rows: Option<u64>,

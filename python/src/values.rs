@@ -4,7 +4,7 @@
 //! Must not know: what any parameter means.
 
 use numpy::{PyArray1, PyArrayMethods};
-use pyo3::exceptions::PyException;
+use pyo3::exceptions::{PyException, PyOverflowError, PyTypeError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyInt, PyList, PyString, PyTuple};
 
@@ -15,6 +15,18 @@ use declare::record::{PlacedValue, Record, Value};
 use declare::units::{Dimension, Quantity, RATIO, described, parse_quantity, same_dimension};
 
 use crate::errors::{refused, unless_stopped};
+
+/// A number of things, as the word of a call says it.
+///
+/// # Errors
+/// What is no whole number from 0 on.
+pub fn count(given: &Bound<'_, PyAny>) -> PyResult<usize> {
+    given.extract().map_err(|wrong: PyErr| {
+        let beyond = wrong.is_instance_of::<PyOverflowError>(given.py());
+        // Python's own words for it name neither the argument nor the value.
+        if beyond { PyTypeError::new_err(format!("{given} is no number of things")) } else { wrong }
+    })
+}
 
 /// A field that was given as many values as there are designs.
 pub type Column = (&'static str, Vec<f64>);

@@ -86,8 +86,12 @@ def test_words_that_nobody_knows(stiffness):
         lambda: gs.Optimizer("genetic", [(0, math.nan)]),
         lambda: gs.Optimizer(gs.Genetic(population=1), [(0, 1)]),
     ):
-        with pytest.raises((gs.InvalidInput, TypeError, OverflowError)):
+        with pytest.raises((gs.InvalidInput, TypeError)):
             wrong()
+    for name in ("positions", "harmonics", "threads"):
+        for value in (-1, 2**70, 1.5):
+            with pytest.raises(TypeError, match=name):
+                gs.summaries(stiffness, 80.0, **{name: value})
 
 
 @pytest.mark.parametrize("teeth", [3, 4, 10_001, -19, 19.5, "19", True])

@@ -135,8 +135,11 @@ def test_what_a_stage_warns_of_is_heard(tmp_path):
     gear = {"teeth": 24, "face_width": "20 mm", "bore_radius": "5 mm"}
     pair = {"kind": "geometry", "module": "3 mm", "pinion": gear, "gear": gear}
     study = {"study": "warned", "stages": {"pair": pair, "stiffness": {"kind": "stiffness", "pair": "pair", "contact": "linear"}}}
-    with pytest.warns(gs.StudyWarning, match="stiffness"):
-        gs.run(study, results=tmp_path / "results", cache=tmp_path / "cache")
+    places = {"results": tmp_path / "results", "cache": tmp_path / "cache"}
+    for run in (lambda: gs.run(study, **places), lambda: gs.load(study, **places).run(force=True)):
+        with pytest.warns(gs.StudyWarning, match="stiffness") as warned:
+            run()
+        assert {warning.filename for warning in warned} == {__file__}
 
 
 def test_a_study_is_where_it_was_when_it_was_read(tmp_path, monkeypatch):
