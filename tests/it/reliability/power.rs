@@ -316,7 +316,7 @@ fn accepted(
     wrong
 }
 
-fn cut_anywhere(first: Option<&str>, study: &str, states: usize, seed: u64) {
+fn cut_anywhere(first: Option<&str>, study: &str, seed: u64) {
     if disk::library().is_none() {
         return;
     }
@@ -339,7 +339,7 @@ fn cut_anywhere(first: Option<&str>, study: &str, states: usize, seed: u64) {
     // Nothing lost, nothing wrong: the record is that of the run.
     let mut chance = Chance(seed);
     let mut wrong = Vec::new();
-    let every = if thorough() > 0 { 4 } else { 40 };
+    let (states, every) = if thorough() > 0 { (5000, 4) } else { (1500, 20) };
     let mut runs = 0;
     for state in 0..states {
         let end = chance.below(trace.steps.len() + 1);
@@ -364,12 +364,12 @@ fn cut_anywhere(first: Option<&str>, study: &str, states: usize, seed: u64) {
 
 #[test]
 fn a_power_cut_during_a_first_run() {
-    cut_anywhere(None, TINY, 5000, 1);
+    cut_anywhere(None, TINY, 1);
 }
 
 #[test]
 fn a_power_cut_while_results_change() {
-    cut_anywhere(Some(&earlier()), TINY, 5000, 2);
+    cut_anywhere(Some(&earlier()), TINY, 2);
 }
 
 /// The record is what was done: when nothing is lost, the disk is as the run left it.
