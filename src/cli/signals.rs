@@ -9,8 +9,6 @@ use std::sync::{Arc, OnceLock};
 
 use indicatif::MultiProgress;
 
-use super::progress::aside;
-
 /// The number of the first signal, 0 before.
 static RECEIVED: AtomicI32 = AtomicI32::new(0);
 
@@ -42,6 +40,7 @@ pub(super) fn stop_flag(bars: Option<MultiProgress>) -> Arc<AtomicBool> {
 
 #[cfg(unix)]
 fn watch(stop: &Arc<AtomicBool>, bars: Option<MultiProgress>) {
+    use super::progress::aside;
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 
     let ignored = ignored();

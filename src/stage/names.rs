@@ -38,6 +38,7 @@ tables! {
         MODULE = "module",
         PRESSURE_ANGLE = "pressure_angle",
         PROFILE_SHIFT = "profile_shift",
+        THICKNESS_ALLOWANCE = "thickness_allowance",
         RACK_ADDENDUM = "rack_addendum",
         RACK_DEDENDUM = "rack_dedendum",
         RACK_TIP_RADIUS = "rack_tip_radius",

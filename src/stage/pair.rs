@@ -19,6 +19,7 @@ pub type GearRow<'a> = (Side, &'a Gear);
 /// One row per gear.
 #[must_use]
 pub fn gears<'a>() -> Columns<GearRow<'a>> {
+    let allowance = "By how much the teeth are thicker on the reference circle than x says A_s; below 0 for backlash.";
     let form_radius = "Radius at which the root curve meets the involute.";
     Columns::new(names::gears::TABLE, "Each gear: what was specified, and what follows from it.")
         .text(names::gears::GEAR, "Which gear: pinion or gear.", |row: &GearRow| row.0.name())
@@ -27,6 +28,11 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
         .float(names::gears::MODULE, "mm", "Module m.", |row| row.1.specification.module)
         .float(names::gears::PRESSURE_ANGLE, "deg", "Pressure angle α.", |row| row.1.specification.pressure_angle)
         .float(names::gears::PROFILE_SHIFT, "", "Profile shift coefficient x.", |row| row.1.specification.profile_shift)
+        .float(names::gears::THICKNESS_ALLOWANCE, "um", allowance, |row| row.1.specification.thickness_allowance)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("generating_profile_shift", "", "Generating profile shift coefficient x_E.", |row| {
+            row.1.specification.generating_profile_shift()
+        })
         .float(names::gears::RACK_ADDENDUM, "", "Addendum of the basic rack h_aP*, in modules.", |row| {
             row.1.specification.rack.addendum
         })
@@ -73,6 +79,18 @@ pub fn pair<'a>() -> Columns<&'a GearPair> {
         .float("tangent_length", "mm", "Length T1T2 of the common tangent, L.", |pair| pair.tangent_length)
         .float("start_of_contact", "mm", "Path position of A, the start of contact.", |pair| pair.start_of_contact)
         .float("end_of_contact", "mm", "Path position of E, the end of contact.", |pair| pair.end_of_contact)
+        .float("pinion_tip_usable_radius", "mm", "Tip usable radius r_Na1 of the pinion.", |pair| {
+            pair.pinion.radius_at(pair.highest_roll(Side::Pinion))
+        })
+        .float("pinion_root_usable_radius", "mm", "Root usable radius r_Nf1 of the pinion.", |pair| {
+            pair.pinion.radius_at(pair.lowest_roll(Side::Pinion))
+        })
+        .float("gear_tip_usable_radius", "mm", "Tip usable radius r_Na2 of the gear.", |pair| {
+            pair.gear.radius_at(pair.highest_roll(Side::Gear))
+        })
+        .float("gear_root_usable_radius", "mm", "Root usable radius r_Nf2 of the gear.", |pair| {
+            pair.gear.radius_at(pair.lowest_roll(Side::Gear))
+        })
 }
 
 /// The port through which [`of`] reads.
@@ -105,6 +123,7 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
             module: value(names::gears::MODULE),
             pressure_angle: value(names::gears::PRESSURE_ANGLE),
             profile_shift: value(names::gears::PROFILE_SHIFT),
+            thickness_allowance: value(names::gears::THICKNESS_ALLOWANCE),
             rack: Rack {
                 addendum: value(names::gears::RACK_ADDENDUM),
                 dedendum: value(names::gears::RACK_DEDENDUM),

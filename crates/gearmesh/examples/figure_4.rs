@@ -11,6 +11,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         module: 3e-3,
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
+        thickness_allowance: 0.0,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
         tip_radius: None,
         face_width,

@@ -23,6 +23,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         module: 3e-3,
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
+        thickness_allowance: 0.0,
         rack: Rack::ISO_53_A,
         tip_radius: None,
         face_width: 20e-3,

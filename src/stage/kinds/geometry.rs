@@ -97,6 +97,8 @@ struct Geometry {
     pair: Option<GearPair>,
     /// The pinion, and the gear of a pair.
     gears: Vec<Drawn>,
+    /// By how much the centre distance may be smaller, and larger \[m\].
+    centre_distance: [f64; 2],
     density: Density,
     teeth: Teeth,
 }
@@ -135,11 +137,14 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
             .toe(&gear)
             .and_then(|toe| Outline::new(&gear, toe, gear.tip, design.relief(side)))
             .map_err(|error| refused(&error.on(side)))?;
-        Ok(Drawn { side, gear, outline })
+        let limits = stated.limits(&gear.specification).map_err(|error| refused(&error.on(side)))?;
+        Ok(Drawn { side, gear, outline, limits })
     };
     let gears = gears.each().zip(built).map(drawn).collect::<Result<_, Diagnostic>>()?;
+    let centre_distance =
+        stated.gears.centre_distance_allowance.map_or([0.0; 2], |allowed| [allowed.lower, allowed.upper]);
     let density = Density { points: options.points, chord_error: options.chord_error };
-    Ok(Box::new(Geometry { pair, gears, density, teeth: options.teeth }))
+    Ok(Box::new(Geometry { pair, gears, centre_distance, density, teeth: options.teeth }))
 }
 
 impl Stated {
@@ -152,6 +157,10 @@ impl Stated {
         };
         if self.gears.centre_distance.is_some() {
             let field = StatedGears::NAMES.centre_distance;
+            return refused(record, field, "a gear alone has no centre distance");
+        }
+        if self.gears.centre_distance_allowance.is_some() {
+            let field = StatedGears::NAMES.centre_distance_allowance;
             return refused(record, field, "a gear alone has no centre distance");
         }
         if self.outline.flank.is_some() {
@@ -229,6 +238,7 @@ impl Stage for Geometry {
                 "arc_drawing" => RowCount::at_most(halves().map(construction::maximum).sum()),
                 "path_points" => RowCount::exact(2 * inspected::POINTS),
                 "pair" | "working" => RowCount::exact(1),
+                "inspection" => RowCount::exact(self.gears.iter().map(inspected::count).sum()),
                 _ => RowCount::exact(self.gears.len()),
             };
             estimate = if name == "outline" {
@@ -251,6 +261,9 @@ impl Stage for Geometry {
         let mut tables = vec![pair::gears().table(&gears).map_err(failed)?];
         if let Some(pair) = &self.pair {
             tables.push(pair::pair().table(&[pair]).map_err(failed)?);
+        }
+        for text in self.pair.iter().flat_map(valid::curtailed) {
+            (context.warn)(text.into());
         }
         let schemas =
             self.outputs().into_iter().filter(|schema| schema.on_demand && context.demand.table(&schema.name));
@@ -290,11 +303,16 @@ impl Stage for Geometry {
                     meshing::columns().table(&meshing::rows(pair, &self.gears, self.density))
                 }
                 ("inspection", _) => {
-                    let rows: Vec<_> = self.gears.iter().map(inspected::InspectedRow::new).collect();
+                    let rows = self.gears.iter().map(inspected::rows).collect::<Result<Vec<_>, _>>();
+                    let rows = rows.map_err(|error| Failure::new(error.to_string()))?.concat();
                     inspected::inspection().table(&rows)
                 }
                 ("path_points", Some(pair)) => inspected::path_points().table(&inspected::points(pair)),
-                ("working", Some(pair)) => inspected::working().table(&[pair]),
+                ("working", Some(pair)) => {
+                    let limits = [0, 1].map(|gear| self.gears.get(gear).and_then(|drawn| drawn.limits));
+                    let row = inspected::WorkingRow::new(pair, limits, self.centre_distance);
+                    inspected::working().table(&[row.map_err(|error| Failure::new(error.to_string()))?])
+                }
                 ("root_arc", _) => {
                     let rows: Vec<_> = self.gears.iter().filter_map(article::row).collect();
                     article::columns().table(&rows)

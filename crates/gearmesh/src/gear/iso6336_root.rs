@@ -124,7 +124,8 @@ pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f
         return Err(Outside::ContactRatio(pair.contact_ratio));
     }
     let gear = pair.side(side);
-    let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = gear.specification;
+    let Specification { teeth, module, pressure_angle, rack, .. } = gear.specification;
+    let profile_shift = gear.specification.generating_profile_shift();
     // Inside the end of the flank, along the line of action, by what is shared with another pair.
     let length = gear.flank_end.roll * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;

@@ -67,6 +67,7 @@ impl Random {
                 module,
                 pressure_angle: angle,
                 profile_shift,
+                thickness_allowance: 0.0,
                 rack,
                 tip_radius: None,
                 face_width: width,

@@ -11,6 +11,7 @@ use gearmesh::gear::geometry::outline::Outline;
 use gearmesh::gear::geometry::outline::curve::Local;
 use gearmesh::gear::geometry::outline::junction::{Junction, Place};
 use gearmesh::gear::geometry::outline::sample::{Density, Point};
+use gearmesh::gear::geometry::thickness::Limits;
 use gearmesh::gear::geometry::{Gear, Side};
 use studygraph::table::columns::{Columns, finite};
 use studygraph::table::data::{Data, Row};
@@ -25,6 +26,8 @@ pub struct Drawn {
     pub side: Side,
     pub gear: Gear,
     pub outline: Outline,
+    /// Between which its thickness may be.
+    pub limits: Option<Limits>,
 }
 
 /// The column that says which gear a row is of.

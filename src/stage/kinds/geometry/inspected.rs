@@ -3,40 +3,79 @@
 //! Diameters, since those say them so. Must not know: how any of it is computed.
 
 use super::drawn::{Drawn, of_gear};
+use gearmesh::gear::geometry::error::GeometryError;
 use gearmesh::gear::geometry::inspection::{Balls, Chord, Span};
-use gearmesh::gear::geometry::{Gear, GearPair, Side};
+use gearmesh::gear::geometry::sliding::Backlash;
+use gearmesh::gear::geometry::thickness::Limits;
+use gearmesh::gear::geometry::{Gear, GearPair, Side, Specification};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
-/// A gear and what is measured of it.
-pub struct InspectedRow<'a> {
+/// A gear of a certain thickness and what is measured of it.
+#[derive(Clone)]
+pub struct InspectedRow {
     side: Side,
-    gear: &'a Gear,
+    thickness: &'static str,
+    gear: Gear,
     span: Span,
     /// None where no ball touches both flanks of a space.
     balls: Option<Balls>,
 }
 
-impl<'a> InspectedRow<'a> {
-    #[must_use]
-    pub fn new(drawn: &'a Drawn) -> Self {
-        let gear = &drawn.gear;
-        let span = gear.span(gear.usual_span_teeth());
-        Self { side: drawn.side, gear, span, balls: gear.balls(gear.usual_ball_diameter()) }
-    }
+/// How many rows a gear has.
+#[must_use]
+pub fn count(drawn: &Drawn) -> usize {
+    if drawn.limits.is_some_and(|limits| limits.largest > limits.smallest) { 3 } else { 1 }
+}
 
+/// The gear as it is computed and, where its thickness may differ, at the limits; spans and balls are the same on all.
+///
+/// # Errors
+/// When a limit leaves no gear.
+pub fn rows(drawn: &Drawn) -> Result<Vec<InspectedRow>, GeometryError> {
+    let gear = &drawn.gear;
+    let (teeth, diameter) = (gear.usual_span_teeth(), gear.usual_ball_diameter());
+    let row = |thickness, gear: Gear| {
+        let (span, balls) = (gear.span(teeth), gear.balls(diameter));
+        InspectedRow { side: drawn.side, thickness, gear, span, balls }
+    };
+    let mut rows = vec![row("computed", gear.clone())];
+    if let Some(limits) = drawn.limits.filter(|limits| limits.largest > limits.smallest) {
+        for (thickness, allowance) in [("largest", limits.largest), ("smallest", limits.smallest)] {
+            rows.push(row(thickness, of_thickness(gear, allowance)?));
+        }
+    }
+    Ok(rows)
+}
+
+/// The same gear with another allowance.
+fn of_thickness(gear: &Gear, thickness_allowance: f64) -> Result<Gear, GeometryError> {
+    Gear::new(&Specification { thickness_allowance, ..gear.specification })?.with_tip(gear.tip)
+}
+
+impl InspectedRow {
     fn balls(&self, get: impl Fn(&Balls) -> f64) -> f64 {
         self.balls.as_ref().map_or(f64::NAN, get)
     }
 }
 
 #[must_use]
-pub fn inspection<'a>() -> Columns<InspectedRow<'a>> {
+pub fn inspection() -> Columns<InspectedRow> {
     let description = "What is measured of each gear to know how thick its teeth are (ISO 21771).";
     let over = "Dimension over two balls M_dK; with an odd number of teeth half a pitch from opposite.";
     let usual = "Diameter D_M of the ball that touches the V-circle.";
     let chord = |row: &InspectedRow| -> Chord { row.gear.chord(row.gear.reference_radius) };
+    let which = "Which thickness: computed, or the largest or smallest that is allowed where there are limits.";
+    let allowance = "Thickness allowance A_s on the reference circle.";
     let columns = of_gear(Columns::new("inspection", description), |row: &InspectedRow| row.side)
+        .text("thickness", which, |row| row.thickness)
+        .key()
+        .float("thickness_allowance", "um", allowance, |row| row.gear.specification.thickness_allowance)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("generating_profile_shift", "", "Generating profile shift coefficient x_E.", |row| {
+            row.gear.specification.generating_profile_shift()
+        })
+        .but(|column| column.tolerance(1e-12, 1e-9))
         .float("reference_diameter", "mm", "Reference diameter d.", |row| 2.0 * row.gear.reference_radius)
         .float("base_diameter", "mm", "Base diameter d_b.", |row| 2.0 * row.gear.base_radius)
         .float("tip_diameter", "mm", "Tip diameter d_a.", |row| 2.0 * row.gear.tip_radius)
@@ -127,9 +166,37 @@ pub fn path_points<'a>() -> Columns<PointRow<'a>> {
         .on_demand()
 }
 
+/// A pair, with the backlash that it has within the limits of its gears and of its centre distance.
+pub struct WorkingRow<'a> {
+    pair: &'a GearPair,
+    smallest: Backlash,
+    largest: Backlash,
+}
+
+impl<'a> WorkingRow<'a> {
+    /// # Errors
+    /// When gears at a limit cannot run together.
+    pub fn new(
+        pair: &'a GearPair,
+        limits: [Option<Limits>; 2],
+        centre_distance: [f64; 2],
+    ) -> Result<Self, GeometryError> {
+        let gears = [&pair.pinion, &pair.gear];
+        let at = |limit: fn(Limits) -> f64, distance: f64| {
+            let of = |gear: usize| -> Result<Gear, GeometryError> {
+                limits[gear].map_or_else(|| Ok(gears[gear].clone()), |limits| of_thickness(gears[gear], limit(limits)))
+            };
+            Backlash::of([&of(0)?, &of(1)?], pair.centre_distance + distance)
+        };
+        let smallest = at(|limits| limits.largest, centre_distance[0])?;
+        let largest = at(|limits| limits.smallest, centre_distance[1])?;
+        Ok(Self { pair, smallest, largest })
+    }
+}
+
 /// One row.
 #[must_use]
-pub fn working<'a>() -> Columns<&'a GearPair> {
+pub fn working<'a>() -> Columns<WorkingRow<'a>> {
     let tip = |pair: &GearPair, side: Side| {
         let zone = pair.zone_points();
         let length = if side == Side::Pinion { zone.e - zone.c } else { zone.c - zone.a };
@@ -138,46 +205,59 @@ pub fn working<'a>() -> Columns<&'a GearPair> {
     let clearance = |pair: &GearPair, side: Side| {
         pair.centre_distance - pair.side(side).root_radius - pair.side(side.other()).tip_radius
     };
-    Columns::new("working", "The pair on its centre distance: what follows for both gears (ISO 21771).")
-        .float("pinion_working_diameter", "mm", "Working pitch diameter d_w1.", |pair: &&GearPair| {
-            2.0 * pair.working_radius(Side::Pinion)
+    let columns = Columns::new("working", "The pair on its centre distance: what follows for both gears (ISO 21771).")
+        .float("pinion_working_diameter", "mm", "Working pitch diameter d_w1.", |row: &WorkingRow| {
+            2.0 * row.pair.working_radius(Side::Pinion)
         })
-        .float("gear_working_diameter", "mm", "Working pitch diameter d_w2.", |pair| {
-            2.0 * pair.working_radius(Side::Gear)
+        .float("gear_working_diameter", "mm", "Working pitch diameter d_w2.", |row| {
+            2.0 * row.pair.working_radius(Side::Gear)
         })
-        .float("length_of_contact", "mm", "Length of contact g_α, from A to E.", |pair| {
-            pair.end_of_contact - pair.start_of_contact
+        .float("length_of_contact", "mm", "Length of contact g_α, from A to E.", |row| {
+            row.pair.end_of_contact - row.pair.start_of_contact
         })
-        .float("pinion_addendum_contact_ratio", "", "Addendum contact ratio ε_1, from C to E.", move |pair| {
-            tip(pair, Side::Pinion)
+        .float("pinion_addendum_contact_ratio", "", "Addendum contact ratio ε_1, from C to E.", move |row| {
+            tip(row.pair, Side::Pinion)
         })
-        .float("gear_addendum_contact_ratio", "", "Addendum contact ratio ε_2, from A to C.", move |pair| {
-            tip(pair, Side::Gear)
+        .float("gear_addendum_contact_ratio", "", "Addendum contact ratio ε_2, from A to C.", move |row| {
+            tip(row.pair, Side::Gear)
         })
         .float(
             "pinion_clearance",
             "mm",
             "Clearance c_1 from the pinion's root circle to the gear's tip circle.",
-            move |pair| clearance(pair, Side::Pinion),
+            move |row| clearance(row.pair, Side::Pinion),
         )
         .but(|column| column.tolerance(1e-9, 1e-9))
         .float(
             "gear_clearance",
             "mm",
             "Clearance c_2 from the gear's root circle to the pinion's tip circle.",
-            move |pair| clearance(pair, Side::Gear),
+            move |row| clearance(row.pair, Side::Gear),
         )
-        .but(|column| column.tolerance(1e-9, 1e-9))
-        .float(
-            "circumferential_backlash",
-            "um",
-            "Circumferential backlash j_wt on the working pitch circles.",
-            |pair| pair.backlash().circumferential,
-        )
-        .but(|column| column.tolerance(1e-6, 1e-9))
-        .float("normal_backlash", "um", "Normal backlash j_bn.", |pair| pair.backlash().normal)
-        .but(|column| column.tolerance(1e-6, 1e-9))
-        .float("radial_backlash", "um", "Radial backlash j_r = j_wt/(2 tan α_w).", |pair| pair.backlash().radial)
-        .but(|column| column.tolerance(1e-6, 1e-9))
+        .but(|column| column.tolerance(1e-9, 1e-9));
+    BACKLASHES
+        .iter()
+        .fold(columns, |columns, &(name, description, get)| {
+            columns.float(name, "um", description, move |row| get(row)).but(|column| column.tolerance(1e-6, 1e-9))
+        })
         .on_demand()
 }
+
+type Get = fn(&WorkingRow) -> f64;
+
+/// Name, what it is, and how it is had.
+const BACKLASHES: [(&str, &str, Get); 7] = [
+    ("circumferential_backlash", "Circumferential backlash j_wt on the working pitch circles.", |row| {
+        row.pair.backlash().circumferential
+    }),
+    (
+        "smallest_circumferential_backlash",
+        "The smallest j_wt within the limits of thickness and centre distance.",
+        |row| row.smallest.circumferential,
+    ),
+    ("largest_circumferential_backlash", "The largest j_wt within them.", |row| row.largest.circumferential),
+    ("normal_backlash", "Normal backlash j_bn.", |row| row.pair.backlash().normal),
+    ("smallest_normal_backlash", "The smallest j_bn within the limits.", |row| row.smallest.normal),
+    ("largest_normal_backlash", "The largest j_bn within them.", |row| row.largest.normal),
+    ("radial_backlash", "Radial backlash j_r = j_wt/(2 tan α_w).", |row| row.pair.backlash().radial),
+];

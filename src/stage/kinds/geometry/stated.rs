@@ -4,14 +4,15 @@
 
 use std::f64::consts::FRAC_PI_4;
 
-use declare::Declared;
 use declare::error::Diagnostic;
 use declare::error::Place;
 use declare::record::Record;
 use declare::units::{ANGLE, LENGTH};
+use declare::{Declared, Words};
 use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::thickness::{self, Limits};
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
 
@@ -34,9 +35,34 @@ pub struct StatedGears {
     pub pinion: StatedGear,
     /// The mating gear; without it the pinion is a gear alone, to be drawn.
     pub gear: Option<StatedGear>,
-    /// Centre distance a_w; zero backlash when it is not given.
+    /// Centre distance a_w; the one without backlash of nominal profile shifts when it is not given.
     #[declared(minimum = 1e-6, maximum = 1e3, dimension = LENGTH, example = "90 mm")]
     pub centre_distance: Option<f64>,
+    /// What becomes of a pair where a tip would touch below the mate's root form circle.
+    #[declared(default = "usable")]
+    pub interference: Interference,
+    /// What the centre distance may be off by: the limits of the backlash say what comes of it.
+    pub centre_distance_allowance: Option<CentreDistanceAllowance>,
+}
+
+/// Where there is no involute for a tip to touch.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum Interference {
+    /// contact ends at the form circle, with a warning, unless the tip would cut into the root
+    Usable,
+    /// the pair is refused
+    Refuse,
+}
+
+/// Deviations from the centre distance (DIN 3964).
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+pub struct CentreDistanceAllowance {
+    /// Upper allowance A_ae.
+    #[declared(dimension = LENGTH, minimum = -0.1, maximum = 0.1, example = "20 um")]
+    pub upper: f64,
+    /// Lower allowance A_ai.
+    #[declared(dimension = LENGTH, minimum = -0.1, maximum = 0.1, example = "-20 um")]
+    pub lower: f64,
 }
 
 /// One of the gears.
@@ -54,12 +80,17 @@ pub struct StatedGear {
     /// Profile shift coefficient x.
     #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
     pub profile_shift: f64,
+    /// Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance are then
+    /// nominal.
+    pub tooth_thickness: Option<Box<dyn thickness::Stated>>,
     /// Tip radius r_a, when it is not m(z/2 + h_aP* + x).
     #[declared(minimum = 1e-6, maximum = 1e4, dimension = LENGTH, example = "39 mm")]
     pub tip_radius: Option<f64>,
     /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
     #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
     pub tip_shortening: Option<f64>,
+    /// Basic rack that cuts this gear, when it is not the common one.
+    pub rack: Option<Rack>,
     /// Root of this gear's teeth in its outline, when it is not the common one.
     pub root: Option<Box<dyn Root>>,
     /// Corners of this gear's tips, when they are not the common ones.
@@ -85,19 +116,25 @@ impl StatedGears {
         let (names, own) = (Self::NAMES, StatedGear::NAMES);
         let inside = |group, field| record.inside(group).place_of(field);
         let gear = Self::side(error);
+        let rack = |field| {
+            let of = record.inside(gear);
+            let of = if of.entry(own.rack).is_some() { of.inside(own.rack) } else { record.inside(names.rack) };
+            of.place_of(field)
+        };
         match error.subject() {
             Subject::Parameter(parameter) => match parameter {
                 Parameter::Teeth => inside(gear, own.teeth),
                 Parameter::ProfileShift => inside(gear, own.profile_shift),
                 Parameter::TipRadius => inside(gear, own.tip_radius),
+                Parameter::ToothThickness => inside(gear, own.tooth_thickness),
                 Parameter::FaceWidth => inside(gear, own.face_width),
                 Parameter::BoreRadius => inside(gear, own.bore_radius),
                 Parameter::Module => record.place_of(names.module),
                 Parameter::PressureAngle => record.place_of(names.pressure_angle),
                 Parameter::CentreDistance => record.place_of(names.centre_distance),
-                Parameter::RackAddendum => inside(names.rack, Rack::NAMES.addendum),
-                Parameter::RackDedendum => inside(names.rack, Rack::NAMES.dedendum),
-                Parameter::RackTipRadius => inside(names.rack, Rack::NAMES.tip_radius),
+                Parameter::RackAddendum => rack(Rack::NAMES.addendum),
+                Parameter::RackDedendum => rack(Rack::NAMES.dedendum),
+                Parameter::RackTipRadius => rack(Rack::NAMES.tip_radius),
                 Parameter::YoungsModulus => inside(names.material, Material::NAMES.youngs_modulus),
                 Parameter::PoissonRatio => inside(names.material, Material::NAMES.poisson_ratio),
             },
@@ -131,8 +168,17 @@ impl StatedGears {
     pub fn pair(&self, common: Tip) -> Option<Result<GearPair, GeometryError>> {
         let gear = self.gear.as_ref()?;
         let gears = [&self.pinion, gear];
-        let (specifications, tips) = (gears.map(|gear| self.specification(gear)), gears.map(|gear| gear.tip(common)));
-        Some(GearPair::with_tips(specifications, tips, self.centre_distance))
+        let tips = gears.map(|gear| gear.tip(common));
+        let specification = |gear, side| self.specification(gear).map_err(|error| error.on(side));
+        let pair = || {
+            let specifications = [specification(gears[0], Side::Pinion)?, specification(gears[1], Side::Gear)?];
+            let pair = GearPair::with_tips(specifications, tips, self.centre_distance)?;
+            if self.interference == Interference::Refuse {
+                pair.refuse_interference()?;
+            }
+            Ok(pair)
+        };
+        Some(pair())
     }
 
     /// The pinion without a mate.
@@ -140,16 +186,17 @@ impl StatedGears {
     /// # Errors
     /// When it cannot be.
     pub fn alone(&self, common: Tip) -> Result<Gear, GeometryError> {
-        Gear::new(&self.specification(&self.pinion)).and_then(|gear| gear.with_tip(self.pinion.tip(common)))
+        Gear::new(&self.specification(&self.pinion)?).and_then(|gear| gear.with_tip(self.pinion.tip(common)))
     }
 
-    fn specification(&self, gear: &StatedGear) -> Specification {
-        let (module, rack) = (self.module, self.rack);
-        Specification {
+    fn specification(&self, gear: &StatedGear) -> Result<Specification, GeometryError> {
+        let (module, rack) = (self.module, gear.rack.unwrap_or(self.rack));
+        let nominal = Specification {
             teeth: gear.teeth,
             module,
             pressure_angle: self.pressure_angle,
             profile_shift: gear.profile_shift,
+            thickness_allowance: 0.0,
             rack,
             tip_radius: gear.tip_radius.or_else(|| {
                 let height = rack.addendum + gear.profile_shift - gear.tip_shortening?;
@@ -158,11 +205,21 @@ impl StatedGears {
             face_width: gear.face_width,
             bore_radius: gear.bore_radius,
             material: gear.material.unwrap_or(self.material),
-        }
+        };
+        let limits = gear.limits(&nominal)?;
+        Ok(Specification { thickness_allowance: limits.map_or(0.0, Limits::middle), ..nominal })
     }
 }
 
 impl StatedGear {
+    /// The allowances of its thickness, where it has any.
+    ///
+    /// # Errors
+    /// When no gear like it is so thick.
+    pub fn limits(&self, specification: &Specification) -> Result<Option<Limits>, GeometryError> {
+        self.tooth_thickness.as_ref().map(|stated| stated.limits(specification)).transpose()
+    }
+
     fn tip(&self, common: Tip) -> Tip {
         self.tip.as_ref().map_or(common, |tip| tip.tip())
     }

@@ -4,8 +4,8 @@
 
 use super::drawn::{Drawn, of_gear};
 use declare::units::in_unit;
-use gearmesh::gear::geometry::GearPair;
 use gearmesh::gear::geometry::validity::{Mating, Validity};
+use gearmesh::gear::geometry::{GearPair, Side};
 use studygraph::table::columns::Columns;
 
 /// A gear, and how it meets its mate if it has one.
@@ -74,10 +74,15 @@ fn of_mate(columns: Columns<ValidRow>) -> Columns<ValidRow> {
                     it; negative where it cuts in.";
     let shortening = "By how many modules the mate's tip is to be lower for the rack's own clearance; negative where \
                       there is more.";
-    let reserve = "Roll angle from the form radius to the active radius.";
+    let reserve = "Roll angle from the form radius to where the mate's tip would reach on an involute.";
     let clearance = "Between the root circle and the mate's tip.";
     columns
-        .float("active_radius", "mm", "Where the mate's tip reaches.", |row| row.mating(|mating| mating.active_radius))
+        .float(
+            "active_radius",
+            "mm",
+            "Down to where the flank works: where the mate's tip reaches, or the form circle.",
+            |row| row.mating(|mating| mating.active_radius),
+        )
         .float("contact_reserve", "deg", reserve, |row| row.mating(|mating| mating.contact_reserve))
         .but(|column| column.tolerance(1e-9, 1e-9))
         .flag("interference", "Whether the mate's tip reaches below the flank.", |row| row.fails(Mating::interferes))
@@ -94,6 +99,23 @@ fn of_mate(columns: Columns<ValidRow>) -> Columns<ValidRow> {
         })
 }
 
+/// What is to be said of a pair whose contact ends at a form circle.
+pub fn curtailed(pair: &GearPair) -> impl Iterator<Item = String> + '_ {
+    let sides = [Side::Pinion, Side::Gear].into_iter().filter(|side| pair.is_curtailed(*side));
+    sides.map(|side| {
+        let gear = pair.side(side);
+        let lost = gear.base_radius * (gear.form_roll - pair.reached_roll(side));
+        let [form, lost] = [gear.form_radius, lost].map(|length| in_unit(length, "mm"));
+        let why = if gear.undercut { "where its undercut ends" } else { "where its root begins" };
+        format!(
+            "{}: contact ends at its root form circle (radius {form:.6} mm), {why}: {lost:.3} mm of the path that the mate's tip \
+             allows are lost, and the contact ratio is {:.4}",
+            side.name(),
+            pair.contact_ratio
+        )
+    })
+}
+
 /// What is to be said of a root that the mate does not pass.
 #[must_use]
 pub fn warnings(drawn: &Drawn, mating: &Mating) -> Vec<String> {
@@ -101,7 +123,8 @@ pub fn warnings(drawn: &Drawn, mating: &Mating) -> Vec<String> {
     let mut said = Vec::new();
     if mating.interferes() {
         let form = drawn.gear.radius_at(drawn.outline.form_roll);
-        let [reached, form] = [mating.active_radius, form].map(|radius| in_unit(radius, "mm"));
+        let reached = drawn.gear.radius_at(drawn.outline.form_roll + mating.contact_reserve);
+        let [reached, form] = [reached, form].map(|radius| in_unit(radius, "mm"));
         said.push(format!(
             "{side}: the mate's tip reaches to a radius of {reached:.6} mm, but the flank as drawn begins at {form:.6} mm"
         ));

@@ -246,6 +246,7 @@ mod tests {
             module: 3e-3,
             pressure_angle: 20f64.to_radians(),
             profile_shift: shift[index],
+            thickness_allowance: 0.0,
             rack,
             tip_radius: None,
             face_width: [20e-3, 18e-3][index],

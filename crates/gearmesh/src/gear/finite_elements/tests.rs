@@ -27,6 +27,7 @@ fn shifted(teeth: u32, profile_shift: f64, bore_ratio: f64) -> Specification {
         module: 1.0,
         pressure_angle: 20f64.to_radians(),
         profile_shift,
+        thickness_allowance: 0.0,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
         tip_radius: None,
         face_width: 1.0,

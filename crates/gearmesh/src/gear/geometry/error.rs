@@ -205,6 +205,32 @@ pub enum Problem {
         /// x_min: the least profile shift without undercut \[modules\].
         minimum: Plain,
     },
+    /// A tooth is to be thicker at least than at most.
+    #[error("the smallest tooth is {smallest}, but must be at most the largest, {largest}")]
+    ThicknessLimits {
+        /// As stated: an allowance, a span, a dimension over balls \[m\].
+        largest: Millimetres,
+        /// Likewise \[m\].
+        smallest: Millimetres,
+    },
+    /// Balls that measure as little would lie inside the base circle.
+    #[error(
+        "the dimension over balls is {found}, but must be above {minimum}, where their centres are on the base circle"
+    )]
+    BallsInside {
+        /// M_dK \[m\].
+        found: Millimetres,
+        /// The least M_dK \[m\].
+        minimum: Millimetres,
+    },
+    /// Teeth that are made so much thinner do not exist.
+    #[error("the thickness allowance is {allowance}, but must be above {minimum}, where the tooth vanishes")]
+    NoTooth {
+        /// A_s \[m\].
+        allowance: Millimetres,
+        /// A_s at which the tooth has no thickness at the base circle \[m\].
+        minimum: Millimetres,
+    },
     /// A chamfer or rounding of the tip does not fit the tooth.
     #[error(
         "the tip is broken by {size}, but must be by {largest} at most, where the two flanks' breaks meet or no flank is left"
@@ -267,6 +293,8 @@ pub enum Parameter {
     PoissonRatio,
     /// a_w.
     CentreDistance,
+    /// A_s, W_k or M_dK.
+    ToothThickness,
 }
 
 impl Parameter {
@@ -285,6 +313,7 @@ impl Parameter {
             Self::YoungsModulus => "Young's modulus",
             Self::PoissonRatio => "Poisson's ratio",
             Self::CentreDistance => "the centre distance",
+            Self::ToothThickness => "the tooth thickness",
         }
     }
 }
@@ -319,6 +348,9 @@ impl GeometryError {
             Problem::Pointed { tip_is_given: false, .. } | Problem::ProfileShiftSum { .. } => Parameter::ProfileShift,
             Problem::Pointed { .. } | Problem::NoClearance { .. } => Parameter::TipRadius,
             Problem::Bore { .. } => Parameter::BoreRadius,
+            Problem::ThicknessLimits { .. } | Problem::BallsInside { .. } | Problem::NoTooth { .. } => {
+                Parameter::ToothThickness
+            }
             Problem::CentreDistance { .. } => Parameter::CentreDistance,
             Problem::ContactRatio { .. } => Parameter::RackAddendum,
         })

@@ -1,6 +1,6 @@
 //! One gear from its specification, or why it is impossible.
 //!
-//! r = m z/2, r_b = r cos α, r_a = r + m(h_aP + x), r_f = r − m(h_fP − x), ψ_b = (π/2 + 2x tan α)/z + inv α.
+//! r = m z/2, r_b = r cos α, r_a = r + m(h_aP + x), r_f = r − m(h_fP − x_E), ψ_b = (π/2 + 2x_E tan α)/z + inv α.
 //! Source: ISO 21771-1:2024, sections 5 and 7. Must not know: the mate.
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_4};
@@ -27,29 +27,37 @@ impl Gear {
         check_ranges(specification)?;
         check_rack(specification)?;
         let Specification { teeth, module, pressure_angle, profile_shift, rack, .. } = *specification;
+        let generating_shift = specification.generating_profile_shift();
         let reference_radius = 0.5 * module * f64::from(teeth);
         let base_radius = reference_radius * libm::cos(pressure_angle);
-        let root_radius = reference_radius - module * (rack.dedendum - profile_shift);
+        let root_radius = reference_radius - module * (rack.dedendum - generating_shift);
         let tip_radius =
             specification.tip_radius.unwrap_or(reference_radius + module * (rack.addendum + profile_shift));
         if root_radius <= 0.0 {
-            let largest = 0.5 * f64::from(teeth) + profile_shift;
+            let largest = 0.5 * f64::from(teeth) + generating_shift;
             return Err(out_of_range(
                 Parameter::RackDedendum,
                 &Plain(rack.dedendum),
                 format!("below {} modules, where the root circle vanishes", Plain(largest)),
             ));
         }
-        let half_base_angle =
-            (FRAC_PI_2 + 2.0 * profile_shift * libm::tan(pressure_angle)) / f64::from(teeth) + involute(pressure_angle);
+        let half_base_angle = (FRAC_PI_2 + 2.0 * generating_shift * libm::tan(pressure_angle)) / f64::from(teeth)
+            + involute(pressure_angle);
         if half_base_angle <= 0.0 {
             let at_reference = FRAC_PI_2 + f64::from(teeth) * involute(pressure_angle);
             let minimum = -at_reference / (2.0 * libm::tan(pressure_angle));
-            return Err(out_of_range(
-                Parameter::ProfileShift,
-                &Plain(profile_shift),
-                format!("above {} modules, where the tooth vanishes", Plain(minimum)),
-            ));
+            // Without an allowance that is what the profile shift must be above.
+            return Err(if specification.thickness_allowance < 0.0 {
+                let [allowance, minimum] =
+                    [specification.thickness_allowance, specification.allowance_of(minimum)].map(Millimetres);
+                Problem::NoTooth { allowance, minimum }.into()
+            } else {
+                out_of_range(
+                    Parameter::ProfileShift,
+                    &Plain(profile_shift),
+                    format!("above {} modules, where the tooth vanishes", Plain(minimum)),
+                )
+            });
         }
         let (_, joint) = Trochoid::generate(specification, base_radius);
         let mut gear = Self {

@@ -1,14 +1,12 @@
-//! What is measured of a gear to know how thick its teeth are: spans, balls in spaces, chords; and the generating profile shift
-//! that a measurement says.
+//! What is measured of a gear to know how thick its teeth are: spans, balls in spaces, chords.
 //!
-//! A gear whose teeth are thinner by an allowance A_s is one that was cut with x_E = x + A_s/(2 m tan α) and turned to the tip
-//! circle of x, so that all of this holds for it too. Lengths in m, angles in rad. Source: ISO 21771-1:2024, clauses on tooth
+//! Lengths in m, angles in rad. Source: ISO 21771-1:2024, clauses on tooth
 //! thickness, span measurement and dimensions over balls. Must not know: the mate.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::involute::{inverse_involute, involute};
-use super::{Gear, Specification};
+use super::Gear;
+use super::involute::inverse_involute;
 
 /// A span over teeth, between two parallel planes that touch flanks.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,40 +47,8 @@ pub struct Chord {
     pub height: f64,
 }
 
-/// x_E: the generating profile shift of a gear whose teeth are thicker on the reference circle by an allowance A_s \[m\].
-#[must_use]
-pub fn generating_profile_shift(specification: &Specification, allowance: f64) -> f64 {
-    let tangent = libm::tan(specification.pressure_angle);
-    specification.profile_shift + allowance / (2.0 * specification.module * tangent)
-}
-
-/// The generating profile shift at which a span over so many teeth has a length \[m\].
-#[must_use]
-pub fn profile_shift_of_span(specification: &Specification, teeth: u32, length: f64) -> f64 {
-    let Specification { module, pressure_angle, .. } = *specification;
-    let (z, k) = (f64::from(specification.teeth), f64::from(teeth));
-    let (sine, cosine) = libm::sincos(pressure_angle);
-    (length / (module * cosine) - PI * (k - 0.5) - z * involute(pressure_angle)) * cosine / (2.0 * sine)
-}
-
-/// The generating profile shift at which the dimension over two balls is so large \[m\]; none where the balls would lie inside
-/// the base circle.
-#[must_use]
-pub fn profile_shift_of_balls(specification: &Specification, diameter: f64, over_two: f64) -> Option<f64> {
-    let Specification { module, pressure_angle, .. } = *specification;
-    let z = f64::from(specification.teeth);
-    let base_radius = 0.5 * module * z * libm::cos(pressure_angle);
-    let centre = 0.5 * (over_two - diameter) / odd(specification.teeth);
-    let ratio = base_radius / centre;
-    (ratio > 0.0 && ratio <= 1.0).then(|| {
-        let half_base_angle = involute(libm::acos(ratio)) - 0.5 * diameter / base_radius + PI / z;
-        let shifted = half_base_angle - involute(pressure_angle) - 0.5 * PI / z;
-        0.5 * z * shifted / libm::tan(pressure_angle)
-    })
-}
-
 /// By what a dimension over two balls is smaller than over opposite ones.
-fn odd(teeth: u32) -> f64 {
+pub(super) fn odd(teeth: u32) -> f64 {
     if teeth.is_multiple_of(2) { 1.0 } else { libm::cos(FRAC_PI_2 / f64::from(teeth)) }
 }
 
@@ -97,9 +63,9 @@ impl Gear {
         (self.form_roll..=self.flank_end.roll).contains(&roll)
     }
 
-    /// r_v: the V-circle m(z/2 + x), within the flank: where the middle of the flank is measured.
+    /// r_v: the V-circle m(z/2 + x_E), within the flank: where the middle of the flank is measured.
     fn middle_radius(&self) -> f64 {
-        let Specification { module, profile_shift, .. } = self.specification;
+        let (module, profile_shift) = (self.specification.module, self.specification.generating_profile_shift());
         let [form, end] = [self.form_roll, self.flank_end.roll].map(|roll| self.radius_at(roll));
         (self.reference_radius + module * profile_shift).clamp(form, end)
     }

@@ -11,6 +11,7 @@ pub mod outline;
 pub mod pair;
 pub mod root;
 pub mod sliding;
+pub mod thickness;
 pub mod tip_path;
 pub mod trochoid;
 pub mod validity;
@@ -53,6 +54,9 @@ pub struct Specification {
     pub pressure_angle: f64,
     /// x, in units of the module.
     pub profile_shift: f64,
+    /// A_s \[m\]: by how much its teeth are thicker on the reference circle than x says; below 0 for backlash. Tip circle and
+    /// centre distance stay those of x.
+    pub thickness_allowance: f64,
     /// Basic rack that generates its teeth.
     pub rack: Rack,
     /// r_a \[m\] when it is not m(z/2 + h_aP* + x).

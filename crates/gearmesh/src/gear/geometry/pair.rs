@@ -7,6 +7,7 @@
 use super::error::{GeometryError, Millimetres, Parameter, Plain, Problem, Reached};
 use super::involute::{inverse_involute, involute};
 use super::outline::tip::Tip;
+use super::validity::root_distance;
 use super::{Gear, GearPair, Side, Specification};
 
 /// The named points of the path of contact, as path positions s \[m\].
@@ -24,6 +25,8 @@ pub struct ZonePoints {
     pub e: f64,
 }
 
+/// How deep a tip may be in the mate's root \[modules\]: how well the distance between curves is known.
+const PENETRATION: f64 = 1e-9;
 /// How much nearer the gears may be than without backlash \[modules\]: room for a rounded centre distance.
 const OVERLAP: f64 = 1e-3;
 
@@ -53,10 +56,14 @@ impl GearPair {
         };
         let (pinion, gear) = (made(&pinion, tips[0], Side::Pinion)?, made(&gear, tips[1], Side::Gear)?);
         check_same_rack(&pinion, &gear)?;
-        let without_backlash = angle_without_backlash(&pinion, &gear)?;
         let base_sum = pinion.base_radius + gear.base_radius;
-        let nearest = base_sum / libm::cos(without_backlash);
-        let centre_distance = centre_distance.unwrap_or(nearest);
+        let without_backlash = |shift: fn(&Specification) -> f64| -> Result<f64, GeometryError> {
+            Ok(base_sum / libm::cos(angle_without_backlash(&pinion, &gear, shift)?))
+        };
+        let nominal = without_backlash(|specification| specification.profile_shift)?;
+        let centre_distance = centre_distance.unwrap_or(nominal);
+        // Thinner teeth fit on a smaller one.
+        let nearest = without_backlash(Specification::generating_profile_shift)?;
         let minimum = nearest - OVERLAP * pinion.specification.module;
         if !(centre_distance >= minimum && centre_distance.is_finite()) {
             let (found, minimum) = (Millimetres(centre_distance), Millimetres(nearest));
@@ -65,8 +72,7 @@ impl GearPair {
         let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
         let base_pitch =
             std::f64::consts::PI * pinion.specification.module * libm::cos(pinion.specification.pressure_angle);
-        let start_of_contact = tangent_length - gear.base_radius * gear.flank_end.roll;
-        let end_of_contact = pinion.base_radius * pinion.flank_end.roll;
+        let [start_of_contact, end_of_contact] = ends_of_contact(&pinion, &gear, tangent_length);
         let pair = Self {
             working_pressure_angle: libm::atan2(tangent_length, base_sum),
             contact_ratio: (end_of_contact - start_of_contact) / base_pitch,
@@ -100,24 +106,61 @@ impl GearPair {
             return Err(Problem::ContactRatio { ratio: Plain(self.contact_ratio) }.into());
         }
         for side in [Side::Pinion, Side::Gear] {
-            let (own, mate, roll) = (self.side(side), self.side(side.other()), self.lowest_roll(side));
-            // A rounding's worth of overlap is none.
-            if roll < own.form_roll - 1e-12 {
-                let reach = self.tangent_length - own.base_radius * own.form_roll;
-                return Err(GeometryError::from(Problem::Interference {
-                    mate_tip: Millimetres(mate.tip_radius),
-                    reached: if roll < 0.0 {
-                        Reached::InsideBaseCircle
-                    } else {
-                        Reached::Radius(Millimetres(own.radius_at(roll)))
-                    },
-                    form: Millimetres(own.form_radius),
-                    largest: Millimetres(libm::hypot(mate.base_radius, reach)),
-                })
-                .on(side));
+            let own = self.side(side);
+            if self.is_curtailed(side) && root_distance(self, side)? < -PENETRATION * own.specification.module {
+                return Err(self.interference(side));
             }
         }
         Ok(())
+    }
+
+    /// Refuses a pair one of whose tips would touch below the mate's root form circle, wherever contact ends.
+    ///
+    /// # Errors
+    /// The first gear that has no involute where the mate's tip would touch.
+    pub fn refuse_interference(&self) -> Result<(), GeometryError> {
+        let curtailed = [Side::Pinion, Side::Gear].into_iter().find(|side| self.is_curtailed(*side));
+        curtailed.map_or(Ok(()), |side| Err(self.interference(side)))
+    }
+
+    fn interference(&self, side: Side) -> GeometryError {
+        let (own, mate, roll) = (self.side(side), self.side(side.other()), self.reached_roll(side));
+        let reach = self.tangent_length - own.base_radius * own.form_roll;
+        GeometryError::from(Problem::Interference {
+            mate_tip: Millimetres(mate.tip_radius),
+            reached: if roll < 0.0 {
+                Reached::InsideBaseCircle
+            } else {
+                Reached::Radius(Millimetres(own.radius_at(roll)))
+            },
+            form: Millimetres(own.form_radius),
+            largest: Millimetres(libm::hypot(mate.base_radius, reach)),
+        })
+        .on(side)
+    }
+
+    /// The roll angle of a gear to which its mate's tip would reach if the involute went on; below the root form circle where
+    /// [`GearPair::is_curtailed`].
+    #[must_use]
+    pub fn reached_roll(&self, side: Side) -> f64 {
+        let (own, mate) = (self.side(side), self.side(side.other()));
+        (self.tangent_length - mate.base_radius * mate.flank_end.roll) / own.base_radius
+    }
+
+    /// Whether contact ends at the root form circle of a gear, short of where the mate's tip would end it.
+    #[must_use]
+    pub fn is_curtailed(&self, side: Side) -> bool {
+        // A rounding's worth of overlap is none.
+        self.reached_roll(side) < self.side(side).form_roll - 1e-12
+    }
+
+    /// The roll angle of a gear up to which its mate's flank lets it work: that of its tip usable circle d_Na.
+    #[must_use]
+    pub fn highest_roll(&self, side: Side) -> f64 {
+        match side {
+            Side::Pinion => self.roll(side, self.end_of_contact),
+            Side::Gear => self.roll(side, self.start_of_contact),
+        }
     }
 
     /// The points A to E of the path of contact.
@@ -141,7 +184,7 @@ impl GearPair {
         }
     }
 
-    /// The roll angle of a gear to which its mate's tip reaches.
+    /// The roll angle of a gear down to which it works: that of its root usable circle d_Nf.
     #[must_use]
     pub fn lowest_roll(&self, side: Side) -> f64 {
         match side {
@@ -155,6 +198,19 @@ impl GearPair {
     pub fn contact_width(&self) -> f64 {
         self.pinion.specification.face_width.min(self.gear.specification.face_width)
     }
+}
+
+/// Contact goes from where the gear's flank ends to where the pinion's does, as far as the mate has an involute.
+fn ends_of_contact(pinion: &Gear, gear: &Gear, tangent_length: f64) -> [f64; 2] {
+    let start = tangent_length - gear.base_radius * gear.flank_end.roll;
+    let end = pinion.base_radius * pinion.flank_end.roll;
+    // A rounding's worth of overlap is none.
+    let forms =
+        [pinion.base_radius * (pinion.form_roll - 1e-12), tangent_length - gear.base_radius * (gear.form_roll - 1e-12)];
+    [
+        if start < forms[0] { pinion.base_radius * pinion.form_roll } else { start },
+        if end > forms[1] { tangent_length - gear.base_radius * gear.form_roll } else { end },
+    ]
 }
 
 fn check_same_rack(pinion: &Gear, gear: &Gear) -> Result<(), GeometryError> {
@@ -172,10 +228,10 @@ fn check_same_rack(pinion: &Gear, gear: &Gear) -> Result<(), GeometryError> {
     Ok(())
 }
 
-fn angle_without_backlash(pinion: &Gear, gear: &Gear) -> Result<f64, GeometryError> {
+fn angle_without_backlash(pinion: &Gear, gear: &Gear, shift: fn(&Specification) -> f64) -> Result<f64, GeometryError> {
     let angle = pinion.specification.pressure_angle;
     let teeth = f64::from(pinion.specification.teeth) + f64::from(gear.specification.teeth);
-    let sum = pinion.specification.profile_shift + gear.specification.profile_shift;
+    let sum = shift(&pinion.specification) + shift(&gear.specification);
     let value = involute(angle) + 2.0 * libm::tan(angle) * sum / teeth;
     if value <= 0.0 {
         let minimum = Plain(-0.5 * involute(angle) * teeth / libm::tan(angle));

@@ -3,7 +3,8 @@
 //! At path position s the flanks have radii of curvature s and L − s, and the sliding speed is proportional to the distance from
 //! the pitch point C. Lengths in m. Source: ISO 21771-1:2024, clauses on sliding conditions and backlash. Must not know: load.
 
-use super::{GearPair, Side};
+use super::error::{GeometryError, Millimetres, Problem};
+use super::{Gear, GearPair, Side};
 
 /// The play between the flanks that do not drive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -46,15 +47,34 @@ impl GearPair {
     /// j at the thicknesses that the teeth have.
     #[must_use]
     pub fn backlash(&self) -> Backlash {
-        let [pinion, gear] = [Side::Pinion, Side::Gear].map(|side| {
-            let radius = self.working_radius(side);
+        Backlash::at([&self.pinion, &self.gear], self.working_pressure_angle)
+    }
+}
+
+impl Backlash {
+    /// That of two gears on a centre distance; below 0 where their teeth do not fit into each other.
+    ///
+    /// # Errors
+    /// When their base circles overlap.
+    pub fn of(gears: [&Gear; 2], centre_distance: f64) -> Result<Self, GeometryError> {
+        let base_sum = gears[0].base_radius + gears[1].base_radius;
+        if centre_distance.is_nan() || centre_distance <= base_sum {
+            let [found, minimum] = [centre_distance, base_sum].map(Millimetres);
+            return Err(Problem::CentreDistance { found, minimum }.into());
+        }
+        let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
+        Ok(Self::at(gears, libm::atan2(tangent_length, base_sum)))
+    }
+
+    fn at(gears: [&Gear; 2], working_pressure_angle: f64) -> Self {
+        let (sine, cosine) = libm::sincos(working_pressure_angle);
+        let [pinion, gear] = gears.map(|gear| {
+            let radius = gear.base_radius / cosine;
             // The difference to half a pitch, so that no backlash comes out as none.
-            let of = self.side(side);
-            radius * (0.5 * std::f64::consts::PI / f64::from(of.specification.teeth) - of.half_angle(radius))
+            radius * (0.5 * std::f64::consts::PI / f64::from(gear.specification.teeth) - gear.half_angle(radius))
         });
         let circumferential = 2.0 * (pinion + gear);
-        let (sine, cosine) = libm::sincos(self.working_pressure_angle);
-        Backlash { circumferential, normal: circumferential * cosine, radial: 0.5 * circumferential * cosine / sine }
+        Self { circumferential, normal: circumferential * cosine, radial: 0.5 * circumferential * cosine / sine }
     }
 }
 

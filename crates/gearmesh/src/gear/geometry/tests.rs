@@ -5,6 +5,7 @@ mod meshing;
 mod outline;
 mod passing;
 mod refusals;
+mod usable;
 
 use std::f64::consts::PI;
 
@@ -24,6 +25,7 @@ fn specification(teeth: u32, module_mm: f64, profile_shift: f64) -> Specificatio
         module: module_mm * 1e-3,
         pressure_angle: 20.0 * DEGREE,
         profile_shift,
+        thickness_allowance: 0.0,
         rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 },
         tip_radius: None,
         face_width: 0.02,
@@ -187,18 +189,24 @@ fn gears_that_cannot_be_are_refused_with_the_range() {
 #[test]
 fn pairs_that_cannot_run_are_refused() {
     for (pinion, gear, inside) in [(12, 48, true), (14, 100, true)] {
-        let error = pair(pinion, gear).unwrap_err();
+        // They run on what is left of the path, unless that is not wanted.
+        let error = pair(pinion, gear).unwrap().refuse_interference().unwrap_err();
         assert_eq!(about(&error), (Subject::Parameter(Parameter::Teeth), Some(Side::Pinion)), "{error}");
         assert!(matches!(error.problem, Problem::Interference { .. }), "{error}");
         assert_eq!(error.to_string().contains("beyond the tangent point"), inside, "{error}");
         // The mate's tip radius that the message names runs.
         let Problem::Interference { largest, .. } = error.problem else { unreachable!() };
         let mate = |tip| Specification { tip_radius: Some(tip), ..specification(gear, 3.0, 0.0) };
-        assert!(GearPair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 - 1e-9)), None).is_ok());
-        assert!(GearPair::new(specification(pinion, 3.0, 0.0), mate(largest.0 * (1.0 + 1e-9)), None).is_err());
+        let curtailed = |tip: f64| {
+            GearPair::new(specification(pinion, 3.0, 0.0), mate(tip), None).unwrap().is_curtailed(Side::Pinion)
+        };
+        assert!(!curtailed(largest.0 * (1.0 - 1e-9)) && curtailed(largest.0 * (1.0 + 1e-9)));
     }
     // The same the other way round is the gear's trouble.
-    assert_eq!(about(&pair(48, 12).unwrap_err()), (Subject::Parameter(Parameter::Teeth), Some(Side::Gear)));
+    assert_eq!(
+        about(&pair(48, 12).unwrap().refuse_interference().unwrap_err()),
+        (Subject::Parameter(Parameter::Teeth), Some(Side::Gear))
+    );
 
     let short = |teeth| Specification {
         rack: Rack { addendum: 0.5, dedendum: 1.25, tip_radius: 0.38 },

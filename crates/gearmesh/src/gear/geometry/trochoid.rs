@@ -74,7 +74,7 @@ impl Trochoid {
         let reference_radius = 0.5 * module * f64::from(specification.teeth);
         let mut curve = Self {
             reference_radius,
-            depth: module * (rack.dedendum - specification.profile_shift - rack.tip_radius),
+            depth: module * (rack.dedendum - specification.generating_profile_shift() - rack.tip_radius),
             round: module * rack.tip_radius,
             offset: module * (0.5 * PI - half_tip_land(specification).max(0.0)),
             joint: specification.pressure_angle,

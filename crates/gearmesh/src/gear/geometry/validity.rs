@@ -3,7 +3,10 @@
 //! Lengths in m, angles in rad. Source: Zhai, Liang and Fu 2020, equation 23, for the least shift of a sharp rack; ISO
 //! 21771-1:2024 for the rest. Must not know: tables, what is done about a gear that is not valid.
 
+use super::error::GeometryError;
 use super::outline::Outline;
+use super::outline::roots::Root;
+use super::outline::roots::trochoid::{RackTip, Trochoid};
 use super::tip_path::{Corner, TipPath};
 use super::{Gear, GearPair, Side};
 
@@ -30,9 +33,9 @@ pub struct Validity {
 /// One gear with its mate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Mating {
-    /// Where the mate's tip reaches on the flank.
+    /// Down to where the flank works: where the mate's tip reaches, or the root form circle.
     pub active_radius: f64,
-    /// Roll angle from the beginning of the drawn flank to there.
+    /// Roll angle from the beginning of the drawn flank to where the mate's tip would reach on an involute.
     pub contact_reserve: f64,
     /// Least distance of the mate's tip from the drawn root, on its whole way; negative where it cuts in.
     pub root_distance: f64,
@@ -60,17 +63,31 @@ impl Validity {
     }
 }
 
+/// Least distance \[m\] of the mate's tip from the root of a gear, both as their racks cut them; below 0 where it cuts in.
+///
+/// # Errors
+/// When one of them cannot be drawn.
+pub(super) fn root_distance(pair: &GearPair, side: Side) -> Result<f64, GeometryError> {
+    let drawn = |side: Side| {
+        let gear = pair.side(side);
+        let toe = Trochoid { rack_tip: RackTip::Given }.toe(gear).map_err(|error| error.on(side))?;
+        Outline::new(gear, toe, gear.tip, None).map_err(|error| error.on(side))
+    };
+    let (own, mate) = (drawn(side)?, drawn(side.other())?);
+    Ok(TipPath::new(pair, side, Corner::all(&mate)).distance(&own.segments))
+}
+
 impl Mating {
     /// The validity of the gear on a side of a pair, with its own outline and its mate's.
     #[must_use]
     pub fn new(pair: &GearPair, side: Side, outline: &Outline, mate: &Outline) -> Self {
         let (gear, other) = (pair.side(side), pair.side(side.other()));
         let specification = &gear.specification;
-        let lowest = pair.lowest_roll(side);
+        let lowest = pair.reached_roll(side);
         let clearance = pair.centre_distance - other.tip_radius - gear.root_radius;
         let usual = specification.module * (specification.rack.dedendum - specification.rack.addendum);
         Self {
-            active_radius: gear.radius_at(lowest),
+            active_radius: gear.radius_at(pair.lowest_roll(side)),
             contact_reserve: lowest - outline.form_roll,
             root_distance: TipPath::new(pair, side, Corner::all(mate)).distance(&outline.segments),
             clearance,

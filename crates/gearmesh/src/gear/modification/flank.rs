@@ -12,7 +12,7 @@ pub struct Flank {
     pub base_radius: f64,
     /// Roll angle where the other gear's tip works, nearest to the root (SAP).
     pub root_roll: f64,
-    /// Roll angle where its own tip works.
+    /// Roll angle where it ends towards its own tip, from which reliefs count.
     pub tip_roll: f64,
     /// p_b \[m\].
     pub base_pitch: f64,
@@ -37,7 +37,8 @@ impl Flank {
         Self {
             base_radius: gear.base_radius,
             root_roll: pair.roll(side, root),
-            tip_roll: pair.roll(side, tip),
+            // Beyond where it works, if contact ends at the mate's form circle.
+            tip_roll: if pair.is_curtailed(side.other()) { gear.flank_end.roll } else { pair.roll(side, tip) },
             base_pitch: pair.base_pitch,
             long_relief: pair.base_pitch * (pair.contact_ratio - 1.0),
             outer_zone: pair.base_pitch * (pair.contact_ratio - pair.contact_ratio.floor()),

@@ -193,6 +193,7 @@ mod tests {
             module: 3e-3,
             pressure_angle: 20_f64.to_radians(),
             profile_shift,
+            thickness_allowance: 0.0,
             rack: Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.25 },
             tip_radius: None,
             face_width: 0.02,

@@ -22,6 +22,8 @@ pub struct Point {
     pub teeth: [f64; 2],
     /// x \[modules\].
     pub shift: [f64; 2],
+    /// A_s \[modules\].
+    pub thickness_allowance: [f64; 2],
     /// The rack of both gears, whose addendum and dedendum give way to `contact_ratio`.
     pub rack: Rack,
     /// How far the tip circle is beyond m(z/2 + h_aP* + x) \[modules\].
@@ -148,6 +150,7 @@ impl Point {
             pressure_angle: specification.pressure_angle,
             teeth: both(|gear| f64::from(gear.specification.teeth)),
             shift: both(|gear| gear.specification.profile_shift),
+            thickness_allowance: both(|gear| gear.specification.thickness_allowance / gear.specification.module),
             rack: specification.rack,
             longer: both(|gear| {
                 let Specification { teeth, module, profile_shift, rack, .. } = gear.specification;
@@ -199,7 +202,8 @@ impl Point {
         let rack = self.rack_for(self.contact_ratio);
         let gear = |side: usize| {
             let teeth = self.teeth[side];
-            let root = self.module * (0.5 * teeth - rack.dedendum + self.shift[side]);
+            let thicker = 0.5 * self.thickness_allowance[side] / libm::tan(self.pressure_angle);
+            let root = self.module * (0.5 * teeth - rack.dedendum + self.shift[side] + thicker);
             let tip = self.module * (0.5 * teeth + rack.addendum + self.shift[side] + self.longer[side]);
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a number of teeth
             let teeth = teeth as u32;
@@ -208,6 +212,7 @@ impl Point {
                 module: self.module,
                 pressure_angle: self.pressure_angle,
                 profile_shift: self.shift[side],
+                thickness_allowance: self.thickness_allowance[side] * self.module,
                 rack,
                 tip_radius: (self.longer[side] != 0.0).then_some(tip),
                 face_width: self.face_width[side],

@@ -245,6 +245,7 @@ impl Case {
         let of = |gear: &Specification| precise::GearInputs {
             teeth: f64::from(gear.teeth),
             shift: gear.profile_shift.into(),
+            thickness_allowance: gear.thickness_allowance,
             addendum: gear.rack.addendum,
             dedendum: gear.rack.dedendum,
             round: gear.rack.tip_radius,

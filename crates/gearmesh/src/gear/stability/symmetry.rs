@@ -51,6 +51,7 @@ fn scaled(case: &Case) -> (Case, f64) {
             gear.face_width *= factor;
             gear.bore_radius *= factor;
             gear.tip_radius = gear.tip_radius.map(|radius| radius * factor);
+            gear.thickness_allowance *= factor;
         }
         other.relief *= factor;
         other.relief_length *= factor;

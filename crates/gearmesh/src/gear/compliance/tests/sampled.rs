@@ -18,6 +18,7 @@ fn pair() -> GearPair {
         module: 3e-3,
         pressure_angle: 20_f64.to_radians(),
         profile_shift: 0.0,
+        thickness_allowance: 0.0,
         rack: Rack { addendum: 1.0, dedendum: 1.167, tip_radius: 0.2 },
         tip_radius: None,
         face_width: 25e-3,

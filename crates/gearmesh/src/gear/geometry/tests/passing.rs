@@ -12,10 +12,10 @@ use crate::gear::geometry::tip_path::{Corner, TipPath};
 const SIDES: [Side; 2] = [Side::Pinion, Side::Gear];
 
 /// The frame of the mate's tooth as that of the gear's tooth sees it: sine and cosine of the mate's turn and of the gear's.
-type Turns = [(f64, f64); 2];
+pub(super) type Turns = [(f64, f64); 2];
 
 /// Both gears turned: the mate by `angle`, with the flanks of the gear's right side touching.
-fn turns(pair: &GearPair, side: Side, angle: f64) -> Turns {
+pub(super) fn turns(pair: &GearPair, side: Side, angle: f64) -> Turns {
     let (own, mate) = (pair.side(side), pair.side(side.other()));
     let [z, z_mate] = [own, mate].map(|gear| f64::from(gear.specification.teeth));
     // Backlash: half of it lies on either side of the mate's tooth when both are in the middle.
@@ -27,7 +27,7 @@ fn turns(pair: &GearPair, side: Side, angle: f64) -> Turns {
 }
 
 /// Where a point of the mate's tooth is in the frame of the gear's tooth.
-fn seen(pair: &GearPair, [(sine, cosine), (back_sine, back_cosine)]: Turns, [x, y]: [f64; 2]) -> [f64; 2] {
+pub(super) fn seen(pair: &GearPair, [(sine, cosine), (back_sine, back_cosine)]: Turns, [x, y]: [f64; 2]) -> [f64; 2] {
     // The mate's tooth hangs down from (0, a) and swings to the left, towards the tooth whose right root is meant.
     let [left, down] = [x * cosine + y * sine, y * cosine - x * sine];
     let [x, y] = [-left, pair.centre_distance - down];
@@ -56,7 +56,7 @@ impl Stretch {
     }
 }
 
-fn between([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
+pub(super) fn between([a, b]: [f64; 2], [c, d]: [f64; 2]) -> f64 {
     (c - a).hypot(d - b)
 }
 

@@ -136,8 +136,10 @@ impl<'a> Mesh<'a> {
         let base_sum = base_radii[0] + base_radii[1];
         let tangent_length = base_sum * inverse_involute(working, tangent.high);
         let width = one.face_width.min(two.face_width);
-        let start = tangent_length - base_radii[1] * teeth[1].tip_roll;
-        let end = base_radii[0] * teeth[0].tip_roll;
+        // Where a flank ends towards its tip, unless its mate has no involute as far as that.
+        let start = (tangent_length - base_radii[1] * teeth[1].tip_roll).max(base_radii[0] * teeth[0].form_roll);
+        let end_of_gear = tangent_length - base_radii[1] * teeth[1].form_roll;
+        let end = (base_radii[0] * teeth[0].tip_roll).min(end_of_gear);
         let share = |gear: &GearInputs| gear.crowning * (Double::from(width) / gear.face_width).square();
         Self {
             inputs,

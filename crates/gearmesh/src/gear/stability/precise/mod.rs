@@ -29,6 +29,8 @@ pub struct GearInputs {
     pub teeth: f64,
     /// x \[modules\].
     pub shift: Double,
+    /// A_s \[m\].
+    pub thickness_allowance: f64,
     /// h_aP*.
     pub addendum: f64,
     /// h_fP*.

@@ -102,18 +102,20 @@ impl Tooth {
         let module = inputs.module;
         let reference_radius = module.half() * gear.teeth;
         let base_radius = reference_radius * cosine;
-        let root_radius = reference_radius - module * (Double::from(gear.dedendum) - gear.shift);
+        // x_E.
+        let shift = gear.shift + Double::from(gear.thickness_allowance).half() / (module * tangent);
+        let root_radius = reference_radius - module * (Double::from(gear.dedendum) - shift);
         let natural = reference_radius + module * (gear.shift + gear.addendum);
         let tip_radius = gear.tip_radius.unwrap_or(natural) * gear.tip_scale;
         let half_base_angle =
-            (Double::PI.half() + (gear.shift * tangent).times_power_of_two(2.0)) / gear.teeth + involute(tangent);
+            (Double::PI.half() + (shift * tangent).times_power_of_two(2.0)) / gear.teeth + involute(tangent);
         let roll = |radius: Double| ((radius - base_radius) * (radius + base_radius)).sqrt() / base_radius;
 
         let land =
             Double::PI.times_power_of_two(0.25) - tangent * gear.dedendum - (Double::ONE - sine) * gear.round / cosine;
         let mut root = Root {
             reference_radius,
-            depth: module * (Double::from(gear.dedendum) - gear.shift - gear.round),
+            depth: module * (Double::from(gear.dedendum) - shift - gear.round),
             round: module * gear.round,
             offset: module * (Double::PI.half() - land.max(Double::ZERO)),
             joint: cosine / sine,
