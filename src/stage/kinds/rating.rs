@@ -136,9 +136,8 @@ impl Stated {
         Ok(beside)
     }
 
-    /// Of what the standard says to be careful with.
-    fn warn(&self, context: &Context, pair: &GearPair, torque: f64, rating: &Rating) {
-        let given = &self.conditions;
+    /// Of what the standard says to be careful with, under one torque.
+    fn warn_of_speed(context: &Context, torque: f64, rating: &Rating) {
         let at = in_unit(torque, "N m");
         match rating.pair.range {
             Some(range @ (Range::MainResonance | Range::Intermediate)) => (context.warn)(
@@ -152,6 +151,11 @@ impl Stated {
             ),
             _ => (),
         }
+    }
+
+    /// The same, under any.
+    fn warn(&self, context: &Context, pair: &GearPair) {
+        let given = &self.conditions;
         if pair.contact_ratio < 1.2 {
             (context.warn)(
                 format!(
@@ -226,11 +230,12 @@ impl Stage for Stated {
     fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
         let failed = |error: TableError| Failure::new(error.to_string());
         let pair = pair::of(inputs)?;
+        self.warn(context, &pair);
         let (mut pairs, mut of_gears) = (Vec::new(), Vec::new());
         for &torque in &self.torque {
             let rating =
                 rate(&pair, torque, self.speed, &self.conditions).map_err(|why| Failure::new(why.to_string()))?;
-            self.warn(context, &pair, torque, &rating);
+            Self::warn_of_speed(context, torque, &rating);
             let beside = self.beside(context, inputs, torque)?;
             for (at, side) in [Side::Pinion, Side::Gear].into_iter().enumerate() {
                 let rated = &rating.gears[at];
