@@ -125,6 +125,13 @@ pub fn summary(beside: bool) -> Columns<PairRow> {
             row.rated.deviations[2]
         })
         .but(maybe)
+        .float(
+            "equivalent_misalignment",
+            "um",
+            "Equivalent misalignment F_βx before running in (ISO 6336-1, 7).",
+            |row| row.rated.equivalent_misalignment,
+        )
+        .but(maybe)
         .float("running_in_transverse", "um", "Running-in allowance y_α (ISO 6336-1, 8).", |row| {
             row.rated.running_in_transverse
         })

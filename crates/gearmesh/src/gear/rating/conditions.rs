@@ -19,16 +19,21 @@ pub struct Conditions {
     /// K_A: what loads from outside add to the nominal torque.
     #[declared(minimum = 0.01, maximum = LARGEST, default = "1.0")]
     pub application_factor: f64,
+    /// Tolerance class of both gears by ISO 1328-1:2013, for those deviations that are not stated.
+    #[declared(minimum = 1, maximum = 11, example = "6")]
+    pub tolerance_class: Option<i64>,
     /// f_pb: transverse base pitch deviation, the larger one of both gears.
     #[declared(minimum = 0.0, maximum = MOST, dimension = LENGTH, example = "7 um")]
     pub base_pitch_deviation: Option<f64>,
     /// f_fα: profile form deviation, the larger one of both gears.
     #[declared(minimum = 0.0, maximum = MOST, dimension = LENGTH, example = "8 um")]
     pub profile_form_deviation: Option<f64>,
-    /// F_βx: equivalent misalignment over the face width before running in.
+    /// F_βx: equivalent misalignment over the face width before running in; without it, what `shaft` and f_Hβ of both gears give.
     #[declared(minimum = 0.0, maximum = MOST, dimension = LENGTH, example = "12 um")]
     pub equivalent_misalignment: Option<f64>,
-    /// C_a: tip relief for K_V; without it, what running in leaves (C_ay).
+    /// The shaft of the standard's pinion, for F_βx; without it the pinion sits in the middle between its bearings.
+    pub shaft: Option<Shaft>,
+    /// C_a: tip relief for K_V; without it, what running in leaves (C_ay). In a `tolerance_class` of 6 or more it counts for nothing.
     #[declared(minimum = 0.0, maximum = MOST, dimension = LENGTH, example = "20 um")]
     pub tip_relief: Option<f64>,
     /// ν40: nominal viscosity of the lubricant at 40 °C.
@@ -58,13 +63,30 @@ pub struct Conditions {
     pub gear: GearConditions,
 }
 
+/// How the shaft of a pinion bends and winds up: what f_sh follows from (ISO 6336-1, 7, figure 13).
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+pub struct Shaft {
+    /// K′: of where the pinion sits and torque comes in, −1 to 1.33.
+    #[declared(minimum = -2.0, maximum = 2.0, example = "0.48")]
+    pub arrangement: f64,
+    /// l: distance of the bearings.
+    #[declared(minimum = 1e-4, maximum = 100.0, dimension = LENGTH, example = "120 mm")]
+    pub span: f64,
+    /// s: distance of the pinion from the middle between them.
+    #[declared(minimum = 0.0, maximum = 100.0, dimension = LENGTH, example = "15 mm")]
+    pub offset: f64,
+    /// d_sh: diameter of the shaft.
+    #[declared(minimum = 1e-4, maximum = 10.0, dimension = LENGTH, example = "40 mm")]
+    pub diameter: f64,
+}
+
 /// Factors of a pair that are stated.
 #[derive(Clone, Debug, PartialEq, Declared)]
 pub struct PairFactors {
     /// C_R: gear blank factor.
     #[declared(minimum = 0.01, maximum = LARGEST, example = "1.0")]
     pub blank_factor: Option<f64>,
-    /// B_k: what tip relief leaves of the deflection; 1 for tolerance classes 6 and coarser.
+    /// B_k: what tip relief leaves of the deflection.
     #[declared(minimum = 0.0, maximum = LARGEST, example = "1.0")]
     pub relief_parameter: Option<f64>,
     /// K_V: internal dynamic factor.
@@ -123,6 +145,9 @@ pub struct GearConditions {
     /// HB: Brinell hardness of the flank, for Z_W of a soft gear.
     #[declared(minimum = 50.0, maximum = 1000.0, example = "260")]
     pub hardness: Option<f64>,
+    /// f_Hβ: helix slope deviation of this gear, for F_βx.
+    #[declared(minimum = 0.0, maximum = MOST, dimension = LENGTH, example = "8 um")]
+    pub helix_slope_deviation: Option<f64>,
     /// Load cycles N_L; without them the life factors are 1, as at the knee of the curves.
     #[declared(minimum = 1.0, maximum = 1e15, example = "1e9")]
     pub cycles: Option<f64>,

@@ -3,6 +3,8 @@
 //!
 //! SI: stiffness per face width in Pa, load per face width in N/m. Must not know: where deviations come from.
 
+use super::conditions::Shaft;
+
 /// K_Hβ, formulas (41) to (44): by F_βy \[m\], c_γβ \[Pa\] and F_m/b \[N/m\].
 #[must_use]
 pub fn face_load_factor(misalignment: f64, mesh_stiffness: f64, mean_load: f64) -> f64 {
@@ -10,19 +12,6 @@ pub fn face_load_factor(misalignment: f64, mesh_stiffness: f64, mean_load: f64) 
     let share = 0.5 * misalignment * mesh_stiffness / mean_load;
     // From 2 on, part of the face carries nothing.
     if share < 1.0 { 1.0 + share } else { 2.0 * share.sqrt() }
-}
-
-/// How the shaft of a pinion bends and winds up: what f_sh follows from (7, figure 13).
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Shaft {
-    /// K′: of where the pinion sits and torque comes in.
-    pub arrangement: f64,
-    /// l: distance of the bearings \[m\].
-    pub span: f64,
-    /// s: distance of the pinion from the middle between them \[m\].
-    pub offset: f64,
-    /// d_sh: diameter of the shaft \[m\].
-    pub diameter: f64,
 }
 
 /// f_sh \[m\], formula (57): by F_m/b \[N/m\], b and d1 \[m\] of a pinion of a single mesh; without a shaft it sits in the middle.

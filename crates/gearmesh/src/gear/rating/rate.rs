@@ -2,15 +2,15 @@
 //!
 //! Must not know: where any number is shown.
 
+mod deviations;
 mod gear;
 
 use super::conditions::{Conditions, GearConditions};
 use super::distribution::{self, Transverse};
 use super::dynamic::{self, Inertia, LIGHT_LOAD, Range, Rim, Running};
-use super::material::Surface;
 use super::pitting::{self, Film};
 use super::root::{Outside, Section};
-use super::running_in::{self, Deviation};
+use super::running_in::Deviation;
 use crate::gear::compliance::iso6336::{self, Iso6336};
 use crate::gear::geometry::error::Plain;
 use crate::gear::geometry::{Gear, GearPair, Side};
@@ -47,6 +47,8 @@ pub struct PairRating {
     pub deviations: [f64; 3],
     /// Where the pair runs, when K_V is computed.
     pub range: Option<Range>,
+    /// F_βx \[m\].
+    pub equivalent_misalignment: f64,
     /// y_α \[m\].
     pub running_in_transverse: f64,
     /// y_β \[m\].
@@ -251,37 +253,6 @@ impl Rated<'_> {
         Ok(Inertia::Rim(Rim { mean_diameter, inner_diameter: 2.0 * inner, density: given.density }))
     }
 
-    /// What both gears together run in by; NaN where there is no deviation, or a strength that it takes is not given.
-    fn running_in(&self, which: Deviation, deviation: Option<f64>, velocity: f64) -> f64 {
-        let gears = SIDES.map(|side| (self.conditions(side).material, self.conditions(side).contact_strength));
-        let found = deviation.and_then(|deviation| running_in::mean(which, gears, deviation, velocity));
-        found.unwrap_or(f64::NAN)
-    }
-
-    /// What a factor by a deviation lacks: that, or the strength of a soft gear, by which it runs in.
-    fn lacks(&self, what: &'static str, field: &str, deviation: Option<f64>, factor: &str) -> Refused {
-        let soft = |side: &Side| {
-            let given = self.conditions(*side);
-            given.material.surface() == Surface::Soft && given.contact_strength.is_none()
-        };
-        let strength = SIDES.into_iter().find(soft).map(|side| place(side, "contact_strength"));
-        let field = strength.filter(|_| deviation.is_some()).unwrap_or_else(|| field.to_owned());
-        Refused::Missing(what, field, of_pair(factor))
-    }
-
-    /// B_k.
-    fn relief_parameter(&self, stiffness: f64, specific_load: f64) -> f64 {
-        if let Some(stated) = self.given.factors.relief_parameter {
-            return stated;
-        }
-        let by_running_in = || {
-            let [one, two] = SIDES.map(|side| self.conditions(side).contact_strength.map(running_in::tip_relief));
-            Some(0.5 * (one? + two?))
-        };
-        let relief = self.given.tip_relief.or_else(by_running_in);
-        relief.map_or(f64::NAN, |relief| (1.0 - stiffness * relief / specific_load).abs())
-    }
-
     fn pair_factors(&self, torque: f64, speed: f64) -> Result<PairRating, Refused> {
         let (pair, given) = (self.pair, self.given);
         let [pinion, wheel] = self.both(|side| pair.side(side));
@@ -305,7 +276,7 @@ impl Rated<'_> {
             dynamic::resonance_speed(f64::from(pinion.specification.teeth), mesh_stiffness, reduced_mass);
         let resonance_ratio = pinion_speed / resonance_speed;
 
-        let (pitch, profile) = (given.base_pitch_deviation, given.profile_form_deviation);
+        let [pitch, profile] = self.transverse()?;
         let factors = &given.factors;
         let running_in_transverse = self.running_in(Deviation::Transverse, pitch, velocity);
         let of_profile = self.running_in(Deviation::Transverse, profile, velocity);
@@ -332,7 +303,7 @@ impl Rated<'_> {
         };
 
         let mean_load = specific_load * dynamic_factor;
-        let misalignment = given.equivalent_misalignment;
+        let misalignment = self.misalignment(pinion, mean_load)?;
         let running_in_helix = self.running_in(Deviation::Helix, misalignment, velocity);
         let face_load_factor_contact = if let Some(stated) = factors.face_load_factor_contact {
             stated
@@ -399,6 +370,7 @@ impl Rated<'_> {
             resonance_ratio,
             deviations,
             range,
+            equivalent_misalignment: misalignment.unwrap_or(f64::NAN),
             running_in_transverse,
             running_in_helix,
             dynamic_factor,

@@ -20,6 +20,7 @@ fn made_of(material: MaterialClass) -> GearConditions {
         yield_strength: None,
         tensile_strength: None,
         hardness: None,
+        helix_slope_deviation: None,
         cycles: None,
         flank_roughness: None,
         root_roughness: None,
@@ -36,9 +37,11 @@ fn bare() -> Conditions {
     let gear = made_of(MaterialClass::CaseHardenedSteel);
     Conditions {
         application_factor: 1.0,
+        tolerance_class: None,
         base_pitch_deviation: None,
         profile_form_deviation: None,
         equivalent_misalignment: None,
+        shaft: None,
         tip_relief: None,
         viscosity: None,
         pitting: Pitting::None,

@@ -360,3 +360,40 @@ fn the_pinion_is_the_gear_with_fewer_teeth() {
         }
     }
 }
+
+/// Tier: invariant; a tolerance class says what its tolerances say, and B_k is 1 from class 6 on; f_Hβ and a shaft say what F_βx says.
+#[test]
+fn a_tolerance_class_stands_for_its_deviations() {
+    let pair = pair(gear(19, 3e-3, 0.0, 20e-3, 15e-3), gear(48, 3e-3, 0.0, 18e-3, 30e-3));
+    let rated = |conditions: &Conditions| rate(&pair, 150.0, 150.0, conditions).unwrap().pair;
+    let by_class = |tolerance_class| rated(&Conditions { tolerance_class, tip_relief: Some(20e-6), ..bare() });
+    // Of the pinion 9.0 and 9.5 µm in class 6, of both gears' helices 8.5; in class 5 6.5, 6.5, and 6.0.
+    let stated = |pitch: f64, form: f64, slopes: f64, relief_parameter| {
+        let mut conditions = Conditions {
+            base_pitch_deviation: Some(1e-6 * pitch * 20_f64.to_radians().cos()),
+            profile_form_deviation: Some(1e-6 * form),
+            tip_relief: Some(20e-6),
+            ..bare()
+        };
+        conditions.factors.relief_parameter = relief_parameter;
+        for gear in [&mut conditions.pinion, &mut conditions.gear] {
+            gear.helix_slope_deviation = Some(1e-6 * slopes);
+        }
+        conditions
+    };
+    for (class, stated) in [(5, stated(6.5, 6.5, 6.0, None)), (6, stated(9.0, 9.5, 8.5, Some(1.0)))] {
+        let (one, two) = (by_class(Some(class)), rated(&stated));
+        near(one.dynamic_factor, two.dynamic_factor, 1e-12);
+        near(one.transverse_load_factor_contact, two.transverse_load_factor_contact, 1e-12);
+        near(one.face_load_factor_contact, two.face_load_factor_contact, 1e-12);
+        let slopes = [stated.pinion.helix_slope_deviation.unwrap(); 2];
+        let mean_load = two.tangential_load / 18e-3 * two.dynamic_factor;
+        let bent = shaft_deflection(mean_load, 18e-3, 57e-3, None);
+        near(two.equivalent_misalignment, equivalent_misalignment(bent, slopes, mean_load), 1e-18);
+        let given = Conditions { equivalent_misalignment: Some(two.equivalent_misalignment), ..stated };
+        near(rated(&given).face_load_factor_contact, two.face_load_factor_contact, 1e-12);
+    }
+    // F_βx is no less than half of the larger slope, and no less than 0.005 µm mm/N of the load.
+    near(equivalent_misalignment(0.0, [8e-6, 0.0], 1e3), 8e-6, 1e-18);
+    near(equivalent_misalignment(0.0, [0.0; 2], 400e3), 2e-6, 1e-18);
+}

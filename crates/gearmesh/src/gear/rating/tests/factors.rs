@@ -4,8 +4,9 @@ use super::*;
 use crate::gear::rating::bending::{
     notch_sensitivity_factor, rim_thickness_factor, size_factor, slip_layer, surface_factor,
 };
+use crate::gear::rating::conditions::Shaft;
 use crate::gear::rating::distribution::{
-    Shaft, Transverse, blank_factor, face_load_factor, shaft_deflection, transverse_load_factors,
+    Transverse, blank_factor, face_load_factor, shaft_deflection, transverse_load_factors,
 };
 use crate::gear::rating::dynamic::{
     Inertia, Range, Rim, Running, coefficients, dynamic_factor, lower_limit, reduced_mass, resonance_speed,
