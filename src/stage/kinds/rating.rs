@@ -139,8 +139,8 @@ impl Stated {
     /// Of what the standard says to be careful with, under one torque.
     fn warn_of_speed(context: &Context, torque: f64, rating: &Rating) {
         let at = in_unit(torque, "N m");
-        match rating.pair.range {
-            Some(range @ (Range::MainResonance | Range::Intermediate)) => (context.warn)(
+        if let Some(range @ (Range::MainResonance | Range::Intermediate)) = rating.pair.range {
+            (context.warn)(
                 format!(
                     "at {at} N m the pair runs at {:.2} of its resonance speed, in the range `{}`: ISO 6336-1 asks for a \
                      dynamic calculation there, and K_V of method B can be far off",
@@ -148,8 +148,7 @@ impl Stated {
                     range.name()
                 )
                 .into(),
-            ),
-            _ => (),
+            );
         }
     }
 

@@ -20,7 +20,6 @@ const RPM: f64 = std::f64::consts::PI / 30.0;
 /// case-hardened; its printed results of the flank as gfsReboucas/Drivetrain (GitHub, `MATISO_6336.m`) has them. It is helical, so its
 /// factors are compared one by one. ε_α follows from its c_γα/c′; f_Hβ are those of grade 5 of ISO 1328-1:1995, 8.5 and 9.5 µm.
 #[test]
-#[allow(clippy::many_single_char_names)]
 fn flank_of_the_example_of_the_standard() {
     let (angle, helix) = (20_f64.to_radians(), 15.8_f64.to_radians());
     let transverse = (angle.tan() / helix.cos()).atan();
@@ -46,10 +45,10 @@ fn flank_of_the_example_of_the_standard() {
     near(helix_angle_factor(helix), 1.019_44, 5e-6);
     let nominal =
         zone * elasticity * of_ratio * helix_angle_factor(helix) * contact_load(load, diameters[0], width, ratio);
-    near(nominal * 1e-6, 1206.582_07, 5e-3);
+    near(nominal * 1e-6, 1_206.582_07, 5e-3);
 
     // K_V and K_Hβ are printed to 1.003 and 1.16; their product follows from the stresses, K_Hβ from K_Fβ.
-    let product = (1301.353_43_f64 / 1206.582_07).powi(2);
+    let product = (1_301.353_43_f64 / 1_206.582_07).powi(2);
     let of_face = {
         let dynamic = 1.003;
         let mean_load = load / width * dynamic;
@@ -81,10 +80,10 @@ fn flank_of_the_example_of_the_standard() {
     near(lives[1], 0.962, 5e-4);
     let of_film = film.lubricant_factor() * film.velocity_factor() * film.roughness_factor();
     let limits = lives.map(|life| 1500.0 * life * of_film);
-    near(limits[0], 1338.480_50, 5e-3);
-    near(limits[1], 1414.525_51, 5e-3);
-    near(limits[0] / 1301.353_43, 1.028_53, 5e-6);
-    near(limits[1] / 1301.353_43, 1.086_96, 5e-6);
+    near(limits[0], 1_338.480_50, 5e-3);
+    near(limits[1], 1_414.525_51, 5e-3);
+    near(limits[0] / 1_301.353_43, 1.028_53, 5e-6);
+    near(limits[1] / 1_301.353_43, 1.086_96, 5e-6);
 }
 
 /// The pair of the next test, with the chamfer that the edge of the tool leaves, printed as 0.117: the profile shifts that its span measurements leave, each gear with the rack that cut it.

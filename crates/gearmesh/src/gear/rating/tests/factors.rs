@@ -6,7 +6,7 @@ use crate::gear::rating::bending::{
 };
 use crate::gear::rating::conditions::Shaft;
 use crate::gear::rating::distribution::{
-    Transverse, blank_factor, face_load_factor, shaft_deflection, transverse_load_factors,
+    Transverse, blank_factor, face_load_factor, root_face_load_factor, shaft_deflection, transverse_load_factors,
 };
 use crate::gear::rating::dynamic::{
     Inertia, Range, Rim, Running, coefficients, dynamic_factor, lower_limit, reduced_mass, resonance_speed,
@@ -113,6 +113,8 @@ fn face_load_factors_meet_where_the_face_is_just_covered() {
     near(at(40e-6), 2.0, 1e-12);
     near((at(40e-6 + 1e-12) - at(40e-6)) / (at(40e-6) - at(40e-6 - 1e-12)), 1.0, 1e-3);
     near(at(0.0), 1.0, 0.0);
+    // Narrow faces count as three times as wide as their teeth are deep: N_F = 9/13.
+    near(root_face_load_factor(1.5, 2.0), 1.5_f64.powf(9.0 / 13.0), 1e-12);
     // A pinion in the middle between its bearings does not lean; one beside it does, by K′ l s/d² (d/d_sh)⁴.
     let shaft = |offset| Shaft { arrangement: 0.48, span: 200e-3, offset, diameter: 40e-3 };
     let of = |shaft: &Shaft| shaft_deflection(300e3, 30e-3, 50e-3, Some(shaft));
