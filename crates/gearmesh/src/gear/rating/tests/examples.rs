@@ -86,7 +86,8 @@ fn flank_of_the_example_of_the_standard() {
     near(limits[1] / 1_301.353_43, 1.086_96, 5e-6);
 }
 
-/// The pair of the next test, with the chamfer that the edge of the tool leaves, printed as 0.117: the profile shifts that its span measurements leave, each gear with the rack that cut it.
+/// The pair of the next test: the profile shifts that its span measurements leave, each gear with the rack that cut it, and the
+/// chamfer that the edge of the wheel's tool leaves, printed as 0.117 mm.
 fn steel_on_plastic() -> (GearPair, Conditions) {
     let own = |teeth: u32, shift: f64, dedendum: f64, tip: f64, width: f64, material: Material| Specification {
         profile_shift: shift,
