@@ -94,6 +94,8 @@ tables! {
         STRESS = "stress",
     }
     summary of "ste": "summary" {
+        DESIGN = "design",
+        TORQUE = "torque",
         LARGEST_PRESSURE = "largest_pressure",
         LARGEST_ROOT_STRESS_PINION = "largest_root_stress_pinion",
         LARGEST_ROOT_STRESS_GEAR = "largest_root_stress_gear",

@@ -4,5 +4,5 @@
 
 mod compliances;
 #[path = "../../crates/gearmesh/src/gear/random.rs"]
-mod random;
+pub mod random;
 mod samplings;

@@ -50,7 +50,9 @@ impl Walk {
         if object.contains_key("pattern") {
             self.patterns += 1;
             let message = text("patternErrorMessage");
-            self.check(message.len() > 20 && !message.contains('^'), place, "a pattern without words");
+            // Units have powers, patterns begin with a bracket.
+            let is_raw = message.contains("^[") || message.contains("^(");
+            self.check(message.len() > 20 && !is_raw, place, "a pattern without words");
         }
         for (name, inner) in object {
             match (name.as_str(), inner) {

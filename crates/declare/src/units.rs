@@ -36,6 +36,12 @@ pub const PER_AREA: Dimension = dimension(-2, 0, 0, 0);
 pub const AREA: Dimension = dimension(2, 0, 0, 0);
 pub const VOLUME: Dimension = dimension(3, 0, 0, 0);
 pub const TIME: Dimension = dimension(0, 0, 1, 0);
+/// Angular speed, rad/s.
+pub const ANGULAR_SPEED: Dimension = dimension(0, 0, -1, 1);
+pub const DENSITY: Dimension = dimension(-3, 1, 0, 0);
+/// Kinematic viscosity, m²/s.
+pub const VISCOSITY: Dimension = dimension(2, 0, -1, 0);
+pub const MOMENT_OF_INERTIA: Dimension = dimension(2, 1, 0, 0);
 
 impl Dimension {
     fn times(self, other: Self, power: i8) -> Self {
@@ -70,6 +76,10 @@ impl Dimension {
             AREA => ("an area", &["um^2", "mm^2"]),
             VOLUME => ("a volume", &["mm^3", "cm^3"]),
             TIME => ("a time", &["s", "ms", "us"]),
+            ANGULAR_SPEED => ("an angular speed", &["rpm", "rad/s"]),
+            DENSITY => ("a density", &["kg/m^3"]),
+            VISCOSITY => ("a kinematic viscosity", &["mm^2/s", "m^2/s"]),
+            MOMENT_OF_INERTIA => ("a moment of inertia", &["kg m^2", "kg mm^2"]),
             _ => ("a quantity", &[]),
         }
     }
@@ -111,6 +121,7 @@ const UNITS: &[(&str, i32, f64, Dimension)] = &[
     ("ms", -3, 1.0, TIME),
     ("us", -6, 1.0, TIME),
     ("ns", -9, 1.0, TIME),
+    ("rpm", 0, PI / 30.0, ANGULAR_SPEED),
     ("%", -2, 1.0, RATIO),
     ("1", 0, 1.0, RATIO),
 ];

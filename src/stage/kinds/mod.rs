@@ -5,6 +5,7 @@ pub mod export;
 pub mod geometry;
 pub mod modification;
 pub mod optimizer;
+pub mod rating;
 pub mod report;
 pub mod root_optimizer;
 pub mod scatter;
@@ -28,6 +29,7 @@ pub const KINDS: &[&Kind] = &[
     &sweep::KIND,
     &scatter::KIND,
     &accuracy::KIND,
+    &rating::KIND,
     &stability::KIND,
     &export::KIND,
     &report::KIND,

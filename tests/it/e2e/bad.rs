@@ -141,3 +141,28 @@ fn nothing_is_run_when_one_of_several_studies_is_bad() {
         assert!(desk.run(&[command, "bad.yaml"], 2).1.starts_with("bad.yaml:2:9:"), "{command}");
     }
 }
+
+/// What a factor of a rating lacks is told before anything runs, with what to give and what to state.
+#[test]
+fn a_check_says_what_a_rating_lacks() {
+    let desk = Desk::with("quick.yaml");
+    let text = "study: lacking
+stages:
+  pair:
+    kind: geometry
+    module: 3 mm
+    pinion: { teeth: 19, face_width: 20 mm, bore_radius: 14 mm }
+    gear: { teeth: 48, face_width: 18 mm, bore_radius: 38 mm }
+  rating:
+    kind: rating
+    pair: pair
+    torque: 100 N m
+    speed: 1500 rpm
+    pinion: { material: case_hardened_steel }
+    gear: { material: case_hardened_steel }
+";
+    fs::write(desk.path("lacking.yaml"), text).unwrap();
+    let told = desk.run(&["check", "lacking.yaml"], 2).1;
+    let expected = "K_V needs `base_pitch_deviation`: give it, or state the factor as `factors.dynamic_factor`";
+    assert!(told.contains("lacking.yaml:8:3: `rating`: ") && told.contains(expected), "{told}");
+}

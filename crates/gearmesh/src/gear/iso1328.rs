@@ -1,4 +1,4 @@
-//! How far the slopes of a flank may be off in a tolerance class: ISO 1328-1:2013, 5.2 and 5.3.
+//! How far flanks may be off in a tolerance class: ISO 1328-1:2013, 5.2 and 5.3.
 //!
 //! A tolerance is that of class 5 times (√2)^(A − 5), from lengths as they are, and rounded. Lengths in m; the formulas of the
 //! standard take mm and give µm. Must not know: modification, load.
@@ -18,11 +18,15 @@ const FACE_WIDTH: RangeInclusive<f64> = 4.0..=1200.0;
 
 /// What of a flank has a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Slope {
+pub enum Deviation {
+    /// f_p of a single pitch, formula (5).
+    Pitch,
     /// f_Hα, formula (7).
-    Profile,
+    ProfileSlope,
+    /// f_fα, formula (8).
+    ProfileForm,
     /// f_Hβ, formula (10).
-    Helix,
+    HelixSlope,
 }
 
 /// What tolerances depend on.
@@ -36,11 +40,11 @@ pub struct ToothSizes {
     pub face_width: f64,
 }
 
-/// The tolerance of a slope \[m\]: it may be off by as much to either side.
+/// The tolerance of a deviation \[m\]: what has a sign may be off by as much to either side.
 ///
 /// # Errors
 /// When the class or the gear is outside of the standard's ranges: which number, and what it may be.
-pub fn tolerance(slope: Slope, gear: &ToothSizes, class: i64) -> Result<f64, Diagnostic> {
+pub fn tolerance(deviation: Deviation, gear: &ToothSizes, class: i64) -> Result<f64, Diagnostic> {
     let (diameter, module, width) = (1e3 * gear.module * gear.teeth as f64, 1e3 * gear.module, 1e3 * gear.face_width);
     let outside = |what: &str, value: String, range: String| {
         Err(Diagnostic::new(format!("ISO 1328-1 has no tolerance for {what} {value}; it has them for {range}")))
@@ -63,9 +67,11 @@ pub fn tolerance(slope: Slope, gear: &ToothSizes, class: i64) -> Result<f64, Dia
             return outside(what, format!("{value:.6} mm"), format!("{} to {} mm", range.start(), range.end()));
         }
     }
-    let of_class_5 = match slope {
-        Slope::Profile => 0.4 * module + 0.001 * diameter + 4.0,
-        Slope::Helix => 0.05 * diameter.sqrt() + 0.35 * width.sqrt() + 4.0,
+    let of_class_5 = match deviation {
+        Deviation::Pitch => 0.001 * diameter + 0.4 * module + 5.0,
+        Deviation::ProfileSlope => 0.4 * module + 0.001 * diameter + 4.0,
+        Deviation::ProfileForm => 0.55 * module + 5.0,
+        Deviation::HelixSlope => 0.05 * diameter.sqrt() + 0.35 * width.sqrt() + 4.0,
     };
     // √2 to a whole power: exact doublings, and one root for odd steps.
     let step = class - 5;
@@ -95,8 +101,8 @@ mod tests {
     }
 
     #[track_caller]
-    fn is(slope: Slope, gear: &ToothSizes, class: i64, micrometres: f64) {
-        let found = tolerance(slope, gear, class).unwrap() * 1e6;
+    fn is(deviation: Deviation, gear: &ToothSizes, class: i64, micrometres: f64) {
+        let found = tolerance(deviation, gear, class).unwrap() * 1e6;
         assert!((found - micrometres).abs() < 1e-9, "{found} is not {micrometres}");
     }
 
@@ -106,23 +112,23 @@ mod tests {
     #[test]
     fn tolerances_are_those_of_the_standard() {
         let one = gear(50, 2e-3, 20e-3);
-        is(Slope::Profile, &one, 5, 4.9);
-        is(Slope::Helix, &one, 5, 6.0);
+        is(Deviation::ProfileSlope, &one, 5, 4.9);
+        is(Deviation::HelixSlope, &one, 5, 6.0);
         let two = gear(40, 3e-3, 30e-3);
-        is(Slope::Profile, &two, 6, 7.5);
-        is(Slope::Helix, &two, 6, 9.0);
+        is(Deviation::ProfileSlope, &two, 6, 7.5);
+        is(Deviation::HelixSlope, &two, 6, 9.0);
         // 19 teeth, module 3, 20 mm: 5.257 and 0.3775 + 1.5652 + 4 = 5.9427, in class 7 twice that.
         let pinion = gear(19, 3e-3, 20e-3);
-        is(Slope::Profile, &pinion, 7, 11.0);
-        is(Slope::Helix, &pinion, 7, 12.0);
+        is(Deviation::ProfileSlope, &pinion, 7, 11.0);
+        is(Deviation::HelixSlope, &pinion, 7, 12.0);
         // Where rounding hides no digit of a coefficient: 200 teeth, module 10, 200 mm, eight times 4 + 2 + 4 and
         // 2.2361 + 4.9497 + 4 = 11.1858 in class 11.
         let large = gear(200, 10e-3, 200e-3);
-        is(Slope::Profile, &large, 11, 80.0);
-        is(Slope::Helix, &large, 11, 89.0);
+        is(Deviation::ProfileSlope, &large, 11, 80.0);
+        is(Deviation::HelixSlope, &large, 11, 89.0);
         // Class 1 is a quarter of class 5: 1.314 and 1.486.
-        is(Slope::Profile, &pinion, 1, 1.3);
-        is(Slope::Helix, &pinion, 1, 1.5);
+        is(Deviation::ProfileSlope, &pinion, 1, 1.3);
+        is(Deviation::HelixSlope, &pinion, 1, 1.5);
     }
 
     /// Tier: second method; what somebody else's implementation answers, written from DIN ISO 1328-1:2018, which is the edition of 2013:
@@ -146,8 +152,30 @@ mod tests {
             #[allow(clippy::cast_possible_truncation)]
             let gear = gear(teeth as i64, 1e-3 * module, 1e-3 * width);
             for (place, class) in [1, 4, 5, 6, 8, 11].into_iter().enumerate() {
-                is(Slope::Profile, &gear, class, profile[place]);
-                is(Slope::Helix, &gear, class, helix[place]);
+                is(Deviation::ProfileSlope, &gear, class, profile[place]);
+                is(Deviation::HelixSlope, &gear, class, helix[place]);
+            }
+        }
+    }
+
+    /// Tier: second method; f_p and f_fα by the same implementation, at c747606.
+    #[test]
+    fn pitch_and_form_are_those_of_another_implementation() {
+        let rows = [
+            ([50.0, 2.0], [1.5, 4.2, 6.0, 8.5, 17.0, 47.0], [1.5, 4.3, 6.0, 8.5, 17.0, 49.0]),
+            ([19.0, 3.0], [1.6, 4.4, 6.5, 9.0, 18.0, 50.0], [1.7, 4.7, 6.5, 9.5, 19.0, 53.0]),
+            ([48.0, 3.0], [1.6, 4.5, 6.5, 9.0, 18.0, 51.0], [1.7, 4.7, 6.5, 9.5, 19.0, 53.0]),
+            ([31.0, 1.25], [1.4, 3.9, 5.5, 8.0, 16.0, 44.0], [1.4, 4.0, 5.5, 8.0, 16.0, 46.0]),
+            ([120.0, 9.0], [2.4, 7.0, 9.5, 14.0, 27.0, 77.0], [2.5, 7.0, 10.0, 14.0, 28.0, 80.0]),
+            ([990.0, 11.0], [5.0, 14.0, 20.0, 29.0, 57.0, 162.0], [2.8, 8.0, 11.0, 16.0, 31.0, 88.0]),
+            ([200.0, 65.0], [11.0, 31.0, 44.0, 62.0, 124.0, 352.0], [10.0, 29.0, 41.0, 58.0, 115.0, 326.0]),
+        ];
+        for ([teeth, module], pitch, form) in rows {
+            #[allow(clippy::cast_possible_truncation)]
+            let gear = gear(teeth as i64, 1e-3 * module, 0.1);
+            for (place, class) in [1, 4, 5, 6, 8, 11].into_iter().enumerate() {
+                is(Deviation::Pitch, &gear, class, pitch[place]);
+                is(Deviation::ProfileForm, &gear, class, form[place]);
             }
         }
     }
@@ -156,9 +184,9 @@ mod tests {
     #[test]
     fn two_classes_double_a_tolerance() {
         let gear = gear(60, 5e-3, 80e-3);
-        for slope in [Slope::Profile, Slope::Helix] {
+        for deviation in [Deviation::Pitch, Deviation::ProfileSlope, Deviation::ProfileForm, Deviation::HelixSlope] {
             for class in 1..=9 {
-                let [one, two] = [class, class + 2].map(|class| 1e6 * tolerance(slope, &gear, class).unwrap());
+                let [one, two] = [class, class + 2].map(|class| 1e6 * tolerance(deviation, &gear, class).unwrap());
                 let half_step = |value: f64| {
                     if value > 10.0 {
                         0.5
@@ -176,7 +204,7 @@ mod tests {
 
     #[test]
     fn what_is_outside_of_the_standard_is_refused_with_its_range() {
-        let refused = |gear: &ToothSizes, class| tolerance(Slope::Helix, gear, class).unwrap_err().message;
+        let refused = |gear: &ToothSizes, class| tolerance(Deviation::HelixSlope, gear, class).unwrap_err().message;
         let plain = gear(40, 3e-3, 30e-3);
         assert!(refused(&plain, 12).contains("class 12") && refused(&plain, 0).contains("classes 1 to 11"));
         assert!(refused(&gear(40, 3e-3, 3e-3), 6).contains("face width of 3.000000 mm; it has them for 4 to 1200 mm"));
@@ -184,7 +212,7 @@ mod tests {
         assert!(refused(&gear(4, 3e-3, 5e-3), 6).contains("teeth of 4"));
         // On the border, whatever rounding made of it.
         for module in [0.5e-3, 70e-3] {
-            assert!(tolerance(Slope::Profile, &gear(20, module, 4e-3), 11).is_ok(), "{module}");
+            assert!(tolerance(Deviation::ProfileSlope, &gear(20, module, 4e-3), 11).is_ok(), "{module}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Gear mechanics on `f64` in SI: geometry, modification, compliance, contact, transmission error.
+//! Gear mechanics on `f64` in SI: geometry, modification, compliance, contact, transmission error, rating.
 //!
 //! Must not know: files, clocks, threads, printing, YAML, global state.
 
@@ -9,13 +9,13 @@ pub mod finite_elements;
 pub(crate) mod fixtures;
 pub mod geometry;
 pub mod iso1328;
-pub mod iso6336_root;
 pub mod material;
 pub mod misalignment;
 pub mod modification;
 pub mod problem;
 #[cfg(test)]
 pub(crate) mod random;
+pub mod rating;
 pub mod sizing;
 pub mod stability;
 pub mod transmission_error;

@@ -9,7 +9,7 @@ use declare::number::significant;
 use declare::record::varied::{Form, Spread, Values, Varied, Within};
 use declare::record::{Record, Value};
 use declare::units::{in_unit, showing};
-use gearmesh::gear::iso1328::{Slope, ToothSizes, tolerance};
+use gearmesh::gear::iso1328::{Deviation, ToothSizes, tolerance};
 use gearmesh::numeric::distribution::Distribution;
 
 /// What a normal distribution may have outside of the range of its field, where nothing is cut off by the study: so little
@@ -119,15 +119,15 @@ fn of_class(class: i64, column: &Column, varied: &Varied) -> Result<f64, Diagnos
 }
 
 /// Which slope of which gear a field is.
-fn slope_of(column: &Column, record: &Record) -> Option<(Slope, &'static str)> {
+fn slope_of(column: &Column, record: &Record) -> Option<(Deviation, &'static str)> {
     let steps = &column.axis.slot.0;
     let (field, _) = record.fields.get(*steps.first()?)?;
     let names = Deviations::NAMES;
     let of_pair = [
-        (names.pinion_profile_slope, Slope::Profile, "pinion"),
-        (names.gear_profile_slope, Slope::Profile, "gear"),
-        (names.pinion_helix_slope, Slope::Helix, "pinion"),
-        (names.gear_helix_slope, Slope::Helix, "gear"),
+        (names.pinion_profile_slope, Deviation::ProfileSlope, "pinion"),
+        (names.gear_profile_slope, Deviation::ProfileSlope, "gear"),
+        (names.pinion_helix_slope, Deviation::HelixSlope, "pinion"),
+        (names.gear_helix_slope, Deviation::HelixSlope, "gear"),
     ];
     if let Some((_, slope, gear)) = of_pair.iter().find(|(name, ..)| name == field) {
         return Some((*slope, gear));
@@ -136,8 +136,8 @@ fn slope_of(column: &Column, record: &Record) -> Option<(Slope, &'static str)> {
     let member = declare::record::varied::Slot(steps[..steps.len() - 1].to_vec());
     let Value::Member(family, record) = &member.entry(record)?.value else { return None };
     let slope = match *family {
-        "profile_slope" => Slope::Profile,
-        "helix_slope" => Slope::Helix,
+        "profile_slope" => Deviation::ProfileSlope,
+        "helix_slope" => Deviation::HelixSlope,
         _ => return None,
     };
     match record.entry("gear").map(|entry| &entry.value) {

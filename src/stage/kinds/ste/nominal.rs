@@ -5,7 +5,7 @@
 use crate::stage::Context;
 use crate::stage::names::summary;
 use gearmesh::gear::geometry::{GearPair, Side};
-use gearmesh::gear::iso6336_root::nominal_root_stress;
+use gearmesh::gear::rating::root::nominal_root_stress;
 
 /// The standard's root stress of both gears per torque on the pinion, where it is wanted and holds; a warning says why not.
 pub fn nominal_root_stresses(context: &Context, pair: &GearPair) -> [f64; 2] {

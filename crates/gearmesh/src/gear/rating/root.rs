@@ -7,8 +7,8 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_3, FRAC_PI_4, FRAC_PI_6};
 
-use super::geometry::error::Plain;
-use super::geometry::{GearPair, Rack, Side, Specification};
+use crate::gear::geometry::error::Plain;
+use crate::gear::geometry::{GearPair, Rack, Side, Specification};
 
 /// q_s for which Y_S is given.
 const NOTCH: std::ops::Range<f64> = 1.0..8.0;
@@ -115,11 +115,11 @@ pub fn section(tooth: &Tooth) -> Result<Section, Outside> {
     })
 }
 
-/// σ_F0 \[Pa\] of a gear of a pair under a torque on the pinion \[N m\], over the common face width.
+/// The critical section of a gear of a pair, loaded at its outer point of single pair contact.
 ///
 /// # Errors
 /// Outside the ranges of the standard's formulas.
-pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f64, Outside> {
+pub fn critical_section(pair: &GearPair, side: Side) -> Result<Section, Outside> {
     if pair.contact_ratio >= DEEP_MESH {
         return Err(Outside::ContactRatio(pair.contact_ratio));
     }
@@ -129,10 +129,18 @@ pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f
     // Inside the end of the flank, along the line of action, by what is shared with another pair.
     let length = gear.flank_end.roll * gear.base_radius - pair.base_pitch * (pair.contact_ratio - 1.0);
     let load_radius = libm::hypot(length, gear.base_radius) / module;
-    let found = section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })?;
-    let width = pair.pinion.specification.face_width.min(pair.gear.specification.face_width);
+    section(&Tooth { teeth: f64::from(teeth), pressure_angle, profile_shift, rack, load_radius })
+}
+
+/// σ_F0 \[Pa\] of a gear of a pair under a torque on the pinion \[N m\], over the common face width.
+///
+/// # Errors
+/// Outside the ranges of the standard's formulas.
+pub fn nominal_root_stress(pair: &GearPair, side: Side, torque: f64) -> Result<f64, Outside> {
+    let found = critical_section(pair, side)?;
     let tangential = torque / pair.pinion.reference_radius;
-    Ok(tangential / (width * module) * found.form_factor * found.stress_correction_factor)
+    let module = pair.side(side).specification.module;
+    Ok(tangential / (pair.contact_width() * module) * found.form_factor * found.stress_correction_factor)
 }
 
 #[cfg(test)]
