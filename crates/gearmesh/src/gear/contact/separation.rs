@@ -53,7 +53,7 @@ impl Facing {
     pub fn new(pair: &GearPair, side: Side) -> Self {
         let (pinion, gear) = (pair.pinion.base_radius, pair.gear.base_radius);
         let tangent_length = pair.tangent_length;
-        let (start, end) = (pair.start_of_contact, pair.end_of_contact);
+        let [start, end] = pair.flank_ends();
         let round = pair.side(side).flank_end.radius;
         match side {
             Side::Gear => Self { point_radius: gear, flank_radius: pinion, tangent_length, start, end, round },

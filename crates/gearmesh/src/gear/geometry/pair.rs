@@ -154,6 +154,17 @@ impl GearPair {
         self.reached_roll(side) < self.side(side).form_roll - 1e-12
     }
 
+    /// Path positions at which the flanks of gear and pinion end towards their tips: where contact starts and ends, or beyond where
+    /// it is curtailed.
+    #[must_use]
+    pub fn flank_ends(&self) -> [f64; 2] {
+        let end = |side: Side, works: f64| {
+            let is_longer = self.is_curtailed(side.other());
+            if is_longer { self.path_position(side, self.side(side).flank_end.roll) } else { works }
+        };
+        [end(Side::Gear, self.start_of_contact), end(Side::Pinion, self.end_of_contact)]
+    }
+
     /// The roll angle of a gear up to which its mate's flank lets it work: that of its tip usable circle d_Na.
     #[must_use]
     pub fn highest_roll(&self, side: Side) -> f64 {

@@ -121,6 +121,19 @@ fn the_base_case_holds() {
     }
 }
 
+/// Where contact ends at a form circle a relief still begins from the tip.
+#[test]
+fn curtailed_pairs_hold_with_reliefs() {
+    let rules = Rules::new();
+    for (teeth, relief_length) in [([12, 48], 4e-3), ([48, 12], 4e-3), ([10, 24], 1.5e-3), ([14, 100], 6e-3)] {
+        let mut case = Case { gears: of_teeth(teeth), ..base() };
+        (case.relief, case.relief_length) = (9e-6, relief_length);
+        let report = check(&case, &rules);
+        let broken: Vec<_> = report.findings.iter().filter(|finding| finding.verdict != Verdict::Holds).collect();
+        assert!(broken.is_empty() && report.findings.len() > 15, "{teeth:?}: {broken:?}");
+    }
+}
+
 /// What was found with the second evaluation and repaired in the kernels; digits lost before are named.
 #[test]
 fn what_was_mended_stays_mended() {

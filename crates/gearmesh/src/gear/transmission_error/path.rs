@@ -21,8 +21,7 @@ const CORNER_ACCURACY: f64 = 1e-12;
 pub(super) struct Path {
     start: f64,
     end: f64,
-    /// Where the flanks of pinion and gear end towards their tips, as path positions; beyond `end` and `start` where contact
-    /// ends at a form circle.
+    /// Where the flanks of gear and pinion end towards their tips; beyond `start` and `end` where contact ends at a form circle.
     tips: [f64; 2],
     tangent_length: f64,
     base_radii: [f64; 2],
@@ -40,10 +39,7 @@ impl Path {
         Self {
             start: pair.start_of_contact,
             end: pair.end_of_contact,
-            tips: [(Side::Pinion, pair.end_of_contact), (Side::Gear, pair.start_of_contact)].map(|(side, works)| {
-                let is_longer = pair.is_curtailed(side.other());
-                if is_longer { pair.path_position(side, pair.side(side).flank_end.roll) } else { works }
-            }),
+            tips: pair.flank_ends(),
             tangent_length: pair.tangent_length,
             base_radii: [pair.pinion.base_radius, pair.gear.base_radius],
             corners: exact.then(|| [corner(Side::Gear), corner(Side::Pinion)]),
@@ -68,7 +64,7 @@ impl Path {
 
     /// The radius of curvature of this gear's flank where it ends, and its base radius \[m\].
     pub(super) fn flank_end(&self, side: Side) -> (f64, f64) {
-        let end = if side == Side::Pinion { self.tips[0] } else { self.tangent_length - self.tips[1] };
+        let end = if side == Side::Pinion { self.tips[1] } else { self.tangent_length - self.tips[0] };
         (end, self.base_radii[side as usize])
     }
 
@@ -92,8 +88,8 @@ impl Path {
         match (side, &self.corners) {
             (Side::Pinion, Some([_, (facing, _)])) if s > self.end => beyond(facing.flank_end(s - self.end)),
             (Side::Gear, Some([(facing, _), _])) if s < self.start => beyond(facing.flank_end(self.start - s)),
-            (Side::Pinion, _) => along(self.tips[0], pinion, self.base_radii[0]),
-            (Side::Gear, _) => along(self.tangent_length - self.tips[1], gear, self.base_radii[1]),
+            (Side::Pinion, _) => along(self.tips[1], pinion, self.base_radii[0]),
+            (Side::Gear, _) => along(self.tangent_length - self.tips[0], gear, self.base_radii[1]),
         }
     }
 

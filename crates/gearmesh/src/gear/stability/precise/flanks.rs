@@ -24,7 +24,8 @@ pub(super) struct TipRelief {
 pub(super) struct Flanks {
     pub base_radii: [Double; 2],
     pub tangent_length: Double,
-    /// Where contact starts and where it ends.
+    /// Where the flanks of gear and pinion end towards their tips, as path positions: where contact starts and ends, unless a flank
+    /// has no involute to meet there.
     pub path: [Double; 2],
     pub reliefs: [TipRelief; 2],
 }

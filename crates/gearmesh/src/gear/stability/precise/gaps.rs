@@ -11,7 +11,7 @@ pub(in super::super) fn exact_gap(case: &Case, built: &Built, s: Double) -> Doub
     let flanks = Flanks {
         base_radii: [pair.pinion.base_radius, pair.gear.base_radius].map(Double::from),
         tangent_length: pair.tangent_length.into(),
-        path: [pair.start_of_contact, pair.end_of_contact].map(Double::from),
+        path: pair.flank_ends().map(Double::from),
         reliefs: [relief; 2],
     };
     flanks.least(s).gap

@@ -137,9 +137,9 @@ impl<'a> Mesh<'a> {
         let tangent_length = base_sum * inverse_involute(working, tangent.high);
         let width = one.face_width.min(two.face_width);
         // Where a flank ends towards its tip, unless its mate has no involute as far as that.
-        let start = (tangent_length - base_radii[1] * teeth[1].tip_roll).max(base_radii[0] * teeth[0].form_roll);
-        let end_of_gear = tangent_length - base_radii[1] * teeth[1].form_roll;
-        let end = (base_radii[0] * teeth[0].tip_roll).min(end_of_gear);
+        let path = [tangent_length - base_radii[1] * teeth[1].tip_roll, base_radii[0] * teeth[0].tip_roll];
+        let start = path[0].max(base_radii[0] * teeth[0].form_roll);
+        let end = path[1].min(tangent_length - base_radii[1] * teeth[1].form_roll);
         let share = |gear: &GearInputs| gear.crowning * (Double::from(width) / gear.face_width).square();
         Self {
             inputs,
@@ -152,12 +152,7 @@ impl<'a> Mesh<'a> {
             width,
             crown: share(one) + share(two),
             base_radii,
-            flanks: Flanks {
-                base_radii,
-                tangent_length,
-                path: [start, end],
-                reliefs: [one.tip_relief(), two.tip_relief()],
-            },
+            flanks: Flanks { base_radii, tangent_length, path, reliefs: [one.tip_relief(), two.tip_relief()] },
         }
     }
 
@@ -285,7 +280,8 @@ impl<'a> Mesh<'a> {
     fn spans(&self, teeth: &[Tooth; 2], from: Double, to: Double, pairs: usize) -> Vec<(Double, Double)> {
         let [one, two] = &self.inputs.gears;
         let mut cuts = vec![from];
-        for (s, gear) in [(self.end - one.relief_length, one), (self.start + two.relief_length, two)] {
+        let [first, last] = self.flanks.path;
+        for (s, gear) in [(last - one.relief_length, one), (first + two.relief_length, two)] {
             let pitches = (s - self.start) / self.base_pitch;
             let folded = (pitches - pitches.high.floor()) * self.base_pitch;
             if gear.relief.high != 0.0 && folded > from && folded < to {
