@@ -55,6 +55,7 @@ static NAMED: &[Naming] = {
         of("report", "cell", Names::Cells),
         of("report", "against", Names::Cells),
         of("report", "with", Names::Cells),
+        of("report", "let", Names::Cells),
         of("report", "table", Names::Table),
         of("report", "reference", Names::Table),
         of("report", "marked", Names::Table),

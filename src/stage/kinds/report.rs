@@ -19,13 +19,14 @@ use std::collections::BTreeSet;
 use crate::stage::{Ahead, Context, Demand, DimensionOf, Estimate, Inputs, Kind, Named, Port, RowCount, Stage, Want};
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
-use declare::declared::Declared;
+use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
+use entry::names::Shared;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
 use operand::Operand;
-use stated::Published;
+use stated::{PrintedTable, Published};
 use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
 use studygraph::table::data::Table;
@@ -67,6 +68,11 @@ figures:
 struct Stated {
     /// the paper's numbers and claims
     pub published: Option<Vec<Published>>,
+    /// printed tables: a line for each number
+    pub printed: Option<Vec<PrintedTable>>,
+    /// what names stand for in every formula, claim and proof that does not say it itself: cells or quantities
+    #[declared(name = "let", example = "stiffness.summary.mean")]
+    pub shared: Option<Vec<(String, Placed<String>)>>,
     /// results beside others: methods, settings, designs
     pub compare: Option<Vec<Compared>>,
     /// the figures of the report
@@ -92,9 +98,18 @@ struct Report {
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let published = (1..).zip(stated.published.iter().flatten()).zip(record.each_inside(Stated::NAMES.published));
-    let entries = published.map(|((number, stated), record)| ReportEntry::read(number, stated, record));
+    let shared = Shared::read(stated.shared.as_deref().unwrap_or_default())?;
+    let published = stated.published.into_iter().flatten().zip(record.each_inside(Stated::NAMES.published));
+    let tables = stated.printed.into_iter().flatten().zip(record.each_inside(Stated::NAMES.printed));
+    let printed = tables.flat_map(|(table, record)| {
+        table.entries().zip(record.each_inside(PrintedTable::NAMES.rows)).collect::<Vec<_>>()
+    });
+    let all = (1..).zip(published.chain(printed));
+    let entries = all.map(|(number, (stated, record))| ReportEntry::read(number, &stated, record, &shared));
     let (entries, mut wrong) = Faults::apart(entries);
+    if wrong.is_empty() {
+        wrong.extend(shared.check_used().err());
+    }
     let compared = (1..).zip(stated.compare.iter().flatten()).zip(record.each_inside(Stated::NAMES.compare));
     let comparisons = compared.map(|((number, stated), record)| Comparison::read(number, stated, record));
     let (comparisons, of_comparisons) = Faults::apart(comparisons);

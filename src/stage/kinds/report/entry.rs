@@ -2,6 +2,7 @@
 //!
 //! Must not know: figures, other entries.
 
+pub mod names;
 mod units;
 
 use super::operand::{Operand, in_si};
@@ -15,13 +16,12 @@ use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
 use declare::units::{Dimension, RATIO, in_unit};
+use names::{Operands, Shared, read_formula, read_operands};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
 /// Names that a proof may use without giving them.
 const GIVEN: [&str; 2] = ["published", "computed"];
-
-type Operands = Vec<(String, Operand)>;
 
 /// What is compared with the published value.
 enum Subject {
@@ -131,8 +131,8 @@ pub fn verdicts<'a>() -> Columns<Finding<'a>> {
 impl ReportEntry {
     /// # Errors
     /// What is wrong with the entry, at the place of the field.
-    pub fn read(number: usize, stated: &Published, record: &Record) -> Result<Self, Diagnostic> {
-        let subject = read_subject(stated, record)?;
+    pub fn read(number: usize, stated: &Published, record: &Record, shared: &Shared) -> Result<Self, Diagnostic> {
+        let subject = read_subject(stated, record, shared)?;
         let is_claim = matches!(subject, Subject::Claim(..));
         let published = match (&stated.value, is_claim) {
             (Some(value), false) => Some(read_target(value, &stated.tolerance, None)?),
@@ -150,7 +150,7 @@ impl ReportEntry {
         let expected = stated.expected.as_ref();
         let expected = expected.map(|Expected { value, tolerance }| read_target(value, tolerance, Some(unit)));
         let expected = expected.transpose()?;
-        let proof = stated.proof.as_ref().map(read_proof).transpose()?;
+        let proof = stated.proof.as_ref().map(|proof| read_proof(proof, shared)).transpose()?;
         let because = trimmed(stated.because.as_deref());
         if because.is_empty() && proof.is_some() {
             return Err(Diagnostic::new("a proof is given, but not the reason it proves")
@@ -349,7 +349,7 @@ fn given(stated: &Published) -> impl Iterator<Item = (&'static str, &Placed<Stri
     all.into_iter().filter_map(|(field, text)| Some((field, text.as_ref()?)))
 }
 
-fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnostic> {
+fn read_subject(stated: &Published, record: &Record, shared: &Shared) -> Result<Subject, Diagnostic> {
     let given: Vec<_> = given(stated).collect();
     let [(_, written @ Placed { value: text, place })] = given[..] else {
         let fields: Vec<&str> = given.iter().map(|(field, _)| *field).collect();
@@ -371,7 +371,7 @@ fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnost
         };
     }
     let with = read_operands(stated.with.as_deref().unwrap_or_default(), &[])?;
-    let formula = read_formula(text, &with, &[], *place)?;
+    let (formula, with) = read_formula(text, with, &[], *place, shared)?;
     match (stated.claim.is_some(), formula.is_claim()) {
         (false, false) => Ok(Subject::Formula(formula, with)),
         (true, true) => Ok(Subject::Claim(formula, with)),
@@ -380,40 +380,14 @@ fn read_subject(stated: &Published, record: &Record) -> Result<Subject, Diagnost
     }
 }
 
-fn read_proof(StatedProof { claim, with }: &StatedProof) -> Result<Proof, Diagnostic> {
+fn read_proof(StatedProof { claim, with }: &StatedProof, shared: &Shared) -> Result<Proof, Diagnostic> {
     let with = read_operands(with.as_deref().unwrap_or_default(), &GIVEN)?;
     let place = claim.place;
-    let claim = read_formula(&claim.value, &with, &GIVEN, place)?;
+    let (claim, with) = read_formula(&claim.value, with, &GIVEN, place, shared)?;
     if claim.is_claim() {
         Ok(Proof { claim, place, with })
     } else {
         Err(Diagnostic::new(format!("`{}` is a number; a proof compares, for example `{0} > published`", claim.text))
             .at(place))
     }
-}
-
-/// Reads what names stand for; refuses those that stand for something already.
-fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
-    let mut operands = Operands::new();
-    for (name, given) in with {
-        if taken.contains(&name.as_str()) {
-            let message = format!("`{name}` stands for the {name} value already; choose another name");
-            return Err(Diagnostic::new(message).at(given.place));
-        }
-        operands.push((name.clone(), Operand::read(given)?));
-    }
-    Ok(operands)
-}
-
-fn read_formula(text: &str, with: &Operands, given: &[&str], place: Place) -> Result<Formula, Diagnostic> {
-    let names: Vec<&str> = with.iter().map(|(name, _)| name.as_str()).chain(given.iter().copied()).collect();
-    let formula = Formula::parse(text, &names).map_err(|message| {
-        Diagnostic::new(message).at(place).help(
-            "allowed: + - * / ^ sqrt() abs() min() max() < <= > >= == != && || !; over all rows mean() rms() sum()",
-        )
-    })?;
-    if let Some((unused, _)) = with.iter().find(|(name, _)| formula.names().all(|used| used != name)) {
-        return Err(Diagnostic::new(format!("`with` gives `{unused}`, but `{text}` does not use it")).at(place));
-    }
-    Ok(formula)
 }

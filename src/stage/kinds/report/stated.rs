@@ -49,6 +49,82 @@ pub struct Published {
     pub note: Option<String>,
 }
 
+/// A table as it was printed: a line for each number.
+#[derive(Debug, Declared)]
+pub struct PrintedTable {
+    /// where it is printed: a page, a section of a printout
+    #[declared(name = "where", example = "Printout, page 3")]
+    pub location: Option<String>,
+    /// what the cells of its rows begin with, so that a row names a column alone
+    #[declared(example = "pair.gears[gear=pinion]")]
+    pub of: Option<Placed<String>>,
+    /// how far apart counts as equal in rows that say nothing of it: `digits`, `1 %`, or a quantity
+    #[declared(default = "digits")]
+    pub tolerance: Placed<String>,
+    /// why they differ, in rows that say nothing of it
+    #[declared(example = "the program rounds the centre distance")]
+    pub because: Option<String>,
+    /// what is printed
+    pub rows: Vec<PrintedRow>,
+}
+
+/// A number of a printed table.
+#[derive(Debug, Declared)]
+pub struct PrintedRow {
+    /// what it is, in words
+    #[declared(example = "Span measurement W_k")]
+    pub label: String,
+    /// the computed cell, or its column where the table says the rest
+    #[declared(example = "tip_radius")]
+    pub cell: Option<Placed<String>>,
+    /// or arithmetic over the names in `let`
+    #[declared(example = "a / b - 1")]
+    pub formula: Option<Placed<String>>,
+    /// the value as printed, with its unit
+    #[declared(example = "33.129 mm")]
+    pub value: Placed<String>,
+    /// how far apart counts as equal in this row
+    #[declared(example = "1 %")]
+    pub tolerance: Option<Placed<String>>,
+    /// where the computed value stands today, so that it cannot drift unseen
+    pub expected: Option<Expected>,
+    /// why they differ
+    #[declared(example = "the program rounds its stiffness")]
+    pub because: Option<String>,
+    /// a remark that claims no difference
+    #[declared(example = "read off the figure")]
+    pub note: Option<String>,
+}
+
+impl PrintedTable {
+    /// The rows as entries of their own.
+    pub fn entries(self) -> impl Iterator<Item = Published> {
+        let Self { location, of, tolerance, because, rows } = self;
+        rows.into_iter().map(move |row| {
+            let whole = |cell: Placed<String>| match &of {
+                Some(of) if !cell.value.contains('.') => {
+                    Placed { value: format!("{}.{}", of.value.trim(), cell.value.trim()), place: cell.place }
+                }
+                _ => cell,
+            };
+            Published {
+                label: Some(row.label),
+                location: location.clone(),
+                cell: row.cell.map(whole),
+                formula: row.formula,
+                claim: None,
+                with: None,
+                value: Some(row.value),
+                tolerance: row.tolerance.unwrap_or_else(|| tolerance.clone()),
+                expected: row.expected,
+                because: row.because.or_else(|| because.clone()),
+                proof: None,
+                note: row.note,
+            }
+        })
+    }
+}
+
 /// Where a computed value stands.
 #[derive(Debug, Declared)]
 pub struct Expected {

@@ -1,0 +1,85 @@
+//! What the names in a formula, claim or proof stand for: its own `with`, or the `let` of the report.
+//!
+//! Must not know: what a formula is for.
+
+use std::cell::RefCell;
+use std::collections::BTreeSet;
+
+use super::super::operand::Operand;
+use super::GIVEN;
+use crate::stage::formula::Formula;
+use declare::declared::Placed;
+use declare::error::{Diagnostic, Place};
+
+/// Names and what they stand for.
+pub type Operands = Vec<(String, Operand)>;
+
+/// What names stand for in every formula, claim and proof that does not say it itself; and which of them are used.
+pub struct Shared {
+    operands: Operands,
+    used: RefCell<BTreeSet<usize>>,
+}
+
+impl Shared {
+    /// # Errors
+    /// What is wrong with one of them, at its place.
+    pub fn read(stated: &[(String, Placed<String>)]) -> Result<Self, Diagnostic> {
+        Ok(Self { operands: read_operands(stated, &GIVEN)?, used: RefCell::default() })
+    }
+
+    /// The first that nothing uses.
+    ///
+    /// # Errors
+    /// That, at its place.
+    pub fn check_used(&self) -> Result<(), Diagnostic> {
+        let used = self.used.borrow();
+        let unused = self.operands.iter().enumerate().find(|(index, _)| !used.contains(index));
+        unused.map_or(Ok(()), |(_, (name, operand))| {
+            Err(Diagnostic::new(format!("`let` gives `{name}`, but no formula, claim or proof uses it"))
+                .at(operand.place))
+        })
+    }
+}
+
+/// Reads what names stand for; refuses those that stand for something already.
+pub(super) fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
+    let mut operands = Operands::new();
+    for (name, given) in with {
+        if taken.contains(&name.as_str()) {
+            let message = format!("`{name}` stands for the {name} value already; choose another name");
+            return Err(Diagnostic::new(message).at(given.place));
+        }
+        operands.push((name.clone(), Operand::read(given)?));
+    }
+    Ok(operands)
+}
+
+/// A formula, and what its names stand for: its own first.
+pub(super) fn read_formula(
+    text: &str,
+    mut with: Operands,
+    given: &[&str],
+    place: Place,
+    shared: &Shared,
+) -> Result<(Formula, Operands), Diagnostic> {
+    let own = |(name, _): &&(String, Operand)| with.iter().all(|(own, _)| own != name);
+    let shared_names = shared.operands.iter().filter(own).map(|(name, _)| name.as_str());
+    let names: Vec<&str> =
+        with.iter().map(|(name, _)| name.as_str()).chain(given.iter().copied()).chain(shared_names).collect();
+    let formula = Formula::parse(text, &names).map_err(|message| {
+        Diagnostic::new(message).at(place).help(
+            "allowed: + - * / ^ sqrt() abs() min() max() < <= > >= == != && || !; over all rows mean() rms() sum()",
+        )
+    })?;
+    if let Some((unused, _)) = with.iter().find(|(name, _)| formula.names().all(|used| used != name)) {
+        return Err(Diagnostic::new(format!("`with` gives `{unused}`, but `{text}` does not use it")).at(place));
+    }
+    for (index, (name, operand)) in shared.operands.iter().enumerate() {
+        let is_own = with.iter().any(|(own, _)| own == name);
+        if !is_own && formula.names().any(|used| used == name) {
+            shared.used.borrow_mut().insert(index);
+            with.push((name.clone(), operand.clone()));
+        }
+    }
+    Ok((formula, with))
+}
