@@ -74,7 +74,10 @@ impl Random {
                 bore_radius: module * (0.5 * f64::from(teeth) + profile_shift - 1.25) / bore,
                 material: Material::STEEL,
             };
-            if let Ok(pair) = GearPair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None) {
+            // Corner contact is not modelled where contact ends at a form circle.
+            if let Ok(pair) = GearPair::new(of(pinion, shifts[0]), of(gear, shifts[1]), None)
+                && pair.refuse_interference().is_ok()
+            {
                 return pair;
             }
         }
