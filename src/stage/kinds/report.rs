@@ -69,7 +69,7 @@ struct Stated {
     /// the paper's numbers and claims
     pub published: Option<Vec<Published>>,
     /// printed tables: a line for each number
-    pub printed: Option<Vec<PrintedTable>>,
+    pub printout: Option<Vec<PrintedTable>>,
     /// what names stand for in every formula, claim and proof that does not say it itself: cells or quantities
     #[declared(name = "let", example = "stiffness.summary.mean")]
     pub shared: Option<Vec<(String, Placed<String>)>>,
@@ -100,7 +100,7 @@ fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
     let shared = Shared::read(stated.shared.as_deref().unwrap_or_default())?;
     let published = stated.published.into_iter().flatten().zip(record.each_inside(Stated::NAMES.published));
-    let tables = stated.printed.into_iter().flatten().zip(record.each_inside(Stated::NAMES.printed));
+    let tables = stated.printout.into_iter().flatten().zip(record.each_inside(Stated::NAMES.printout));
     let printed = tables.flat_map(|(table, record)| {
         table.entries().zip(record.each_inside(PrintedTable::NAMES.rows)).collect::<Vec<_>>()
     });

@@ -362,7 +362,7 @@ fn a_printed_table_is_a_line_for_each_number() {
     ]);
     let shared = Value::Map(vec![("a".to_owned(), item(text("4 um"))), ("b".to_owned(), item(text("2 um")))]);
     let read = |shared: Value| {
-        let fields = vec![("printed", item(list(vec![table.clone()]))), ("let", item(shared))];
+        let fields = vec![("printout", item(list(vec![table.clone()]))), ("let", item(shared))];
         build(&Record { fields, place: Place::default() })
     };
     let stage = read(shared.clone()).unwrap();

@@ -170,18 +170,18 @@ impl MeshCycle {
             )));
         }
         let exact = settings.corner_contact == CornerContact::Exact;
-        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(|side| exact && pair.is_curtailed(*side)) {
-            return Err(Failure::new(format!(
-                "{}: contact ends at its root form circle, which its mate's tip passes; what the edge there would touch is not \
-                 modelled, so that corner contact must be `none`",
-                side.name()
-            )));
-        }
         let springs = most_pairs(ratio) + if exact { CORNERS } else { 0 };
         if springs > MOST_SPRINGS {
             let largest = MOST_SPRINGS - CORNERS;
             return Err(Failure::new(format!(
                 "the transverse contact ratio is {ratio:.6}; with corner contact it must be 1 to {largest}"
+            )));
+        }
+        if let Some(side) = [Side::Pinion, Side::Gear].into_iter().find(|side| exact && pair.is_curtailed(*side)) {
+            return Err(Failure::new(format!(
+                "{}: contact ends at its root form circle, which its mate's tip passes; what the edge there would touch is not \
+                 modelled, so that corner contact must be `none`",
+                side.name()
             )));
         }
         let path = Path::new(pair, settings.corner_contact);
