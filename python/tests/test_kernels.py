@@ -57,6 +57,23 @@ def test_a_curve_alone_is_the_same_curve(stiffness):
             getattr(alone, name)
 
 
+def test_gears_as_made():
+    """x_E = x + A_s/(2 m tan alpha) moves the root and leaves the tip; an undercut pair runs on what is left of the path."""
+    sized = {"face_width": 20e-3, "bore_radius": 8e-3}
+    thin = gs.AllowanceToothThickness(upper=-60e-6, lower=-90e-6)
+    pinion, gear = (gs.GearSpecification(teeth=teeth, tooth_thickness=thickness, **sized) for teeth, thickness in ((19, thin), (48, None)))
+    nominal, made = (gs.Pair(module=3e-3, pinion=one, gear=gear) for one in (gs.GearSpecification(teeth=19, **sized), pinion))
+    deeper = 75e-6 / (2 * math.tan(math.radians(20)))
+    assert nominal.pinion.root_radius - made.pinion.root_radius == pytest.approx(deeper, rel=1e-9)
+    assert (made.pinion.tip_radius, made.centre_distance) == (nominal.pinion.tip_radius, nominal.centre_distance)
+    undercut = {"module": 3e-3, "pinion": gs.GearSpecification(teeth=12, **sized), "gear": gear}
+    pair = gs.Pair(**undercut)
+    base, form = pair.pinion.base_radius, pair.pinion.form_radius
+    assert pair.start_of_contact == pytest.approx(math.sqrt(form**2 - base**2), rel=1e-9)
+    with pytest.raises(gs.InvalidInput, match="interference.*below the form radius"):
+        gs.Pair(**undercut, interference="refuse")
+
+
 def test_mesh_stiffness_is_force_over_approach_of_unmodified_gears(pair, stiffness):
     _, stiff, mean = stiffness.mesh()
     curve = gs.transmission_error(stiffness, 50.0)
