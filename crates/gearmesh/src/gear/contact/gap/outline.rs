@@ -27,7 +27,7 @@ const KINK: f64 = 1e-5;
 pub(super) const PARTS: usize = 32;
 /// Into how many parts the path is cut at the least where valleys are bridged, and how near two places may be, of such a part.
 const FINEST: usize = 256;
-const CLOSEST: f64 = 0.1;
+const CLOSEST: f64 = 0.005;
 /// Roundings of a position.
 const ROUNDINGS: f64 = 4.0;
 /// Distance of the points from which slopes of a profile are taken, in pieces.
