@@ -11,8 +11,10 @@ use crate::numeric::crossing::{bracketed, crossing};
 
 /// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
-/// The same on a spline, whose third derivative changes at its knots: of a separation that is a tenth of a micrometre.
-const CLOSE_ON_SPLINES: f64 = 1e-6;
+/// The same on a spline, whose third derivative is another one behind its next knot, and what the term before may be, which a third derivative
+/// that vanishes here says nothing of.
+const CLOSE_ON_SPLINES: f64 = 1e-3;
+const NEAR: f64 = 1e-3;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
 /// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
@@ -179,8 +181,12 @@ impl Way<'_> {
             // Of the Taylor series to the third order, its last term by how the second derivative has changed.
             third = (bend - before) / step;
             let rest = third * left * left * left / 6.0;
-            let close = if self.point.is_sampled || self.flank.is_sampled { CLOSE_ON_SPLINES } else { CLOSE };
-            if rest.abs() <= close * touch.separation {
+            let is_close = if self.point.is_sampled || self.flank.is_sampled {
+                rest.abs().max(CLOSE_ON_SPLINES * (slope * left).abs()) <= CLOSE_ON_SPLINES * NEAR * touch.separation
+            } else {
+                rest.abs() <= CLOSE * touch.separation
+            };
+            if is_close {
                 return (place >= first && curvature >= floor).then_some(gap + 0.5 * slope * left + rest);
             }
         }
