@@ -161,11 +161,16 @@ fn evaluated<'a>() -> Columns<EvaluatedRow<'a>> {
     of_modification(Columns::new(EVALUATED, description), |row: &EvaluatedRow<'a>| row.of)
         .text("trace", "Along which way: profile or helix.", |row| row.trace)
         .key()
-        .float("start", "mm", "Where the evaluation starts: roll length of a profile, z of a helix.", |row| row.values[0])
-        .float("end", "mm", "Where the evaluation ends.", |row| row.values[1])
-        .float("slope", "um", "Slope deviation f_Hα or f_Hβ, over the whole of the active flank or of the face.", |row| {
-            row.values[2]
+        .float("start", "mm", "Where the evaluation starts: roll length of a profile, z of a helix.", |row| {
+            row.values[0]
         })
+        .float("end", "mm", "Where the evaluation ends.", |row| row.values[1])
+        .float(
+            "slope",
+            "um",
+            "Slope deviation f_Hα or f_Hβ, over the whole of the active flank or of the face.",
+            |row| row.values[2],
+        )
         .float("form", "um", "Form deviation f_fα or f_fβ.", |row| row.values[3])
         .float("total", "um", "Total deviation F_α or F_β.", |row| row.values[4])
         .float("crowning", "um", "Height C_α or C_β of the mean parabola over its chord.", |row| row.values[5])

@@ -111,8 +111,7 @@ fn slopes(steps: &[f64], secants: &[f64]) -> Vec<f64> {
         let both = near + next;
         (next, both, ((near + 2.0 * both) * next * here + near * near * there) / both)
     };
-    let (mut diagonal, mut above, mut right) =
-        (vec![0.0; last + 1], vec![0.0; last + 1], vec![0.0; last + 1]);
+    let (mut diagonal, mut above, mut right) = (vec![0.0; last + 1], vec![0.0; last + 1], vec![0.0; last + 1]);
     (diagonal[0], above[0], right[0]) = end(0, 1);
     for at in 1..last {
         let (before, after) = (steps[at - 1], steps[at]);
@@ -228,7 +227,10 @@ mod tests {
             let knots: Vec<f64> = (0..=count).map(|at| 3.0 * f64::from(at) / f64::from(count)).collect();
             let values: Vec<f64> = knots.iter().map(|x| libm::sin(*x)).collect();
             let spline = Spline::new(&knots, &values);
-            (0..=1000).map(|at| 3e-3 * f64::from(at)).map(|x| (spline.value(x) - libm::sin(x)).abs()).fold(0.0, f64::max)
+            (0..=1000)
+                .map(|at| 3e-3 * f64::from(at))
+                .map(|x| (spline.value(x) - libm::sin(x)).abs())
+                .fold(0.0, f64::max)
         };
         for count in [20, 40, 80] {
             let order = libm::log2(off(count) / off(2 * count));

@@ -47,9 +47,10 @@ pub fn evaluate(places: &[f64], deviations: &[f64], range: [f64; 2], whole: f64)
         }
     }
     let spread = |off: &dyn Fn(&[f64; 2]) -> f64| {
-        let (least, most) = points.iter().map(off).fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| {
-            (least.min(value), most.max(value))
-        });
+        let (least, most) = points
+            .iter()
+            .map(off)
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(least, most), value| (least.min(value), most.max(value)));
         most - least
     };
     Some(Evaluation {

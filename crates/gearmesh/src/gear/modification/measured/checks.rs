@@ -102,7 +102,9 @@ fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
         let falls = places.windows(2).filter(|ends| ends[1] < ends[0]).count();
         if falls == places.len() - 1 {
             let message = format!("`{name}` falls all along: the trace runs the other way");
-            return Err(Diagnostic::new(message).of(name).help("turn it round, deviations too: from the root to the tip, or to larger z"));
+            return Err(Diagnostic::new(message)
+                .of(name)
+                .help("turn it round, deviations too: from the root to the tip, or to larger z"));
         }
         let (one, other) = (places[at], places[at + 1]);
         #[allow(clippy::float_cmp)] // the same point twice, not one nearby
@@ -209,7 +211,9 @@ pub(super) fn face_positions(stated: &Measured, flank: &Flank) -> Result<Option<
 }
 
 fn of_another_gear(message: String, name: &'static str) -> Diagnostic {
-    Diagnostic::new(message).of(name).help("is it of a gear with another module or number of teeth, or of the other gear of the pair?")
+    Diagnostic::new(message)
+        .of(name)
+        .help("is it of a gear with another module or number of teeth, or of the other gear of the pair?")
 }
 
 fn millimetres(length: f64) -> String {

@@ -52,12 +52,13 @@ impl Grid {
         let first = row * self.along.knots().len() + column;
         let corners = [first, first + 1, first + self.along.knots().len(), first + self.along.knots().len() + 1];
         weights.map(|weights| {
-            (0..4).map(|at| {
-                let [v, x, y, xy] = self.corners[corners[at]];
-                let [value, slope] = [weights[at % 2], weights[at % 2 + 2]];
-                across[at / 2] * (value * v + slope * x) + across[at / 2 + 2] * (value * y + slope * xy)
-            })
-            .sum()
+            (0..4)
+                .map(|at| {
+                    let [v, x, y, xy] = self.corners[corners[at]];
+                    let [value, slope] = [weights[at % 2], weights[at % 2 + 2]];
+                    across[at / 2] * (value * v + slope * x) + across[at / 2 + 2] * (value * y + slope * xy)
+                })
+                .sum()
         })
     }
 

@@ -30,7 +30,8 @@ impl Smoothing {
         let mut found: Vec<f64> = values.chunks(along.len()).flat_map(|line| self.smoothed(along, line)).collect();
         for column in 0..along.len() {
             let line: Vec<f64> = found.iter().skip(column).step_by(along.len()).copied().collect();
-            for (value, smooth) in found.iter_mut().skip(column).step_by(along.len()).zip(self.smoothed(across, &line)) {
+            for (value, smooth) in found.iter_mut().skip(column).step_by(along.len()).zip(self.smoothed(across, &line))
+            {
                 *value = smooth;
             }
         }

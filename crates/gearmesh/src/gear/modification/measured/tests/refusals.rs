@@ -34,10 +34,16 @@ fn what_is_no_trace_is_refused() {
         "there is a gap between points 40 and 41 of `roll_lengths`, 21 times as wide as is usual among them",
     );
     refused(|stated| stated.deviations[30] += 60e-6, "deviation 31 stands 60.0");
-    refused(|stated| stated.deviations[7] = 1.2e-3, "deviation 8 is 1.200000 mm, and a deviation is 0.5 mm at the most");
+    refused(
+        |stated| stated.deviations[7] = 1.2e-3,
+        "deviation 8 is 1.200000 mm, and a deviation is 0.5 mm at the most",
+    );
     refused(|stated| stated.deviations[7] = f64::NAN, "`deviations` is NaN");
     refused(|stated| lengths(stated)[7] = f64::NAN, "`roll_lengths` is NaN");
-    refused(|stated| stated.deviations.truncate(99), "there are 99 deviations for 100 `roll_lengths`; 100 are expected");
+    refused(
+        |stated| stated.deviations.truncate(99),
+        "there are 99 deviations for 100 `roll_lengths`; 100 are expected",
+    );
     refused(|stated| stated.roll_lengths = None, "nothing says where the deviations were measured");
     refused(|stated| stated.diameters = Some(vec![60e-3, 61e-3]), "given twice, by `roll_lengths` and `diameters`");
     refused(|stated| *lengths(stated) = vec![1e-3], "`roll_lengths` has 1 points; 2 are the fewest of a trace");
