@@ -17,8 +17,10 @@ if TYPE_CHECKING:
     import numpy.typing
 
 __all__ = [
+    "AllowanceToothThickness",
     "ArcRelief",
     "ArcRoot",
+    "CentreDistanceAllowance",
     "ChamferTip",
     "Declared",
     "DifferentialEvolution",
@@ -37,10 +39,12 @@ __all__ = [
     "LatinHypercube",
     "LeadCrowning",
     "Material",
+    "MeasuredRelief",
     "Modification",
     "NelderMead",
     "Nsga2",
     "OptimisedArcRoot",
+    "OverBallsToothThickness",
     "Pair",
     "ParabolaRelief",
     "Powell",
@@ -52,6 +56,7 @@ __all__ = [
     "RoundingTip",
     "Search",
     "Sobol",
+    "SpanToothThickness",
     "Stiffness",
     "TangentArcRoot",
     "TipRelief",
@@ -527,6 +532,70 @@ class EndRelief(Modification):
         )
 
 
+class MeasuredRelief(Modification):
+    """Flank as measured: deviations (ISO 1328-1) along the profile, across the face, or over both.
+
+    Parameters
+    ----------
+    gear : Literal["pinion", "gear", "both"]
+        Which gear is modified.
+    roll_lengths : Sequence[Quantity], optional
+        L_y: roll lengths of the points along the profile, r_b times the roll angle, from the root to the tip.
+    roll_angles : Sequence[Quantity], optional
+        Instead of `roll_lengths`: roll angles of the points along the profile.
+    diameters : Sequence[Quantity], optional
+        Instead of `roll_lengths`: diameters of the points along the profile.
+    face_positions : Sequence[Quantity], optional
+        z of the points across the face, from its middle; with points along the profile too, the deviations are
+        those of a grid.
+    deviations : Sequence[Quantity]
+        Deviations normal to the flank, positive where there is more material than designed, in the order of the
+        points; of a grid all along the profile for each place across the face.
+    evaluation_start : number [m], optional
+        Roll length, or z of a trace across the face, from which the trace is evaluated; the start of the active
+        flank, or the end of the face, when left out. -10 to 10 m.
+    evaluation_end : number [m], optional
+        Up to which it is evaluated; the tip, or the other end of the face, when left out. -10 to 10 m.
+    smoothing : Literal["none", "gaussian"], optional
+        What is left out of a trace before it is a flank. Without it: none.
+    cutoff : number [m], optional
+        λ: wavelength of which half is left, along the roll length or across the face; ISO 1328-1 has λ_α = L_α/30.
+        1e-06 to 1 m.
+
+    >>> Design(pair, MeasuredRelief(gear="pinion", face_positions=[-9e-3, 0.0, 9e-3], deviations=["-2 um", "1 um", "-3 um"])).resolved[0][1]
+    'measured'
+    """
+
+    name = "measured"
+
+    def __init__(
+        self,
+        *,
+        gear: Literal["pinion", "gear", "both"],
+        deviations: Sequence[Quantity],
+        roll_lengths: Sequence[Quantity] | None = None,
+        roll_angles: Sequence[Quantity] | None = None,
+        diameters: Sequence[Quantity] | None = None,
+        face_positions: Sequence[Quantity] | None = None,
+        evaluation_start: Quantity | None = None,
+        evaluation_end: Quantity | None = None,
+        smoothing: Literal["none", "gaussian"] | None = None,
+        cutoff: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            gear=gear,
+            roll_lengths=roll_lengths,
+            roll_angles=roll_angles,
+            diameters=diameters,
+            face_positions=face_positions,
+            deviations=deviations,
+            evaluation_start=evaluation_start,
+            evaluation_end=evaluation_end,
+            smoothing=smoothing,
+            cutoff=cutoff,
+        )
+
+
 class Search(Declared):
     """A method of an `Optimizer`."""
 
@@ -844,6 +913,130 @@ class Sobol(Search):
         )
 
 
+class AllowanceToothThickness(Declared):
+    """Deviations from the thickness without backlash, on the reference circle, as DIN 3967 has them.
+
+    Parameters
+    ----------
+    upper : number [m]
+        Upper allowance A_sns; below 0 for backlash. -0.1 to 0.1 m.
+    lower : number [m], optional
+        Lower allowance A_sni, when it is another one; the gear is computed in the middle. -0.1 to 0.1 m.
+
+    >>> AllowanceToothThickness().name
+    'allowance'
+    """
+
+    name = "allowance"
+
+    def __init__(
+        self,
+        *,
+        upper: Quantity,
+        lower: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            upper=upper,
+            lower=lower,
+        )
+
+
+class SpanToothThickness(Declared):
+    """A span over teeth.
+
+    Parameters
+    ----------
+    teeth : int
+        Number k of teeth in the span. 1 to 10000.
+    largest : number [m]
+        Span measurement W_k, the largest one. 1e-09 to 1000 m.
+    smallest : number [m], optional
+        The smallest W_k, when it is another one; the gear is computed in the middle. 1e-09 to 1000 m.
+
+    >>> SpanToothThickness().name
+    'span'
+    """
+
+    name = "span"
+
+    def __init__(
+        self,
+        *,
+        teeth: int,
+        largest: Quantity,
+        smallest: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            teeth=teeth,
+            largest=largest,
+            smallest=smallest,
+        )
+
+
+class OverBallsToothThickness(Declared):
+    """Two balls or pins in spaces as nearly opposite as there are.
+
+    Parameters
+    ----------
+    ball_diameter : number [m]
+        Diameter D_M of the balls. 1e-09 to 100 m.
+    largest : number [m]
+        Dimension M_dK over both, the largest one. 1e-09 to 1000 m.
+    smallest : number [m], optional
+        The smallest M_dK, when it is another one; the gear is computed in the middle. 1e-09 to 1000 m.
+
+    >>> OverBallsToothThickness().name
+    'over_balls'
+    """
+
+    name = "over_balls"
+
+    def __init__(
+        self,
+        *,
+        ball_diameter: Quantity,
+        largest: Quantity,
+        smallest: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            ball_diameter=ball_diameter,
+            largest=largest,
+            smallest=smallest,
+        )
+
+
+class Rack(Declared):
+    """Basic rack that cuts this gear, when it is not the common one.
+
+    Parameters
+    ----------
+    addendum : number, optional
+        Addendum coefficient h_aP*. 0.1 to 3. Without it: 1.0.
+    dedendum : number, optional
+        Dedendum coefficient h_fP*. 0.1 to 4. Without it: 1.25.
+    tip_radius : number, optional
+        Tip radius coefficient ρ_fP*. 0 to 2. Without it: 0.38.
+
+    >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
+    >>> stub = Pair(module=3e-3, pinion=gear, gear=gear, rack=Rack(addendum=0.8, dedendum=1.05))
+    >>> f"{stub.pinion.tip_radius:.5f}"
+    '0.03840'
+    """
+
+    def __init__(
+        self,
+        *,
+        addendum: float | None = None,
+        dedendum: float | None = None,
+        tip_radius: float | None = None,
+    ) -> None:
+        super().__init__(
+            addendum=addendum,
+            dedendum=dedendum,
+            tip_radius=tip_radius,
+        )
+
+
 class TrochoidRoot(Declared):
     """The root curve that the rack generates.
 
@@ -1032,10 +1225,15 @@ class GearSpecification(Declared):
         Radius of the bore, where the body is clamped. 0 to 10000 m.
     profile_shift : number, optional
         Profile shift coefficient x. -2 to 3. Without it: 0.0.
+    tooth_thickness : Literal["allowance", "span", "over_balls"] | AllowanceToothThickness | SpanToothThickness | OverBallsToothThickness | Mapping[str, Any], optional
+        Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance
+        are then nominal.
     tip_radius : number [m], optional
         Tip radius r_a, when it is not m(z/2 + h_aP* + x). 1e-06 to 10000 m.
     tip_shortening : number, optional
         Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k). -1 to 1.
+    rack : Rack | Mapping[str, Any], optional
+        Basic rack that cuts this gear, when it is not the common one.
     root : Literal["trochoid", "arc", "tangent_arc", "optimised_arc"] | TrochoidRoot | ArcRoot | TangentArcRoot | OptimisedArcRoot | Mapping[str, Any], optional
         Root of this gear's teeth in its outline, when it is not the common one.
     tip : Literal["land", "chamfer", "rounding"] | LandTip | ChamferTip | RoundingTip | Mapping[str, Any], optional
@@ -1055,8 +1253,10 @@ class GearSpecification(Declared):
         face_width: Quantity,
         bore_radius: Quantity,
         profile_shift: float | None = None,
+        tooth_thickness: Literal["allowance", "span", "over_balls"] | AllowanceToothThickness | SpanToothThickness | OverBallsToothThickness | Mapping[str, Any] | None = None,
         tip_radius: Quantity | None = None,
         tip_shortening: float | None = None,
+        rack: Rack | Mapping[str, Any] | None = None,
         root: Literal["trochoid", "arc", "tangent_arc", "optimised_arc"] | TrochoidRoot | ArcRoot | TangentArcRoot | OptimisedArcRoot | Mapping[str, Any] | None = None,
         tip: Literal["land", "chamfer", "rounding"] | LandTip | ChamferTip | RoundingTip | Mapping[str, Any] | None = None,
         material: Material | Mapping[str, Any] | None = None,
@@ -1066,43 +1266,36 @@ class GearSpecification(Declared):
             face_width=face_width,
             bore_radius=bore_radius,
             profile_shift=profile_shift,
+            tooth_thickness=tooth_thickness,
             tip_radius=tip_radius,
             tip_shortening=tip_shortening,
+            rack=rack,
             root=root,
             tip=tip,
             material=material,
         )
 
 
-class Rack(Declared):
-    """Basic rack that cuts both gears, in modules (ISO 53).
+class CentreDistanceAllowance(Declared):
+    """What the centre distance may be off by: the limits of the backlash say what comes of it.
 
     Parameters
     ----------
-    addendum : number, optional
-        Addendum coefficient h_aP*. 0.1 to 3. Without it: 1.0.
-    dedendum : number, optional
-        Dedendum coefficient h_fP*. 0.1 to 4. Without it: 1.25.
-    tip_radius : number, optional
-        Tip radius coefficient ρ_fP*. 0 to 2. Without it: 0.38.
-
-    >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius=18e-3)
-    >>> stub = Pair(module=3e-3, pinion=gear, gear=gear, rack=Rack(addendum=0.8, dedendum=1.05))
-    >>> f"{stub.pinion.tip_radius:.5f}"
-    '0.03840'
+    upper : number [m]
+        Upper allowance A_ae. -0.1 to 0.1 m.
+    lower : number [m]
+        Lower allowance A_ai. -0.1 to 0.1 m.
     """
 
     def __init__(
         self,
         *,
-        addendum: float | None = None,
-        dedendum: float | None = None,
-        tip_radius: float | None = None,
+        upper: Quantity,
+        lower: Quantity,
     ) -> None:
         super().__init__(
-            addendum=addendum,
-            dedendum=dedendum,
-            tip_radius=tip_radius,
+            upper=upper,
+            lower=lower,
         )
 
 
@@ -1124,7 +1317,12 @@ class Pair(_gearstudy.Pair):
     gear : GearSpecification | Mapping[str, Any]
         The mating gear.
     centre_distance : number [m], optional
-        Centre distance a_w; zero backlash when it is not given. 1e-06 to 1000 m.
+        Centre distance a_w; the one without backlash of nominal profile shifts when it is not given. 1e-06 to 1000
+        m.
+    interference : Literal["usable", "refuse"], optional
+        What becomes of a pair where a tip would touch below the mate's root form circle. Without it: usable.
+    centre_distance_allowance : CentreDistanceAllowance | Mapping[str, Any], optional
+        What the centre distance may be off by: the limits of the backlash say what comes of it.
 
     >>> gear = GearSpecification(teeth=24, face_width=20e-3, bore_radius="18 mm")
     >>> f"{Pair(module=3e-3, pinion=gear, gear=gear).centre_distance:.6f}"
@@ -1141,6 +1339,8 @@ class Pair(_gearstudy.Pair):
         rack: Rack | Mapping[str, Any] | None = None,
         material: Material | Mapping[str, Any] | None = None,
         centre_distance: Quantity | None = None,
+        interference: Literal["usable", "refuse"] | None = None,
+        centre_distance_allowance: CentreDistanceAllowance | Mapping[str, Any] | None = None,
     ) -> Pair:
         words: dict[str, Any] = dict(
             module=module,
@@ -1150,6 +1350,8 @@ class Pair(_gearstudy.Pair):
             pinion=pinion,
             gear=gear,
             centre_distance=centre_distance,
+            interference=interference,
+            centre_distance_allowance=centre_distance_allowance,
         )
         words = {name: value for name, value in words.items() if value is not None}
         return super().__new__(cls, **words)

@@ -11,10 +11,8 @@ use crate::numeric::crossing::{bracketed, crossing};
 
 /// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
-/// The same on a spline, whose third derivative is another one behind its next knot, and what the term before may be, which a third derivative
-/// that vanishes here says nothing of.
-const CLOSE_ON_SPLINES: f64 = 1e-3;
-const NEAR: f64 = 1e-3;
+/// The same on a spline, whose third derivative is another one behind its next knot: what may be left of the gap to fall \[m\].
+const NEGLIGIBLE: f64 = 1e-13;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
 /// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
@@ -182,7 +180,8 @@ impl Way<'_> {
             third = (bend - before) / step;
             let rest = third * left * left * left / 6.0;
             let is_close = if self.point.is_sampled || self.flank.is_sampled {
-                rest.abs().max(CLOSE_ON_SPLINES * (slope * left).abs()) <= CLOSE_ON_SPLINES * NEAR * touch.separation
+                // What is left to fall, which the next step would change by less than its own share.
+                (slope * left).abs() <= NEGLIGIBLE
             } else {
                 rest.abs() <= CLOSE * touch.separation
             };

@@ -302,13 +302,20 @@ impl<'a> Outline<'a> {
 
     /// Of the parts, which all know theirs.
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
-        let (roll, inside) = (self.roll(position), self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1])));
+        let roll = self.roll(position);
+        let inside = || self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
         let [depth, slope, bend] = match &self.bridged {
             Some(bridged) => bridged.rates(within(bridged, roll)),
-            None => self.parts.iter().try_fold([0.0; 3], |sum, part| {
-                let rates = part.rates(roll, inside)?;
-                Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
-            })?,
+            None => {
+                let inside = inside();
+                match &self.parts[..] {
+                    [part] => part.rates(roll, inside)?,
+                    parts => parts.iter().try_fold([0.0; 3], |sum, part| {
+                        let rates = part.rates(roll, inside)?;
+                        Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+                    })?,
+                }
+            }
         };
         let [of_point, of_flank] = self.facing.roll_rates();
         let rate = if self.is_point { of_point } else { of_flank };
