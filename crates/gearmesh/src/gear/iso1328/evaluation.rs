@@ -28,7 +28,7 @@ pub fn evaluate(places: &[f64], deviations: &[f64], range: [f64; 2], whole: f64)
     let points = inside(places, deviations, range);
     let ([from, _], [to, _]) = (*points.first()?, *points.last()?);
     let length = to - from;
-    if !(length > 0.0) {
+    if length.is_nan() || length <= 0.0 {
         return None;
     }
     // On −1..=1, where Legendre's polynomials are orthogonal.

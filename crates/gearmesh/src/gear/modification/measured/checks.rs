@@ -47,7 +47,9 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
             .of(Measured::NAMES.deviations)
             .help("leave out points, or average them: half a wave of the cutoff is as far apart as they need to be"));
     }
-    if let Some((at, value)) = stated.deviations.iter().enumerate().find(|(_, value)| !(value.abs() <= LARGEST)) {
+    if let Some((at, value)) =
+        stated.deviations.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
+    {
         let message = format!("deviation {} is {}, and a deviation is 0.5 mm at the most", at + 1, millimetres(*value));
         return Err(Diagnostic::new(message)
             .of(Measured::NAMES.deviations)
@@ -98,7 +100,7 @@ fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
     if places.len() < 2 {
         return wrong(format!("`{name}` has {} points; 2 are the fewest of a trace", places.len()));
     }
-    if let Some(at) = places.windows(2).position(|ends| !(ends[1] > ends[0])) {
+    if let Some(at) = places.windows(2).position(|ends| ends[1].is_nan() || ends[1] <= ends[0]) {
         let falls = places.windows(2).filter(|ends| ends[1] < ends[0]).count();
         if falls == places.len() - 1 {
             let message = format!("`{name}` falls all along: the trace runs the other way");
