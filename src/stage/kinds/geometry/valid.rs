@@ -121,10 +121,10 @@ pub fn curtailed(pair: &GearPair) -> impl Iterator<Item = String> + '_ {
 pub fn warnings(drawn: &Drawn, mating: &Mating) -> Vec<String> {
     let side = drawn.side.name();
     let mut said = Vec::new();
-    if mating.interferes() {
-        let form = drawn.gear.radius_at(drawn.outline.form_roll);
-        let reached = drawn.gear.radius_at(drawn.outline.form_roll + mating.contact_reserve);
-        let [reached, form] = [reached, form].map(|radius| in_unit(radius, "mm"));
+    let form = drawn.gear.radius_at(drawn.outline.form_roll);
+    // Where contact ends at the form circle it does not reach below a flank that is drawn from there.
+    if mating.interferes() && mating.active_radius < form * (1.0 - 1e-12) {
+        let [reached, form] = [mating.active_radius, form].map(|radius| in_unit(radius, "mm"));
         said.push(format!(
             "{side}: the mate's tip reaches to a radius of {reached:.6} mm, but the flank as drawn begins at {form:.6} mm"
         ));
