@@ -27,7 +27,7 @@ fn specification(teeth: u32, profile_shift: f64, tip_radius: f64) -> Specificati
         tip_radius: None,
         face_width: 20e-3,
         bore_radius: 5e-3,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     }
 }
 

@@ -70,6 +70,6 @@ pub static FOREIGN: &[Foreign] = &[
     none("hand", SPUR),
     none("speed", STATIC),
     none("rpm", STATIC),
-    none("density", STATIC),
+    word("rho", "density"),
     none("damping", STATIC),
 ];

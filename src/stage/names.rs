@@ -46,6 +46,7 @@ tables! {
         BORE_RADIUS = "bore_radius",
         YOUNGS_MODULUS = "youngs_modulus",
         POISSON_RATIO = "poisson_ratio",
+        DENSITY = "density",
         TIP_RADIUS = "tip_radius",
         TIP_CHAMFER = "tip_chamfer",
         TIP_ROUNDING = "tip_rounding",

@@ -50,6 +50,7 @@ pub fn gears<'a>() -> Columns<GearRow<'a>> {
             row.1.specification.material.youngs_modulus
         })
         .float(names::gears::POISSON_RATIO, "", "Poisson's ratio ν.", |row| row.1.specification.material.poisson_ratio)
+        .float(names::gears::DENSITY, "kg/m^3", "Density ρ.", |row| row.1.specification.material.density)
         .float(names::gears::TIP_CHAMFER, "mm", "Size of the chamfer at the tip; 0 without one.", |row| {
             if let Tip::Chamfer(size) = row.1.tip { size } else { 0.0 }
         })
@@ -135,6 +136,7 @@ pub fn read(gears: &Table, pair: &Table) -> Result<GearPair, Failure> {
             material: Material {
                 youngs_modulus: value(names::gears::YOUNGS_MODULUS),
                 poisson_ratio: value(names::gears::POISSON_RATIO),
+                density: value(names::gears::DENSITY),
             },
         })
     };

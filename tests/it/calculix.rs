@@ -36,7 +36,7 @@ fn specification(teeth: u32, profile_shift: f64, module: f64, youngs_modulus: f6
         tip_radius: None,
         face_width: module,
         bore_radius: (0.5 * f64::from(teeth) - 1.25 + profile_shift) * module / 1.4,
-        material: Material { youngs_modulus, poisson_ratio: 0.3 },
+        material: Material { youngs_modulus, poisson_ratio: 0.3, ..Material::STEEL },
     }
 }
 

@@ -50,7 +50,7 @@ pub fn base() -> Point {
         tip_radius: None,
         face_width,
         bore_radius: 0.5 * 3e-3 * f64::from(teeth) / 2.0,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     };
     Point::of(&GearPair::new(gear(19, 20e-3), gear(48, 18e-3), None).unwrap())
 }

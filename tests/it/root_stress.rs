@@ -129,7 +129,7 @@ fn the_columns_are_what_the_kernels_give() {
         tip_radius: None,
         face_width: width,
         bore_radius: bore,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     };
     let pair = GearPair::new(specification(19, 20e-3, 15e-3), specification(48, 18e-3, 38e-3), None).unwrap();
     let method = FiniteElement { plane: Plane::Strain, elements_across: 6 };

@@ -16,7 +16,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         tip_radius: None,
         face_width,
         bore_radius,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     };
     // Table 1; the bores are those that the study fits.
     let pair = GearPair::new(gear(19, 20e-3, 14.079e-3), gear(48, 18e-3, 38.823e-3), None)?;

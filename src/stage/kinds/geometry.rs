@@ -4,6 +4,7 @@
 //! in mesh as curves. Must not know: stiffness. Names after ISO 21771 and ISO 53.
 
 mod article;
+mod body;
 mod construction;
 mod drawn;
 mod inspected;
@@ -193,7 +194,7 @@ impl Stage for Geometry {
         schemas.extend([drawn::outline_schema(), drawn::junctions().schema(), valid::columns(paired).schema()]);
         schemas.extend(paired.then(|| meshing::columns().schema()));
         schemas.extend([article::columns().schema(), construction::columns().schema()]);
-        schemas.push(inspected::inspection().schema());
+        schemas.extend([inspected::inspection().schema(), body::columns().schema()]);
         if paired {
             schemas.extend([inspected::path_points().schema(), inspected::working().schema()]);
         }
@@ -306,6 +307,10 @@ impl Stage for Geometry {
                     let rows = self.gears.iter().map(inspected::rows).collect::<Result<Vec<_>, _>>();
                     let rows = rows.map_err(|error| Failure::new(error.to_string()))?.concat();
                     inspected::inspection().table(&rows)
+                }
+                ("body", _) => {
+                    let rows: Vec<_> = self.gears.iter().map(body::BodyRow::new).collect();
+                    body::columns().table(&rows)
                 }
                 ("path_points", Some(pair)) => inspected::path_points().table(&inspected::points(pair)),
                 ("working", Some(pair)) => {

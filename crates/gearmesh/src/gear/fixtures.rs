@@ -16,7 +16,7 @@ use declare::declared::record_of;
 use declare::error::Diagnostic;
 use declare::record::{Record, Value};
 
-pub(crate) const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+pub(crate) const STEEL: Material = Material::STEEL;
 pub(crate) const STEELS: Bodies = Bodies { materials: [STEEL; 2], plane: Plane::Strain };
 pub(crate) const BASE_PITCH: f64 = 8.856_394_302_280_648e-3;
 

@@ -2,7 +2,7 @@
 //!
 //! Must not know: gears.
 
-use declare::units::STRESS;
+use declare::units::{DENSITY, STRESS};
 use declare::{Declared, Words};
 
 /// Linear elastic, isotropic.
@@ -14,11 +14,14 @@ pub struct Material {
     /// Poisson's ratio ν.
     #[declared(minimum = 0.0, maximum = 0.4999, default = "0.3")]
     pub poisson_ratio: f64,
+    /// Density ρ.
+    #[declared(minimum = 1.0, maximum = 1e5, dimension = DENSITY, default = "7830 kg/m^3")]
+    pub density: f64,
 }
 
 impl Material {
-    /// Steel as ISO 6336-1 has it: E = 206 GPa, ν = 0.3.
-    pub const STEEL: Self = Self { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+    /// Steel as ISO 6336-1 has it: E = 206 GPa, ν = 0.3, ρ = 7830 kg/m³.
+    pub const STEEL: Self = Self { youngs_modulus: 206e9, poisson_ratio: 0.3, density: 7830.0 };
 
     /// 1/E′ \[1/Pa\]: strain over stress along a free surface, (1 − ν²)/E in plane strain and 1/E in plane stress.
     #[must_use]

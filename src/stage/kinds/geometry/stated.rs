@@ -12,6 +12,7 @@ use declare::{Declared, Words};
 use gearmesh::gear::geometry::error::{GeometryError, Parameter, Subject};
 use gearmesh::gear::geometry::outline::roots::Root;
 use gearmesh::gear::geometry::outline::tip::{self, Tip};
+use gearmesh::gear::geometry::pair;
 use gearmesh::gear::geometry::thickness::{self, Limits};
 use gearmesh::gear::geometry::{Gear, GearPair, Rack, Side, Specification};
 use gearmesh::gear::material::Material;
@@ -54,6 +55,27 @@ pub enum Interference {
     Refuse,
 }
 
+/// What of a gear follows from the centre distance without backlash.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Words)]
+pub enum FromCentreDistance {
+    /// its profile shift: what is left of x1 + x2
+    ProfileShift,
+    /// its tip shortening: the clearance is that of the basic rack
+    TipShortening,
+    /// both of them
+    Both,
+}
+
+impl FromCentreDistance {
+    fn gives_profile_shift(self) -> bool {
+        self != Self::TipShortening
+    }
+
+    fn gives_tip(self) -> bool {
+        self != Self::ProfileShift
+    }
+}
+
 /// Deviations from the centre distance (DIN 3964).
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct CentreDistanceAllowance {
@@ -77,9 +99,9 @@ pub struct StatedGear {
     /// Radius of the bore, where the body is clamped.
     #[declared(minimum = 0.0, maximum = 1e4, dimension = LENGTH, example = "18 mm")]
     pub bore_radius: f64,
-    /// Profile shift coefficient x.
-    #[declared(minimum = -2.0, maximum = 3.0, default = "0.0")]
-    pub profile_shift: f64,
+    /// Profile shift coefficient x; 0 when nothing says it.
+    #[declared(minimum = -2.0, maximum = 3.0, example = "0.2")]
+    pub profile_shift: Option<f64>,
     /// Thickness of the teeth, when it is not that without backlash: profile shift, tip circle and centre distance are then
     /// nominal.
     pub tooth_thickness: Option<Box<dyn thickness::Stated>>,
@@ -89,6 +111,8 @@ pub struct StatedGear {
     /// Tip shortening k in modules: r_a = m(z/2 + h_aP* + x − k).
     #[declared(minimum = -1.0, maximum = 1.0, example = "0.1")]
     pub tip_shortening: Option<f64>,
+    /// What of this gear is not stated, but follows from the centre distance.
+    pub from_centre_distance: Option<FromCentreDistance>,
     /// Basic rack that cuts this gear, when it is not the common one.
     pub rack: Option<Rack>,
     /// Root of this gear's teeth in its outline, when it is not the common one.
@@ -148,12 +172,61 @@ impl StatedGears {
     /// # Errors
     /// Which of them, with its place in `record`.
     pub fn check(&self, record: &Record) -> Result<(), Diagnostic> {
-        let twice = self.each().find(|(_, gear)| gear.tip_radius.is_some() && gear.tip_shortening.is_some());
-        twice.map_or(Ok(()), |(side, _)| {
-            Err(Diagnostic::new("`tip_radius` and `tip_shortening` both say where the tip is")
-                .at(record.inside(side.name()).place_of(StatedGear::NAMES.tip_shortening))
-                .help("give one of them"))
-        })
+        let own = StatedGear::NAMES;
+        for (side, gear) in self.each() {
+            let follows = gear.from_centre_distance;
+            let tip_follows = follows.is_some_and(FromCentreDistance::gives_tip);
+            let twice = |first: &str, second: &str, what: &str| {
+                Err(Diagnostic::new(format!("`{first}` and `{second}` both say {what}"))
+                    .at(record.inside(side.name()).place_of(second))
+                    .help("give one of them"))
+            };
+            let tip = "where the tip is";
+            match (gear.tip_radius, gear.tip_shortening) {
+                (Some(_), Some(_)) => return twice(own.tip_radius, own.tip_shortening, tip),
+                (Some(_), _) if tip_follows => return twice(own.tip_radius, own.from_centre_distance, tip),
+                (_, Some(_)) if tip_follows => return twice(own.tip_shortening, own.from_centre_distance, tip),
+                _ => {}
+            }
+            if gear.shift_follows() && gear.profile_shift.is_some() {
+                return twice(own.profile_shift, own.from_centre_distance, "the profile shift");
+            }
+            if follows.is_some() && (self.gear.is_none() || self.centre_distance.is_none()) {
+                let field = own.from_centre_distance;
+                let (missing, help) = if self.gear.is_none() {
+                    ("a mate", "add the mating gear as `gear`, or leave this out")
+                } else {
+                    ("a centre distance", "add `centre_distance`, or leave this out")
+                };
+                return Err(Diagnostic::new(format!("`{field}` needs {missing}"))
+                    .at(record.inside(side.name()).place_of(field))
+                    .help(help));
+            }
+        }
+        let both_follow = self.each().filter(|(_, gear)| gear.shift_follows()).count() == 2;
+        if both_follow {
+            return Err(Diagnostic::new("the centre distance says the sum of both profile shifts, not each of them")
+                .at(record.inside(Side::Gear.name()).place_of(own.from_centre_distance))
+                .help("state `profile_shift` of one of the gears"));
+        }
+        Ok(())
+    }
+
+    /// x of both gears, and k where a tip follows from the centre distance.
+    fn shifts(&self, gear: &StatedGear) -> Result<([f64; 2], Option<f64>), GeometryError> {
+        let gears = [&self.pinion, gear];
+        let mut shifts = gears.map(|gear| gear.profile_shift.unwrap_or(0.0));
+        let Some(distance) =
+            self.centre_distance.filter(|_| gears.iter().any(|gear| gear.from_centre_distance.is_some()))
+        else {
+            return Ok((shifts, None));
+        };
+        let teeth = gears.map(|gear| gear.teeth);
+        let sum = || pair::profile_shift_sum(teeth, self.module, self.pressure_angle, distance);
+        if let Some(free) = gears.iter().position(|gear| gear.shift_follows()) {
+            shifts[free] = sum()? - shifts[1 - free];
+        }
+        Ok((shifts, Some(pair::tip_shortening(teeth, self.module, shifts[0] + shifts[1], distance))))
     }
 
     /// The pinion, and the gear of a pair.
@@ -169,9 +242,12 @@ impl StatedGears {
         let gear = self.gear.as_ref()?;
         let gears = [&self.pinion, gear];
         let tips = gears.map(|gear| gear.tip(common));
-        let specification = |gear, side| self.specification(gear).map_err(|error| error.on(side));
         let pair = || {
-            let specifications = [specification(gears[0], Side::Pinion)?, specification(gears[1], Side::Gear)?];
+            let (shifts, shortening) = self.shifts(gear)?;
+            let specification = |index: usize, side| {
+                self.specification(gears[index], shifts[index], shortening).map_err(|error| error.on(side))
+            };
+            let specifications = [specification(0, Side::Pinion)?, specification(1, Side::Gear)?];
             let pair = GearPair::with_tips(specifications, tips, self.centre_distance)?;
             if self.interference == Interference::Refuse {
                 pair.refuse_interference()?;
@@ -186,20 +262,29 @@ impl StatedGears {
     /// # Errors
     /// When it cannot be.
     pub fn alone(&self, common: Tip) -> Result<Gear, GeometryError> {
-        Gear::new(&self.specification(&self.pinion)?).and_then(|gear| gear.with_tip(self.pinion.tip(common)))
+        let shift = self.pinion.profile_shift.unwrap_or(0.0);
+        Gear::new(&self.specification(&self.pinion, shift, None)?)
+            .and_then(|gear| gear.with_tip(self.pinion.tip(common)))
     }
 
-    fn specification(&self, gear: &StatedGear) -> Result<Specification, GeometryError> {
+    /// `shortening` is k of a gear whose tip follows from the centre distance.
+    fn specification(
+        &self,
+        gear: &StatedGear,
+        profile_shift: f64,
+        shortening: Option<f64>,
+    ) -> Result<Specification, GeometryError> {
         let (module, rack) = (self.module, gear.rack.unwrap_or(self.rack));
+        let follows = shortening.filter(|_| gear.from_centre_distance.is_some_and(FromCentreDistance::gives_tip));
         let nominal = Specification {
             teeth: gear.teeth,
             module,
             pressure_angle: self.pressure_angle,
-            profile_shift: gear.profile_shift,
+            profile_shift,
             thickness_allowance: 0.0,
             rack,
             tip_radius: gear.tip_radius.or_else(|| {
-                let height = rack.addendum + gear.profile_shift - gear.tip_shortening?;
+                let height = rack.addendum + profile_shift - gear.tip_shortening.or(follows)?;
                 Some(module * (0.5 * f64::from(gear.teeth) + height))
             }),
             face_width: gear.face_width,
@@ -212,6 +297,10 @@ impl StatedGears {
 }
 
 impl StatedGear {
+    fn shift_follows(&self) -> bool {
+        self.from_centre_distance.is_some_and(FromCentreDistance::gives_profile_shift)
+    }
+
     /// The allowances of its thickness, where it has any.
     ///
     /// # Errors

@@ -212,7 +212,7 @@ mod tests {
     use crate::gear::transmission_error::cycle::{MeshCycle, Settings};
     use crate::gear::transmission_error::stiffness::stiffness as mesh_stiffness;
 
-    const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+    const STEEL: Material = Material::STEEL;
 
     /// Tier: published value, ISO/TR 6336-30:2017, example 1.
     #[test]

@@ -230,8 +230,8 @@ mod tests {
     use super::*;
     use crate::numeric::quadrature::GaussLegendre;
 
-    const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
-    const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25 };
+    const STEEL: Material = Material::STEEL;
+    const SOFT: Material = Material { youngs_modulus: 100e9, poisson_ratio: 0.25, ..Material::STEEL };
 
     const fn bodies(materials: [Material; 2]) -> Bodies {
         Bodies { materials, plane: Plane::Strain }

@@ -18,7 +18,7 @@ use crate::gear::geometry::{Gear, Rack, Specification};
 use crate::gear::material::Material;
 use crate::gear::material::Plane;
 
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+const STEEL: Material = Material::STEEL;
 
 /// 1.0/1.25/0.38, 20°, module and width 1 m: compliances per width times E are the dimensionless ones.
 fn shifted(teeth: u32, profile_shift: f64, bore_ratio: f64) -> Specification {

@@ -250,3 +250,33 @@ fn angle_without_backlash(pinion: &Gear, gear: &Gear, shift: fn(&Specification) 
     }
     Ok(inverse_involute(value, angle))
 }
+
+/// x1 + x2 of gears that have no backlash on a centre distance \[m\]: the inverse of the sum's equation; `module` in m,
+/// `pressure_angle` in rad.
+///
+/// # Errors
+/// When the centre distance is not larger than the sum of the base radii.
+pub fn profile_shift_sum(
+    teeth: [u32; 2],
+    module: f64,
+    pressure_angle: f64,
+    centre_distance: f64,
+) -> Result<f64, GeometryError> {
+    let teeth = f64::from(teeth[0]) + f64::from(teeth[1]);
+    let base_sum = 0.5 * module * teeth * libm::cos(pressure_angle);
+    // Not negated: NaN is refused too.
+    if !(centre_distance > base_sum && centre_distance.is_finite()) {
+        let (found, minimum) = (Millimetres(centre_distance), Millimetres(base_sum));
+        return Err(Problem::CentreDistance { found, minimum }.into());
+    }
+    let tangent_length = ((centre_distance - base_sum) * (centre_distance + base_sum)).sqrt();
+    let working_angle = libm::atan2(tangent_length, base_sum);
+    Ok(0.5 * (involute(working_angle) - involute(pressure_angle)) * teeth / libm::tan(pressure_angle))
+}
+
+/// k in modules: the tip shortening, of either gear, that leaves the clearance of the basic rack on a centre distance \[m\],
+/// k = x1 + x2 − (a − a_d)/m, where a_d = m(z1 + z2)/2.
+#[must_use]
+pub fn tip_shortening(teeth: [u32; 2], module: f64, profile_shift_sum: f64, centre_distance: f64) -> f64 {
+    profile_shift_sum - centre_distance / module + 0.5 * (f64::from(teeth[0]) + f64::from(teeth[1]))
+}

@@ -5,6 +5,7 @@ mod meshing;
 mod outline;
 mod passing;
 mod refusals;
+mod section;
 mod usable;
 
 use std::f64::consts::PI;
@@ -30,7 +31,7 @@ fn specification(teeth: u32, module_mm: f64, profile_shift: f64) -> Specificatio
         tip_radius: None,
         face_width: 0.02,
         bore_radius: 1e-3 * module_mm,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     }
 }
 
@@ -64,7 +65,7 @@ fn assert_near(found: f64, expected: f64, tolerance: f64, what: &str) {
 #[test]
 fn rack_and_steel_are_the_standards() {
     assert_eq!(Rack::ISO_53_A, Rack { addendum: 1.0, dedendum: 1.25, tip_radius: 0.38 });
-    assert_eq!(Material::STEEL, Material { youngs_modulus: 206e9, poisson_ratio: 0.3 });
+    assert_eq!(Material::STEEL, Material { youngs_modulus: 206e9, poisson_ratio: 0.3, density: 7830.0 });
 }
 
 /// Tier: values computed independently, to every digit given (lengths in mm).

@@ -198,7 +198,7 @@ mod tests {
             tip_radius: None,
             face_width: 0.02,
             bore_radius: 0.012,
-            material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+            material: Material::STEEL,
         };
         GearPair::new(gear(25, shift), gear(40, 0.1), None).unwrap()
     }

@@ -194,7 +194,7 @@ mod tests {
             tip_radius: None,
             face_width: 0.01,
             bore_radius: 2e-3,
-            material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+            material: Material::STEEL,
         }
     }
 

@@ -3,7 +3,7 @@
 //! A factor that is stated stands in the place of the computed one. Must not know: any formula.
 
 use declare::Declared;
-use declare::units::{DENSITY, LENGTH, MOMENT_OF_INERTIA, STRESS, VISCOSITY};
+use declare::units::{LENGTH, MOMENT_OF_INERTIA, STRESS, VISCOSITY};
 
 use super::life::Pitting;
 use super::material::MaterialClass;
@@ -157,9 +157,6 @@ pub struct GearConditions {
     /// R_z of the fillet.
     #[declared(minimum = 1e-8, maximum = MOST, dimension = LENGTH, example = "16 um")]
     pub root_roughness: Option<f64>,
-    /// ρ: density.
-    #[declared(minimum = 100.0, maximum = 1e5, dimension = DENSITY, default = "7830 kg/m^3")]
-    pub density: f64,
     /// s_R: thickness of the rim below the root circle; without it the blank is solid down to the bore.
     #[declared(minimum = 1e-6, maximum = 1e2, dimension = LENGTH, example = "12 mm")]
     pub rim_thickness: Option<f64>,

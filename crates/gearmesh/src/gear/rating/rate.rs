@@ -250,7 +250,11 @@ impl Rated<'_> {
         }
         let inner = self.rim(side)?.map_or(gear.specification.bore_radius, |rim| gear.root_radius - rim);
         let mean_diameter = gear.tip_radius + gear.root_radius;
-        Ok(Inertia::Rim(Rim { mean_diameter, inner_diameter: 2.0 * inner, density: given.density }))
+        Ok(Inertia::Rim(Rim {
+            mean_diameter,
+            inner_diameter: 2.0 * inner,
+            density: gear.specification.material.density,
+        }))
     }
 
     fn pair_factors(&self, torque: f64, speed: f64) -> Result<PairRating, Refused> {

@@ -24,7 +24,6 @@ fn made_of(material: MaterialClass) -> GearConditions {
         cycles: None,
         flank_roughness: None,
         root_roughness: None,
-        density: 7830.0,
         rim_thickness: None,
         web_thickness: None,
         moment_of_inertia: None,

@@ -9,7 +9,7 @@ use crate::gear::geometry::Rack;
 use crate::gear::geometry::root::RootShape;
 use crate::gear::material::Material;
 
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+const STEEL: Material = Material::STEEL;
 
 pub(super) fn model() -> Model {
     Model {

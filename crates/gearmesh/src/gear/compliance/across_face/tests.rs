@@ -20,7 +20,7 @@ fn gear(teeth: u32, module: f64, ratio: f64) -> Gear {
         tip_radius: None,
         face_width: 8.0 * module,
         bore_radius: (0.5 * f64::from(teeth) - 1.25) * module / ratio,
-        material: Material { youngs_modulus: 1.0, poisson_ratio: 0.3 },
+        material: Material { youngs_modulus: 1.0, poisson_ratio: 0.3, ..Material::STEEL },
     })
     .unwrap()
 }

@@ -19,7 +19,7 @@ fn gear(teeth: u32, bore_ratio: f64) -> Gear {
         tip_radius: None,
         face_width: 0.02,
         bore_radius: 1e-3,
-        material: Material { youngs_modulus: 206e9, poisson_ratio: 0.3 },
+        material: Material::STEEL,
     };
     specification.bore_radius = 1.5e-3 * (f64::from(teeth) - 2.5) / bore_ratio;
     Gear::new(&specification).unwrap()

@@ -204,7 +204,8 @@ fn finite_elements_agree_where_the_body_is_deep() {
 fn the_half_plane_is_the_limit_of_the_ring() {
     let nu = 0.3_f64;
     let mut specification = specification(40, 1e-3, 3.0);
-    specification.material = Material { youngs_modulus: 206e9 / (1.0 - nu * nu), poisson_ratio: nu / (1.0 - nu) };
+    specification.material =
+        Material { youngs_modulus: 206e9 / (1.0 - nu * nu), poisson_ratio: nu / (1.0 - nu), ..Material::STEEL };
     let stressed = Gear::new(&specification).unwrap();
     let off = |theta: f64| {
         let ring = Ring::new(&stressed, theta);
@@ -217,7 +218,7 @@ fn the_half_plane_is_the_limit_of_the_ring() {
         let body = |arm: f64, nu: f64| {
             // Body::compliance with a load square to the centreline, an arm in chords, and no wind-up.
             let square = Gear { half_base_angle: 0.3, base_radius: 1.0 + arm, ..stressed.clone() };
-            let material = Material { youngs_modulus: 206e9, poisson_ratio: nu };
+            let material = Material { youngs_modulus: 206e9, poisson_ratio: nu, ..Material::STEEL };
             let square = Gear { specification: Specification { material, ..specification }, ..square };
             Body { height: 1.0, chord: 1.0, wind_up: 0.0 }.compliance(&square, 0.3)
         };

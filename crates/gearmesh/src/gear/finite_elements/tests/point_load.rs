@@ -15,7 +15,7 @@ use crate::gear::geometry::root::RootShape;
 use crate::gear::material::{Material, Plane};
 use crate::numeric::quadrature::GaussLegendre;
 
-const STEEL: Material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+const STEEL: Material = Material::STEEL;
 
 /// A map of the unit square, and how many elements it has along and across.
 type Patch<'a> = (&'a dyn Fn(f64, f64) -> [f64; 2], [usize; 2]);

@@ -73,7 +73,7 @@ fn wide_contacts_find_a_tooth_softer_by_no_more_than_is_said() {
 fn the_kink_of_a_curved_surface_is_that_of_a_point_load_on_a_circle() {
     let [compliance, poisson_ratio] = HALF_PLANE;
     let (radius, half_width) = (3.0, 1e-2);
-    let material = Material { youngs_modulus: 206e9, poisson_ratio: 0.3 };
+    let material = Material::STEEL;
     let field = HalfPlane::new([0.0; 2], [0.0, 1.0], &material, Plane::Strain);
     // What it moves a place of the circle by along the normal there, less that of a half plane at the distance along the circle.
     let beside = |angle: f64| {

@@ -72,6 +72,8 @@ pub struct Local {
     pub tangent: [f64; 2],
     /// \[1/m\], positive where the curve turns left towards larger parameters.
     pub curvature: f64,
+    /// \[m\] of length per unit of the parameter.
+    pub speed: f64,
 }
 
 impl Curve {
@@ -132,19 +134,22 @@ impl Curve {
     pub fn local(&self, parameter: f64) -> Local {
         let position = self.point(parameter);
         match self {
-            Self::Line { direction, .. } => Local { position, tangent: *direction, curvature: 0.0 },
+            Self::Line { direction, .. } => Local { position, tangent: *direction, curvature: 0.0, speed: 1.0 },
             Self::Arc { radius, .. } => {
                 let (sine, cosine) = libm::sincos(parameter);
-                Local { position, tangent: [-sine, cosine], curvature: 1.0 / radius }
+                Local { position, tangent: [-sine, cosine], curvature: 1.0 / radius, speed: *radius }
             }
             Self::Trochoid(curve) => {
                 let (tilt, rate, turning) = curve.rates(parameter);
                 let (sine, cosine) = libm::sincos(tilt);
-                Local { position, tangent: [-sine, cosine], curvature: -turning / rate }
+                // dγ/dq = −1/cosh q.
+                let speed = (rate / libm::cosh(parameter)).abs();
+                Local { position, tangent: [-sine, cosine], curvature: -turning / rate, speed }
             }
             Self::Involute { base_radius, half_base_angle } => {
                 let (sine, cosine) = libm::sincos(parameter - half_base_angle);
-                Local { position, tangent: [-sine, cosine], curvature: 1.0 / (base_radius * parameter) }
+                let speed = base_radius * parameter;
+                Local { position, tangent: [-sine, cosine], curvature: 1.0 / speed, speed }
             }
             Self::Modified { base_radius, half_base_angle, relief, smooth: [low, high] } => {
                 let (sine, cosine) = libm::sincos(parameter - half_base_angle);
@@ -165,6 +170,7 @@ impl Curve {
                     position,
                     tangent: [out * cosine - up * sine, out * sine + up * cosine],
                     curvature: turning / (speed * speed * speed),
+                    speed,
                 }
             }
         }

@@ -87,7 +87,7 @@ mod tests {
     /// Tier: closed form; 3, 4 and 5, and a quarter turn to the left.
     #[test]
     fn a_gap_and_a_corner_are_seen() {
-        let local = |position, tangent| Local { position, tangent, curvature: 0.0 };
+        let local = |position, tangent| Local { position, tangent, curvature: 0.0, speed: 1.0 };
         let before = local([1e-3, 2e-3], [1.0, 0.0]);
         let junction = |after| Junction { place: Place::Centreline, before, after };
         let apart = junction(local([4e-3, 6e-3], [1.0, 0.0]));

@@ -8,6 +8,7 @@ pub mod curve;
 pub mod junction;
 pub mod roots;
 pub mod sample;
+pub mod section;
 pub mod tip;
 
 use std::f64::consts::PI;

@@ -100,8 +100,8 @@ fn steel_on_plastic() -> (GearPair, Conditions) {
         ..standard(teeth, 1e-3, 2.0)
     };
     let left = |shift: f64, span: f64| shift + span / (2.0 * 20_f64.to_radians().sin());
-    let steel = Material { youngs_modulus: 210e9, poisson_ratio: 0.3 };
-    let plastic = Material { youngs_modulus: 2.3e9, poisson_ratio: 0.4999 };
+    let steel = Material { youngs_modulus: 210e9, poisson_ratio: 0.3, ..Material::STEEL };
+    let plastic = Material { youngs_modulus: 2.3e9, poisson_ratio: 0.4999, ..Material::STEEL };
     let gears = [
         own(51, left(0.2034, -0.278), 1.1, 52.894e-3, 17e-3, steel),
         own(52, left(0.3143, -0.207), 1.25, 54.022e-3, 15e-3, plastic),
