@@ -3,6 +3,7 @@
 pub mod accuracy;
 pub mod export;
 pub mod geometry;
+pub mod hunting;
 pub mod modification;
 pub mod optimizer;
 pub mod rating;
@@ -26,6 +27,7 @@ pub const KINDS: &[&Kind] = &[
     &root_optimizer::KIND,
     &sizing::KIND,
     &ste::KIND,
+    &hunting::KIND,
     &sweep::KIND,
     &scatter::KIND,
     &accuracy::KIND,

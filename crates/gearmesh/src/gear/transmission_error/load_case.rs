@@ -40,6 +40,10 @@ pub struct LoadCase<'a> {
     pub(super) positions: usize,
     /// Whether spans next to a change are cut until their nodes can follow: for what is integrated.
     pub(super) refines: bool,
+    /// How much farther apart each pair is than its flanks say, by its spring \[m\].
+    distances: Option<PerSpring>,
+    /// Between what these may be.
+    distances_between: [f64; 2],
 }
 
 /// What holds what when the load spreads; each costs more than the one before.
@@ -148,6 +152,8 @@ impl<'a> LoadCase<'a> {
             breaks: Arc::default(),
             positions: cycle.settings.positions,
             refines,
+            distances: None,
+            distances_between: [0.0; 2],
         };
         if cycle.settings.corner_contact == CornerContact::Exact {
             load_case.touching = load_case.corners();
@@ -173,7 +179,8 @@ impl<'a> LoadCase<'a> {
         // A little inside, for rounding.
         let inwards = CLOSEST * pair.base_pitch;
         let ends = [flanks.searched(first + inwards), flanks.searched(last - inwards)];
-        let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + flanks.offset();
+        let [nearer, farther] = self.distances_between;
+        let limit = ends.into_iter().flatten().fold(f64::INFINITY, f64::min) + flanks.offset() + nearer;
         // Farther out than a pair can be loaded nothing is looked at.
         let (from, to) = (pair.start_of_contact, pair.end_of_contact);
         let inside = (0..=16).map(|index| from + (to - from) * f64::from(index) / 16.0);
@@ -186,7 +193,11 @@ impl<'a> LoadCase<'a> {
                     break;
                 }
                 let middle = 0.5 * (near + far);
-                if flanks.searched(middle).is_some_and(|gap| gap <= maximum) { near = middle } else { far = middle }
+                if flanks.searched(middle).is_some_and(|gap| gap + nearer <= maximum + farther) {
+                    near = middle
+                } else {
+                    far = middle
+                }
             }
             far
         };
@@ -275,6 +286,34 @@ impl<'a> LoadCase<'a> {
         }
     }
 
+    /// The same for pairs that are farther apart than their flanks say, by amounts between these \[m\].
+    pub(super) fn with_distances_between(self, distances_between: [f64; 2]) -> Self {
+        let mut other = Self { distances_between, ..self };
+        if !other.touches_on_line() {
+            other.touching = other.corners();
+            other.follow();
+        }
+        other
+    }
+
+    /// The same with pairs so much farther apart, by their springs.
+    pub(super) fn with_distances(&self, distances: PerSpring) -> Self {
+        Self { distances: Some(distances), ..self.clone() }
+    }
+
+    /// Whether every pair is as far apart as its flanks say.
+    #[inline]
+    pub(super) fn is_evenly_spaced(&self) -> bool {
+        self.distances.is_none()
+    }
+
+    /// The gap of the pair that is this spring.
+    #[inline]
+    fn gap_of(&self, spring: usize, s: f64) -> Option<f64> {
+        let gap = self.gap(s)?;
+        Some(self.distances.map_or(gap, |distances| gap + distances[spring]))
+    }
+
     /// Equilibrium at the cycle position τ with `pairs` inside the path of contact, the newest first.
     #[must_use]
     pub fn state(&self, position: f64, pairs: usize) -> Equilibrium {
@@ -311,7 +350,7 @@ impl<'a> LoadCase<'a> {
             return None;
         }
         let s = self.cycle.path_position(position, spring);
-        let gap = self.gap(s)?;
+        let gap = self.gap_of(spring, s)?;
         if self.cycle.springs(pairs) == 2
             && let Some(other) = self.of_plain_pair(position, 1 - spring)
         {
@@ -366,7 +405,7 @@ impl<'a> LoadCase<'a> {
         let mut reach = WithinReach::none();
         for spring in (0..self.cycle.springs(pairs)).filter(|spring| Some(*spring) != left_out) {
             let s = self.cycle.path_position(position, spring);
-            if let Some(gap) = self.gap(s) {
+            if let Some(gap) = self.gap_of(spring, s) {
                 reach.push(spring, s, gap);
             }
         }

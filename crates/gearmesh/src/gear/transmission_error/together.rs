@@ -42,10 +42,14 @@ impl LoadCase<'_> {
         Some(())
     }
 
-    /// Whether pairs hold themselves, touch on the line of action only, and have the same face at every position.
+    /// Whether pairs hold themselves, touch on the line of action only, are as far apart as their flanks say, and have the same
+    /// face at every position.
     #[inline]
     pub(super) fn holds_pairs_on_line(&self) -> bool {
-        matches!(self.regime, Regime::Pairs) && self.touches_on_line() && !self.flanks.is_surface
+        matches!(self.regime, Regime::Pairs)
+            && self.touches_on_line()
+            && self.is_evenly_spaced()
+            && !self.flanks.is_surface
     }
 
     /// At ascending places on the line of action, where there always is one.
