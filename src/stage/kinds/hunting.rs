@@ -77,17 +77,17 @@ struct Stated {
 struct StatedDeviations {
     /// Cumulative pitch deviations F_p: how much farther from the first tooth's flank than its nominal place, in the direction of
     /// counting.
-    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "[0 um, 3 um, -2 um]")]
+    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, example = "3 um")]
     pub cumulative: Option<Vec<f64>>,
     /// Single pitch deviations f_p: of the pitch that ends at this tooth. Their mean is taken off.
-    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, axis = usize::MAX, example = "[2 um, -3 um, 1 um]")]
+    #[declared(minimum = -MOST, maximum = MOST, dimension = LENGTH, example = "-3 um")]
     pub single: Option<Vec<f64>>,
 }
 
 /// The largest deviation that is looked at \[m\]; beyond it nothing is small against a tooth.
 const MOST: f64 = 1e-3;
 /// The most positions of a hunting period: a minute of solves.
-const MOST_POSITIONS: u64 = 50_000_000;
+const MOST_POSITIONS: usize = 50_000_000;
 /// Base pitches that a thread takes at once.
 const AT_ONCE: usize = 64;
 
@@ -130,9 +130,9 @@ impl Stated {
     }
 
     /// After how many base pitches everything is as before.
-    fn period(&self, pair: &GearPair) -> Result<u64, Failure> {
+    fn period(&self, pair: &GearPair) -> Result<usize, Failure> {
         let period = hunting_period([Side::Pinion, Side::Gear].map(|side| pair.side(side).specification.teeth));
-        let positions = period.saturating_mul(self.positions as u64);
+        let positions = period.saturating_mul(self.positions);
         if positions > MOST_POSITIONS {
             return Err(Failure::new(format!(
                 "the same teeth meet again after {period} base pitches, {positions} positions; {MOST_POSITIONS} at most are \
@@ -148,17 +148,17 @@ impl Stated {
         cycle: &MeshCycle,
         (name, design): (&str, &Design),
         torque: f64,
-        (deviations, period): (&PitchDeviations, u64),
+        (deviations, period): (&PitchDeviations, usize),
         steps: &Steps,
     ) -> Result<Found, Failure> {
-        let pitches: Vec<i64> = (0..period.cast_signed()).collect();
+        let pitches: Vec<isize> = (0..period.cast_signed()).collect();
         let loading = || LoadCase::new(cycle, design, torque).with_pitch_deviations(deviations);
         let parts: Vec<Vec<f64>> = pitches
             .par_chunks(AT_ONCE)
             .map(|pitches| {
                 context.check_stop()?;
                 let loading = loading();
-                let of = |pitch: &i64| loading.over_pitch(deviations, *pitch, self.positions);
+                let of = |pitch: &isize| loading.over_pitch(deviations, *pitch, self.positions);
                 let found = pitches.iter().flat_map(of).collect();
                 steps.done();
                 Ok::<Vec<f64>, Failure>(found)
@@ -180,7 +180,7 @@ impl Stated {
 impl Stage for Stated {
     fn inputs(&self) -> Vec<Port> {
         let mut ports = common::mesh_cycle_ports(&self.stiffness);
-        ports.push(designs::port(names::designs::TABLE, &self.designs));
+        ports.push(designs::port(names::designs::TABLE.to_owned(), &self.designs));
         ports
     }
 
@@ -205,7 +205,7 @@ impl Stage for Stated {
         let curves = designs.times(RowCount::exact(self.torque.len()));
         // Nobody knows yet how many teeth there are: those that are stated, or as many as usual.
         let teeth = self.cumulative().map(|of| u32::try_from(of.len()).ok().filter(|count| *count > 0).unwrap_or(30));
-        let period = usize::try_from(hunting_period(teeth)).unwrap_or(usize::MAX);
+        let period = hunting_period(teeth);
         let positions = curves.times(RowCount::about(period.saturating_mul(self.positions)));
         let orders = curves.times(RowCount::about(period.saturating_mul(self.harmonics)));
         Estimate::new(true)
@@ -238,13 +238,13 @@ impl Stage for Stated {
             tasks.extend(self.torque.iter().map(|torque| (named.name.clone(), design.clone(), *torque)));
         }
         tasks.sort_by(|a, b| a.0.cmp(&b.0).then(a.2.total_cmp(&b.2)));
-        let chunks = usize::try_from(period).unwrap_or(usize::MAX).div_ceil(AT_ONCE);
+        let chunks = period.div_ceil(AT_ONCE);
         let steps = Steps::new(context, tasks.len().saturating_mul(chunks));
         let mut cases: Vec<Case> = Vec::with_capacity(tasks.len());
         for (name, design, torque) in tasks {
             let found = self.answer(context, &cycle, (&name, &design), torque, (&deviations, period), &steps)?;
             let plain = LoadCase::new(&cycle, &design, torque).peak_to_peak();
-            let orders = usize::try_from(period).unwrap_or(usize::MAX).saturating_mul(self.harmonics);
+            let orders = period.saturating_mul(self.harmonics);
             let orders = if context.demand.table(tables::SPECTRUM) { orders } else { 0 };
             let amplitudes = amplitudes(&found.errors, orders.min(found.errors.len() / 2));
             cases.push(Case { name, torque, found, plain, amplitudes, cumulative: cumulative.clone() });

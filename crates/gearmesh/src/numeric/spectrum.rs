@@ -34,8 +34,7 @@ fn transform(samples: &[f64], step: usize, count: usize, roots: &[Complex]) -> V
     if count == 1 {
         return vec![[samples[0], 0.0]];
     }
-    let factor = (2..).take_while(|factor| factor * factor <= count).find(|factor| count.is_multiple_of(*factor));
-    let factor = factor.unwrap_or(count);
+    let factor = (2..=count.isqrt()).find(|factor| count.is_multiple_of(*factor)).unwrap_or(count);
     let length = count / factor;
     let parts: Vec<_> =
         (0..factor).map(|part| transform(&samples[part * step..], step * factor, length, roots)).collect();

@@ -79,7 +79,7 @@ fn single(cumulative: &[f64]) -> f64 {
 
 fn keyed<T>(name: &str, description: &str, case: impl Fn(&T) -> &Case + Copy + 'static) -> Columns<T> {
     Columns::new(name, description)
-        .text("design", "Name of the design.", move |row: &T| case(row).name.as_str())
+        .text("design", "Name of the design.", move |row: &T| case(row).name.clone())
         .key()
         .float("torque", "N m", "Torque on the pinion.", move |row| case(row).torque)
         .key()

@@ -54,12 +54,8 @@ impl PitchDeviations {
     /// How much farther apart a pair of teeth is than one without deviations \[m\]; pairs count in the order in which they come
     /// into mesh, and before the first one.
     #[must_use]
-    pub fn of_pair(&self, pair: i64) -> f64 {
-        let tooth = |apart: &[f64]| {
-            // A gear has far fewer teeth than there are numbers.
-            #[allow(clippy::cast_possible_wrap, clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-            apart[pair.rem_euclid(apart.len() as i64) as usize]
-        };
+    pub fn of_pair(&self, pair: isize) -> f64 {
+        let tooth = |apart: &[f64]| apart[pair.rem_euclid(apart.len().cast_signed()).cast_unsigned()];
         tooth(&self.apart[0]) + tooth(&self.apart[1])
     }
 
@@ -74,12 +70,12 @@ impl PitchDeviations {
 
 /// lcm(z1, z2): after how many base pitches of mesh the same teeth meet again.
 #[must_use]
-pub fn hunting_period(teeth: [u32; 2]) -> u64 {
+pub fn hunting_period(teeth: [u32; 2]) -> usize {
     let (mut larger, mut smaller) = (teeth[0], teeth[1]);
     while smaller != 0 {
         (larger, smaller) = (smaller, larger % smaller);
     }
-    u64::from(teeth[0]) * u64::from(teeth[1] / larger.max(1))
+    (teeth[0] as usize).saturating_mul((teeth[1] / larger.max(1)) as usize)
 }
 
 impl LoadCase<'_> {
@@ -93,9 +89,9 @@ impl LoadCase<'_> {
     /// with the same deviations: from where pair number `pitch` starts contact in A on, the last position one short of where
     /// the next does.
     #[must_use]
-    pub fn over_pitch(&self, deviations: &PitchDeviations, pitch: i64, positions: usize) -> Vec<f64> {
-        let newest = self.cycle.newest().cast_signed() as i64;
-        let apart: PerSpring = std::array::from_fn(|spring| deviations.of_pair(pitch + newest - spring as i64));
+    pub fn over_pitch(&self, deviations: &PitchDeviations, pitch: isize, positions: usize) -> Vec<f64> {
+        let newest = self.cycle.newest().cast_signed();
+        let apart: PerSpring = std::array::from_fn(|spring| deviations.of_pair(pitch + newest - spring.cast_signed()));
         let here = self.with_distances(apart);
         let step = self.cycle.period() / positions as f64;
         let at = |index: usize| {

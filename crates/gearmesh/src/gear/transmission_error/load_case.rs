@@ -193,11 +193,8 @@ impl<'a> LoadCase<'a> {
                     break;
                 }
                 let middle = 0.5 * (near + far);
-                if flanks.searched(middle).is_some_and(|gap| gap + nearer <= maximum + farther) {
-                    near = middle
-                } else {
-                    far = middle
-                }
+                let can_touch = flanks.searched(middle).is_some_and(|gap| gap + nearer <= maximum + farther);
+                *(if can_touch { &mut near } else { &mut far }) = middle;
             }
             far
         };

@@ -32,7 +32,7 @@ struct Parabola {
 
 impl Relief for Parabola {
     fn depth(&self, roll: f64) -> f64 {
-        2e-3 * (roll - self.from).max(0.0).powi(2)
+        1e-4 * (roll - self.from).max(0.0).powi(2)
     }
 
     fn breaks(&self) -> Vec<f64> {

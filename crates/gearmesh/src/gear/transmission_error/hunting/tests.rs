@@ -43,11 +43,11 @@ fn springs_behind_steps_share_the_load() {
     let (mut shared, mut alone) = (0, 0);
     for force in [200.0, 1867.0, 20_000.0] {
         let loading = case(&cycle, &design, force, &deviations);
-        for pitch in 0..period as usize {
+        for pitch in 0..period {
             let apart = |number: usize| cosine * (pinion[number % teeth[0]] - gear[number % teeth[1]]);
             // The pair before: at the beginning of the period it is the last one of it.
-            let (newest, older) = (apart(pitch), apart(pitch + period as usize - 1));
-            for (index, found) in loading.over_pitch(&deviations, pitch as i64, 8).into_iter().enumerate() {
+            let (newest, older) = (apart(pitch), apart(pitch + period - 1));
+            for (index, found) in loading.over_pitch(&deviations, pitch.cast_signed(), 8).into_iter().enumerate() {
                 let single = cycle.pairs_behind(cycle.period() * index as f64 / 8.0) == 1;
                 let both = 0.5 * (force / STIFFNESS + newest + older);
                 let one = force / STIFFNESS + newest.min(older);
@@ -77,9 +77,9 @@ fn a_gear_that_is_turned_shifts_the_error() {
     let cosine = pair.pinion.specification.pressure_angle.cos();
     for corner_contact in [CornerContact::None, CornerContact::Exact] {
         let settings = Settings { corner_contact, ..Settings::default() };
-        let cycle = MeshCycle::new(&pair, &coupled(&pair), settings).unwrap();
+        let cycle = MeshCycle::new(&pair, &coupled(), settings).unwrap();
         for force in [0.0, 1867.0] {
-            let of = |cumulative: [&[f64]; 2], pitch: i64| {
+            let of = |cumulative: [&[f64]; 2], pitch: isize| {
                 let deviations = PitchDeviations::new(&pair, cumulative).unwrap();
                 case(&cycle, &design, force, &deviations).over_pitch(&deviations, pitch, 16)
             };
@@ -112,15 +112,15 @@ fn without_load_the_nearest_pair_touches() {
     let pair = pair();
     let settings = Settings { corner_contact: CornerContact::Exact, ..Settings::default() };
     let (cycle, design) = (MeshCycle::new(&pair, &constant(&pair, STIFFNESS), settings).unwrap(), Design::default());
-    let [pinion, gear] = of_both(&pair);
+    let [pinion, gear] = of_both(&pair).map(|of| of.into_iter().map(|value| 5.0 * value).collect::<Vec<_>>());
     let deviations = PitchDeviations::new(&pair, [&pinion, &gear]).unwrap();
     let loading = case(&cycle, &design, 0.0, &deviations);
     let mut outside = 0;
     for pitch in 0..60 {
-        for (index, found) in loading.over_pitch(&deviations, pitch, 8).into_iter().enumerate() {
-            let position = cycle.period() * index as f64 / 8.0;
-            let at = |ahead: i64| {
-                let s = cycle.path_position(position, (ahead + 1) as usize);
+        for (index, found) in loading.over_pitch(&deviations, pitch, 32).into_iter().enumerate() {
+            let position = cycle.period() * index as f64 / 32.0;
+            let at = |ahead: isize| {
+                let s = cycle.path_position(position, (ahead + 1).cast_unsigned());
                 Some((loading.gap(s)? + deviations.of_pair(pitch - ahead), s))
             };
             let (exact, s) = (-1..3).filter_map(at).min_by(|one, two| one.0.total_cmp(&two.0)).unwrap();
