@@ -23,6 +23,7 @@ mod pressure;
 mod properties;
 mod python;
 mod query;
+mod hunting;
 mod rating;
 mod reference;
 mod registry;
