@@ -77,8 +77,8 @@ fn pitch_deviations_come_back() {
         .collect();
     let [low, high] = [f64::min, f64::max].map(|pick| cumulative.iter().copied().reduce(pick).unwrap());
     let largest = single.iter().map(|deviation| (deviation - mean).abs()).fold(0.0, f64::max);
-    let [one, other] =
-        [(&single, "single"), (&cumulative, "cumulative")].map(|(given, list)| ran(&study("pinion", given, list), "summary"));
+    let [one, other] = [(&single, "single"), (&cumulative, "cumulative")]
+        .map(|(given, list)| ran(&study("pinion", given, list), "summary"));
     for table in [&one, &other] {
         for (column, exact) in [("pinion_cumulative_deviation", high - low), ("pinion_single_deviation", largest)] {
             let found = table.floats(column)[0];

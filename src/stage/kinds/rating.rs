@@ -253,6 +253,8 @@ impl Stage for Stated {
                 speed: self.speed,
                 application_factor: self.conditions.application_factor,
                 specific_load,
+                normal_load: torque / pair.pinion.base_radius,
+                working_pressure_angle: pair.working_pressure_angle,
                 rated: rating.pair,
                 pressure: beside.pressure,
             });

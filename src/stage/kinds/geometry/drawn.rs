@@ -5,6 +5,7 @@
 use crate::stage::names;
 use std::f64::consts::PI;
 
+use super::stated::MeasuredWith;
 use declare::error::Failure;
 use declare::units::in_unit;
 use gearmesh::gear::geometry::outline::Outline;
@@ -28,6 +29,7 @@ pub struct Drawn {
     pub outline: Outline,
     /// Between which its thickness may be.
     pub limits: Option<Limits>,
+    pub measured_with: MeasuredWith,
 }
 
 /// The column that says which gear a row is of.

@@ -34,7 +34,8 @@ pub fn count(drawn: &Drawn) -> usize {
 /// When a limit leaves no gear.
 pub fn rows(drawn: &Drawn) -> Result<Vec<InspectedRow>, GeometryError> {
     let gear = &drawn.gear;
-    let (teeth, diameter) = (gear.usual_span_teeth(), gear.usual_ball_diameter());
+    let teeth = drawn.measured_with.span_teeth.unwrap_or_else(|| gear.usual_span_teeth());
+    let diameter = drawn.measured_with.ball_diameter.unwrap_or_else(|| gear.usual_ball_diameter());
     let row = |thickness, gear: Gear| {
         let (span, balls) = (gear.span(teeth), gear.balls(diameter));
         InspectedRow { side: drawn.side, thickness, gear, span, balls }
@@ -63,7 +64,7 @@ impl InspectedRow {
 pub fn inspection() -> Columns<InspectedRow> {
     let description = "What is measured of each gear to know how thick its teeth are (ISO 21771).";
     let over = "Dimension over two balls M_dK; with an odd number of teeth half a pitch from opposite.";
-    let usual = "Diameter D_M of the ball that touches the V-circle.";
+    let usual = "Diameter D_M of the ball: stated, or that of the one that touches the V-circle.";
     let chord = |row: &InspectedRow| -> Chord { row.gear.chord(row.gear.reference_radius) };
     let which = "Which thickness: computed, or the largest or smallest that is allowed where there are limits.";
     let allowance = "Thickness allowance A_s on the reference circle.";
@@ -86,6 +87,12 @@ pub fn inspection() -> Columns<InspectedRow> {
             2.0 * row.gear.form_radius
         })
         .float("root_diameter", "mm", "Root diameter d_f.", |row| 2.0 * row.gear.root_radius)
+        .float("addendum", "mm", "Addendum h_a.", |row| row.gear.tip_radius - row.gear.reference_radius)
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("tooth_depth", "mm", "Tooth depth h.", |row| row.gear.tip_radius - row.gear.root_radius)
+        .float("tip_form_roll_angle", "deg", "Roll angle at the tip form circle.", |row| row.gear.flank_end.roll)
+        .float("root_form_roll_angle", "deg", "Roll angle at the root form circle.", |row| row.gear.form_roll)
+        .but(|column| column.tolerance(1e-9, 1e-9))
         .float("tooth_thickness", "mm", "Arc thickness s on the reference circle.", |row| {
             row.gear.thickness_at(row.gear.reference_radius)
         })
@@ -98,9 +105,11 @@ pub fn inspection() -> Columns<InspectedRow> {
         .float("constant_chord_height", "mm", "From the tip circle down to the constant chord.", |row| {
             row.gear.constant_chord().height
         })
-        .integer("span_teeth", "Number k of teeth in the span whose planes touch nearest the V-circle.", |row| {
-            row.span.teeth
-        })
+        .integer(
+            "span_teeth",
+            "Number k of teeth in the span: stated, or whose planes touch nearest the V-circle.",
+            |row| row.span.teeth,
+        )
         .float("span", "mm", "Span measurement W_k.", |row| row.span.length)
         .float("span_diameter", "mm", "Where the planes touch.", |row| 2.0 * row.span.radius)
         .flag("span_on_flank", "Whether they touch the involute there.", |row| row.span.on_flank);
@@ -235,6 +244,23 @@ pub fn working<'a>() -> Columns<WorkingRow<'a>> {
             move |row| clearance(row.pair, Side::Gear),
         )
         .but(|column| column.tolerance(1e-9, 1e-9));
+    let excess = |pair: &GearPair, side: Side| {
+        let own = pair.side(side);
+        own.radius_at(pair.lowest_roll(side)) - own.form_radius
+    };
+    let lost = "Contact ratio that is lost where a tip would touch below the mate's root form circle.";
+    let tight = "Centre distance without backlash, of the teeth as thick as they are.";
+    let columns = columns
+        .float("pinion_form_excess", "mm", "Form excess c_F1: root usable above root form radius.", move |row| {
+            excess(row.pair, Side::Pinion)
+        })
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("gear_form_excess", "mm", "Form excess c_F2 of the gear.", move |row| excess(row.pair, Side::Gear))
+        .but(|column| column.tolerance(1e-9, 1e-9))
+        .float("lost_contact_ratio", "", lost, |row| row.pair.lost_contact_ratio())
+        .but(|column| column.tolerance(1e-12, 1e-9))
+        .float("centre_distance_without_backlash", "mm", tight, |row| row.pair.nearest_centre_distance())
+        .but(Column::allows_nan);
     BACKLASHES
         .iter()
         .fold(columns, |columns, &(name, description, get)| {

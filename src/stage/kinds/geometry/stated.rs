@@ -76,6 +76,17 @@ impl FromCentreDistance {
     }
 }
 
+/// What the thickness of a gear is measured with.
+#[derive(Clone, Copy, Debug, PartialEq, Declared)]
+pub struct MeasuredWith {
+    /// k, teeth that a span goes over; those whose planes touch nearest the V-circle when not given.
+    #[declared(minimum = 1, maximum = 10_000, example = "6")]
+    pub span_teeth: Option<u32>,
+    /// D_M, diameter of the balls; that of balls that touch the V-circle when not given.
+    #[declared(minimum = 1e-6, maximum = 10.0, dimension = LENGTH, example = "5.25 mm")]
+    pub ball_diameter: Option<f64>,
+}
+
 /// Deviations from the centre distance (DIN 3964).
 #[derive(Clone, Copy, Debug, PartialEq, Declared)]
 pub struct CentreDistanceAllowance {
@@ -113,6 +124,9 @@ pub struct StatedGear {
     pub tip_shortening: Option<f64>,
     /// What of this gear is not stated, but follows from the centre distance.
     pub from_centre_distance: Option<FromCentreDistance>,
+    /// What its thickness is measured with in `inspection`, when it is not as usual.
+    #[declared(default = "{}")]
+    pub measured_with: MeasuredWith,
     /// Basic rack that cuts this gear, when it is not the common one.
     pub rack: Option<Rack>,
     /// Root of this gear's teeth in its outline, when it is not the common one.

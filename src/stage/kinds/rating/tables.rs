@@ -35,6 +35,10 @@ pub struct PairRow {
     pub speed: f64,
     pub application_factor: f64,
     pub specific_load: f64,
+    /// F_bt \[N\].
+    pub normal_load: f64,
+    /// α_w \[rad\].
+    pub working_pressure_angle: f64,
     pub rated: PairRating,
     pub pressure: f64,
 }
@@ -92,6 +96,15 @@ pub fn summary(beside: bool) -> Columns<PairRow> {
         .float("gear_ratio", "", "Gear ratio u, 1 or more.", |row| row.rated.gear_ratio)
         .float("tangential_load", "N", "Nominal tangential load F_t on the reference circles.", |row| {
             row.rated.tangential_load
+        })
+        .float("base_tangential_load", "N", "Load F_bt normal to the flanks, along the line of action.", |row| {
+            row.normal_load
+        })
+        .float("working_tangential_load", "N", "Tangential load F_wt on the working pitch circles.", |row| {
+            row.normal_load * libm::cos(row.working_pressure_angle)
+        })
+        .float("radial_load", "N", "Radial load F_r, which pushes the gears apart.", |row| {
+            row.normal_load * libm::sin(row.working_pressure_angle)
         })
         .float("circumferential_velocity", "m/s", "Velocity v of the reference circles.", |row| row.rated.velocity)
         .float("application_factor", "", "Application factor K_A, given.", |row| row.application_factor)

@@ -114,6 +114,20 @@ impl GearPair {
         Ok(())
     }
 
+    /// What of the contact ratio is lost where contact ends at a root form circle; 0 where the tips end it.
+    #[must_use]
+    pub fn lost_contact_ratio(&self) -> f64 {
+        let whole = ends_by_tips(&self.pinion, &self.gear, self.tangent_length);
+        (self.start_of_contact - whole[0] + whole[1] - self.end_of_contact) / self.base_pitch
+    }
+
+    /// The centre distance \[m\] at which teeth as thick as these have no backlash; NaN where there is none.
+    #[must_use]
+    pub fn nearest_centre_distance(&self) -> f64 {
+        let angle = angle_without_backlash(&self.pinion, &self.gear, Specification::generating_profile_shift);
+        angle.map_or(f64::NAN, |angle| (self.pinion.base_radius + self.gear.base_radius) / libm::cos(angle))
+    }
+
     /// Refuses a pair one of whose tips would touch below the mate's root form circle, wherever contact ends.
     ///
     /// # Errors
@@ -211,10 +225,14 @@ impl GearPair {
     }
 }
 
-/// Contact goes from where the gear's flank ends to where the pinion's does, as far as the mate has an involute.
+/// Where contact would go if the mate had an involute everywhere: from where the gear's flank ends to where the pinion's does.
+fn ends_by_tips(pinion: &Gear, gear: &Gear, tangent_length: f64) -> [f64; 2] {
+    [tangent_length - gear.base_radius * gear.flank_end.roll, pinion.base_radius * pinion.flank_end.roll]
+}
+
+/// The same, as far as the mate has one.
 fn ends_of_contact(pinion: &Gear, gear: &Gear, tangent_length: f64) -> [f64; 2] {
-    let start = tangent_length - gear.base_radius * gear.flank_end.roll;
-    let end = pinion.base_radius * pinion.flank_end.roll;
+    let [start, end] = ends_by_tips(pinion, gear, tangent_length);
     // A rounding's worth of overlap is none.
     let forms =
         [pinion.base_radius * (pinion.form_roll - 1e-12), tangent_length - gear.base_radius * (gear.form_roll - 1e-12)];

@@ -81,6 +81,26 @@ fn contact_ends_at_the_usable_circles() {
     assert_near(pair.contact_ratio, ratio, 1e-14, "contact ratio");
 }
 
+/// Tier: closed form; what is left and what is lost are the contact ratio of the tips alone. And on the centre distance without
+/// backlash there is none.
+#[test]
+fn what_contact_loses_is_what_is_left() {
+    for (teeth, lost) in [((12, 48), true), ((14, 100), true), ((24, 36), false)] {
+        let pair = pair(teeth.0, teeth.1).unwrap();
+        let along = |gear: &Gear| (gear.tip_radius.powi(2) - gear.base_radius.powi(2)).sqrt();
+        let of_tips = (along(&pair.pinion) + along(&pair.gear) - pair.tangent_length) / pair.base_pitch;
+        assert_near(pair.contact_ratio + pair.lost_contact_ratio(), of_tips, 1e-12, "contact ratio");
+        assert_eq!(pair.lost_contact_ratio() > 1e-3, lost, "{teeth:?}: {}", pair.lost_contact_ratio());
+        assert_near(pair.nearest_centre_distance(), pair.centre_distance, 1e-12, "no backlash");
+        let thin = |teeth| Specification { thickness_allowance: -80e-6, ..specification(teeth, 3.0, 0.0) };
+        let thin = GearPair::new(thin(teeth.0), thin(teeth.1), None).unwrap();
+        let nearest =
+            GearPair::new(thin.pinion.specification, thin.gear.specification, Some(thin.nearest_centre_distance()));
+        assert!(thin.nearest_centre_distance() < thin.centre_distance - 1e-5);
+        assert_near(nearest.unwrap().backlash().normal, 0.0, 1e-15, "backlash");
+    }
+}
+
 /// A tip that would be in the root is an error: deeper than the rack, whose round begins where the flank ends.
 #[test]
 fn a_tip_that_cuts_in_is_refused() {
