@@ -26,5 +26,6 @@ pub mod piecewise;
 pub mod quadratic;
 pub mod quadrature;
 pub mod replicates;
+pub mod spline;
 pub mod surface;
 pub mod together;

@@ -10,6 +10,7 @@ pub mod end_relief;
 pub mod flank;
 pub mod helix_slope;
 pub mod lead_crowning;
+pub mod measured;
 pub mod parabola;
 pub mod profile;
 pub mod profile_crowning;
@@ -48,6 +49,7 @@ pub const FAMILIES: &[Family] = &[
     Family::of::<lead_crowning::LeadCrowning>(),
     Family::of::<helix_slope::HelixSlope>(),
     Family::of::<end_relief::EndRelief>(),
+    Family::of::<measured::Measured>(),
 ];
 
 /// A modification as a drawing states it: a declared struct, which anybody can make.
@@ -188,6 +190,18 @@ pub trait Modification: Debug + Send + Sync {
         &[]
     }
 
+    /// Ascending roll angles between which the depth, or the surface, is a cubic of its own, where there are so many that no few
+    /// polynomials follow it: of a spline through the points of a trace. It is smooth there, with a second derivative that is
+    /// continuous.
+    fn profile_knots(&self) -> &[f64] {
+        &[]
+    }
+
+    /// The second derivative of the depth at each of [`Modification::profile_knots`] \[m/rad²\], if it is told: it saves time.
+    fn knot_bends(&self) -> &[f64] {
+        &[]
+    }
+
     /// Whether [`Modification::depth`] may differ from 0.
     fn varies_along_profile(&self) -> bool {
         false
@@ -198,6 +212,12 @@ pub trait Modification: Debug + Send + Sync {
     /// say.
     fn surface(&self, _roll: f64, _z: f64) -> f64 {
         0.0
+    }
+
+    /// [`Modification::surface`] at a roll angle and z, and its first and second derivative over the roll angle; `None` where nobody says.
+    /// It saves time and nothing else.
+    fn surface_rates(&self, _roll: f64, _z: f64) -> Option<[f64; 3]> {
+        None
     }
 
     /// Whether [`Modification::surface`] may differ from 0.

@@ -41,11 +41,29 @@ impl<'a> Section<'a> {
     /// known.
     #[must_use]
     pub fn rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
-        if self.z.is_some() {
-            return None;
+        if let Some(z) = self.z {
+            let of_profile = if self.modification.varies_along_profile() {
+                self.modification.profile_rates(roll, inside)?
+            } else {
+                [0.0; 3]
+            };
+            let of_surface = self.modification.surface_rates(roll, z)?;
+            return Some([0, 1, 2].map(|order| of_profile[order] + of_surface[order]));
         }
         let quadratic = self.modification.profile_quadratic(inside).map(|quadratic| quadratic.rates(roll));
         quadratic.or_else(|| self.modification.profile_rates(roll, inside))
+    }
+
+    /// Roll angles between which that is a cubic of its own, of what is a spline through many points.
+    #[must_use]
+    pub fn knots(&self) -> &'a [f64] {
+        self.modification.profile_knots()
+    }
+
+    /// The second derivative at each of these, if it is told.
+    #[must_use]
+    pub fn knot_bends(&self) -> &'a [f64] {
+        if self.z.is_some() { &[] } else { self.modification.knot_bends() }
     }
 
     /// Roll angles at which that is not smooth.

@@ -11,6 +11,8 @@ use crate::numeric::crossing::{bracketed, crossing};
 
 /// The last term of a Taylor series that ends a search, over the separation: what it leaves is smaller still.
 const CLOSE: f64 = 1e-12;
+/// The same on a spline, whose third derivative is another one behind its next knot: what may be left of the gap to fall \[m\].
+const NEGLIGIBLE: f64 = 1e-13;
 /// The most steps of a search for the least gap; one or two are taken.
 const STEPS: usize = 8;
 /// Those of a search for the end of a stretch, and where it stops, over the length of the path: the error of what is
@@ -177,7 +179,13 @@ impl Way<'_> {
             // Of the Taylor series to the third order, its last term by how the second derivative has changed.
             third = (bend - before) / step;
             let rest = third * left * left * left / 6.0;
-            if rest.abs() <= CLOSE * touch.separation {
+            let is_close = if self.point.is_sampled || self.flank.is_sampled {
+                // What is left to fall, which the next step would change by less than its own share.
+                (slope * left).abs() <= NEGLIGIBLE
+            } else {
+                rest.abs() <= CLOSE * touch.separation
+            };
+            if is_close {
                 return (place >= first && curvature >= floor).then_some(gap + 0.5 * slope * left + rest);
             }
         }

@@ -2,10 +2,16 @@
 //!
 //! Must not know: the other flank.
 
+use std::sync::Arc;
+
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::extremum::maximum;
 use crate::numeric::quadratic::Quadratic;
+use crate::numeric::spline::Spline;
+
+mod bridge;
+pub(super) use bridge::PARTS;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -34,6 +40,10 @@ pub(super) struct Outline<'a> {
     /// Where it is not smooth, with both ends, ascending.
     pub(super) cuts: Vec<f64>,
     pieces: Vec<Piece>,
+    /// Whether it is, in part, a spline through many points.
+    pub(super) is_sampled: bool,
+    /// What stands for all parts, over the roll angle: a spline whose valleys are bridged.
+    bridged: Option<Arc<Spline>>,
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
 }
@@ -84,6 +94,8 @@ impl<'a> Outline<'a> {
             is_point,
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
+            is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
+            bridged: None,
             minimum: Vec::new(),
         };
         for roll in parts.iter().flat_map(Section::breaks).copied() {
@@ -122,7 +134,16 @@ impl<'a> Outline<'a> {
             Piece { quadratic, ..*piece }
         };
         let pieces = self.pieces.iter().rev().map(turned).collect();
-        Self { parts: self.parts.clone(), facing, is_point: !self.is_point, cuts, pieces, minimum: Vec::new() }
+        Self {
+            parts: self.parts.clone(),
+            facing,
+            is_point: !self.is_point,
+            cuts,
+            pieces,
+            is_sampled: self.is_sampled,
+            bridged: self.bridged.clone(),
+            minimum: Vec::new(),
+        }
     }
 
     /// The position of a roll angle, and the reverse.
@@ -160,7 +181,7 @@ impl<'a> Outline<'a> {
             let depths: [f64; WAVE_SAMPLES + 1] =
                 std::array::from_fn(|index| self.sum(share(ends, index, WAVE_SAMPLES)));
             let shape = Convexity::of(&depths);
-            if shape == Convexity::Other {
+            if shape == Convexity::Other && !self.is_sampled {
                 cuts.extend(turns(&depths).into_iter().map(|index| share(ends, index, WAVE_SAMPLES)));
                 cuts.push(ends[1]);
                 let first = self.pieces.len();
@@ -170,6 +191,8 @@ impl<'a> Outline<'a> {
                 }
             } else {
                 cuts.push(ends[1]);
+                // How far a spline bends back is known from its knots.
+                let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
                 self.pieces.push(Piece { shape, quadratic: None });
             }
         }
@@ -228,7 +251,10 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        self.parts.iter().map(|part| part.depth(roll)).sum()
+        match &self.bridged {
+            Some(bridged) => bridged.value(within(bridged, roll)),
+            None => self.parts.iter().map(|part| part.depth(roll)).sum(),
+        }
     }
 
     /// The depth where a piece ends: none at all where a relief starts, whatever rounding makes of its place.
@@ -276,11 +302,21 @@ impl<'a> Outline<'a> {
 
     /// Of the parts, which all know theirs.
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
-        let (roll, inside) = (self.roll(position), self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1])));
-        let [depth, slope, bend] = self.parts.iter().try_fold([0.0; 3], |sum, part| {
-            let rates = part.rates(roll, inside)?;
-            Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
-        })?;
+        let roll = self.roll(position);
+        let inside = || self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
+        let [depth, slope, bend] = match &self.bridged {
+            Some(bridged) => bridged.rates(within(bridged, roll)),
+            None => {
+                let inside = inside();
+                match &self.parts[..] {
+                    [part] => part.rates(roll, inside)?,
+                    parts => parts.iter().try_fold([0.0; 3], |sum, part| {
+                        let rates = part.rates(roll, inside)?;
+                        Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+                    })?,
+                }
+            }
+        };
         let [of_point, of_flank] = self.facing.roll_rates();
         let rate = if self.is_point { of_point } else { of_flank };
         Some([depth, slope * rate, bend * rate * rate])
@@ -300,6 +336,12 @@ impl<'a> Outline<'a> {
 /// A share of the way from one end to the other.
 fn share(ends: &[f64], index: usize, count: usize) -> f64 {
     ends[0] + (ends[1] - ends[0]) * index as f64 / count as f64
+}
+
+/// The nearest place of a spline.
+fn within(spline: &Spline, place: f64) -> f64 {
+    let [first, last] = spline.ends();
+    place.clamp(first, last)
 }
 
 fn largest(depths: &[f64]) -> f64 {
