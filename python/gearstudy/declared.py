@@ -923,7 +923,7 @@ class AllowanceToothThickness(Declared):
     lower : number [m], optional
         Lower allowance A_sni, when it is another one; the gear is computed in the middle. -0.1 to 0.1 m.
 
-    >>> AllowanceToothThickness().name
+    >>> AllowanceToothThickness(upper=-60e-6, lower=-90e-6).name
     'allowance'
     """
 
@@ -953,7 +953,7 @@ class SpanToothThickness(Declared):
     smallest : number [m], optional
         The smallest W_k, when it is another one; the gear is computed in the middle. 1e-09 to 1000 m.
 
-    >>> SpanToothThickness().name
+    >>> SpanToothThickness(teeth=3, largest=23.1e-3).name
     'span'
     """
 
@@ -985,7 +985,7 @@ class OverBallsToothThickness(Declared):
     smallest : number [m], optional
         The smallest M_dK, when it is another one; the gear is computed in the middle. 1e-09 to 1000 m.
 
-    >>> OverBallsToothThickness().name
+    >>> OverBallsToothThickness(ball_diameter=5.25e-3, largest=80.1e-3).name
     'over_balls'
     """
 

@@ -126,8 +126,11 @@ impl Families {
         let properties = self.properties(fields, chooses);
         let mut object = json!({ "type": "object", "additionalProperties": false, "properties": properties });
         let required = required(fields);
-        if !required.is_empty() {
-            object["required"] = json!(required);
+        match fields.iter().find(|field| matches!(field.shape, Shape::File)) {
+            // What must be there may stand in the file.
+            Some(file) => object["anyOf"] = json!([{ "required": required }, { "required": [file.name] }]),
+            None if required.is_empty() => {}
+            None => object["required"] = json!(required),
         }
         object
     }
@@ -165,15 +168,20 @@ impl Families {
             Shape::Integer { minimum, maximum, multiple } => leaf::integer(*minimum, *maximum, *multiple, example),
             Shape::Flag => json!({ "type": "boolean" }),
             Shape::Text => leaf::text(example),
+            Shape::File => leaf::file(),
             Shape::Choice(choices) => {
                 let choices =
                     choices.iter().map(|choice| json!({ "const": choice.name, "description": choice.summary }));
                 json!({ "oneOf": choices.collect::<Vec<_>>() })
             }
             Shape::Reference(kinds) => leaf::reference(kinds, example),
-            Shape::List(item) => {
-                let item = self.shape(item, field, chooses);
-                json!({ "anyOf": [{ "type": "array", "items": item }, item] })
+            Shape::List(of) => {
+                let item = self.shape(of, field, chooses);
+                let mut ways = vec![json!({ "type": "array", "items": item }), item.clone()];
+                if let Shape::Quantity { .. } | Shape::Number { .. } = of {
+                    ways.extend(leaf::many(&item));
+                }
+                json!({ "anyOf": ways })
             }
             Shape::Map(item) => json!({ "type": "object", "additionalProperties": self.shape(item, field, chooses) }),
             Shape::Group(fields) => self.object(fields, chooses),

@@ -52,6 +52,12 @@ pub struct Measured {
     /// Up to which it is evaluated; the tip, or the other end of the face, when left out.
     #[declared(dimension = LENGTH, minimum = -10.0, maximum = 10.0, example = "15 mm")]
     pub evaluation_end: Option<f64>,
+    /// z: number of teeth of the gear that was measured; another gear is refused.
+    #[declared(minimum = 4, maximum = 10_000, example = "19")]
+    pub teeth: Option<u32>,
+    /// m: module of the gear that was measured; another gear is refused.
+    #[declared(minimum = 1e-5, maximum = 1.0, dimension = LENGTH, example = "3 mm")]
+    pub module: Option<f64>,
     /// What is taken for roughness and left out.
     #[declared(flatten)]
     pub smoothing: Smoothing,
@@ -78,6 +84,7 @@ impl Specified for Measured {
     }
 
     fn on(&self, pair: &GearPair, side: Side) -> Result<Arc<dyn Modification>, Diagnostic> {
+        checks::of_this_gear(self, pair.side(side))?;
         let flank = Flank::new(pair, side);
         let along = checks::roll_angles(self, pair.side(side), &flank)?;
         let across = checks::face_positions(self, &flank)?;

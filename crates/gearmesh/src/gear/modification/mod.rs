@@ -34,7 +34,7 @@ use super::geometry::{GearPair, Side};
 use crate::numeric::quadratic::Quadratic;
 use declare::declared::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
+use declare::parameter::{FILE, Field, Member, Shape, count};
 use declare::record::Record;
 use declare::{Declared, Words};
 
@@ -131,19 +131,37 @@ impl Family {
 struct Stated<T>(PhantomData<T>);
 
 impl<T: Declared> Stated<T> {
-    const COUNT: usize = Where::MEMBER.fields.len() + T::MEMBER.fields.len();
+    /// Lists of numbers may stand in a file.
+    const FILES: &'static [Field] = if has_lists(T::MEMBER.fields) { &[FILE] } else { &[] };
+    const ALL: [&'static [Field]; 3] = [Where::MEMBER.fields, Self::FILES, T::MEMBER.fields];
+    const COUNT: usize = count(&Self::ALL);
     const PADDED: &'static [Field; MOST_FIELDS] = &{
         assert!(Self::COUNT <= MOST_FIELDS);
-        let (first, own) = (Where::MEMBER.fields, T::MEMBER.fields);
-        let mut fields = [first[0]; MOST_FIELDS];
-        let mut index = first.len();
-        while index < Self::COUNT {
-            fields[index] = own[index - first.len()];
-            index += 1;
+        let mut fields = [FILE; MOST_FIELDS];
+        let (mut table, mut at) = (0, 0);
+        while table < Self::ALL.len() {
+            let mut field = 0;
+            while field < Self::ALL[table].len() {
+                fields[at] = Self::ALL[table][field];
+                at += 1;
+                field += 1;
+            }
+            table += 1;
         }
         fields
     };
     const FIELDS: &'static [Field] = Self::PADDED.split_at(Self::COUNT).0;
+}
+
+const fn has_lists(fields: &[Field]) -> bool {
+    let mut at = 0;
+    while at < fields.len() {
+        if matches!(fields[at].shape, Shape::List(Shape::Quantity { .. } | Shape::Number { .. })) {
+            return true;
+        }
+        at += 1;
+    }
+    false
 }
 
 /// The most fields of a family.

@@ -9,6 +9,10 @@ use declare::error::Diagnostic;
 
 /// A deviation beyond this is in another unit \[m\].
 const LARGEST: f64 = 0.5e-3;
+/// A trace that nowhere deviates by more than this, and somewhere does, is in another unit: no machine measures so little \[m\].
+const SMALLEST: f64 = 0.05e-6;
+/// By how much of it the module of a drawing and that of a protocol may differ.
+const SAME_MODULE: f64 = 1e-6;
 /// How much farther than usual two points may be apart, of so many or more.
 const GAP: f64 = 10.0;
 const FEWEST_FOR_GAPS: usize = 10;
@@ -52,8 +56,17 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
     {
         let message = format!("deviation {} is {}, and a deviation is 0.5 mm at the most", at + 1, millimetres(*value));
         return Err(Diagnostic::new(message)
-            .of(Measured::NAMES.deviations)
+            .of_item(Measured::NAMES.deviations, at)
             .help("deviations are mostly written in micrometres: is the unit `um`?"));
+    }
+    let largest = stated.deviations.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest > 0.0 && largest < SMALLEST {
+        let message = format!(
+            "no deviation is larger than {:.1e} um, and no measurement tells less than {:.2} um from nothing",
+            1e6 * largest,
+            1e6 * SMALLEST
+        );
+        return Err(Diagnostic::new(message).of(Measured::NAMES.deviations).help("is the unit `mm`?"));
     }
     let line = ways.first().map_or(count, |(_, places)| places.len());
     for (row, values) in stated.deviations.chunks(line).enumerate() {
@@ -64,7 +77,7 @@ pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
                 micrometres(stands_out(values, at - 1, at, at + 1))
             );
             return Err(Diagnostic::new(message)
-                .of(Measured::NAMES.deviations)
+                .of_item(Measured::NAMES.deviations, row * line + at)
                 .help("leave the point out, or measure the trace again"));
         }
     }
@@ -111,18 +124,20 @@ fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
         let (one, other) = (places[at], places[at + 1]);
         #[allow(clippy::float_cmp)] // the same point twice, not one nearby
         let is = if one == other { "is the same as the one before it" } else { "is not above the one before it" };
-        return wrong(format!("point {} of `{name}` {is}; points are in ascending order", at + 2));
+        let message = format!("point {} of `{name}` {is}; points are in ascending order", at + 2);
+        return Err(Diagnostic::new(message).of_item(name, at + 1));
     }
     if places.len() >= FEWEST_FOR_GAPS {
         let mut steps: Vec<f64> = places.windows(2).map(|ends| ends[1] - ends[0]).collect();
         let usual = *steps.select_nth_unstable_by(places.len() / 2, f64::total_cmp).1;
         if let Some(at) = places.windows(2).position(|ends| ends[1] - ends[0] > GAP * usual) {
             let times = (places[at + 1] - places[at]) / usual;
-            return wrong(format!(
+            let message = format!(
                 "there is a gap between points {} and {} of `{name}`, {times:.0} times as wide as is usual among them",
                 at + 1,
                 at + 2
-            ));
+            );
+            return Err(Diagnostic::new(message).of_item(name, at + 1));
         }
     }
     Ok(())
@@ -151,6 +166,23 @@ fn spike(values: &[f64]) -> Option<usize> {
     };
     let others = inner.filter(|at| *at != candidate).filter_map(without).fold(0.0, f64::max);
     (height(candidate) > LEAST_SPIKE && height(candidate) > SPIKE * others).then_some(candidate)
+}
+
+/// Refuses a gear that is another one than was measured.
+pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnostic> {
+    let own = &gear.specification;
+    if let Some(teeth) = stated.teeth.filter(|teeth| *teeth != own.teeth) {
+        let message = format!("a gear of {teeth} teeth was measured, and this one has {}", own.teeth);
+        return Err(Diagnostic::new(message)
+            .of(Measured::NAMES.teeth)
+            .help("is the trace of the other gear of the pair?"));
+    }
+    if let Some(module) = stated.module.filter(|module| (module - own.module).abs() > SAME_MODULE * own.module) {
+        let [module, own] = [module, own.module].map(millimetres);
+        let message = format!("a gear of module {module} was measured, and this one has {own}");
+        return Err(Diagnostic::new(message).of(Measured::NAMES.module));
+    }
+    Ok(())
 }
 
 /// The roll angles of the points along the profile of this gear, if there are any.

@@ -38,6 +38,8 @@ fn profile(pair: &GearPair, side: Side, count: usize, deviation: impl Fn(f64) ->
         face_positions: None,
         evaluation_start: None,
         evaluation_end: None,
+        teeth: None,
+        module: None,
         smoothing: Smoothing::None,
     }
 }

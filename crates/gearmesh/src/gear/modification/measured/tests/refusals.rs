@@ -35,6 +35,10 @@ fn what_is_no_trace_is_refused() {
     );
     refused(|stated| stated.deviations[30] += 60e-6, "deviation 31 stands 60.0");
     refused(
+        |stated| stated.deviations.iter_mut().for_each(|value| *value *= 1e-3),
+        "no deviation is larger than 4.0e-3 um, and no measurement tells less than 0.05 um from nothing",
+    );
+    refused(
         |stated| stated.deviations[7] = 1.2e-3,
         "deviation 8 is 1.200000 mm, and a deviation is 0.5 mm at the most",
     );
@@ -69,6 +73,11 @@ fn traces_of_other_gears_are_refused() {
         "the active flank of this gear goes from 2.009267 mm to 16.583582 mm, at least half of which must be measured",
     );
     refused(|stated| lengths(stated).iter_mut().for_each(|length| *length *= 1.5), "its tooth ends at 16.583582 mm");
+    refused(|stated| stated.teeth = Some(20), "a gear of 20 teeth was measured, and this one has 19");
+    refused(
+        |stated| stated.module = Some(4e-3),
+        "a gear of module 4.000000 mm was measured, and this one has 3.000000 mm",
+    );
     refused(
         |stated| (stated.roll_lengths, stated.diameters) = (None, Some(places([50e-3, 60e-3], 100))),
         "a trace from 50.000000 mm on, and the base circle of this gear is 53.562",
