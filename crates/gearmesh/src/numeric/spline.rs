@@ -11,8 +11,9 @@ pub struct Spline {
     knots: Vec<f64>,
     /// Of the distance from the lower end of each interval.
     cubics: Vec<[f64; 4]>,
-    /// Intervals per length, if they were all alike.
-    per_length: f64,
+    index: Index,
+    /// The least second derivative.
+    least_bend: f64,
 }
 
 impl Spline {
@@ -32,11 +33,24 @@ impl Spline {
             let bend = (slopes[at] + slopes[at + 1] - 2.0 * secant) / step;
             [values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
-        Self {
-            knots: knots.to_vec(),
-            cubics: (0..steps.len()).map(cubic).collect(),
-            per_length: intervals_per_length(knots),
-        }
+        let cubics = (0..steps.len()).map(cubic).collect();
+        let mut spline = Self { knots: knots.to_vec(), cubics, index: Index::new(knots), least_bend: 0.0 };
+        spline.least_bend = spline.bends().fold(f64::INFINITY, f64::min);
+        spline
+    }
+
+    /// The second derivative at every knot, between which it is straight.
+    pub fn bends(&self) -> impl Iterator<Item = f64> {
+        let last = self.cubics.len() - 1;
+        let at_end =
+            2.0 * self.cubics[last][2] + 6.0 * self.cubics[last][3] * (self.knots[last + 1] - self.knots[last]);
+        self.cubics.iter().map(|cubic| 2.0 * cubic[2]).chain([at_end])
+    }
+
+    /// The least second derivative.
+    #[must_use]
+    pub fn least_bend(&self) -> f64 {
+        self.least_bend
     }
 
     /// The first and the last knot.
@@ -53,6 +67,7 @@ impl Spline {
 
     /// The value, and the first and second derivative, at `x`; outside of its ends the outermost cubics go on.
     #[must_use]
+    #[inline]
     pub fn rates(&self, x: f64) -> [f64; 3] {
         let at = self.interval(x);
         let ([c0, c1, c2, c3], t) = (self.cubics[at], x - self.knots[at]);
@@ -73,24 +88,51 @@ impl Spline {
         self.knots.iter().map(|knot| self.rates(*knot)[1]).collect()
     }
 
+    #[inline]
     fn interval(&self, x: f64) -> usize {
-        interval(&self.knots, self.per_length, x)
+        self.index.interval(&self.knots, x)
     }
 }
 
-/// Of knots, if all were equally far apart.
-fn intervals_per_length(knots: &[f64]) -> f64 {
-    let last = knots.len() - 1;
-    last as f64 / (knots[last] - knots[0])
+/// Where to look for the interval of a place: equal cells, as many as there are intervals, and the interval in which each begins.
+#[derive(Clone, Debug, PartialEq)]
+struct Index {
+    first: Vec<u32>,
+    per_length: f64,
 }
 
-/// The interval of a place, the outermost one outside of all: where it would be if all were alike, or else searched for.
-fn interval(knots: &[f64], per_length: f64, x: f64) -> usize {
-    let last = knots.len() - 2;
-    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
-    let guess = (((x - knots[0]) * per_length).max(0.0) as usize).min(last);
-    let is_there = (guess == 0 || knots[guess] <= x) && (guess == last || x < knots[guess + 1]);
-    if is_there { guess } else { knots[1..=last].partition_point(|knot| *knot <= x) }
+impl Index {
+    #[allow(clippy::cast_possible_truncation)] // no spline has so many knots
+    fn new(knots: &[f64]) -> Self {
+        let count = knots.len() - 1;
+        let length = knots[count] - knots[0];
+        let mut interval = 0;
+        let first = (0..count).map(|cell| {
+            let begins = knots[0] + length * cell as f64 / count as f64;
+            while interval + 1 < count && knots[interval + 1] <= begins {
+                interval += 1;
+            }
+            interval as u32
+        });
+        Self { first: first.collect(), per_length: count as f64 / length }
+    }
+
+    /// The interval of a place, the outermost one outside of all.
+    #[inline]
+    fn interval(&self, knots: &[f64], x: f64) -> usize {
+        let last = knots.len() - 2;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
+        let cell = (((x - knots[0]) * self.per_length).max(0.0) as usize).min(last);
+        let mut interval = self.first[cell] as usize;
+        while interval < last && knots[interval + 1] <= x {
+            interval += 1;
+        }
+        // Rounding may have put it into the next cell.
+        while interval > 0 && x < knots[interval] {
+            interval -= 1;
+        }
+        interval
+    }
 }
 
 /// The slope at every knot.
@@ -136,14 +178,14 @@ fn slopes(steps: &[f64], secants: &[f64]) -> Vec<f64> {
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hermite {
     knots: Vec<f64>,
-    per_length: f64,
+    index: Index,
 }
 
 impl Hermite {
     /// Between these, which are strictly ascending and two or more.
     #[must_use]
     pub fn new(knots: &[f64]) -> Self {
-        Self { knots: knots.to_vec(), per_length: intervals_per_length(knots) }
+        Self { knots: knots.to_vec(), index: Index::new(knots) }
     }
 
     /// All of them.
@@ -171,7 +213,7 @@ impl Hermite {
     /// intervals those of the outermost knot.
     #[must_use]
     pub fn weights(&self, x: f64) -> (usize, [f64; 4]) {
-        let at = interval(&self.knots, self.per_length, x);
+        let at = self.index.interval(&self.knots, x);
         let step = self.knots[at + 1] - self.knots[at];
         let t = ((x - self.knots[at]) / step).clamp(0.0, 1.0);
         let (s, end) = (1.0 - t, t * t * (3.0 - 2.0 * t));

@@ -147,7 +147,8 @@ fn column(cell: Cell<'_>) -> Result<Column<'_>, Diagnostic> {
     }
     let written = cell.text.split_once('[').and_then(|(name, unit)| Some((name.trim_end(), unit.strip_suffix(']')?)));
     let Some((name, unit)) = written else {
-        let help = format!("write `{} [mm]` if that is its unit, or `[-]` behind it where numbers are plain", cell.text);
+        let help =
+            format!("write `{} [mm]` if that is its unit, or `[-]` behind it where numbers are plain", cell.text);
         return Err(wrong(format!("the column {} has no unit", quote(cell.text))).help(help));
     };
     let unit = unit.trim();

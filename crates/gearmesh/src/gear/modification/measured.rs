@@ -182,8 +182,6 @@ fn evaluated(
 #[derive(Debug)]
 struct Line {
     spline: Spline,
-    /// Its second derivative at each point.
-    bends: Vec<f64>,
     /// Where it ends on the flank, and is not smooth.
     breaks: Vec<f64>,
     values: Vec<(&'static str, f64)>,
@@ -191,9 +189,7 @@ struct Line {
 
 impl Line {
     fn new(places: &[f64], depths: &[f64], range: [f64; 2], values: Vec<(&'static str, f64)>) -> Self {
-        let spline = Spline::new(places, depths);
-        let bends = places.iter().map(|place| spline.rates(*place)[2]).collect();
-        Self { spline, bends, breaks: inner(places, range), values }
+        Self { spline: Spline::new(places, depths), breaks: inner(places, range), values }
     }
 
     fn depth(&self, place: f64) -> f64 {
@@ -237,8 +233,8 @@ impl Modification for Profile {
         self.0.spline.knots()
     }
 
-    fn knot_bends(&self) -> &[f64] {
-        &self.0.bends
+    fn profile_spline(&self) -> Option<&Spline> {
+        Some(&self.0.spline)
     }
 
     fn varies_along_profile(&self) -> bool {

@@ -6,6 +6,7 @@
 use super::{Design, Modification, NamedModification};
 use crate::gear::geometry::Side;
 use crate::numeric::quadratic::Quadratic;
+use crate::numeric::spline::Spline;
 
 /// A modification in one section.
 #[derive(Clone, Copy, Debug)]
@@ -60,10 +61,10 @@ impl<'a> Section<'a> {
         self.modification.profile_knots()
     }
 
-    /// The second derivative at each of these, if it is told.
+    /// The spline through these that it is, held at both its ends, if it is told.
     #[must_use]
-    pub fn knot_bends(&self) -> &'a [f64] {
-        if self.z.is_some() { &[] } else { self.modification.knot_bends() }
+    pub fn spline(&self) -> Option<&'a Spline> {
+        if self.z.is_some() { None } else { self.modification.profile_spline() }
     }
 
     /// Roll angles at which that is not smooth.

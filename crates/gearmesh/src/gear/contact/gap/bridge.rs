@@ -16,6 +16,17 @@ pub(super) fn bridge<'a>(facing: &Facing, point: &mut Outline<'a>, flank: &mut O
     if !point.is_sampled && !flank.is_sampled {
         return;
     }
+    // Mostly nothing bends back anywhere by what is the least all over the path.
+    if let (Some(one), Some(other)) = (point.least_bend(), flank.least_bend())
+        && point.is_convex()
+        && flank.is_convex()
+    {
+        let [start, end] = [facing.start, facing.end].map(|place| facing.on_line(place));
+        let rate = start.rate.max(end.rate);
+        if -one - other * rate * rate <= (1.0 - LEFT[0]) * facing.least_bend() {
+            return;
+        }
+    }
     let none = [f64::NEG_INFINITY; PARTS];
     let [of_point, of_flank] = [&*point, &*flank].map(|outline| outline.least_bends().unwrap_or(none));
     let [mut for_point, mut for_flank] = [[0.0; PARTS]; 2];

@@ -42,16 +42,35 @@ pub(super) struct Outline<'a> {
     pieces: Vec<Piece>,
     /// Whether it is, in part, a spline through many points.
     pub(super) is_sampled: bool,
-    /// What stands for all parts, over the roll angle: a spline whose valleys are bridged.
-    bridged: Option<Arc<Spline>>,
+    /// What stands for all parts, over the roll angle.
+    spline: Option<Told<'a>>,
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
+}
+
+/// A spline over the roll angle, held at its ends: the only part's own, or one whose valleys are bridged.
+#[derive(Clone, Debug)]
+enum Told<'a> {
+    Own(&'a Spline),
+    Bridged(Arc<Spline>),
+}
+
+impl Told<'_> {
+    #[inline]
+    fn spline(&self) -> &Spline {
+        match self {
+            Self::Own(spline) => spline,
+            Self::Bridged(spline) => spline,
+        }
+    }
 }
 
 /// A smooth one, between two cuts.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     shape: Convexity,
+    /// Whether it lies beyond the end of a spline.
+    is_held: bool,
     /// What it is against the position, where it is a quadratic.
     quadratic: Option<Quadratic>,
 }
@@ -95,7 +114,7 @@ impl<'a> Outline<'a> {
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
-            bridged: None,
+            spline: if let [part] = parts { part.spline().map(Told::Own) } else { None },
             minimum: Vec::new(),
         };
         for roll in parts.iter().flat_map(Section::breaks).copied() {
@@ -141,7 +160,7 @@ impl<'a> Outline<'a> {
             cuts,
             pieces,
             is_sampled: self.is_sampled,
-            bridged: self.bridged.clone(),
+            spline: self.spline.clone(),
             minimum: Vec::new(),
         }
     }
@@ -174,8 +193,8 @@ impl<'a> Outline<'a> {
         for ends in self.cuts.windows(2) {
             if let Some(quadratic) = if whole { self.quadratic(ends) } else { None } {
                 cuts.push(ends[1]);
-                self.pieces
-                    .push(Piece { shape: Convexity::of_quadratic(&quadratic, ends), quadratic: Some(quadratic) });
+                let shape = Convexity::of_quadratic(&quadratic, ends);
+                self.pieces.push(Piece { shape, is_held: false, quadratic: Some(quadratic) });
                 continue;
             }
             let depths: [f64; WAVE_SAMPLES + 1] =
@@ -187,13 +206,18 @@ impl<'a> Outline<'a> {
                 let first = self.pieces.len();
                 for ends in cuts[first..].windows(2) {
                     let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.sum(share(ends, index, SAMPLES)));
-                    self.pieces.push(Piece { shape: Convexity::of(&depths), quadratic: None });
+                    self.pieces.push(Piece { shape: Convexity::of(&depths), is_held: false, quadratic: None });
                 }
             } else {
                 cuts.push(ends[1]);
                 // How far a spline bends back is known from its knots.
                 let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
-                self.pieces.push(Piece { shape, quadratic: None });
+                let middle = self.roll(share(ends, 1, 2));
+                let is_held = self.spline.as_ref().is_some_and(|told| {
+                    let [first, last] = told.spline().ends();
+                    middle < first || middle > last
+                });
+                self.pieces.push(Piece { shape, is_held, quadratic: None });
             }
         }
         self.cuts = cuts;
@@ -251,8 +275,8 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        match &self.bridged {
-            Some(bridged) => bridged.value(within(bridged, roll)),
+        match &self.spline {
+            Some(told) => told.spline().value(within(told.spline(), roll)),
             None => self.parts.iter().map(|part| part.depth(roll)).sum(),
         }
     }
@@ -292,7 +316,7 @@ impl<'a> Outline<'a> {
     /// piece.
     #[inline]
     pub(super) fn rates(&self, position: f64, piece: usize) -> [f64; 3] {
-        let Piece { shape, quadratic } = &self.pieces[piece];
+        let Piece { shape, quadratic, .. } = &self.pieces[piece];
         match (shape, quadratic) {
             (Convexity::Zero, _) => [0.0; 3],
             (_, Some(quadratic)) => quadratic.rates(position),
@@ -301,21 +325,19 @@ impl<'a> Outline<'a> {
     }
 
     /// Of the parts, which all know theirs.
+    #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
         let roll = self.roll(position);
-        let inside = || self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
-        let [depth, slope, bend] = match &self.bridged {
-            Some(bridged) => bridged.rates(within(bridged, roll)),
-            None => {
-                let inside = inside();
-                match &self.parts[..] {
-                    [part] => part.rates(roll, inside)?,
-                    parts => parts.iter().try_fold([0.0; 3], |sum, part| {
-                        let rates = part.rates(roll, inside)?;
-                        Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
-                    })?,
-                }
-            }
+        let [depth, slope, bend] = if let Some(told) = &self.spline {
+            let spline = told.spline();
+            let place = within(spline, roll);
+            if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
+        } else {
+            let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
+            self.parts.iter().try_fold([0.0; 3], |sum, part| {
+                let rates = part.rates(roll, inside)?;
+                Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+            })?
         };
         let [of_point, of_flank] = self.facing.roll_rates();
         let rate = if self.is_point { of_point } else { of_flank };

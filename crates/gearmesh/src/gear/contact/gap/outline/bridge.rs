@@ -4,7 +4,7 @@
 
 use std::sync::Arc;
 
-use super::{Convexity, Outline, Piece};
+use super::{Convexity, Outline, Piece, Told};
 use crate::gear::modification::section::Section;
 use crate::numeric::spline::Spline;
 
@@ -25,19 +25,32 @@ impl Outline<'_> {
         let (from, to) = (self.facing.start, self.facing.end);
         let [of_point, of_flank] = self.facing.roll_rates();
         let rate = if self.is_point { of_point } else { of_flank };
-        let told = if let [part] = &self.parts[..] { part.knot_bends() } else { &[] };
-        for (index, roll) in self.parts.iter().flat_map(Section::knots).enumerate() {
-            let share = (self.position(*roll) - from) / (to - from);
-            if !(0.0..=1.0).contains(&share) {
-                continue;
+        let mut put = |roll: f64, bend: f64| {
+            let share = (self.position(roll) - from) / (to - from);
+            if (0.0..=1.0).contains(&share) {
+                #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
+                let part = ((share * PARTS as f64) as usize).min(PARTS - 1);
+                least[part] = least[part].min(bend * rate * rate);
             }
-            let sum = || self.parts.iter().try_fold(0.0, |sum, part| Some(sum + part.rates(*roll, *roll)?[2]));
-            let bend = if let Some(bend) = told.get(index) { *bend } else { sum()? };
-            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // a share
-            let part = ((share * PARTS as f64) as usize).min(PARTS - 1);
-            least[part] = least[part].min(bend * rate * rate);
+        };
+        if let Some(told) = &self.spline {
+            told.spline().knots().iter().zip(told.spline().bends()).for_each(|(roll, bend)| put(*roll, bend));
+            return Some(least);
+        }
+        for roll in self.parts.iter().flat_map(Section::knots) {
+            put(*roll, self.parts.iter().try_fold(0.0, |sum, part| Some(sum + part.rates(*roll, *roll)?[2]))?);
         }
         Some(least)
+    }
+
+    /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
+    pub(in super::super) fn least_bend(&self) -> Option<f64> {
+        let [of_point, of_flank] = self.facing.roll_rates();
+        let rate = if self.is_point { of_point } else { of_flank };
+        match &self.spline {
+            Some(told) => Some((told.spline().least_bend() * rate * rate).min(0.0)),
+            None => (!self.is_sampled).then_some(0.0),
+        }
     }
 
     /// Bridges what bends back by more than `bends` (at equal parts of the path, not below 0) allow, as something that is bent the other way
@@ -79,9 +92,9 @@ impl Outline<'_> {
             points.reverse();
         }
         let [rolls, values]: [Vec<f64>; 2] = [0, 1].map(|of| points.iter().map(|point| point[of]).collect());
-        self.bridged = Some(Arc::new(Spline::new(&rolls, &values)));
+        self.spline = Some(Told::Bridged(Arc::new(Spline::new(&rolls, &values))));
         for piece in &mut self.pieces {
-            *piece = Piece { shape: Convexity::Convex, quadratic: None };
+            *piece = Piece { shape: Convexity::Convex, is_held: false, quadratic: None };
         }
     }
 }
