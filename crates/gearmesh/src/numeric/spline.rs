@@ -9,8 +9,8 @@
 pub struct Spline {
     /// Ascending.
     knots: Vec<f64>,
-    /// Of the distance from the lower end of each interval.
-    cubics: Vec<[f64; 4]>,
+    /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
+    pieces: Vec<[f64; 5]>,
     index: Index,
     /// The least second derivative.
     least_bend: f64,
@@ -31,20 +31,18 @@ impl Spline {
         let cubic = |at: usize| {
             let (step, secant) = (steps[at], secants[at]);
             let bend = (slopes[at] + slopes[at + 1] - 2.0 * secant) / step;
-            [values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
+            [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
         };
-        let cubics = (0..steps.len()).map(cubic).collect();
-        let mut spline = Self { knots: knots.to_vec(), cubics, index: Index::new(knots), least_bend: 0.0 };
+        let pieces = (0..steps.len()).map(cubic).collect();
+        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), least_bend: 0.0 };
         spline.least_bend = spline.bends().fold(f64::INFINITY, f64::min);
         spline
     }
 
     /// The second derivative at every knot, between which it is straight.
     pub fn bends(&self) -> impl Iterator<Item = f64> {
-        let last = self.cubics.len() - 1;
-        let at_end =
-            2.0 * self.cubics[last][2] + 6.0 * self.cubics[last][3] * (self.knots[last + 1] - self.knots[last]);
-        self.cubics.iter().map(|cubic| 2.0 * cubic[2]).chain([at_end])
+        let at_end = self.rates(self.ends()[1])[2];
+        self.pieces.iter().map(|piece| 2.0 * piece[3]).chain([at_end])
     }
 
     /// The least second derivative.
@@ -69,16 +67,16 @@ impl Spline {
     #[must_use]
     #[inline]
     pub fn rates(&self, x: f64) -> [f64; 3] {
-        let at = self.interval(x);
-        let ([c0, c1, c2, c3], t) = (self.cubics[at], x - self.knots[at]);
+        let [from, c0, c1, c2, c3] = *self.piece(x);
+        let t = x - from;
         [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
     }
 
     /// The value at `x`.
     #[must_use]
     pub fn value(&self, x: f64) -> f64 {
-        let at = self.interval(x);
-        let ([c0, c1, c2, c3], t) = (self.cubics[at], x - self.knots[at]);
+        let [from, c0, c1, c2, c3] = *self.piece(x);
+        let t = x - from;
         c0 + t * (c1 + t * (c2 + t * c3))
     }
 
@@ -89,8 +87,8 @@ impl Spline {
     }
 
     #[inline]
-    fn interval(&self, x: f64) -> usize {
-        self.index.interval(&self.knots, x)
+    fn piece(&self, x: f64) -> &[f64; 5] {
+        &self.pieces[self.index.interval(self.pieces.len(), x, |at| self.pieces[at][0])]
     }
 }
 
@@ -98,6 +96,7 @@ impl Spline {
 #[derive(Clone, Debug, PartialEq)]
 struct Index {
     first: Vec<u32>,
+    from: f64,
     per_length: f64,
 }
 
@@ -114,21 +113,21 @@ impl Index {
             }
             interval as u32
         });
-        Self { first: first.collect(), per_length: count as f64 / length }
+        Self { first: first.collect(), from: knots[0], per_length: count as f64 / length }
     }
 
-    /// The interval of a place, the outermost one outside of all.
+    /// The interval of a place, the outermost one outside of all, of so many that begin there.
     #[inline]
-    fn interval(&self, knots: &[f64], x: f64) -> usize {
-        let last = knots.len() - 2;
+    fn interval(&self, count: usize, x: f64, begins: impl Fn(usize) -> f64) -> usize {
+        let last = count - 1;
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
-        let cell = (((x - knots[0]) * self.per_length).max(0.0) as usize).min(last);
+        let cell = (((x - self.from) * self.per_length).max(0.0) as usize).min(last);
         let mut interval = self.first[cell] as usize;
-        while interval < last && knots[interval + 1] <= x {
+        while interval < last && begins(interval + 1) <= x {
             interval += 1;
         }
         // Rounding may have put it into the next cell.
-        while interval > 0 && x < knots[interval] {
+        while interval > 0 && x < begins(interval) {
             interval -= 1;
         }
         interval
@@ -213,7 +212,7 @@ impl Hermite {
     /// intervals those of the outermost knot.
     #[must_use]
     pub fn weights(&self, x: f64) -> (usize, [f64; 4]) {
-        let at = self.index.interval(&self.knots, x);
+        let at = self.index.interval(self.knots.len() - 1, x, |at| self.knots[at]);
         let step = self.knots[at + 1] - self.knots[at];
         let t = ((x - self.knots[at]) / step).clamp(0.0, 1.0);
         let (s, end) = (1.0 - t, t * t * (3.0 - 2.0 * t));

@@ -109,6 +109,11 @@ pub(super) fn attach(text: &str, root: &Node, path: &Path) -> Result<(String, Ve
             }
             whole.push('\n');
         }
+        // What is archived is read as one file.
+        if whole.len() as u64 > read::LARGEST {
+            let message = format!("the study and its files together are larger than {} KiB", read::LARGEST >> 10);
+            return Err(refused(Diagnostic::new(message).at(place).help("leave out points, or average them")));
+        }
         attached.push(Attached { path: file, text: read, from, to: whole.len(), line, indent });
     }
     Ok((whole, attached))

@@ -11,8 +11,8 @@ use declare::error::{Diagnostic, Place, nearest};
 /// What is said of a file that is not there.
 pub const NOT_THERE: &str = "there is no such file";
 
-/// Bytes of a study. The largest that anybody wrote has a few ten thousand.
-const LARGEST: u64 = 1 << 20;
+/// Bytes of a study, the files that it names included. The largest that anybody wrote has a few ten thousand.
+pub const LARGEST: u64 = 1 << 20;
 
 /// Reads a whole file of UTF-8.
 ///

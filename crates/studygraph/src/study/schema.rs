@@ -7,7 +7,7 @@ mod leaf;
 
 use serde_json::{Map, Value, json};
 
-use super::assemble::{KEYS, SET};
+use super::assemble::{FILES, KEYS, SET};
 use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
@@ -40,6 +40,15 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
             "minProperties": 1,
             "propertyNames": leaf::path(),
             "examples": [{ "pair.pinion.face_width": "22 mm" }],
+        }),
+    );
+    properties.insert(
+        FILES.to_owned(),
+        json!({
+            "title": "Files",
+            "description": "Texts of the CSV files that stages name, where they do not lie beside the study.",
+            "type": "object",
+            "additionalProperties": { "type": "string" },
         }),
     );
     if let Some(Value::Object(study)) = properties.get_mut("study") {

@@ -44,6 +44,8 @@ pub(super) struct Outline<'a> {
     pub(super) is_sampled: bool,
     /// What stands for all parts, over the roll angle.
     spline: Option<Told<'a>>,
+    /// The roll angle at the position 0, and by how much it grows with the position.
+    rolls: [f64; 2],
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
 }
@@ -115,8 +117,10 @@ impl<'a> Outline<'a> {
             pieces: Vec::new(),
             is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
             spline: if let [part] = parts { part.spline().map(Told::Own) } else { None },
+            rolls: [0.0; 2],
             minimum: Vec::new(),
-        };
+        }
+        .turning();
         for roll in parts.iter().flat_map(Section::breaks).copied() {
             let position = outline.position(roll);
             if position > facing.start && position < facing.end {
@@ -161,8 +165,15 @@ impl<'a> Outline<'a> {
             pieces,
             is_sampled: self.is_sampled,
             spline: self.spline.clone(),
+            rolls: self.rolls,
             minimum: Vec::new(),
         }
+        .turning()
+    }
+
+    fn turning(self) -> Self {
+        let [of_point, of_flank] = self.facing.roll_rates();
+        Self { rolls: [self.roll(0.0), if self.is_point { of_point } else { of_flank }], ..self }
     }
 
     /// The position of a roll angle, and the reverse.
@@ -177,8 +188,7 @@ impl<'a> Outline<'a> {
     /// The sum of the parts between two cuts, if each is a quadratic there.
     fn quadratic(&self, ends: &[f64]) -> Option<Quadratic> {
         let roll = self.roll(share(ends, 1, 2));
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
+        let [_, rate] = self.rolls;
         self.parts.iter().try_fold(Quadratic::ZERO, |sum, part| {
             let part = part.quadratic(roll)?;
             Some(sum.plus(&part.against(self.position(part.origin), rate)))
@@ -327,20 +337,19 @@ impl<'a> Outline<'a> {
     /// Of the parts, which all know theirs.
     #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
-        let roll = self.roll(position);
+        let [start, rate] = self.rolls;
         let [depth, slope, bend] = if let Some(told) = &self.spline {
             let spline = told.spline();
-            let place = within(spline, roll);
+            let place = within(spline, start + rate * position);
             if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
         } else {
+            let roll = self.roll(position);
             let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
             self.parts.iter().try_fold([0.0; 3], |sum, part| {
                 let rates = part.rates(roll, inside)?;
                 Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
             })?
         };
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
         Some([depth, slope * rate, bend * rate * rate])
     }
 

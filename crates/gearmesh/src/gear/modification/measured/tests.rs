@@ -1,6 +1,7 @@
 //! Traces against the families that they are traces of, and what is no trace of a flank.
 
 mod refusals;
+mod taken;
 
 use super::*;
 use crate::gear::compliance::{ContactLaw, PairCompliance};

@@ -23,8 +23,7 @@ impl Outline<'_> {
             return Some(least);
         }
         let (from, to) = (self.facing.start, self.facing.end);
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
+        let [_, rate] = self.rolls;
         let mut put = |roll: f64, bend: f64| {
             let share = (self.position(roll) - from) / (to - from);
             if (0.0..=1.0).contains(&share) {
@@ -45,8 +44,7 @@ impl Outline<'_> {
 
     /// The least second derivative anywhere \[1/m\], not above 0, if it is known at once.
     pub(in super::super) fn least_bend(&self) -> Option<f64> {
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
+        let [_, rate] = self.rolls;
         match &self.spline {
             Some(told) => Some((told.spline().least_bend() * rate * rate).min(0.0)),
             None => (!self.is_sampled).then_some(0.0),
