@@ -128,6 +128,10 @@ pub fn compliance(pair: &GearPair, assumptions: Assumptions) -> PairCompliance {
 
 /// 64 positions, 33 slices.
 pub fn cycle(pair: &GearPair, contact: ContactLaw, coupled: bool) -> MeshCycle {
+    cycle_of(pair, contact, coupled, Settings::default())
+}
+
+pub fn cycle_of(pair: &GearPair, contact: ContactLaw, coupled: bool, settings: Settings) -> MeshCycle {
     let compliance = compliance(pair, assumptions(contact, coupled));
-    MeshCycle::new(pair, &compliance, Settings::default()).expect("its contact ratio is 1.65")
+    MeshCycle::new(pair, &compliance, settings).expect("its contact ratio is 1.65")
 }

@@ -11,6 +11,7 @@ mod diff;
 mod finite_elements;
 mod geometry;
 mod kernels;
+mod measured;
 mod optimize;
 mod pages;
 mod program;
@@ -25,6 +26,7 @@ use criterion::Criterion;
 
 fn main() {
     kernels::benches();
+    measured::benches();
     geometry::benches();
     optimize::benches();
     finite_elements::benches();

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use crate::measured::BASE;
 use crate::program::Process;
 
 /// Bench or process, its target \[s\], what is compared.
@@ -45,7 +46,9 @@ pub fn print(processes: &[Process]) {
     for &Process { name, median, fastest, times } in processes {
         rows.push(Measured { name: name.to_owned(), median, fastest, how: format!("{times} starts") });
     }
-    rows.extend(measured());
+    let found = measured();
+    print_traces(&found);
+    rows.extend(found);
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let load = fs::read_to_string("/proc/loadavg").unwrap_or_default();
     let load = load.split(' ').next().unwrap_or_default().to_owned();
@@ -66,6 +69,18 @@ pub fn print(processes: &[Process]) {
         };
         let (median, fastest) = (duration(median), duration(fastest));
         println!("{name:<40} {median:>10} {fastest:>10} {limit:>10} {ratios}  {compared}");
+    }
+}
+
+/// What flanks as measured take, over the relief that they are traces of: at most 3.
+fn print_traces(found: &[Measured]) {
+    println!("\nFlanks as measured, 500 points, over a parabolic relief: median and fastest\n");
+    for Measured { name, median, fastest, .. } in found.iter().filter(|one| one.name.starts_with("measured/")) {
+        let trace = name.split_once(", ").and_then(|(_, rest)| rest.split(", ").next()).unwrap_or_default();
+        let base = name.replacen(trace, BASE, 1);
+        if let Some(base) = found.iter().find(|one| one.name == base && one.name != *name) {
+            println!("{name:<60} {:>6.2} {:>6.2}", median / base.median, fastest / base.fastest);
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Must not know: what any of it is for.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::stage::foreign::FOREIGN;
 use crate::stage::kinds::KINDS;
@@ -93,6 +93,12 @@ const fn commit() -> Option<(&'static str, bool)> {
     let (commit, changed) = (env!("GEARSTUDY_COMMIT"), env!("GEARSTUDY_CHANGED"));
     // `true` or `false`.
     if commit.is_empty() { None } else { Some((commit, changed.len() == 4)) }
+}
+
+/// The files that a study names, as far as that can be told, where they would be.
+#[must_use]
+pub fn files(text: &str, path: &Path, settings: &Settings) -> Vec<PathBuf> {
+    study::files(text, path, &PROGRAM, settings)
 }
 
 /// Reads and checks a study of this program.

@@ -39,6 +39,7 @@ __all__ = [
     "LatinHypercube",
     "LeadCrowning",
     "Material",
+    "MeasuredRelief",
     "Modification",
     "NelderMead",
     "Nsga2",
@@ -528,6 +529,70 @@ class EndRelief(Modification):
             end=end,
             curve=curve,
             exponent=exponent,
+        )
+
+
+class MeasuredRelief(Modification):
+    """Flank as measured: deviations (ISO 1328-1) along the profile, across the face, or over both.
+
+    Parameters
+    ----------
+    gear : Literal["pinion", "gear", "both"]
+        Which gear is modified.
+    roll_lengths : Sequence[Quantity], optional
+        L_y: roll lengths of the points along the profile, r_b times the roll angle, from the root to the tip.
+    roll_angles : Sequence[Quantity], optional
+        Instead of `roll_lengths`: roll angles of the points along the profile.
+    diameters : Sequence[Quantity], optional
+        Instead of `roll_lengths`: diameters of the points along the profile.
+    face_positions : Sequence[Quantity], optional
+        z of the points across the face, from its middle; with points along the profile too, the deviations are
+        those of a grid.
+    deviations : Sequence[Quantity]
+        Deviations normal to the flank, positive where there is more material than designed, in the order of the
+        points; of a grid all along the profile for each place across the face.
+    evaluation_start : number [m], optional
+        Roll length, or z of a trace across the face, from which the trace is evaluated; the start of the active
+        flank, or the end of the face, when left out. -10 to 10 m.
+    evaluation_end : number [m], optional
+        Up to which it is evaluated; the tip, or the other end of the face, when left out. -10 to 10 m.
+    smoothing : Literal["none", "gaussian"], optional
+        What is left out of a trace before it is a flank. Without it: none.
+    cutoff : number [m], optional
+        λ: wavelength of which half is left, along the roll length or across the face; ISO 1328-1 has λ_α = L_α/30.
+        1e-06 to 1 m.
+
+    >>> Design(pair, MeasuredRelief(gear="pinion", face_positions=[-9e-3, 0.0, 9e-3], deviations=["-2 um", "1 um", "-3 um"])).resolved[0][1]
+    'measured'
+    """
+
+    name = "measured"
+
+    def __init__(
+        self,
+        *,
+        gear: Literal["pinion", "gear", "both"],
+        deviations: Sequence[Quantity],
+        roll_lengths: Sequence[Quantity] | None = None,
+        roll_angles: Sequence[Quantity] | None = None,
+        diameters: Sequence[Quantity] | None = None,
+        face_positions: Sequence[Quantity] | None = None,
+        evaluation_start: Quantity | None = None,
+        evaluation_end: Quantity | None = None,
+        smoothing: Literal["none", "gaussian"] | None = None,
+        cutoff: Quantity | None = None,
+    ) -> None:
+        super().__init__(
+            gear=gear,
+            roll_lengths=roll_lengths,
+            roll_angles=roll_angles,
+            diameters=diameters,
+            face_positions=face_positions,
+            deviations=deviations,
+            evaluation_start=evaluation_start,
+            evaluation_end=evaluation_end,
+            smoothing=smoothing,
+            cutoff=cutoff,
         )
 
 

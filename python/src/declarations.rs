@@ -35,7 +35,8 @@ fn member(member: &Member) -> Value {
 }
 
 fn fields(fields: &[Field]) -> Vec<Value> {
-    fields.iter().map(field).collect()
+    // A file is read by whoever reads a study; Python has its own ways to arrays.
+    fields.iter().filter(|field| !matches!(field.shape, Shape::File)).map(field).collect()
 }
 
 fn field(field: &Field) -> Value {
@@ -70,6 +71,7 @@ fn shape(of: &Shape) -> Value {
             json!({ "type": "member", "members": members().iter().map(member).collect::<Vec<_>>() })
         }
         Shape::Text
+        | Shape::File
         | Shape::AnyQuantity
         | Shape::Reference(_)
         | Shape::Map(_)

@@ -338,9 +338,12 @@ fn one(shape: &Shape, given: &Bound<'_, PyAny>, name: &str) -> PyResult<Value> {
             let names: Vec<&str> = members().iter().map(|member| member.name).collect();
             wrong(&listed(&names))
         }),
-        Shape::AnyQuantity | Shape::Reference(_) | Shape::Map(_) | Shape::Overrides(_) | Shape::Varied(_) => {
-            Err(wrong("a value that only a study can have"))
-        }
+        Shape::File
+        | Shape::AnyQuantity
+        | Shape::Reference(_)
+        | Shape::Map(_)
+        | Shape::Overrides(_)
+        | Shape::Varied(_) => Err(wrong("a value that only a study can have")),
     }
 }
 

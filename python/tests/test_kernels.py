@@ -57,6 +57,22 @@ def test_a_curve_alone_is_the_same_curve(stiffness):
             getattr(alone, name)
 
 
+def test_a_trace_is_points_of_arrays_or_texts(pair, stiffness):
+    """A parabola over the roll length as arrays and as texts with units; what was measured of another gear is refused."""
+    flank = np.linspace(2e-3, 16.5e-3, 200)
+    middle = 9e-3
+    trace = gs.MeasuredRelief(gear="pinion", roll_lengths=flank, deviations=-0.1 * (flank - middle) ** 2, teeth=19, module=3e-3)
+    texts = gs.MeasuredRelief(
+        gear="pinion",
+        roll_lengths=[f"{1e3 * length!r} mm" for length in flank],
+        deviations=[f"{-1e5 * (length - middle) ** 2!r} um" for length in flank],
+    )
+    one, other = (gs.transmission_error(stiffness, 80.0, design).peak_to_peak for design in (trace, texts))
+    assert one == pytest.approx(other, rel=1e-9) and one > 0
+    with pytest.raises(gs.InvalidInput, match="a gear of 19 teeth was measured, and this one has 48"):
+        gs.Design(pair, gs.MeasuredRelief(gear="gear", roll_lengths=flank, deviations=0 * flank, teeth=19))
+
+
 def test_gears_as_made():
     """x_E = x + A_s/(2 m tan alpha) moves the root and leaves the tip; an undercut pair runs on what is left of the path."""
     sized = {"face_width": 20e-3, "bore_radius": 8e-3}

@@ -4,7 +4,7 @@
 //! the declarations that read a study. Messages are JSON (LSP 3.17). Must not know: what is wrong, or what anything means.
 
 use std::collections::BTreeMap;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use serde_json::{Value, json};
@@ -78,17 +78,30 @@ fn diagnostics(uri: &str, all: &Value) -> Notification {
 fn mistakes(uri: &str, text: &str) -> Value {
     let path = PathBuf::from(uri.strip_prefix("file://").unwrap_or(uri));
     let Err(error) = show::rehearsed(examine_text(text, &path)) else { return json!([]) };
+    // What is wrong with a file beside the study is told where the study names it.
+    let elsewhere = (error.path != path).then(|| named_at(text, &error.path));
     let one = |found: &Diagnostic| {
         let help = found.help.as_ref().map_or_else(String::new, |help| format!("\n{help}"));
-        let message = found.message.clone() + &help;
+        let place = found.place.unwrap_or_default();
+        let before = match elsewhere {
+            Some(_) => format!("{}:{}:{}: ", error.path.display(), place.line, place.column),
+            None => String::new(),
+        };
+        let message = before + &found.message + &help;
         json!({
-            "range": range(text, found.place.unwrap_or_default()),
+            "range": range(text, elsewhere.unwrap_or(place)),
             "severity": 1,
             "source": "gearstudy",
             "message": message,
         })
     };
     error.each().map(one).collect()
+}
+
+/// Where a study names a file.
+fn named_at(text: &str, file: &Path) -> Place {
+    let name = file.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
+    text.find(&name).map_or_else(Place::default, |offset| Place { offset, length: name.len(), ..Place::default() })
 }
 
 fn answer(open: &Open, request: Request) -> Response {

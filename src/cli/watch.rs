@@ -1,4 +1,4 @@
-//! `gearstudy watch`: a study is run whenever its file is saved, and the page that is open follows.
+//! `gearstudy watch`: a study is run whenever its file is saved, or one that it names, and the page that is open follows.
 //!
 //! The system tells of saves; nothing looks at the disk in between. A study with a mistake shows its message over the last
 //! good page. Must not know: how a study is run, how pages are sent.
@@ -84,7 +84,8 @@ pub(super) fn watch(
         program::load_changed(&file, &studies::settings(changes)).map_err(|error| Ending::Invalid(Box::new(error)))?;
     }
     let cannot = |error: notify::Error| Ending::Usage(format!("cannot watch {}: {error}", file.display()));
-    let (saves, stop, board) = (saves_of(&file).map_err(cannot)?, stop_flag(None), Arc::new(Board::default()));
+    let (mut watcher, saves) = saves_of(&file).map_err(cannot)?;
+    let (stop, board) = (stop_flag(None), Arc::new(Board::default()));
     let server = Server::start(port, Arc::clone(&board)).map_err(Ending::Usage)?;
     if as_json {
         let (file, page) = (file.to_string_lossy(), server.address());
@@ -95,16 +96,20 @@ pub(super) fn watch(
     let mut last = None;
     loop {
         // A file that is gone is a change too.
-        let text = Some(std::fs::read(&file).ok());
-        if last != text {
-            last = text;
+        let saved = Some(saved(&file, changes));
+        if last != saved {
+            for (beside, _) in saved.iter().flatten().skip(1) {
+                // A folder that is not there yet is not watched, and the study refused until it is saved again.
+                let _ = watcher.watch(folder_of(beside), RecursiveMode::NonRecursive);
+            }
+            last = saved;
             renew(&file, changes, places, selection, (as_json, quiet), &stop, &board)?;
         }
         let mut step = loop {
             if stop.load(Ordering::Relaxed) {
                 return Err(Ending::Stopped);
             }
-            match saves.1.recv_timeout(PAUSE) {
+            match saves.recv_timeout(PAUSE) {
                 Ok(step) => break step,
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => {
@@ -112,10 +117,26 @@ pub(super) fn watch(
                 }
             }
         };
-        while let Ok(next) = saves.1.recv_timeout(if step == Step::Last { SETTLED } else { UNCLOSED }) {
+        while let Ok(next) = saves.recv_timeout(if step == Step::Last { SETTLED } else { UNCLOSED }) {
             step = next;
         }
     }
+}
+
+/// The study's file, and those that it names, with what is in each.
+fn saved(file: &Path, changes: &Changes) -> Vec<(PathBuf, Option<Vec<u8>>)> {
+    let bytes = std::fs::read(file).ok();
+    let text = bytes.as_deref().map(String::from_utf8_lossy).unwrap_or_default();
+    let beside = program::files(&text, file, &studies::settings(changes));
+    let of = |file: PathBuf| {
+        let bytes = std::fs::read(&file).ok();
+        (file, bytes)
+    };
+    std::iter::once((file.to_owned(), bytes.clone())).chain(beside.into_iter().map(of)).collect()
+}
+
+fn folder_of(file: &Path) -> &Path {
+    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 
 /// What the system tells of a save.
@@ -142,20 +163,20 @@ impl Step {
     }
 }
 
-/// Tells of saves of a file while the first is kept. Its folder is watched: an editor may put another file in its place.
+/// Tells of saves of a file, or of any table beside it, while the first is kept. Its folder is watched: an editor may put another file in its place.
 fn saves_of(file: &Path) -> Result<(impl Watcher, Receiver<Step>), notify::Error> {
     let (saved, saves) = mpsc::channel();
     let name = file.file_name().map(std::ffi::OsStr::to_owned);
     let mut watcher = notify::recommended_watcher(move |event: notify::Result<notify::Event>| {
         let Ok(event) = event else { return };
-        let is_ours = event.paths.iter().any(|path| path.file_name() == name.as_deref());
+        let is_csv = |path: &Path| path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("csv"));
+        let is_ours = event.paths.iter().any(|path| path.file_name() == name.as_deref() || is_csv(path));
         if let Some(step) = Step::of(event.kind).filter(|_| is_ours) {
             // Nobody listens any more once the program ends.
             let _ = saved.send(step);
         }
     })?;
-    let folder = file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    watcher.watch(folder, RecursiveMode::NonRecursive)?;
+    watcher.watch(folder_of(file), RecursiveMode::NonRecursive)?;
     Ok((watcher, saves))
 }
 

@@ -267,8 +267,10 @@ fn read_one(name: &str, count: i64, table: &Table, index: &Index, families: &[Me
         let word = &words[rows[0]];
         let family = families.iter().find(|family| family.name == word);
         let family = family.ok_or_else(|| Failure::new(format!("design `{name}`: unknown family `{word}`")))?;
+        // A trace has thousands.
+        let by_name: BTreeMap<&str, usize> = rows.iter().rev().map(|&row| (parameters[row].as_str(), row)).collect();
         let lookup = |parameter: &str| {
-            let row = rows.iter().find(|&&row| parameters[row] == parameter);
+            let row = by_name.get(parameter);
             row.map(|&row| {
                 (table.floats(names::elements::VALUE)[row], table.texts(names::elements::WORD)[row].as_str())
             })

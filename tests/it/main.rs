@@ -39,6 +39,7 @@ mod shards;
 mod sizing;
 mod support;
 mod sweep;
+mod traces;
 
 // What `estimates` shares with the kernels' own tests names it as they do.
 use gearmesh::gear;

@@ -21,6 +21,8 @@ pub struct Diagnostic {
     pub place: Option<Place>,
     /// The field that is meant, where whoever found it knows no places.
     pub field: Option<&'static str>,
+    /// Which item of that field's list, from 0.
+    pub item: Option<usize>,
     /// What to write instead.
     pub help: Option<String>,
 }
@@ -28,7 +30,7 @@ pub struct Diagnostic {
 impl Diagnostic {
     #[must_use]
     pub fn new(message: impl Into<String>) -> Self {
-        Self { message: message.into(), place: None, field: None, help: None }
+        Self { message: message.into(), place: None, field: None, item: None, help: None }
     }
 
     #[must_use]
@@ -49,6 +51,12 @@ impl Diagnostic {
     pub fn of(mut self, field: &'static str) -> Self {
         self.field = Some(field);
         self
+    }
+
+    /// About an item of a field's list, counted from 0.
+    #[must_use]
+    pub fn of_item(self, field: &'static str, item: usize) -> Self {
+        Self { item: Some(item), ..self.of(field) }
     }
 
     #[must_use]

@@ -30,6 +30,8 @@ pub enum Shape {
     },
     Flag,
     Text,
+    /// The name of a CSV file beside the study, whose columns and first lines stand for other fields of the same mapping.
+    File,
     /// One of a few words.
     Choice(&'static [Choice]),
     /// The name of a stage of one of these kinds.
@@ -128,6 +130,15 @@ pub const fn joined<const N: usize>(tables: &[&[Field]]) -> [Field; N] {
     assert!(at == N, "as many fields as are counted");
     all
 }
+
+/// The field of what may have its lists from a CSV file: whoever reads a study puts what the file says in its place, so no record
+/// holds it.
+pub const FILE: Field = Field::new(
+    "file",
+    Shape::File,
+    "CSV file beside the study whose columns and `# name: value` lines stand for other fields.",
+)
+.optional();
 
 impl Field {
     #[must_use]

@@ -119,11 +119,15 @@ impl Record {
         items.unwrap_or_default().iter().filter_map(|item| item.value.record())
     }
 
-    /// What was found wrong with what was read from here, with the place of the field that is meant.
+    /// What was found wrong with what was read from here, with the place of the field, or the item of its list, that is meant.
     #[must_use]
     pub fn locate(&self, wrong: Diagnostic) -> Diagnostic {
         let place = wrong.field.map_or(self.place, |field| self.place_of(field));
-        wrong.or_at(place)
+        let item = wrong.field.zip(wrong.item).and_then(|(field, item)| match &self.entry(field)?.value {
+            Value::List(items) => items.get(item).map(|item| item.place),
+            _ => None,
+        });
+        wrong.or_at(item.unwrap_or(place))
     }
 
     getter!(

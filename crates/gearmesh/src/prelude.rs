@@ -16,6 +16,7 @@ pub use crate::gear::modification::curve::Curve;
 pub use crate::gear::modification::end_relief::{EndRelief, FaceEnd};
 pub use crate::gear::modification::helix_slope::HelixSlope;
 pub use crate::gear::modification::lead_crowning::LeadCrowning;
+pub use crate::gear::modification::measured::{Measured, Smoothing};
 pub use crate::gear::modification::parabola::ParabolicRelief;
 pub use crate::gear::modification::profile_crowning::ProfileCrowning;
 pub use crate::gear::modification::profile_slope::ProfileSlope;

@@ -14,12 +14,13 @@ use declare::declared::Declared;
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
 use gearmesh::gear::geometry::Side;
-use gearmesh::gear::modification::{self, Design};
+use gearmesh::gear::modification::{self, Design, measured};
 use studygraph::table::columns::Columns;
 use studygraph::table::data::{Cell, Table, TableError};
 use studygraph::table::schema::{Column, Schema};
 
 const PARAMETERS: &str = "parameters";
+const EVALUATED: &str = "measured";
 
 pub const KIND: Kind = Kind {
     name: "modification",
@@ -145,6 +146,52 @@ fn parameter_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<ParameterRow<'a>> {
     rows.iter().flat_map(|row| row.values.iter().map(move |(name, value)| (row, *name, *value))).collect()
 }
 
+/// What a measured trace of a modification comes to.
+struct EvaluatedRow<'a> {
+    of: &'a ResolvedRow<'a>,
+    /// `profile` or `helix`.
+    trace: &'static str,
+    /// In the order of [`measured::PROFILE`].
+    values: [f64; 6],
+}
+
+fn evaluated<'a>() -> Columns<EvaluatedRow<'a>> {
+    let description = "What each measured trace comes to after ISO 1328-1:2013, of a grid those in the middle of its other way; positive \
+                       where there is more material than designed.";
+    of_modification(Columns::new(EVALUATED, description), |row: &EvaluatedRow<'a>| row.of)
+        .text("trace", "Along which way: profile or helix.", |row| row.trace)
+        .key()
+        .float("start", "mm", "Where the evaluation starts: roll length of a profile, z of a helix.", |row| {
+            row.values[0]
+        })
+        .float("end", "mm", "Where the evaluation ends.", |row| row.values[1])
+        .float(
+            "slope",
+            "um",
+            "Slope deviation f_Hα or f_Hβ, over the whole of the active flank or of the face.",
+            |row| row.values[2],
+        )
+        .float("form", "um", "Form deviation f_fα or f_fβ.", |row| row.values[3])
+        .float("total", "um", "Total deviation F_α or F_β.", |row| row.values[4])
+        .float("crowning", "um", "Height C_α or C_β of the mean parabola over its chord.", |row| row.values[5])
+        .on_demand()
+}
+
+fn evaluated_rows<'a>(rows: &'a [ResolvedRow<'a>]) -> Vec<EvaluatedRow<'a>> {
+    let of = |row: &'a ResolvedRow<'a>| {
+        let trace = |trace: &'static str, names: [&'static str; 6]| {
+            let value = |name: &str| row.values.iter().find(|(given, _)| *given == name).map(|(_, value)| *value);
+            let mut values = [0.0; 6];
+            for (slot, name) in values.iter_mut().zip(names) {
+                *slot = value(name).filter(|value| value.is_finite())?;
+            }
+            Some(EvaluatedRow { of: row, trace, values })
+        };
+        [trace("profile", measured::PROFILE), trace("helix", measured::HELIX)].into_iter().flatten()
+    };
+    rows.iter().flat_map(of).collect()
+}
+
 impl Stage for Modification {
     fn inputs(&self) -> Vec<Port> {
         vec![pair::port(&self.pair)]
@@ -153,7 +200,8 @@ impl Stage for Modification {
     fn outputs(&self) -> Vec<Schema> {
         let [designs, elements] = designs::schemas();
         let charts = [charts::profile().schema(), charts::lead().schema()];
-        [designs, elements, resolved().schema(), parameters().schema()].into_iter().chain(charts).collect()
+        let own = [resolved().schema(), parameters().schema(), evaluated().schema()];
+        [designs, elements].into_iter().chain(own).chain(charts).collect()
     }
 
     fn keys(&self, _table: &str, column: &str, _of: KeysOf) -> Option<Vec<Cell>> {
@@ -175,6 +223,7 @@ impl Stage for Modification {
             .rows(demand, of_elements, RowCount::exact(elements().map(designs::rows_of).sum()))
             .rows(demand, resolved().schema(), RowCount::at_most(maximum))
             .rows(demand, parameters().schema(), RowCount::at_most(maximum * MOST_RESOLVED))
+            .rows(demand, evaluated().schema(), RowCount::at_most(2 * maximum))
             .rows(demand, charts::profile().schema(), RowCount::about(self.designs.len() * charts::ROWS))
             .rows(demand, charts::lead().schema(), RowCount::about(self.designs.len() * charts::ROWS))
     }
@@ -197,6 +246,9 @@ impl Stage for Modification {
         tables.push(resolved().table(&rows).map_err(failed)?);
         if context.demand.table(PARAMETERS) {
             tables.push(parameters().table(&parameter_rows(&rows)).map_err(failed)?);
+        }
+        if context.demand.table(EVALUATED) {
+            tables.push(evaluated().table(&evaluated_rows(&rows)).map_err(failed)?);
         }
         if context.demand.table(charts::PROFILE) {
             tables.push(charts::profile().table(&profiles).map_err(failed)?);

@@ -51,6 +51,10 @@ const FAMILY_USES: &[(&str, &str)] = &[
     ("lead_crowning", "{ gear: pinion, amount: 5 um }"),
     ("helix_slope", "{ gear: gear, amount: -5 um }"),
     ("end_relief", "{ gear: both, amount: 5 um, length: 3 mm }"),
+    (
+        "measured",
+        "{ gear: pinion, roll_lengths: [2 mm, 6 mm, 10 mm, 14 mm, 17 mm], deviations: [-3 um, -1 um, 0 um, -2 um, -5 um] }",
+    ),
     ("end_relief", "{ gear: pinion, amount: 5 um, length: 3 mm, end: I, curve: parabolic }"),
     ("end_relief", "{ gear: pinion, amount: 5 um, length: 3 mm, end: II, curve: power, exponent: 3 }"),
 ];

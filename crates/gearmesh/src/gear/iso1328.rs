@@ -3,6 +3,8 @@
 //! A tolerance is that of class 5 times (√2)^(A − 5), from lengths as they are, and rounded. Lengths in m; the formulas of the
 //! standard take mm and give µm. Must not know: modification, load.
 
+pub mod evaluation;
+
 use std::ops::RangeInclusive;
 
 use declare::error::Diagnostic;

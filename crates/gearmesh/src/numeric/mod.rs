@@ -27,5 +27,6 @@ pub mod quadratic;
 pub mod quadrature;
 pub mod replicates;
 pub mod spectrum;
+pub mod spline;
 pub mod surface;
 pub mod together;

@@ -11,7 +11,7 @@ use super::links::Draft;
 use super::overrides::Stages;
 use super::path::FieldPath;
 use super::words::{alternatives, quote};
-use super::{Changes, Node, Source, Study, cells, links, settings};
+use super::{Changes, Node, Source, Study, cells, files, links, settings};
 use crate::program::Program;
 use crate::stage::Kind;
 use crate::table::tolerance::Allowance;
@@ -52,6 +52,8 @@ pub static KEYS: &[Field] = &[
 
 /// The key of a study under which paths are given other values.
 pub const SET: &str = "set";
+/// The key of a study under which the texts of the files stand that its stages name.
+pub const FILES: &str = "files";
 
 /// A study of what is sound in a text, and everything that is wrong with the rest.
 pub fn examine(text: &str, path: &Path, program: &'static Program) -> (Option<Study>, Vec<Diagnostic>) {
@@ -73,7 +75,7 @@ fn sound(
     let help = "a study starts with `study: NAME` and `stages:`";
     let empty = || Diagnostic::new("the file is empty").at(start).help(help);
     let root = parse(text)?.filter(|root| !root.is_null()).ok_or_else(empty)?;
-    let root = with_what_is_set(root, program.kinds)?;
+    let root = files::expanded(with_what_is_set(root, program.kinds)?, text)?;
     let Content::Mapping(pairs) = &root.content else {
         let message = format!("a study is a mapping that starts with `study: NAME`, not {}", root.describe());
         return Err(Diagnostic::new(message).at(root.place));
@@ -81,7 +83,7 @@ fn sound(
     let start = pairs.first().map_or(root.place, |pair| pair.place);
     let belong = ranges_belong(program.kinds);
     let mut decoder = Decoder::new(&belong, Stages::default());
-    let keys = decoder.record(&root, KEYS, &["stages", SET], "the study", start);
+    let keys = decoder.record(&root, KEYS, &["stages", SET, FILES], "the study", start);
     wrong.append(&mut decoder.faults);
     let keys = keys.map_err(|found| wrong.push(found)).ok();
     if let Some(keys) = &keys {
@@ -132,7 +134,7 @@ fn sound(
 }
 
 /// The tree with the values that the key `set` gives in the places of those that stand there.
-fn with_what_is_set(mut root: Tree, kinds: &[&'static Kind]) -> Result<Tree, Diagnostic> {
+pub fn with_what_is_set(mut root: Tree, kinds: &[&'static Kind]) -> Result<Tree, Diagnostic> {
     let Content::Mapping(pairs) = &mut root.content else { return Ok(root) };
     let Some(position) = pairs.iter().position(|pair| pair.key == SET) else { return Ok(root) };
     let set = pairs[position].node.clone();

@@ -8,12 +8,14 @@ use std::path::{Path, PathBuf};
 
 use super::assemble::{self, LONGEST_NAME, SET};
 use super::document::{Content, Node, parse};
+use super::files::{self, Attached};
 use super::path::FieldPath;
 use super::words::quote;
 use super::{LoadError, Study};
 use crate::program::Program;
 use declare::digest::Writer;
 use declare::error::{Diagnostic, Faults, Place};
+use declare::parameter::FILE;
 
 /// What is to be set.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -31,9 +33,12 @@ impl Settings {
     }
 }
 
-/// What was set behind a text, and where it stands in it.
+/// What was set behind a text, and the files that were read, and where they stand in it.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Changes(Vec<Change>);
+pub struct Changes {
+    set: Vec<Change>,
+    files: Vec<Attached>,
+}
 
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Change {
@@ -85,8 +90,7 @@ impl Refused {
 /// # Errors
 /// All that is wrong with it.
 pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Result<Study, Refused> {
-    let (text, changes) =
-        if settings.is_empty() { (text.to_owned(), Changes::default()) } else { changed(text, path, settings)? };
+    let (text, changes) = whole(text, path, program, settings)?;
     let (study, wrong) = assemble::examine(&text, path, program);
     let study = study.map(|study| Study { changes: changes.clone(), ..study });
     match (Faults::all(wrong), study) {
@@ -99,12 +103,43 @@ pub fn examine(text: &str, path: &Path, program: &'static Program, settings: &Se
     }
 }
 
+/// The whole text of a study: with what is set, and the files that it names.
+fn whole(
+    text: &str,
+    path: &Path,
+    program: &'static Program,
+    settings: &Settings,
+) -> Result<(String, Changes), LoadError> {
+    let (text, mut changes) =
+        if settings.is_empty() { (text.to_owned(), Changes::default()) } else { changed(text, path, settings)? };
+    let Some(root) = tree(&text, program) else { return Ok((text, changes)) };
+    let (text, files) = files::attach(&text, &root, path).map_err(|error| changes.placed(error))?;
+    changes.files = files;
+    Ok((text, changes))
+}
+
+/// The tree of a text that may name files, with what is set; none of one that is refused, by its own message.
+fn tree(text: &str, program: &'static Program) -> Option<Node> {
+    let root = if text.contains(FILE.name) { parse(text).ok()?? } else { return None };
+    assemble::with_what_is_set(root, program.kinds).ok()
+}
+
+/// As [`super::files`].
+pub(super) fn files(text: &str, path: &Path, program: &'static Program, settings: &Settings) -> Vec<PathBuf> {
+    let changed = changed(text, path, settings).map_or_else(|_| text.to_owned(), |(text, _)| text);
+    let named = tree(&changed, program).map_or_else(Vec::new, |root| files::named(&root));
+    named.into_iter().map(|(name, _)| path.with_file_name(name)).collect()
+}
+
 impl Changes {
-    /// A message with the option for its place, where it is about what an option set.
+    /// A message with the option or the file for its place, where it is about what that says.
     pub(super) fn placed(&self, error: LoadError) -> LoadError {
+        if let Some(error) = error.each().find_map(|wrong| self.files.iter().find_map(|file| file.placed(wrong))) {
+            return error;
+        }
         let about = |wrong: &Diagnostic| {
             let place = wrong.place?;
-            let change = self.0.iter().find(|change| (change.from..=change.to).contains(&place.offset))?;
+            let change = self.set.iter().find(|change| (change.from..=change.to).contains(&place.offset))?;
             Some((change, place, wrong.clone()))
         };
         // What was set last is the likeliest to be wrong.
@@ -130,44 +165,14 @@ impl Change {
 
 /// The text with what is set behind it.
 fn changed(text: &str, path: &Path, settings: &Settings) -> Result<(String, Changes), LoadError> {
-    let root = parse(text).map_err(|wrong| LoadError::new(path, text.to_owned(), wrong))?;
-    let Some(Node { content: Content::Mapping(pairs), place }) = root else {
+    let refused = |wrong: Diagnostic| LoadError::new(path, text.to_owned(), wrong);
+    let root = parse(text).map_err(refused)?;
+    let Some(root @ Node { content: Content::Mapping(_), .. }) = root else {
         // Refused with its own message.
         return Ok((text.to_owned(), Changes::default()));
     };
-    let refused = |message: &str, help: &str, place: Place| {
-        LoadError::new(path, text.to_owned(), Diagnostic::new(message).at(place).help(help))
-    };
-    if text[place.offset..].starts_with('{') {
-        let help = "write `study: NAME` and `stages:` on lines of their own";
-        return Err(refused("nothing can be set in a study between braces", help, place));
-    }
-    let indent = |column: usize| " ".repeat(column.saturating_sub(1));
-    let mut whole = text.trim_end_matches(['\n', '\r', ' ']).to_owned() + "\n";
-    let own = pairs.iter().position(|pair| pair.key == SET);
-    let inside = match own.map(|own| (own + 1 == pairs.len(), &pairs[own])) {
-        None => {
-            let outer = indent(place.column);
-            whole += &format!("{outer}{SET}:\n");
-            outer + "  "
-        }
-        Some((true, pair)) => match &pair.node.content {
-            Content::Mapping(pairs) if !pairs.is_empty() && !text[pair.node.place.offset..].starts_with('{') => {
-                indent(pairs[0].place.column)
-            }
-            _ => {
-                return Err(refused(
-                    "nothing can be added to this",
-                    "write a path and its value on each line",
-                    pair.place,
-                ));
-            }
-        },
-        Some((false, pair)) => {
-            let help = "put it behind `stages`";
-            return Err(refused("`set` must be the last key, so that more can be set", help, pair.place));
-        }
-    };
+    let (mut whole, inside) = behind(text, &root, SET).map_err(refused)?;
+    let Content::Mapping(pairs) = &root.content else { return Ok((text.to_owned(), Changes::default())) };
     let mut entries = Vec::new();
     for set in &settings.set {
         entries.push((OPTION, set.clone(), entry(set)?));
@@ -192,7 +197,41 @@ fn changed(text: &str, path: &Path, settings: &Settings) -> Result<(String, Chan
         changes.push(Change { option, value, from, to: whole.len(), key: key_length });
         whole.push('\n');
     }
-    Ok((whole, Changes(changes)))
+    Ok((whole, Changes { set: changes, files: Vec::new() }))
+}
+
+/// The text of a study up to where entries under one of its own keys can be written behind it, and by what their lines are set in.
+///
+/// # Errors
+/// When nothing can be written there.
+pub(super) fn behind(text: &str, root: &Node, key: &str) -> Result<(String, String), Diagnostic> {
+    let refused = |message: &str, help: &str, place: Place| Err(Diagnostic::new(message).at(place).help(help));
+    if text[root.place.offset..].starts_with('{') {
+        let help = "write `study: NAME` and `stages:` on lines of their own";
+        return refused("nothing can be set in a study between braces", help, root.place);
+    }
+    let Content::Mapping(pairs) = &root.content else { return Ok((text.to_owned(), String::new())) };
+    let indent = |column: usize| " ".repeat(column.saturating_sub(1));
+    let mut whole = text.trim_end_matches(['\n', '\r', ' ']).to_owned() + "\n";
+    let own = pairs.iter().position(|pair| pair.key == key);
+    match own.map(|own| (own + 1 == pairs.len(), &pairs[own])) {
+        None => {
+            let outer = indent(root.place.column);
+            whole += &format!("{outer}{key}:\n");
+            Ok((whole, outer + "  "))
+        }
+        Some((true, pair)) => match &pair.node.content {
+            Content::Mapping(pairs) if !pairs.is_empty() && !text[pair.node.place.offset..].starts_with('{') => {
+                Ok((whole, indent(pairs[0].place.column)))
+            }
+            _ => refused("nothing can be added to this", "write a path and its value on each line", pair.place),
+        },
+        Some((false, pair)) => {
+            let last = pairs.last().map_or("stages", |pair| pair.key.as_str());
+            let help = format!("put it behind `{last}`");
+            refused(&format!("`{key}` must be the last key, so that more can be set"), &help, pair.place)
+        }
+    }
 }
 
 /// Path and value of one option, both sound by themselves.

@@ -180,6 +180,7 @@ fn of_value(field: &Field, shape: &'static Shape, node: &Node, root: &Node, prog
         Shape::Number { .. } | Shape::Integer { .. } | Shape::AnyQuantity | Shape::Text => {
             words::example_of(field).into_iter().map(|text| offer(text, "for example", text)).collect()
         }
+        Shape::File => vec![offer("trace.csv", "for example", "trace.csv")],
         _ => of_shape(shape, root, program),
     }
 }

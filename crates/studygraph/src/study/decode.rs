@@ -78,10 +78,11 @@ impl<'a> Decoder<'a> {
                 |name: &str, text: &str| field(name).map(Measure::of).map_or(0.0, |measure| measure.distance(text));
             wrong = unknown::fields(pairs, &known, label, self.stages.foreign, &distance);
         }
-        let is_renamed = !wrong.is_empty();
+        // What is missing may stand under another name, or in a file that is not there.
+        let has_file = pairs.iter().any(|pair| is_file(fields, &pair.key));
+        let is_renamed = !wrong.is_empty() || has_file;
         let mut record = Record { fields: Vec::with_capacity(fields.len()), place };
         for field in fields {
-            // What is missing may stand there under another name.
             let is_missing = || !pairs.iter().any(|pair| pair.key == field.name);
             if is_renamed && field.presence == Presence::Required && is_missing() {
                 continue;
@@ -180,6 +181,8 @@ impl<'a> Decoder<'a> {
                 _ => return Err(not_a(name, node, shape)),
             },
             Shape::Text => Value::Text(scalar(name, node, shape)?.to_owned()),
+            // A file that is there has been put in its place.
+            Shape::File => return Err(not_a(name, node, shape)),
             Shape::Choice(choices) => {
                 let text = scalar(name, node, shape)?;
                 let found = choices.iter().find(|choice| choice.name == text);
@@ -193,6 +196,9 @@ impl<'a> Decoder<'a> {
                 let stage = scalar(name, node, shape)?.to_owned();
                 self.references.push(Reference { field: field.name, stage: stage.clone(), place: node.place, kinds });
                 Value::Reference(stage)
+            }
+            Shape::List(item @ (Shape::Quantity { .. } | Shape::Number { .. })) if node.is_mapping() => {
+                Value::List(Measure::new(name, item, example).many(node)?)
             }
             Shape::List(item) => {
                 let items = match &node.content {
@@ -312,6 +318,10 @@ fn check_label(field: &str, pair: &KeyValue) -> Result<(), Diagnostic> {
     Err(Diagnostic::new(message)
         .at(pair.place)
         .help("letters, digits, `-`, `_` and `.` make a name, at most 64 of them"))
+}
+
+fn is_file(fields: &[Field], name: &str) -> bool {
+    fields.iter().any(|field| field.name == name && matches!(field.shape, Shape::File))
 }
 
 fn not_fields(node: &Node, fields: &[Field], others: &[&str], label: &str) -> Diagnostic {

@@ -178,8 +178,12 @@ pub(super) fn holds(shape: &Shape) -> String {
         }
         Shape::Flag => "true or false".to_owned(),
         Shape::Text => "text".to_owned(),
+        Shape::File => "the name of a CSV file, `NAME.csv`".to_owned(),
         Shape::Choice(_) => "one of these words".to_owned(),
         Shape::Reference(kinds) => words::stage_of(kinds),
+        Shape::List(item @ (Shape::Quantity { .. } | Shape::Number { .. })) => {
+            format!("a list, {{ unit, values }} or {{ from, to, count }}, each {}", holds(item))
+        }
         Shape::List(item) => format!("a list, each {}", holds(item)),
         Shape::Map(item) => format!("names of your own, each with {}", holds(item)),
         Shape::Group(_) => "these fields".to_owned(),

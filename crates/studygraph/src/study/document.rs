@@ -55,6 +55,10 @@ impl Node {
         matches!(&self.content, Content::Scalar { text, quoted: false } if matches!(text.as_str(), "" | "~" | "null" | "Null" | "NULL"))
     }
 
+    pub fn is_mapping(&self) -> bool {
+        matches!(self.content, Content::Mapping(_))
+    }
+
     /// What was found, for a message.
     pub fn describe(&self) -> String {
         match &self.content {

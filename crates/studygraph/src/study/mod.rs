@@ -8,12 +8,14 @@ mod blame;
 mod cells;
 mod changes;
 mod characters;
+mod columns;
 pub mod cursor;
 pub mod declared;
 mod decode;
 pub mod describe;
 pub mod described;
 mod document;
+mod files;
 mod links;
 pub mod named;
 mod notation;
@@ -179,6 +181,12 @@ impl fmt::Display for LoadError {
 }
 
 impl std::error::Error for LoadError {}
+
+/// The files that a study names, as far as that can be told, where they would be.
+#[must_use]
+pub fn files(text: &str, path: &Path, program: &'static Program, set: &Settings) -> Vec<PathBuf> {
+    changes::files(text, path, program, set)
+}
 
 /// Reads and checks a study of this program.
 ///

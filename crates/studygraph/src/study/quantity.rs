@@ -9,7 +9,7 @@ use super::unknown;
 use super::words::{self, quote};
 use declare::error::{Diagnostic, suggest};
 use declare::parameter::{Field, Shape, Span};
-use declare::record::Value;
+use declare::record::{PlacedValue, Value};
 use declare::units::{self, Dimension, RATIO, UnitError, parse_quantity, split_quantity};
 
 /// Points of an axis.
@@ -254,6 +254,50 @@ impl<'a> Measure<'a> {
             return Err(Diagnostic::new(message).at(count.place));
         }
         Ok(Value::Axis(values))
+    }
+
+    /// A list whose numbers have one unit, `{ unit: um, values: [1, 2] }`, or are evenly spaced, `{ from, to, count }`.
+    ///
+    /// # Errors
+    /// As [`Measure::value`]; when a number has a unit of its own too.
+    pub fn many(&self, node: &Node) -> Result<Vec<PlacedValue>, Diagnostic> {
+        let Content::Mapping(pairs) = &node.content else { return Ok(Vec::new()) };
+        let number = |value: f64| if self.dimension.is_some() { Value::Quantity(value) } else { Value::Number(value) };
+        let part = |name: &str| pairs.iter().find(|pair| pair.key == name && !pair.node.is_null());
+        if part("values").is_none() && part("unit").is_none() {
+            let Value::Axis(values) = self.spaced(node)? else { return Ok(Vec::new()) };
+            return Ok(values
+                .into_iter()
+                .map(|value| PlacedValue { value: number(value), place: node.place })
+                .collect());
+        }
+        let names = ["unit", "values"];
+        let wrong = unknown::fields(pairs, &names, &quote(self.name), &[], &|_, text| self.distance(text));
+        if let Some(wrong) = wrong.into_iter().next() {
+            return Err(wrong);
+        }
+        let given = names.map(|name| {
+            part(name).map(|pair| &pair.node).ok_or_else(|| {
+                let message = format!("{} has no {}", quote(self.name), quote(name));
+                Diagnostic::new(message).at(node.place).help("numbers of one unit are `{ unit: …, values: [ … ] }`")
+            })
+        });
+        let [unit, values] = given;
+        let (unit, values) = (unit?, values?);
+        let Content::Scalar { text: symbol, .. } = &unit.content else {
+            return Err(Diagnostic::new(format!("`unit` is {}; a unit is expected", unit.describe())).at(unit.place));
+        };
+        let items = if let Content::Sequence(items) = &values.content { items } else { std::slice::from_ref(values) };
+        let one = |item: &Node| {
+            let Content::Scalar { text, quoted } = &item.content else { return self.single(item) };
+            if !split_quantity(text).1.is_empty() {
+                let message = format!("{} has a unit, and all of {} have `{symbol}`", quote(text), quote(self.name));
+                return Err(Diagnostic::new(message).at(item.place).help("leave one of them out"));
+            }
+            let content = Content::Scalar { text: format!("{text} {symbol}"), quoted: *quoted };
+            self.single(&Node { content, place: item.place })
+        };
+        items.iter().map(|item| Ok(PlacedValue { value: number(one(item)?), place: item.place })).collect()
     }
 
     fn too_many(&self, found: &str) -> Diagnostic {

@@ -6,13 +6,13 @@ use std::path::Path;
 
 use super::LoadError;
 use super::place::place_at;
-use declare::error::{Diagnostic, nearest};
+use declare::error::{Diagnostic, Place, nearest};
 
 /// What is said of a file that is not there.
 pub const NOT_THERE: &str = "there is no such file";
 
-/// Bytes of a study. The largest that anybody wrote has a few ten thousand.
-const LARGEST: u64 = 1 << 20;
+/// Bytes of a study, the files that it names included. The largest that anybody wrote has a few ten thousand.
+pub const LARGEST: u64 = 1 << 20;
 
 /// Reads a whole file of UTF-8.
 ///
@@ -31,6 +31,36 @@ pub fn read(path: &Path) -> Result<String, LoadError> {
     String::from_utf8(bytes).map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
 }
 
+/// Reads a whole file of UTF-8 that the study at `study` names at `place` of its `text`.
+///
+/// # Errors
+/// When it cannot be read, is not a file, is too large or is not UTF-8.
+pub fn beside(path: &Path, text: &str, place: Place, study: &Path) -> Result<String, LoadError> {
+    let refused = |found: Diagnostic| LoadError::new(study, text.to_owned(), found.at(place));
+    let shown = path.display();
+    // What is no file, a pipe for one, might be waited for.
+    if path.exists() && !path.is_file() {
+        return Err(refused(Diagnostic::new(format!("`{shown}` is not a file"))));
+    }
+    let bytes = bytes(path).map_err(|error| {
+        if error.kind() != io::ErrorKind::NotFound {
+            return refused(Diagnostic::new(format!("`{shown}` cannot be read: {error}")));
+        }
+        let found = Diagnostic::new(format!("there is no file `{shown}`"));
+        let wanted = path.file_name().unwrap_or_default().to_string_lossy();
+        let others = names(folder_of(path), &["csv", "CSV"]);
+        refused(match nearest(&wanted, others.iter().map(String::as_str)) {
+            Some(near) => found.help(format!("did you mean `{near}`?")),
+            None => found.help("a file is looked for from the folder of the study on"),
+        })
+    })?;
+    if bytes.len() as u64 > LARGEST {
+        let message = format!("`{shown}` is larger than {} KiB, too large for a study", LARGEST >> 10);
+        return Err(refused(Diagnostic::new(message).help("leave out points, or average them")));
+    }
+    String::from_utf8(bytes).map_err(|error| not_utf8(path, error.as_bytes(), error.utf8_error().valid_up_to()))
+}
+
 fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     // One byte more than is allowed shows that there is more, even where the file has no size of its own.
@@ -43,7 +73,7 @@ fn unreadable(path: &Path, error: &io::Error) -> Diagnostic {
         return Diagnostic::new(format!("this file cannot be read: {error}"));
     }
     let missing = Diagnostic::new(NOT_THERE);
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let wanted = path.file_name().unwrap_or_default().to_string_lossy();
     let found = studies(folder);
     match nearest(&wanted, found.iter().map(String::as_str)) {
@@ -59,11 +89,20 @@ fn in_folder(folder: &Path) -> String {
     }
 }
 
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
 /// Names of the YAML files in a folder, sorted.
 fn studies(folder: &Path) -> Vec<String> {
+    names(folder, &["yaml", "yml"])
+}
+
+/// Names of the files in a folder that end so, sorted.
+fn names(folder: &Path, endings: &[&str]) -> Vec<String> {
     let entries = folder.read_dir().into_iter().flatten().flatten();
     let mut names: Vec<_> = entries
-        .filter(|entry| entry.path().extension().is_some_and(|extension| extension == "yaml" || extension == "yml"))
+        .filter(|entry| entry.path().extension().is_some_and(|own| endings.iter().any(|ending| own == *ending)))
         .map(|entry| entry.file_name().to_string_lossy().into_owned())
         .collect();
     names.sort();

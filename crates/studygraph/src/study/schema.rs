@@ -7,7 +7,7 @@ mod leaf;
 
 use serde_json::{Map, Value, json};
 
-use super::assemble::{KEYS, SET};
+use super::assemble::{FILES, KEYS, SET};
 use super::document::{Content, Node, parse};
 use super::words;
 use crate::stage::Kind;
@@ -40,6 +40,15 @@ pub fn schema(kinds: &[&'static Kind]) -> Value {
             "minProperties": 1,
             "propertyNames": leaf::path(),
             "examples": [{ "pair.pinion.face_width": "22 mm" }],
+        }),
+    );
+    properties.insert(
+        FILES.to_owned(),
+        json!({
+            "title": "Files",
+            "description": "Texts of the CSV files that stages name, where they do not lie beside the study.",
+            "type": "object",
+            "additionalProperties": { "type": "string" },
         }),
     );
     if let Some(Value::Object(study)) = properties.get_mut("study") {
@@ -126,8 +135,11 @@ impl Families {
         let properties = self.properties(fields, chooses);
         let mut object = json!({ "type": "object", "additionalProperties": false, "properties": properties });
         let required = required(fields);
-        if !required.is_empty() {
-            object["required"] = json!(required);
+        match fields.iter().find(|field| matches!(field.shape, Shape::File)) {
+            // What must be there may stand in the file.
+            Some(file) => object["anyOf"] = json!([{ "required": required }, { "required": [file.name] }]),
+            None if required.is_empty() => {}
+            None => object["required"] = json!(required),
         }
         object
     }
@@ -165,15 +177,20 @@ impl Families {
             Shape::Integer { minimum, maximum, multiple } => leaf::integer(*minimum, *maximum, *multiple, example),
             Shape::Flag => json!({ "type": "boolean" }),
             Shape::Text => leaf::text(example),
+            Shape::File => leaf::file(),
             Shape::Choice(choices) => {
                 let choices =
                     choices.iter().map(|choice| json!({ "const": choice.name, "description": choice.summary }));
                 json!({ "oneOf": choices.collect::<Vec<_>>() })
             }
             Shape::Reference(kinds) => leaf::reference(kinds, example),
-            Shape::List(item) => {
-                let item = self.shape(item, field, chooses);
-                json!({ "anyOf": [{ "type": "array", "items": item }, item] })
+            Shape::List(of) => {
+                let item = self.shape(of, field, chooses);
+                let mut ways = vec![json!({ "type": "array", "items": item }), item.clone()];
+                if let Shape::Quantity { .. } | Shape::Number { .. } = of {
+                    ways.extend(leaf::many(&item));
+                }
+                json!({ "anyOf": ways })
             }
             Shape::Map(item) => json!({ "type": "object", "additionalProperties": self.shape(item, field, chooses) }),
             Shape::Group(fields) => self.object(fields, chooses),

@@ -186,6 +186,7 @@ pub fn expected(shape: &Shape, such: Option<&str>) -> String {
         Shape::Integer { multiple, .. } => integer(*multiple),
         Shape::Flag => "`true` or `false`".to_owned(),
         Shape::Text => "text".to_owned(),
+        Shape::File => "the name of a CSV file beside the study, such as `trace.csv`,".to_owned(),
         Shape::Choice(choices) => alternatives(choices.iter().map(|choice| choice.name)),
         Shape::Reference(kinds) => stage_of(kinds),
         Shape::List(_) => "a list".to_owned(),

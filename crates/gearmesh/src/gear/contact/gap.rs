@@ -9,9 +9,11 @@ use super::separation::{Facing, Touch};
 use crate::gear::geometry::{GearPair, Side};
 use crate::gear::modification::section::Profiles;
 use beyond::Turn;
+use bridge::bridge;
 use outline::Outline;
 
 mod beyond;
+mod bridge;
 mod convex;
 mod copy;
 mod outline;
@@ -88,7 +90,8 @@ impl<'a> Gaps<'a> {
 
     fn of(pair: &GearPair, [pinion, gear]: &Profiles<'a>) -> Self {
         let facings = [Side::Gear, Side::Pinion].map(|side| Facing::new(pair, side));
-        let (point, flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
+        let (mut point, mut flank) = (Outline::new(gear, facings[0], true), Outline::new(pinion, facings[0], false));
+        bridge(&facings[0], &mut point, &mut flank);
         let is_convex = point.is_convex() && flank.is_convex();
         let (flank_too, point_too) = (point.mirrored(facings[1]), flank.mirrored(facings[1]));
         let turn = Turn::default();
@@ -105,9 +108,8 @@ impl<'a> Gaps<'a> {
 
     /// For a search that needs no convexity.
     fn thorough(mut self) -> Self {
-        for way in &mut self.ways {
-            way.point.sample_minimum();
-            way.flank.sample_minimum();
+        for outline in self.ways.iter_mut().flat_map(|way| [&mut way.point, &mut way.flank]) {
+            outline.sample_minimum();
         }
         Self { is_convex: false, ..self }
     }
@@ -176,6 +178,12 @@ impl<'a> Gaps<'a> {
             }
         }
         minimum
+    }
+
+    /// Whether a profile is a spline through so many points that no few polynomials follow the gap.
+    #[must_use]
+    pub fn is_sampled(&self) -> bool {
+        self.ways[0].point.is_sampled || self.ways[0].flank.is_sampled
     }
 
     /// Path positions in `window` at which the gap is not smooth: ends of contact and of reliefs, and where the flanks

@@ -10,6 +10,7 @@ pub mod end_relief;
 pub mod flank;
 pub mod helix_slope;
 pub mod lead_crowning;
+pub mod measured;
 pub mod parabola;
 pub mod profile;
 pub mod profile_crowning;
@@ -31,9 +32,10 @@ use std::sync::Arc;
 use self::flank::Flank;
 use super::geometry::{GearPair, Side};
 use crate::numeric::quadratic::Quadratic;
+use crate::numeric::spline::Spline;
 use declare::declared::Declared;
 use declare::error::Diagnostic;
-use declare::parameter::{Field, Member};
+use declare::parameter::{FILE, Field, Member, Shape, count};
 use declare::record::Record;
 use declare::{Declared, Words};
 
@@ -48,6 +50,7 @@ pub const FAMILIES: &[Family] = &[
     Family::of::<lead_crowning::LeadCrowning>(),
     Family::of::<helix_slope::HelixSlope>(),
     Family::of::<end_relief::EndRelief>(),
+    Family::of::<measured::Measured>(),
 ];
 
 /// A modification as a drawing states it: a declared struct, which anybody can make.
@@ -129,19 +132,37 @@ impl Family {
 struct Stated<T>(PhantomData<T>);
 
 impl<T: Declared> Stated<T> {
-    const COUNT: usize = Where::MEMBER.fields.len() + T::MEMBER.fields.len();
+    /// Lists of numbers may stand in a file.
+    const FILES: &'static [Field] = if has_lists(T::MEMBER.fields) { &[FILE] } else { &[] };
+    const ALL: [&'static [Field]; 3] = [Where::MEMBER.fields, Self::FILES, T::MEMBER.fields];
+    const COUNT: usize = count(&Self::ALL);
     const PADDED: &'static [Field; MOST_FIELDS] = &{
         assert!(Self::COUNT <= MOST_FIELDS);
-        let (first, own) = (Where::MEMBER.fields, T::MEMBER.fields);
-        let mut fields = [first[0]; MOST_FIELDS];
-        let mut index = first.len();
-        while index < Self::COUNT {
-            fields[index] = own[index - first.len()];
-            index += 1;
+        let mut fields = [FILE; MOST_FIELDS];
+        let (mut table, mut at) = (0, 0);
+        while table < Self::ALL.len() {
+            let mut field = 0;
+            while field < Self::ALL[table].len() {
+                fields[at] = Self::ALL[table][field];
+                at += 1;
+                field += 1;
+            }
+            table += 1;
         }
         fields
     };
     const FIELDS: &'static [Field] = Self::PADDED.split_at(Self::COUNT).0;
+}
+
+const fn has_lists(fields: &[Field]) -> bool {
+    let mut at = 0;
+    while at < fields.len() {
+        if matches!(fields[at].shape, Shape::List(Shape::Quantity { .. } | Shape::Number { .. })) {
+            return true;
+        }
+        at += 1;
+    }
+    false
 }
 
 /// The most fields of a family.
@@ -188,6 +209,19 @@ pub trait Modification: Debug + Send + Sync {
         &[]
     }
 
+    /// Ascending roll angles between which the depth, or the surface, is a cubic of its own, where there are so many that no few
+    /// polynomials follow it: of a spline through the points of a trace. It is smooth there, with a second derivative that is
+    /// continuous.
+    fn profile_knots(&self) -> &[f64] {
+        &[]
+    }
+
+    /// The spline through [`Modification::profile_knots`], over the roll angle, that the depth is: held at both its ends. It saves time
+    /// and nothing else.
+    fn profile_spline(&self) -> Option<&Spline> {
+        None
+    }
+
     /// Whether [`Modification::depth`] may differ from 0.
     fn varies_along_profile(&self) -> bool {
         false
@@ -198,6 +232,12 @@ pub trait Modification: Debug + Send + Sync {
     /// say.
     fn surface(&self, _roll: f64, _z: f64) -> f64 {
         0.0
+    }
+
+    /// [`Modification::surface`] at a roll angle and z, and its first and second derivative over the roll angle; `None` where nobody says.
+    /// It saves time and nothing else.
+    fn surface_rates(&self, _roll: f64, _z: f64) -> Option<[f64; 3]> {
+        None
     }
 
     /// Whether [`Modification::surface`] may differ from 0.

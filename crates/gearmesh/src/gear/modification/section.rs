@@ -6,6 +6,7 @@
 use super::{Design, Modification, NamedModification};
 use crate::gear::geometry::Side;
 use crate::numeric::quadratic::Quadratic;
+use crate::numeric::spline::Spline;
 
 /// A modification in one section.
 #[derive(Clone, Copy, Debug)]
@@ -41,11 +42,29 @@ impl<'a> Section<'a> {
     /// known.
     #[must_use]
     pub fn rates(&self, roll: f64, inside: f64) -> Option<[f64; 3]> {
-        if self.z.is_some() {
-            return None;
+        if let Some(z) = self.z {
+            let of_profile = if self.modification.varies_along_profile() {
+                self.modification.profile_rates(roll, inside)?
+            } else {
+                [0.0; 3]
+            };
+            let of_surface = self.modification.surface_rates(roll, z)?;
+            return Some([0, 1, 2].map(|order| of_profile[order] + of_surface[order]));
         }
         let quadratic = self.modification.profile_quadratic(inside).map(|quadratic| quadratic.rates(roll));
         quadratic.or_else(|| self.modification.profile_rates(roll, inside))
+    }
+
+    /// Roll angles between which that is a cubic of its own, of what is a spline through many points.
+    #[must_use]
+    pub fn knots(&self) -> &'a [f64] {
+        self.modification.profile_knots()
+    }
+
+    /// The spline through these that it is, held at both its ends, if it is told.
+    #[must_use]
+    pub fn spline(&self) -> Option<&'a Spline> {
+        if self.z.is_some() { None } else { self.modification.profile_spline() }
     }
 
     /// Roll angles at which that is not smooth.

@@ -74,6 +74,11 @@ impl<'a> Flanks<'a> {
         self.middle.gaps.as_ref()
     }
 
+    /// Whether a profile is a spline through many points.
+    pub(super) fn is_sampled(&self) -> bool {
+        self.sections.iter().chain([&self.middle]).filter_map(|section| section.gaps.as_ref()).any(Gaps::is_sampled)
+    }
+
     /// Whether nothing is taken off along the profiles.
     pub(super) fn is_unmodified(&self) -> bool {
         self.in_the_middle().is_none_or(|gaps| !gaps.is_modified())

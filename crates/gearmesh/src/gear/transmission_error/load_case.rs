@@ -131,7 +131,9 @@ impl<'a> LoadCase<'a> {
         let refines = sliced.is_none()
             && !face.is_sliced()
             && cycle.settings.corner_contact == CornerContact::None
-            && !cycle.elasticity.is_resolved();
+            && !cycle.elasticity.is_resolved()
+            // Between any two nodes there are others of a spline's points: halving would go on to all of them.
+            && !flanks.is_sampled();
         let regime = match sliced {
             _ if torque <= 0.0 => Regime::Unloaded,
             Some(sliced) => Regime::CoupledSlices(sliced),

@@ -133,6 +133,12 @@ pub fn text(example: Option<&str>) -> Value {
     with_example(explained(schema, "text is expected, on one line"), example.map(|text| json!(text)))
 }
 
+/// The name of a CSV file beside the study.
+pub fn file() -> Value {
+    let schema = json!({ "type": "string", "pattern": r"^[^/\\]+(/[^/\\]+)*\.[cC][sS][vV]$" });
+    with_example(explained(schema, "the name of a CSV file beside the study is expected"), Some(json!("trace.csv")))
+}
+
 /// What every name of a study, a stage or a file must look like.
 const NAMES: &str = "a name has small letters, digits, `-` and `_`, and begins with a letter or a digit";
 
@@ -165,16 +171,35 @@ pub fn path() -> Value {
 
 /// One value, a list, or evenly spaced ones.
 pub fn axis(single: &Value) -> Value {
-    json!({ "anyOf": [
-        single,
-        { "type": "array", "minItems": 1, "items": single },
-        {
-            "type": "object",
-            "required": ["from", "to", "count"],
-            "additionalProperties": false,
-            "properties": ends(single),
+    json!({ "anyOf": [single, { "type": "array", "minItems": 1, "items": single }, spaced(single)] })
+}
+
+fn spaced(single: &Value) -> Value {
+    json!({
+        "type": "object",
+        "required": ["from", "to", "count"],
+        "additionalProperties": false,
+        "properties": ends(single),
+    })
+}
+
+/// Evenly spaced values, or values of one unit.
+pub fn many(single: &Value) -> [Value; 2] {
+    let of_one_unit = json!({
+        "type": "object",
+        "required": ["unit", "values"],
+        "additionalProperties": false,
+        "properties": {
+            "unit": { "title": "Unit", "description": "The unit of all of them.", "type": "string", "examples": ["um"] },
+            "values": {
+                "title": "Values",
+                "description": "The numbers, without a unit.",
+                "type": "array",
+                "items": { "type": "number" },
+            },
         },
-    ] })
+    });
+    [spaced(single), of_one_unit]
 }
 
 /// The fields of evenly spaced values.

@@ -1,5 +1,6 @@
 //! Studies of small stage kinds that exist only here: every message, and what can never happen.
 
+mod columns;
 mod declared;
 mod files;
 mod messages;

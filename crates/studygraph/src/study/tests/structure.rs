@@ -154,7 +154,7 @@ fn words_of_others_lead_to_the_field() {
         (
             "seed: 7",
             "bore_diameter: 7",
-            "4:1: unknown field `bore_diameter` of the study\n  help: known here: `stages`, `set`, `study`, `title`, `source`, `seed`, `tolerances`",
+            "4:1: unknown field `bore_diameter` of the study\n  help: known here: `stages`, `set`, `files`, `study`, `title`, `source`, `seed`, `tolerances`",
         ),
         (
             "amount: 7.81 um",

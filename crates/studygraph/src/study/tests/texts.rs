@@ -50,7 +50,7 @@ const TEXTS: &[(&str, &str)] = &[
     ),
     (
         "a: |\n  µ\nb: 'c\n  d'\n",
-        "1:1: unknown field `a` of the study\n  help: known here: `stages`, `set`, `study`, `title`, `source`, `seed`, `tolerances`",
+        "1:1: unknown field `a` of the study\n  help: known here: `stages`, `set`, `files`, `study`, `title`, `source`, `seed`, `tolerances`",
     ),
     (
         "study: a\nstages: {pair: {kind: geometry, module: 'µµµ\n  µ'}}",
@@ -58,7 +58,7 @@ const TEXTS: &[(&str, &str)] = &[
     ),
     (
         "\u{feff}µ: 3",
-        "1:1: unknown field `µ` of the study\n  help: known here: `stages`, `set`, `study`, `title`, `source`, `seed`, `tolerances`",
+        "1:1: unknown field `µ` of the study\n  help: known here: `stages`, `set`, `files`, `study`, `title`, `source`, `seed`, `tolerances`",
     ),
     (
         "a: \0",

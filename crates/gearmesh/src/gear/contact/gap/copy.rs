@@ -18,6 +18,9 @@ impl Gaps<'_> {
     #[must_use]
     #[allow(clippy::float_cmp)] // asks for the value that is known at a place, not at one nearby
     pub fn copied(&self, rule: &Rule, breaks: &[f64]) -> Piecewise {
+        if self.is_sampled() {
+            return Piecewise::default();
+        }
         let gap = |s: f64| self.at(s).unwrap_or(f64::NAN);
         let at_breaks: Vec<f64> = breaks.iter().map(|s| gap(*s)).collect();
         let largest = at_breaks.iter().copied().fold(0.0, f64::max);

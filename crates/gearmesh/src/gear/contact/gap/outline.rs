@@ -2,10 +2,16 @@
 //!
 //! Must not know: the other flank.
 
+use std::sync::Arc;
+
 use crate::gear::contact::separation::Facing;
 use crate::gear::modification::section::Section;
 use crate::numeric::extremum::maximum;
 use crate::numeric::quadratic::Quadratic;
+use crate::numeric::spline::Spline;
+
+mod bridge;
+pub(super) use bridge::PARTS;
 
 /// Samples of a piece that may be a wave: enough for sixteen humps.
 const WAVE_SAMPLES: usize = 64;
@@ -34,14 +40,39 @@ pub(super) struct Outline<'a> {
     /// Where it is not smooth, with both ends, ascending.
     pub(super) cuts: Vec<f64>,
     pieces: Vec<Piece>,
+    /// Whether it is, in part, a spline through many points.
+    pub(super) is_sampled: bool,
+    /// What stands for all parts, over the roll angle.
+    spline: Option<Told<'a>>,
+    /// The roll angle at the position 0, and by how much it grows with the position.
+    rolls: [f64; 2],
     /// Positions, ascending, and the least depth that was sampled from there on; of profiles that may bend back.
     minimum: Vec<(f64, f64)>,
+}
+
+/// A spline over the roll angle, held at its ends: the only part's own, or one whose valleys are bridged.
+#[derive(Clone, Debug)]
+enum Told<'a> {
+    Own(&'a Spline),
+    Bridged(Arc<Spline>),
+}
+
+impl Told<'_> {
+    #[inline]
+    fn spline(&self) -> &Spline {
+        match self {
+            Self::Own(spline) => spline,
+            Self::Bridged(spline) => spline,
+        }
+    }
 }
 
 /// A smooth one, between two cuts.
 #[derive(Clone, Copy, Debug)]
 struct Piece {
     shape: Convexity,
+    /// Whether it lies beyond the end of a spline.
+    is_held: bool,
     /// What it is against the position, where it is a quadratic.
     quadratic: Option<Quadratic>,
 }
@@ -84,8 +115,12 @@ impl<'a> Outline<'a> {
             is_point,
             cuts: vec![facing.start, facing.end],
             pieces: Vec::new(),
+            is_sampled: parts.iter().any(|part| !part.knots().is_empty()),
+            spline: if let [part] = parts { part.spline().map(Told::Own) } else { None },
+            rolls: [0.0; 2],
             minimum: Vec::new(),
-        };
+        }
+        .turning();
         for roll in parts.iter().flat_map(Section::breaks).copied() {
             let position = outline.position(roll);
             if position > facing.start && position < facing.end {
@@ -122,7 +157,23 @@ impl<'a> Outline<'a> {
             Piece { quadratic, ..*piece }
         };
         let pieces = self.pieces.iter().rev().map(turned).collect();
-        Self { parts: self.parts.clone(), facing, is_point: !self.is_point, cuts, pieces, minimum: Vec::new() }
+        Self {
+            parts: self.parts.clone(),
+            facing,
+            is_point: !self.is_point,
+            cuts,
+            pieces,
+            is_sampled: self.is_sampled,
+            spline: self.spline.clone(),
+            rolls: self.rolls,
+            minimum: Vec::new(),
+        }
+        .turning()
+    }
+
+    fn turning(self) -> Self {
+        let [of_point, of_flank] = self.facing.roll_rates();
+        Self { rolls: [self.roll(0.0), if self.is_point { of_point } else { of_flank }], ..self }
     }
 
     /// The position of a roll angle, and the reverse.
@@ -137,8 +188,7 @@ impl<'a> Outline<'a> {
     /// The sum of the parts between two cuts, if each is a quadratic there.
     fn quadratic(&self, ends: &[f64]) -> Option<Quadratic> {
         let roll = self.roll(share(ends, 1, 2));
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
+        let [_, rate] = self.rolls;
         self.parts.iter().try_fold(Quadratic::ZERO, |sum, part| {
             let part = part.quadratic(roll)?;
             Some(sum.plus(&part.against(self.position(part.origin), rate)))
@@ -153,24 +203,31 @@ impl<'a> Outline<'a> {
         for ends in self.cuts.windows(2) {
             if let Some(quadratic) = if whole { self.quadratic(ends) } else { None } {
                 cuts.push(ends[1]);
-                self.pieces
-                    .push(Piece { shape: Convexity::of_quadratic(&quadratic, ends), quadratic: Some(quadratic) });
+                let shape = Convexity::of_quadratic(&quadratic, ends);
+                self.pieces.push(Piece { shape, is_held: false, quadratic: Some(quadratic) });
                 continue;
             }
             let depths: [f64; WAVE_SAMPLES + 1] =
                 std::array::from_fn(|index| self.sum(share(ends, index, WAVE_SAMPLES)));
             let shape = Convexity::of(&depths);
-            if shape == Convexity::Other {
+            if shape == Convexity::Other && !self.is_sampled {
                 cuts.extend(turns(&depths).into_iter().map(|index| share(ends, index, WAVE_SAMPLES)));
                 cuts.push(ends[1]);
                 let first = self.pieces.len();
                 for ends in cuts[first..].windows(2) {
                     let depths: [f64; SAMPLES + 1] = std::array::from_fn(|index| self.sum(share(ends, index, SAMPLES)));
-                    self.pieces.push(Piece { shape: Convexity::of(&depths), quadratic: None });
+                    self.pieces.push(Piece { shape: Convexity::of(&depths), is_held: false, quadratic: None });
                 }
             } else {
                 cuts.push(ends[1]);
-                self.pieces.push(Piece { shape, quadratic: None });
+                // How far a spline bends back is known from its knots.
+                let shape = if shape == Convexity::Other { Convexity::Convex } else { shape };
+                let middle = self.roll(share(ends, 1, 2));
+                let is_held = self.spline.as_ref().is_some_and(|told| {
+                    let [first, last] = told.spline().ends();
+                    middle < first || middle > last
+                });
+                self.pieces.push(Piece { shape, is_held, quadratic: None });
             }
         }
         self.cuts = cuts;
@@ -228,7 +285,10 @@ impl<'a> Outline<'a> {
 
     fn sum(&self, position: f64) -> f64 {
         let roll = self.roll(position);
-        self.parts.iter().map(|part| part.depth(roll)).sum()
+        match &self.spline {
+            Some(told) => told.spline().value(within(told.spline(), roll)),
+            None => self.parts.iter().map(|part| part.depth(roll)).sum(),
+        }
     }
 
     /// The depth where a piece ends: none at all where a relief starts, whatever rounding makes of its place.
@@ -266,7 +326,7 @@ impl<'a> Outline<'a> {
     /// piece.
     #[inline]
     pub(super) fn rates(&self, position: f64, piece: usize) -> [f64; 3] {
-        let Piece { shape, quadratic } = &self.pieces[piece];
+        let Piece { shape, quadratic, .. } = &self.pieces[piece];
         match (shape, quadratic) {
             (Convexity::Zero, _) => [0.0; 3],
             (_, Some(quadratic)) => quadratic.rates(position),
@@ -275,14 +335,21 @@ impl<'a> Outline<'a> {
     }
 
     /// Of the parts, which all know theirs.
+    #[inline]
     fn known_rates(&self, position: f64, piece: usize) -> Option<[f64; 3]> {
-        let (roll, inside) = (self.roll(position), self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1])));
-        let [depth, slope, bend] = self.parts.iter().try_fold([0.0; 3], |sum, part| {
-            let rates = part.rates(roll, inside)?;
-            Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
-        })?;
-        let [of_point, of_flank] = self.facing.roll_rates();
-        let rate = if self.is_point { of_point } else { of_flank };
+        let [start, rate] = self.rolls;
+        let [depth, slope, bend] = if let Some(told) = &self.spline {
+            let spline = told.spline();
+            let place = within(spline, start + rate * position);
+            if self.pieces[piece].is_held { [spline.value(place), 0.0, 0.0] } else { spline.rates(place) }
+        } else {
+            let roll = self.roll(position);
+            let inside = self.roll(0.5 * (self.cuts[piece] + self.cuts[piece + 1]));
+            self.parts.iter().try_fold([0.0; 3], |sum, part| {
+                let rates = part.rates(roll, inside)?;
+                Some([sum[0] + rates[0], sum[1] + rates[1], sum[2] + rates[2]])
+            })?
+        };
         Some([depth, slope * rate, bend * rate * rate])
     }
 
@@ -300,6 +367,12 @@ impl<'a> Outline<'a> {
 /// A share of the way from one end to the other.
 fn share(ends: &[f64], index: usize, count: usize) -> f64 {
     ends[0] + (ends[1] - ends[0]) * index as f64 / count as f64
+}
+
+/// The nearest place of a spline.
+fn within(spline: &Spline, place: f64) -> f64 {
+    let [first, last] = spline.ends();
+    place.clamp(first, last)
 }
 
 fn largest(depths: &[f64]) -> f64 {

@@ -1,0 +1,259 @@
+//! What no measurement of a flank of this gear can be: points out of order, gaps, spikes, other units, another gear.
+//!
+//! Must not know: what a trace becomes.
+
+use super::{MOST_POINTS, Measured};
+use crate::gear::geometry::Gear;
+use crate::gear::modification::flank::Flank;
+use declare::error::Diagnostic;
+
+/// A deviation beyond this is in another unit \[m\].
+const LARGEST: f64 = 0.5e-3;
+/// A trace that nowhere deviates by more than this, and somewhere does, is in another unit: no machine measures so little \[m\].
+const SMALLEST: f64 = 0.05e-6;
+/// By how much of it the module of a drawing and that of a protocol may differ.
+const SAME_MODULE: f64 = 1e-6;
+/// How much farther than usual two points may be apart, of so many or more.
+const GAP: f64 = 10.0;
+const FEWEST_FOR_GAPS: usize = 10;
+/// How much farther than any other point a spike stands out from its neighbours, and how far at the least \[m\].
+const SPIKE: f64 = 10.0;
+const LEAST_SPIKE: f64 = 5e-6;
+const FEWEST_FOR_SPIKES: usize = 7;
+/// By how much of the flank a trace may go beyond what there is of it, and how much of the active flank, or of the face, it must cover.
+const BEYOND: f64 = 0.05;
+const COVERED: f64 = 0.5;
+
+/// Refuses points that no measurement has, whatever the gear.
+pub(super) fn consistent(stated: &Measured) -> Result<(), Diagnostic> {
+    let given = along(stated);
+    if let [(_, _), (second, _), ..] = given[..] {
+        let names: Vec<String> = given.iter().map(|(name, _)| format!("`{name}`")).collect();
+        let message = format!("the points along the profile are given twice, by {}", names.join(" and "));
+        return Err(Diagnostic::new(message).of(second).help("keep one of them"));
+    }
+    let across = stated.face_positions.as_deref().map(|places| (Measured::NAMES.face_positions, places));
+    let ways: Vec<(&'static str, &[f64])> = given.first().copied().into_iter().chain(across).collect();
+    if ways.is_empty() {
+        return Err(no_places());
+    }
+    ways.iter().try_for_each(|(name, places)| ascending(name, places))?;
+    let count = stated.deviations.len();
+    let expected: usize = ways.iter().map(|(_, places)| places.len()).product();
+    if count != expected {
+        let counts: Vec<String> = ways.iter().map(|(name, places)| format!("{} `{name}`", places.len())).collect();
+        let message = format!("there are {count} deviations for {}; {expected} are expected", counts.join(" times "));
+        return Err(Diagnostic::new(message).of(Measured::NAMES.deviations));
+    }
+    if count > MOST_POINTS {
+        let message = format!("a trace of {count} points; {MOST_POINTS} are the most");
+        return Err(Diagnostic::new(message)
+            .of(Measured::NAMES.deviations)
+            .help("leave out points, or average them: half a wave of the cutoff is as far apart as they need to be"));
+    }
+    if let Some((at, value)) =
+        stated.deviations.iter().enumerate().find(|(_, value)| value.is_nan() || value.abs() > LARGEST)
+    {
+        let message = format!("deviation {} is {}, and a deviation is 0.5 mm at the most", at + 1, millimetres(*value));
+        return Err(Diagnostic::new(message)
+            .of_item(Measured::NAMES.deviations, at)
+            .help("deviations are mostly written in micrometres: is the unit `um`?"));
+    }
+    let largest = stated.deviations.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
+    if largest > 0.0 && largest < SMALLEST {
+        let message = format!(
+            "no deviation is larger than {:.1e} um, and no measurement tells less than {:.2} um from nothing",
+            1e6 * largest,
+            1e6 * SMALLEST
+        );
+        return Err(Diagnostic::new(message).of(Measured::NAMES.deviations).help("is the unit `mm`?"));
+    }
+    let line = ways.first().map_or(count, |(_, places)| places.len());
+    for (row, values) in stated.deviations.chunks(line).enumerate() {
+        if let Some(at) = spike(values) {
+            let message = format!(
+                "deviation {} stands {} out of its neighbours, more than {SPIKE} times as far as any other: a spike",
+                row * line + at + 1,
+                micrometres(stands_out(values, at - 1, at, at + 1))
+            );
+            return Err(Diagnostic::new(message)
+                .of_item(Measured::NAMES.deviations, row * line + at)
+                .help("leave the point out, or measure the trace again"));
+        }
+    }
+    if let (Some(start), Some(end)) = (stated.evaluation_start, stated.evaluation_end)
+        && start >= end
+    {
+        let message = format!("the evaluation ends at {} and starts at {}", millimetres(end), millimetres(start));
+        return Err(Diagnostic::new(message).of(Measured::NAMES.evaluation_end));
+    }
+    Ok(())
+}
+
+/// The lists of points along the profile that are given.
+fn along(stated: &Measured) -> Vec<(&'static str, &[f64])> {
+    let names = Measured::NAMES;
+    let all = [
+        (names.roll_lengths, stated.roll_lengths.as_deref()),
+        (names.roll_angles, stated.roll_angles.as_deref()),
+        (names.diameters, stated.diameters.as_deref()),
+    ];
+    all.into_iter().filter_map(|(name, places)| Some((name, places?))).collect()
+}
+
+pub(super) fn no_places() -> Diagnostic {
+    Diagnostic::new("nothing says where the deviations were measured").help(
+        "along the profile `roll_lengths`, `roll_angles` or `diameters` are needed, across the face `face_positions`, and \
+         both of them for a grid",
+    )
+}
+
+fn ascending(name: &'static str, places: &[f64]) -> Result<(), Diagnostic> {
+    let wrong = |message: String| Err(Diagnostic::new(message).of(name));
+    if places.len() < 2 {
+        return wrong(format!("`{name}` has {} points; 2 are the fewest of a trace", places.len()));
+    }
+    if let Some(at) = places.windows(2).position(|ends| ends[1].is_nan() || ends[1] <= ends[0]) {
+        let falls = places.windows(2).filter(|ends| ends[1] < ends[0]).count();
+        if falls == places.len() - 1 {
+            let message = format!("`{name}` falls all along: the trace runs the other way");
+            return Err(Diagnostic::new(message)
+                .of(name)
+                .help("turn it round, deviations too: from the root to the tip, or to larger z"));
+        }
+        let (one, other) = (places[at], places[at + 1]);
+        #[allow(clippy::float_cmp)] // the same point twice, not one nearby
+        let is = if one == other { "is the same as the one before it" } else { "is not above the one before it" };
+        let message = format!("point {} of `{name}` {is}; points are in ascending order", at + 2);
+        return Err(Diagnostic::new(message).of_item(name, at + 1));
+    }
+    if places.len() >= FEWEST_FOR_GAPS {
+        let mut steps: Vec<f64> = places.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let usual = *steps.select_nth_unstable_by(places.len() / 2, f64::total_cmp).1;
+        if let Some(at) = places.windows(2).position(|ends| ends[1] - ends[0] > GAP * usual) {
+            let times = (places[at + 1] - places[at]) / usual;
+            let message = format!(
+                "there is a gap between points {} and {} of `{name}`, {times:.0} times as wide as is usual among them",
+                at + 1,
+                at + 2
+            );
+            return Err(Diagnostic::new(message).of_item(name, at + 1));
+        }
+    }
+    Ok(())
+}
+
+/// How far a point stands out from the line between two others, which it is taken to be half way between.
+fn stands_out(values: &[f64], before: usize, at: usize, after: usize) -> f64 {
+    values[at] - 0.5 * (values[before] + values[after])
+}
+
+/// The point that stands out from its neighbours far more than any other does from its own, without that point.
+fn spike(values: &[f64]) -> Option<usize> {
+    if values.len() < FEWEST_FOR_SPIKES {
+        return None;
+    }
+    let inner = 1..values.len() - 1;
+    let height = |at: usize| stands_out(values, at - 1, at, at + 1).abs();
+    let candidate = inner.clone().reduce(|one, other| if height(other) > height(one) { other } else { one })?;
+    let without = |at: usize| {
+        let [before, after] = [at - 1, at + 1].map(|near| match near {
+            near if near != candidate => Some(near),
+            near if near < at => near.checked_sub(1),
+            near => Some(near + 1).filter(|far| *far < values.len()),
+        });
+        Some(stands_out(values, before?, at, after?).abs())
+    };
+    let others = inner.filter(|at| *at != candidate).filter_map(without).fold(0.0, f64::max);
+    (height(candidate) > LEAST_SPIKE && height(candidate) > SPIKE * others).then_some(candidate)
+}
+
+/// Refuses a gear that is another one than was measured.
+pub(super) fn of_this_gear(stated: &Measured, gear: &Gear) -> Result<(), Diagnostic> {
+    let own = &gear.specification;
+    if let Some(teeth) = stated.teeth.filter(|teeth| *teeth != own.teeth) {
+        let message = format!("a gear of {teeth} teeth was measured, and this one has {}", own.teeth);
+        return Err(Diagnostic::new(message)
+            .of(Measured::NAMES.teeth)
+            .help("is the trace of the other gear of the pair?"));
+    }
+    if let Some(module) = stated.module.filter(|module| (module - own.module).abs() > SAME_MODULE * own.module) {
+        let [module, own] = [module, own.module].map(millimetres);
+        let message = format!("a gear of module {module} was measured, and this one has {own}");
+        return Err(Diagnostic::new(message).of(Measured::NAMES.module));
+    }
+    Ok(())
+}
+
+/// The roll angles of the points along the profile of this gear, if there are any.
+pub(super) fn roll_angles(stated: &Measured, gear: &Gear, flank: &Flank) -> Result<Option<Vec<f64>>, Diagnostic> {
+    let Some((name, places)) = along(stated).first().copied() else { return Ok(None) };
+    let names = Measured::NAMES;
+    let roll = |place: &f64| match name {
+        name if name == names.roll_angles => Some(*place),
+        name if name == names.roll_lengths => Some(*place / flank.base_radius),
+        _ => flank.roll_at_diameter(*place),
+    };
+    let rolls: Option<Vec<f64>> = places.iter().map(roll).collect();
+    let Some(rolls) = rolls else {
+        let base = millimetres(2.0 * flank.base_radius);
+        let message = format!("a trace from {} on, and the base circle of this gear is {base}", millimetres(places[0]));
+        return Err(of_another_gear(message, name));
+    };
+    let written = |roll: f64| match name {
+        name if name == names.roll_angles => format!("{:.4} deg", roll.to_degrees()),
+        name if name == names.roll_lengths => millimetres(roll * flank.base_radius),
+        _ => millimetres(flank.diameter(roll)),
+    };
+    let slack = BEYOND * (flank.tip_roll - flank.root_roll);
+    let tip = gear.flank_end.roll.max(flank.tip_roll);
+    let (first, last) = (rolls[0], rolls[rolls.len() - 1]);
+    let covered = last.min(flank.tip_roll) - first.max(flank.root_roll);
+    if last > tip + slack || covered < COVERED * (flank.tip_roll - flank.root_roll) {
+        let message = format!(
+            "the trace goes from {} to {}; the active flank of this gear goes from {} to {}, at least half of which must be \
+             measured, and its tooth ends at {}",
+            written(first),
+            written(last),
+            written(flank.root_roll),
+            written(flank.tip_roll),
+            written(tip)
+        );
+        return Err(of_another_gear(message, name));
+    }
+    Ok(Some(rolls))
+}
+
+/// z of the points across the face of this gear, if there are any.
+pub(super) fn face_positions(stated: &Measured, flank: &Flank) -> Result<Option<Vec<f64>>, Diagnostic> {
+    let Some(places) = &stated.face_positions else { return Ok(None) };
+    let (half, first, last) = (0.5 * flank.face_width, places[0], places[places.len() - 1]);
+    let covered = last.min(half) - first.max(-half);
+    if first < -(1.0 + 2.0 * BEYOND) * half || last > (1.0 + 2.0 * BEYOND) * half || covered < COVERED * 2.0 * half {
+        let message = format!(
+            "the trace goes from {} to {}; the face of this gear goes from {} to {}, at least half of which must be measured",
+            millimetres(first),
+            millimetres(last),
+            millimetres(-half),
+            millimetres(half)
+        );
+        return Err(Diagnostic::new(message)
+            .of(Measured::NAMES.face_positions)
+            .help("positions count from the middle of the face; a trace of another gear fits none"));
+    }
+    Ok(Some(places.clone()))
+}
+
+fn of_another_gear(message: String, name: &'static str) -> Diagnostic {
+    Diagnostic::new(message)
+        .of(name)
+        .help("is it of a gear with another module or number of teeth, or of the other gear of the pair?")
+}
+
+fn millimetres(length: f64) -> String {
+    format!("{:.6} mm", 1e3 * length)
+}
+
+fn micrometres(length: f64) -> String {
+    format!("{:.3} um", 1e6 * length)
+}

@@ -1,0 +1,106 @@
+//! What no measurement of a flank of this gear can be: one message each.
+
+use super::*;
+
+#[track_caller]
+fn refused(change: impl FnOnce(&mut Measured), message: &str) {
+    let pair = pair();
+    let mut stated = profile(&pair, Side::Pinion, 100, |roll| 4e-6 * libm::sin(9.0 * roll));
+    change(&mut stated);
+    let said = Design::default().add(Gears::Pinion, &stated, &pair).unwrap_err().message;
+    assert!(said.contains(message), "{said}");
+}
+
+fn lengths(stated: &mut Measured) -> &mut Vec<f64> {
+    stated.roll_lengths.as_mut().unwrap()
+}
+
+#[test]
+fn what_is_no_trace_is_refused() {
+    refused(|stated| lengths(stated).reverse(), "`roll_lengths` falls all along: the trace runs the other way");
+    refused(|stated| lengths(stated).swap(3, 4), "point 5 of `roll_lengths` is not above the one before it");
+    refused(
+        |stated| {
+            let places = lengths(stated);
+            places[8] = places[7];
+        },
+        "point 9 of `roll_lengths` is the same as the one before it",
+    );
+    refused(
+        |stated| {
+            lengths(stated).drain(40..60);
+            stated.deviations.drain(40..60);
+        },
+        "there is a gap between points 40 and 41 of `roll_lengths`, 21 times as wide as is usual among them",
+    );
+    refused(|stated| stated.deviations[30] += 60e-6, "deviation 31 stands 60.0");
+    refused(
+        |stated| stated.deviations.iter_mut().for_each(|value| *value *= 1e-3),
+        "no deviation is larger than 4.0e-3 um, and no measurement tells less than 0.05 um from nothing",
+    );
+    refused(
+        |stated| stated.deviations[7] = 1.2e-3,
+        "deviation 8 is 1.200000 mm, and a deviation is 0.5 mm at the most",
+    );
+    refused(|stated| stated.deviations[7] = f64::NAN, "`deviations` is NaN");
+    refused(|stated| lengths(stated)[7] = f64::NAN, "`roll_lengths` is NaN");
+    refused(
+        |stated| stated.deviations.truncate(99),
+        "there are 99 deviations for 100 `roll_lengths`; 100 are expected",
+    );
+    refused(|stated| stated.roll_lengths = None, "nothing says where the deviations were measured");
+    refused(|stated| stated.diameters = Some(vec![60e-3, 61e-3]), "given twice, by `roll_lengths` and `diameters`");
+    refused(|stated| *lengths(stated) = vec![1e-3], "`roll_lengths` has 1 points; 2 are the fewest of a trace");
+    refused(
+        |stated| {
+            *lengths(stated) = places([2e-3, 15e-3], MOST_POINTS + 1);
+            stated.deviations = vec![0.0; MOST_POINTS + 1];
+        },
+        "a trace of 10001 points; 10000 are the most",
+    );
+    refused(
+        |stated| (stated.evaluation_start, stated.evaluation_end) = (Some(9e-3), Some(8e-3)),
+        "the evaluation ends at 8.000000 mm and starts at 9.000000 mm",
+    );
+}
+
+/// A trace of the other gear, of one with another module, or of another face is none of this one.
+#[test]
+fn traces_of_other_gears_are_refused() {
+    let pair = pair();
+    refused(
+        |stated| *stated = profile(&pair, Side::Gear, 100, |_| 0.0),
+        "the active flank of this gear goes from 2.009267 mm to 16.583582 mm, at least half of which must be measured",
+    );
+    refused(|stated| lengths(stated).iter_mut().for_each(|length| *length *= 1.5), "its tooth ends at 16.583582 mm");
+    refused(|stated| stated.teeth = Some(20), "a gear of 20 teeth was measured, and this one has 19");
+    refused(
+        |stated| stated.module = Some(4e-3),
+        "a gear of module 4.000000 mm was measured, and this one has 3.000000 mm",
+    );
+    refused(
+        |stated| (stated.roll_lengths, stated.diameters) = (None, Some(places([50e-3, 60e-3], 100))),
+        "a trace from 50.000000 mm on, and the base circle of this gear is 53.562",
+    );
+    refused(
+        |stated| {
+            stated.roll_lengths = None;
+            stated.face_positions = Some(places([0.0, 20e-3], 100));
+        },
+        "the face of this gear goes from -10.000000 mm to 10.000000 mm",
+    );
+}
+
+/// A kink, a step between two points and noise are no spikes.
+#[test]
+fn what_a_flank_may_be_is_taken() {
+    let pair = pair();
+    for deviation in [
+        |roll: f64| -300e-6 * (roll - 0.4).max(0.0),
+        |roll: f64| if roll < 0.4 { 0.0 } else { -30e-6 },
+        |roll: f64| 9e-6 * libm::sin(1e6 * roll),
+    ] {
+        let stated = profile(&pair, Side::Pinion, 300, deviation);
+        Design::default().add(Gears::Pinion, &stated, &pair).unwrap();
+    }
+}

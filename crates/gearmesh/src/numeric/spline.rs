@@ -1,0 +1,303 @@
+//! Cubic splines through points: two continuous derivatives, and no knot beside either end (not-a-knot).
+//!
+//! Cubics are followed exactly and smooth functions to the fourth order of the distance of the points; what a single point is
+//! off by fades by 2 − √3 from point to point. Source: de Boor, A Practical Guide to Splines, chapter IV. Must not know: what
+//! is interpolated.
+
+/// A piecewise cubic with two continuous derivatives between the first and the last of its knots.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Spline {
+    /// Ascending.
+    knots: Vec<f64>,
+    /// The lower end of each interval, and the cubic of the distance from there: beside each other, since a search reads both.
+    pieces: Vec<[f64; 5]>,
+    index: Index,
+    /// The least second derivative.
+    least_bend: f64,
+}
+
+impl Spline {
+    /// Through the points (`knots[i]`, `values[i]`), at least two of them and as many of one as of the other; `knots` are strictly
+    /// ascending. Two points make a line, three a parabola.
+    ///
+    /// # Panics
+    /// When there are fewer.
+    #[must_use]
+    pub fn new(knots: &[f64], values: &[f64]) -> Self {
+        assert!(knots.len() > 1 && knots.len() == values.len(), "a spline has two points or more");
+        let steps: Vec<f64> = knots.windows(2).map(|ends| ends[1] - ends[0]).collect();
+        let secants: Vec<f64> = values.windows(2).zip(&steps).map(|(ends, step)| (ends[1] - ends[0]) / step).collect();
+        let slopes = slopes(&steps, &secants);
+        let cubic = |at: usize| {
+            let (step, secant) = (steps[at], secants[at]);
+            let bend = (slopes[at] + slopes[at + 1] - 2.0 * secant) / step;
+            [knots[at], values[at], slopes[at], (secant - slopes[at]) / step - bend, bend / step]
+        };
+        let pieces = (0..steps.len()).map(cubic).collect();
+        let mut spline = Self { knots: knots.to_vec(), pieces, index: Index::new(knots), least_bend: 0.0 };
+        spline.least_bend = spline.bends().fold(f64::INFINITY, f64::min);
+        spline
+    }
+
+    /// The second derivative at every knot, between which it is straight.
+    pub fn bends(&self) -> impl Iterator<Item = f64> {
+        let at_end = self.rates(self.ends()[1])[2];
+        self.pieces.iter().map(|piece| 2.0 * piece[3]).chain([at_end])
+    }
+
+    /// The least second derivative.
+    #[must_use]
+    pub fn least_bend(&self) -> f64 {
+        self.least_bend
+    }
+
+    /// The first and the last knot.
+    #[must_use]
+    pub fn ends(&self) -> [f64; 2] {
+        [self.knots[0], self.knots[self.knots.len() - 1]]
+    }
+
+    /// Its knots, ascending.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// The value, and the first and second derivative, at `x`; outside of its ends the outermost cubics go on.
+    #[must_use]
+    #[inline]
+    pub fn rates(&self, x: f64) -> [f64; 3] {
+        let [from, c0, c1, c2, c3] = *self.piece(x);
+        let t = x - from;
+        [c0 + t * (c1 + t * (c2 + t * c3)), c1 + t * (2.0 * c2 + 3.0 * t * c3), 2.0 * c2 + 6.0 * t * c3]
+    }
+
+    /// The value at `x`.
+    #[must_use]
+    pub fn value(&self, x: f64) -> f64 {
+        let [from, c0, c1, c2, c3] = *self.piece(x);
+        let t = x - from;
+        c0 + t * (c1 + t * (c2 + t * c3))
+    }
+
+    /// The slope at every knot.
+    #[must_use]
+    pub fn slopes(&self) -> Vec<f64> {
+        self.knots.iter().map(|knot| self.rates(*knot)[1]).collect()
+    }
+
+    #[inline]
+    fn piece(&self, x: f64) -> &[f64; 5] {
+        &self.pieces[self.index.interval(self.pieces.len(), x, |at| self.pieces[at][0])]
+    }
+}
+
+/// Where to look for the interval of a place: equal cells, as many as there are intervals, and the interval in which each begins.
+#[derive(Clone, Debug, PartialEq)]
+struct Index {
+    first: Vec<u32>,
+    from: f64,
+    per_length: f64,
+}
+
+impl Index {
+    #[allow(clippy::cast_possible_truncation)] // no spline has so many knots
+    fn new(knots: &[f64]) -> Self {
+        let count = knots.len() - 1;
+        let length = knots[count] - knots[0];
+        let mut interval = 0;
+        let first = (0..count).map(|cell| {
+            let begins = knots[0] + length * cell as f64 / count as f64;
+            while interval + 1 < count && knots[interval + 1] <= begins {
+                interval += 1;
+            }
+            interval as u32
+        });
+        Self { first: first.collect(), from: knots[0], per_length: count as f64 / length }
+    }
+
+    /// The interval of a place, the outermost one outside of all, of so many that begin there.
+    #[inline]
+    fn interval(&self, count: usize, x: f64, begins: impl Fn(usize) -> f64) -> usize {
+        let last = count - 1;
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)] // what is too large is the last one
+        let cell = (((x - self.from) * self.per_length).max(0.0) as usize).min(last);
+        let mut interval = self.first[cell] as usize;
+        while interval < last && begins(interval + 1) <= x {
+            interval += 1;
+        }
+        // Rounding may have put it into the next cell.
+        while interval > 0 && x < begins(interval) {
+            interval -= 1;
+        }
+        interval
+    }
+}
+
+/// The slope at every knot.
+fn slopes(steps: &[f64], secants: &[f64]) -> Vec<f64> {
+    let last = steps.len();
+    if last == 1 {
+        return vec![secants[0]; 2];
+    }
+    if last == 2 {
+        // The parabola through three points.
+        let bend = (secants[1] - secants[0]) / (steps[0] + steps[1]);
+        return vec![secants[0] - bend * steps[0], secants[0] + bend * steps[0], secants[1] + bend * steps[1]];
+    }
+    // Rows of a tridiagonal matrix: below, on and above its diagonal, and the right-hand side. No pivoting: all rows but the
+    // outermost are dominated by their diagonal, and what is left of their neighbours' when they are eliminated is positive.
+    let end = |near: usize, next: usize| {
+        let ([near, next], [here, there]) = ([steps[near], steps[next]], [secants[near], secants[next]]);
+        let both = near + next;
+        (next, both, ((near + 2.0 * both) * next * here + near * near * there) / both)
+    };
+    let (mut diagonal, mut above, mut right) = (vec![0.0; last + 1], vec![0.0; last + 1], vec![0.0; last + 1]);
+    (diagonal[0], above[0], right[0]) = end(0, 1);
+    for at in 1..last {
+        let (before, after) = (steps[at - 1], steps[at]);
+        let factor = after / diagonal[at - 1];
+        diagonal[at] = 2.0 * (before + after) - factor * above[at - 1];
+        above[at] = before;
+        right[at] = 3.0 * (after * secants[at - 1] + before * secants[at]) - factor * right[at - 1];
+    }
+    let (own, below, side) = end(last - 1, last - 2);
+    let factor = below / diagonal[last - 1];
+    diagonal[last] = own - factor * above[last - 1];
+    right[last] = side - factor * right[last - 1];
+    let mut slopes = right;
+    slopes[last] /= diagonal[last];
+    for at in (0..last).rev() {
+        slopes[at] = (slopes[at] - above[at] * slopes[at + 1]) / diagonal[at];
+    }
+    slopes
+}
+
+/// Places at which values and slopes are known, for cubics between them.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Hermite {
+    knots: Vec<f64>,
+    index: Index,
+}
+
+impl Hermite {
+    /// Between these, which are strictly ascending and two or more.
+    #[must_use]
+    pub fn new(knots: &[f64]) -> Self {
+        Self { knots: knots.to_vec(), index: Index::new(knots) }
+    }
+
+    /// All of them.
+    #[must_use]
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// As [`Hermite::weights`], for the value, and the first and second derivative.
+    #[must_use]
+    pub fn rates(&self, x: f64) -> (usize, [[f64; 4]; 3]) {
+        let (at, weights) = self.weights(x);
+        let step = self.knots[at + 1] - self.knots[at];
+        let t = (x - self.knots[at]) / step;
+        if !(0.0..=1.0).contains(&t) {
+            return (at, [weights, [0.0; 4], [0.0; 4]]);
+        }
+        let s = 1.0 - t;
+        let (rise, bend) = (6.0 * t * s / step, 6.0 * (s - t) / (step * step));
+        let slopes = [-rise, rise, s * (s - 2.0 * t), t * (t - 2.0 * s)];
+        (at, [weights, slopes, [-bend, bend, (6.0 * t - 4.0) / step, (6.0 * t - 2.0) / step]])
+    }
+
+    /// The interval of a place, and what the values and then the slopes at both its ends count for there; outside of all
+    /// intervals those of the outermost knot.
+    #[must_use]
+    pub fn weights(&self, x: f64) -> (usize, [f64; 4]) {
+        let at = self.index.interval(self.knots.len() - 1, x, |at| self.knots[at]);
+        let step = self.knots[at + 1] - self.knots[at];
+        let t = ((x - self.knots[at]) / step).clamp(0.0, 1.0);
+        let (s, end) = (1.0 - t, t * t * (3.0 - 2.0 * t));
+        (at, [1.0 - end, end, step * t * s * s, -step * t * t * s])
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const KNOTS: [f64; 7] = [0.0, 0.1, 0.35, 0.4, 0.9, 1.0, 1.7];
+    const VALUES: [f64; 7] = [1.0, -0.3, 0.8, 0.2, 0.5, 2.0, -1.0];
+
+    /// Tier: second method; values and both derivatives of `scipy.interpolate.CubicSpline` (1.17) through the same points.
+    #[test]
+    fn splines_are_those_of_scipy() {
+        let rows = [
+            (0.05, [0.009_597_986_096_912_758, -12.279_612_334_608_757, 272.321_611_122_469_73]),
+            (0.2, [0.258_750_912_755_206_23, 9.118_162_368_198_144, 12.982_051_581_622_216]),
+            (0.37, [0.591_169_151_794_842, -12.091_058_430_937_28, -124.248_649_122_294_61]),
+            (0.6, [-1.269_763_851_973_010_8, -1.795_784_531_354_970_7, 53.838_201_361_100_54]),
+            (0.95, [1.211_895_117_124_747_2, 15.131_163_653_357_48, 30.483_906_300_201_568]),
+            (1.3, [6.125_485_001_606_447, 6.519_473_814_878_623, -79.693_562_520_080_6]),
+            (1.69, [-0.504_814_341_647_925_6, -48.501_005_578_759_774, -202.462_742_062_680_46]),
+        ];
+        let spline = Spline::new(&KNOTS, &VALUES);
+        for (x, exact) in rows {
+            for (found, exact) in spline.rates(x).into_iter().zip(exact) {
+                assert!((found - exact).abs() <= 1e-12 * exact.abs().max(1.0), "{x}: {found} is not {exact}");
+            }
+            assert!((spline.value(x) - spline.rates(x)[0]).abs() < 1e-15);
+        }
+    }
+
+    /// Tier: closed form; cubics come back, of two points lines, of three parabolas.
+    #[test]
+    fn cubics_are_followed_exactly() {
+        let cubic = |degree: usize, x: f64| [1.0, x, x * x, x * x * x][..=degree].iter().sum::<f64>();
+        for (count, degree) in [(2, 1), (3, 2), (4, 3), (5, 3), (7, 3)] {
+            let values: Vec<f64> = KNOTS[..count].iter().map(|x| cubic(degree, *x)).collect();
+            let spline = Spline::new(&KNOTS[..count], &values);
+            for x in [-0.1, 0.02, 0.1, 0.2, 0.38, 0.5, 2.0] {
+                assert!((spline.value(x) - cubic(degree, x)).abs() < 1e-12, "{count} points at {x}");
+            }
+        }
+    }
+
+    /// Tier: order of convergence, the fourth, up to both ends.
+    #[test]
+    fn twice_the_points_are_sixteen_times_as_good() {
+        let off = |count: u32| {
+            let knots: Vec<f64> = (0..=count).map(|at| 3.0 * f64::from(at) / f64::from(count)).collect();
+            let values: Vec<f64> = knots.iter().map(|x| libm::sin(*x)).collect();
+            let spline = Spline::new(&knots, &values);
+            (0..=1000)
+                .map(|at| 3e-3 * f64::from(at))
+                .map(|x| (spline.value(x) - libm::sin(x)).abs())
+                .fold(0.0, f64::max)
+        };
+        for count in [20, 40, 80] {
+            let order = libm::log2(off(count) / off(2 * count));
+            assert!((order - 4.0).abs() < 0.5, "{count}: {order}");
+        }
+    }
+
+    /// Tier: second method; with its own slopes, cubics between known values and slopes are the spline.
+    #[test]
+    fn cubics_of_values_and_slopes_are_the_spline() {
+        let (spline, hermite) = (Spline::new(&KNOTS, &VALUES), Hermite::new(&KNOTS));
+        let slopes = spline.slopes();
+        for at in 0..=340 {
+            let x = 5e-3 * f64::from(at);
+            let (at, [a, b, c, d]) = hermite.weights(x);
+            let value = a * VALUES[at] + b * VALUES[at + 1] + c * slopes[at] + d * slopes[at + 1];
+            assert!((value - spline.value(x)).abs() < 1e-13, "{x}");
+            let (at, rates) = hermite.rates(x);
+            for (weights, exact) in rates.into_iter().zip(spline.rates(x)) {
+                let ends = [VALUES[at], VALUES[at + 1], slopes[at], slopes[at + 1]];
+                let found: f64 = weights.iter().zip(ends).map(|(weight, value)| weight * value).sum();
+                assert!((found - exact).abs() < 1e-11 * exact.abs().max(1.0), "{x}: {found} {exact}");
+            }
+        }
+        assert_eq!(hermite.weights(-1.0), (0, [1.0, 0.0, 0.0, 0.0]));
+        assert_eq!(hermite.weights(9.0), (5, [0.0, 1.0, 0.0, 0.0]));
+        assert_eq!(hermite.knots(), KNOTS);
+    }
+}

@@ -1,0 +1,183 @@
+//! The text of a CSV file as the fields that it stands for: a list for each column, one value for each line `# name: value`.
+//!
+//! The first line that is no comment names the columns, each as a field and its unit: `roll_lengths [mm]`. Columns are parted by `;`, a
+//! tab or a comma; where it is no comma, numbers may have decimal commas. Columns of one name follow each other in one list. Every
+//! value keeps its place in the file. Must not know: fields, what any is for.
+
+use super::document::{Content, KeyValue, Node, parse};
+use super::words::quote;
+use declare::error::{Diagnostic, Place, nearest};
+use declare::units::{UnitError, parse_unit, symbols};
+
+/// One cell of a line.
+#[derive(Clone, Copy)]
+struct Cell<'a> {
+    text: &'a str,
+    place: Place,
+}
+
+/// A column.
+struct Column<'a> {
+    name: Cell<'a>,
+    /// None of a plain number.
+    unit: Option<&'a str>,
+}
+
+/// The fields that the text says, in the order in which it does.
+///
+/// # Errors
+/// The first line that cannot be read.
+pub fn fields(text: &str) -> Result<Vec<KeyValue>, Diagnostic> {
+    let mut pairs: Vec<KeyValue> = Vec::new();
+    let mut header: Option<(Vec<Column>, char)> = None;
+    let mut lists: Vec<(Vec<Node>, Place)> = Vec::new();
+    let mut offset = 0;
+    for (number, line) in (1..).zip(text.split('\n')) {
+        let here = Place { line: number, column: 1, offset, length: line.len() };
+        offset += line.len() + 1;
+        if let Some(said) = line.trim_start().strip_prefix('#') {
+            pairs.extend(said_by(said, line, here)?);
+        } else if line.trim().is_empty() {
+        } else if let Some((columns, separator)) = &header {
+            let cells = cells(line, *separator, here);
+            if cells.len() != columns.len() {
+                return Err(other_count(cells.len(), columns.len(), *separator).at(here));
+            }
+            for ((cell, column), (items, _)) in cells.iter().zip(columns).zip(&mut lists) {
+                items.push(value(cell, column, *separator)?);
+            }
+        } else {
+            let separator = if line.contains(';') {
+                ';'
+            } else if line.contains('\t') {
+                '\t'
+            } else {
+                ','
+            };
+            let columns = cells(line, separator, here).into_iter().map(column).collect::<Result<Vec<_>, _>>()?;
+            lists = columns.iter().map(|column| (Vec::new(), column.name.place)).collect();
+            header = Some((columns, separator));
+        }
+    }
+    let Some((columns, _)) = header else {
+        let start = Place { line: 1, column: 1, ..Place::default() };
+        return Err(Diagnostic::new("this file has no columns").at(start).help(HEADER));
+    };
+    for (column, (items, place)) in columns.iter().zip(lists) {
+        match pairs.iter_mut().find(|pair| pair.key == column.name.text) {
+            // Columns of one name are one list.
+            Some(KeyValue { node: Node { content: Content::Sequence(all), .. }, .. }) => all.extend(items),
+            Some(_) => return Err(twice(column.name.text).at(place)),
+            None => pairs.push(KeyValue {
+                key: column.name.text.to_owned(),
+                place,
+                node: Node { content: Content::Sequence(items), place },
+            }),
+        }
+    }
+    for (at, pair) in pairs.iter().enumerate() {
+        if pairs[..at].iter().any(|earlier| earlier.key == pair.key) {
+            return Err(twice(&pair.key).at(pair.place));
+        }
+    }
+    Ok(pairs)
+}
+
+const HEADER: &str = "the first line names the columns and their units, such as `roll_lengths [mm], deviations [um]`";
+
+fn twice(name: &str) -> Diagnostic {
+    Diagnostic::new(format!("{} stands here a second time", quote(name))).help("keep one of them")
+}
+
+fn other_count(cells: usize, columns: usize, separator: char) -> Diagnostic {
+    let plural = |count: usize, word: &str| format!("{count} {word}{}", if count == 1 { "" } else { "s" });
+    let message = format!("this line has {}, and there are {}", plural(cells, "value"), plural(columns, "column"));
+    if separator == ',' && cells > columns {
+        Diagnostic::new(message).help("with decimal commas, part columns by `;`")
+    } else {
+        Diagnostic::new(message).help("write every value of a line, and leave out a line that has none")
+    }
+}
+
+/// The field of a line `# name: value`; any other is a comment.
+fn said_by(said: &str, line: &str, here: Place) -> Result<Option<KeyValue>, Diagnostic> {
+    let Some((name, value)) = said.split_once(':') else { return Ok(None) };
+    let name = name.trim();
+    if name.is_empty() || !name.bytes().all(|byte| byte.is_ascii_lowercase() || byte.is_ascii_digit() || byte == b'_') {
+        return Ok(None);
+    }
+    let place = part(line, here, name);
+    let value = value.trim();
+    let node = parse(value).map_err(|found| Diagnostic { place: Some(part(line, here, value)), ..found })?;
+    let Some(node) = node.filter(|node| !node.is_null()) else {
+        return Err(Diagnostic::new(format!("{} has no value", quote(name))).at(place));
+    };
+    Ok(Some(KeyValue { key: name.to_owned(), place, node: node.moved_to(part(line, here, value)) }))
+}
+
+/// The place of a part of a line, which is a slice of it.
+fn part(line: &str, here: Place, part: &str) -> Place {
+    let at = (part.as_ptr() as usize).saturating_sub(line.as_ptr() as usize).min(line.len());
+    Place { column: line[..at].chars().count() + 1, offset: here.offset + at, length: part.len(), ..here }
+}
+
+/// The values of a line, without spaces and quotes around them.
+fn cells(line: &str, separator: char, here: Place) -> Vec<Cell<'_>> {
+    let mut is_quoted = false;
+    let parts = line.split(|character: char| {
+        is_quoted ^= character == '"';
+        character == separator && !is_quoted
+    });
+    let bare = |text| unquoted(str::trim(text));
+    parts.map(bare).map(|text| Cell { text, place: part(line, here, text) }).collect()
+}
+
+fn unquoted(text: &str) -> &str {
+    text.strip_prefix('"').and_then(|text| text.strip_suffix('"')).unwrap_or(text)
+}
+
+fn column(cell: Cell<'_>) -> Result<Column<'_>, Diagnostic> {
+    let wrong = |message: String| Diagnostic::new(message).at(cell.place);
+    if cell.text.is_empty() {
+        return Err(wrong("a column has no name".to_owned()).help(HEADER));
+    }
+    if cell.text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
+        let message = format!("{} stands where the name of a column is expected", quote(cell.text));
+        return Err(wrong(message).help(HEADER));
+    }
+    let written = cell.text.split_once('[').and_then(|(name, unit)| Some((name.trim_end(), unit.strip_suffix(']')?)));
+    let Some((name, unit)) = written else {
+        let help =
+            format!("write `{} [mm]` if that is its unit, or `[-]` behind it where numbers are plain", cell.text);
+        return Err(wrong(format!("the column {} has no unit", quote(cell.text))).help(help));
+    };
+    let unit = unit.trim();
+    let place = Place { length: name.len(), ..cell.place };
+    let name = Cell { text: name, place };
+    if unit == "-" {
+        return Ok(Column { name, unit: None });
+    }
+    match parse_unit(unit) {
+        Ok(_) => Ok(Column { name, unit: Some(unit) }),
+        Err(UnitError::Unknown(symbol)) => {
+            let found = wrong(format!("unknown unit {} of the column {}", quote(&symbol), quote(name.text)));
+            Err(match nearest(&symbol, symbols()) {
+                Some(near) => found.help(format!("did you mean `{near}`?")),
+                None => found,
+            })
+        }
+        Err(error) => Err(wrong(format!("{} cannot be read as a unit: {error}", quote(unit)))),
+    }
+}
+
+/// What a study would say.
+fn value(cell: &Cell<'_>, column: &Column<'_>, separator: char) -> Result<Node, Diagnostic> {
+    if cell.text.is_empty() {
+        let message = format!("a value of {} is missing", quote(column.name.text));
+        return Err(Diagnostic::new(message).at(cell.place).help("leave out a line that has no value"));
+    }
+    let comma = separator != ',' && cell.text.matches(',').count() == 1 && !cell.text.contains('.');
+    let number = if comma { cell.text.replacen(',', ".", 1) } else { cell.text.to_owned() };
+    let text = column.unit.map_or_else(|| number.clone(), |unit| format!("{number} {unit}"));
+    Ok(Node { content: Content::Scalar { text, quoted: false }, place: cell.place })
+}

@@ -1,0 +1,51 @@
+//! CSV files as fields: what their lines say, and where what is wrong with them stands.
+
+use crate::study::columns::fields;
+use crate::study::document::{Content, Node};
+
+/// `name: value`, lists between brackets.
+fn said(text: &str) -> Vec<String> {
+    let shown = |node: &Node| match &node.content {
+        Content::Scalar { text, .. } => text.clone(),
+        Content::Sequence(items) => format!("{:?}", items.iter().map(Node::describe).collect::<Vec<_>>()),
+        Content::Mapping(_) => "a mapping".to_owned(),
+    };
+    fields(text).unwrap().iter().map(|pair| format!("{}: {}", pair.key, shown(&pair.node))).collect()
+}
+
+/// Line, column and what is said.
+fn refused(text: &str) -> String {
+    let found = fields(text).unwrap_err();
+    let place = found.place.unwrap();
+    format!("{}:{}: {}", place.line, place.column, found.message)
+}
+
+#[test]
+fn columns_are_lists_and_first_lines_are_values() {
+    let points = ["x: [\"`4 mm`\", \"`8.5 mm`\"]", "y: [\"`-1 um`\", \"`2e-1 um`\"]"];
+    assert_eq!(said("x [mm], y [um]\n4,-1\n8.5,2e-1\n"), points);
+    // Semicolons and tabs leave the comma to numbers; spaces, empty lines, comments and quotes say nothing.
+    assert_eq!(said("x [mm]; y [um]\n\n 4 ;-1\n# half way\n8,5;2e-1"), points);
+    assert_eq!(said("\"x [mm]\"\ty [um]\n4\t\"-1\"\n8,5\t2e-1"), points);
+    assert_eq!(said("# z: 19\n# Machine: P 40\n#\nx [-]\n1\n")[..], ["z: 19", "x: [\"`1`\"]"]);
+    // Columns of one name follow each other.
+    assert_eq!(
+        said("# at: [1 mm, 2 mm]\ny [um], y [um]\n1,3\n2,4\n")[1],
+        "y: [\"`1 um`\", \"`2 um`\", \"`3 um`\", \"`4 um`\"]"
+    );
+}
+
+#[test]
+fn what_is_no_table_is_refused_at_its_line() {
+    assert_eq!(refused(""), "1:1: this file has no columns");
+    assert_eq!(refused("4,1\n"), "1:1: `4` stands where the name of a column is expected");
+    assert_eq!(refused("x [mm],\n4,1\n"), "1:8: a column has no name");
+    assert_eq!(refused("x [mm], y\n"), "1:9: the column `y` has no unit");
+    assert_eq!(refused("x [mm], y [my]\n"), "1:9: unknown unit `my` of the column `y`");
+    assert_eq!(refused("x [mm], y [um]\n4,1\n\n8\n"), "4:1: this line has 1 value, and there are 2 columns");
+    assert_eq!(refused("x [mm], y [um]\n4,1,-3,5\n"), "2:1: this line has 4 values, and there are 2 columns");
+    assert_eq!(refused("x [mm]; y [um]\n4; \n"), "2:3: a value of `y` is missing");
+    assert_eq!(refused("# x: 4\nx [mm]\n4\n"), "2:1: `x` stands here a second time");
+    assert_eq!(refused("# z:\nx [mm]\n4\n"), "1:3: `z` has no value");
+    assert_eq!(refused("# z: [1\nx [mm]\n4\n"), "1:6: `[` is opened and never closed");
+}

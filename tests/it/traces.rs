@@ -1,0 +1,145 @@
+//! Measured flanks in a CSV file beside the study: it counts as the study's own text, and what is wrong with it has its place in it.
+
+use std::fmt::Write as _;
+use std::fs;
+
+use crate::desk::Desk;
+use declare::digest::Writer;
+use gearstudy::program::{load, load_text};
+
+const STUDY: &str = "\
+study: traced
+seed: 1
+stages:
+  pair: { kind: geometry, module: 3 mm, pinion: { teeth: 19, face_width: 20 mm, bore_radius: 10 mm }, gear: { teeth: 48, face_width: 18 mm, bore_radius: 20 mm } }
+  designs:
+    kind: modification
+    pair: pair
+    designs:
+      made:
+        - measured: { gear: pinion, file: traces/tooth.csv }
+  stiffness: { kind: stiffness, pair: pair, method: energy }
+  ste: { kind: ste, pair: pair, stiffness: stiffness, designs: designs, torque: 100 N m }
+";
+
+/// A relief of so many micrometres, as a machine with decimal commas and lines of Windows writes it.
+fn trace(relief: f64) -> String {
+    let mut text =
+        "\u{feff}# Machine: P 40\r\n# teeth: 19\r\n# module: 3 mm\r\nroll_lengths [mm]; deviations [um]\r\n".to_owned();
+    for at in 0..60 {
+        let share = f64::from(at) / 59.0;
+        let line = format!("{:.4};{:.4}", 2.5 + 14.0 * share, -relief * share * share);
+        let _ = write!(text, "{}\r\n", line.replace('.', ","));
+    }
+    text
+}
+
+fn desk(text: &str) -> Desk {
+    let desk = Desk::with("quick.yaml");
+    fs::create_dir(desk.path("traces")).unwrap();
+    fs::write(desk.path("traced.yaml"), STUDY).unwrap();
+    fs::write(desk.path("traces/tooth.csv"), text).unwrap();
+    desk
+}
+
+/// The content of a table of the last run.
+fn content(desk: &Desk, table: &str) -> String {
+    desk.contents("traced").into_iter().find(|(name, _)| name == table).unwrap().1
+}
+
+#[test]
+fn a_trace_in_a_file_is_part_of_the_study() {
+    let desk = desk(&trace(12.0));
+    desk.run(&["run", "traced.yaml", "--quiet"], 0);
+    let first = content(&desk, "ste.summary");
+    assert!(desk.run(&["status", "traced.yaml"], 0).0.contains("up to date"));
+
+    // Other points are another study; a remark is none.
+    fs::write(desk.path("traces/tooth.csv"), trace(9.0)).unwrap();
+    desk.run(&["run", "traced.yaml", "--quiet"], 0);
+    assert_eq!(desk.ran("traced"), ["designs", "ste"]);
+    let second = content(&desk, "ste.summary");
+    assert_ne!(first, second);
+    fs::write(desk.path("traces/tooth.csv"), trace(9.0) + "# seen by nobody\r\n").unwrap();
+    desk.run(&["run", "traced.yaml", "--quiet"], 0);
+    assert_eq!(desk.ran("traced"), [""; 0]);
+    assert_eq!(content(&desk, "ste.summary"), second);
+
+    // Without its file, an archive is the same study, and so is the list in the study.
+    desk.run(&["archive", "traced.yaml", "-o", "a.zip"], 0);
+    let whole = load(&desk.path("traced.yaml")).unwrap().text;
+    fs::remove_dir_all(desk.path("traces")).unwrap();
+    assert!(desk.run(&["verify", "a.zip"], 0).0.contains("identical"));
+    let record = |text: &str| {
+        let study = load_text(text, &desk.path("traced.yaml")).unwrap();
+        study.nodes.into_iter().find(|node| node.name == "designs").unwrap().record
+    };
+    let (mut lengths, mut deviations) = (String::new(), String::new());
+    for line in trace(9.0).lines().skip(4) {
+        let (length, deviation) = line.split_once(';').unwrap();
+        let _ = write!(lengths, "{} mm, ", length.replace(',', "."));
+        let _ = write!(deviations, "{}, ", deviation.replace(',', "."));
+    }
+    let lists = format!(
+        "teeth: 19, module: 3 mm, roll_lengths: [{lengths}], deviations: {{ unit: um, values: [{deviations}] }}"
+    );
+    // What the canonical digest of both is: of values, not of places.
+    let digest = |text: &str| {
+        let mut writer = Writer::new("record");
+        record(text).write(&mut writer);
+        writer.finish().to_string()
+    };
+    assert_eq!(digest(&whole), digest(&STUDY.replace("file: traces/tooth.csv", &lists)));
+}
+
+#[test]
+fn what_is_wrong_with_a_file_stands_in_it() {
+    let desk = desk("");
+    let said = |text: &str| {
+        fs::write(desk.path("traces/tooth.csv"), text).unwrap();
+        let said = desk.run(&["check", "traced.yaml"], 2).1;
+        said.lines().next().unwrap().to_owned()
+    };
+    let good = trace(12.0);
+    let lines: Vec<&str> = good.lines().collect();
+    let without = |from: usize, to: usize| [&lines[..from], &lines[to..]].concat().join("\n");
+    let other = |line: usize, text: &str| [&lines[..line], &[text], &lines[line + 1..]].concat().join("\n");
+    let all = |from: &str, to: &str| good.replace(from, to);
+    let reversed = [&lines[..4], &lines[4..].iter().rev().copied().collect::<Vec<_>>()[..]].concat().join("\n");
+    for (text, message) in [
+        (without(20, 40), "21:1: there is a gap between points 16 and 17"),
+        (other(30, "9,000;55"), "31:7: deviation 27 stands 57"),
+        (reversed, "4:1: `roll_lengths` falls all along"),
+        (other(30, "9,0x;-3"), "31:1: "),
+        (other(30, "8,6695;NaN"), "31:8: `NaN um` is not a number"),
+        (other(30, lines[29]), "31:1: point 27 of `roll_lengths` is the same as the one before it"),
+        (all("# teeth: 19", "# teeth: 48"), "2:10: design `made`, measured: a gear of 48 teeth was measured"),
+        (all("# module: 3 mm", "# module: 4 mm"), "3:11: design `made`, measured: a gear of module 4"),
+        (all("# teeth", "# teeht"), "2:3: unknown field `teeht` of `measured`"),
+        (all("deviations [um]", "deviations [mm]"), "18:8: deviation 14 is -0.582"),
+        (all("deviations [um]", "deviations [nm]"), "4:20: no deviation is larger than 1.2e-2 um"),
+        (all("deviations [um]", "depth [um]"), "4:20: unknown field `depth` of `measured`"),
+        (all(";", ","), "5:1: this line has 4 values, and there are 2 columns"),
+        (
+            "roll_lengths [mm], deviations [um]\n".to_owned() + &"1,2\n".repeat(300_000),
+            "traced.yaml:10:43: `traces/tooth.csv` is larger than 1024 KiB",
+        ),
+    ] {
+        let said = said(&text);
+        assert!(said.contains(message), "{message}\n{said}");
+    }
+    for (name, message) in [
+        ("traces/toth.csv", "there is no file `traces/toth.csv`"),
+        ("/etc/passwd.csv", "`/etc/passwd.csv` does not lie beside the study, or below"),
+        ("../a.csv", "`../a.csv` does not lie beside the study, or below"),
+        ("trace.txt", "`file` is `trace.txt`; the name of a CSV file beside the study"),
+    ] {
+        fs::write(desk.path("traced.yaml"), STUDY.replace("traces/tooth.csv", name)).unwrap();
+        let said = desk.run(&["check", "traced.yaml"], 2).1;
+        assert!(said.starts_with(&format!("traced.yaml:10:43: {message}")), "{said}");
+    }
+    // What is set from outside has its own place.
+    let set = "designs.designs.made[0].measured.file=nowhere.csv";
+    let said = desk.run(&["check", "traced.yaml", "--set", set], 2).1;
+    assert!(said.starts_with(&format!("--set {set}:1:39: there is no file `nowhere.csv`")), "{said}");
+}
