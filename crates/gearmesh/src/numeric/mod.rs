@@ -26,5 +26,7 @@ pub mod piecewise;
 pub mod quadratic;
 pub mod quadrature;
 pub mod replicates;
+pub mod singular_values;
+pub mod student;
 pub mod surface;
 pub mod together;
