@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod export;
+pub mod fit;
 pub mod geometry;
 pub mod modification;
 pub mod optimizer;
@@ -28,6 +29,7 @@ pub const KINDS: &[&Kind] = &[
     &ste::KIND,
     &sweep::KIND,
     &scatter::KIND,
+    &fit::KIND,
     &accuracy::KIND,
     &rating::KIND,
     &stability::KIND,

@@ -20,8 +20,8 @@ use declare::units::{RATIO, split_quantity};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
 pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";
-const FIELDS: [&str; 11] =
-    ["field", "values", "from", "to", "count", "within", "shape", "iso1328", "normal", "mean", "mode"];
+const FIELDS: [&str; 12] =
+    ["field", "values", "from", "to", "count", "follows", "within", "shape", "iso1328", "normal", "mean", "mode"];
 
 /// A stage that the asked one reads, near or far.
 struct Link {
@@ -171,9 +171,22 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         }
     };
     let one = |node: &Node| number(name, target.shape, node);
+    let path_text = text;
     let about = || path.written(stages.pairs, stages.kinds);
     let stated = spread::Stated { name, fields, place: pair.place, measure: Measure::new(name, target.shape, None) };
-    let (values, first, values_place) = if let Some((spread, first, place)) = stated.spread(multiple, about)? {
+    let (values, first, values_place) = if let Some(formula) = given("follows") {
+        if let Some(other) = fields.iter().find(|other| !["field", "follows"].contains(&other.key.as_str())) {
+            let message = format!("{} does not go with `follows`, which says all of it", quote(&other.key));
+            return Err(Diagnostic::new(message).at(other.place));
+        }
+        let text = scalar("follows", &formula.node, &Shape::Text)?;
+        let written = about()?;
+        if written.is_null() {
+            let message = format!("the study has no value of {}, by which its unit were known", quote(path_text));
+            return Err(Diagnostic::new(message).at(formula.node.place).help("write one in its stage"));
+        }
+        (Values::Follows(text.to_owned()), written, formula.node.place)
+    } else if let Some((spread, first, place)) = stated.spread(multiple, about)? {
         (Values::Spread(spread), first, place)
     } else {
         match (given("values"), given("from"), given("to"), given("count")) {
