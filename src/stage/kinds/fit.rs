@@ -23,8 +23,8 @@ use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::varied::{Axis, Values, Varied};
 use declare::record::{Record, Value};
 use declare::units::{parse_quantity, showing};
+use gearmesh::optimize::least_squares::Answers;
 use gearmesh::optimize::least_squares::uncertainty::{Uncertainty, digits};
-use gearmesh::optimize::least_squares::{Answers, Search};
 use studygraph::table::data::{Table, TableError};
 use studygraph::table::schema::Schema;
 
@@ -344,8 +344,7 @@ impl Fitting {
             };
             Ok(found.into_iter().map(one).collect())
         };
-        let search = Search { bounds, steps: self.steps };
-        let found = search::from_all(&search, &starts, &mut evaluate, context.progress)?;
+        let found = search::from_all((&bounds, self.steps), &starts, &mut evaluate, context.progress)?;
         if found.solutions.is_empty() {
             // A mistake of the study's text has its place; what a stage cannot do has none.
             return Err(match reason {
@@ -436,6 +435,3 @@ impl Stage for Fitting {
         Ok(made.into_iter().filter(|table| context.demand.table(table.name())).collect())
     }
 }
-
-#[cfg(test)]
-mod tests;

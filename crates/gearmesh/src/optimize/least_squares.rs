@@ -22,8 +22,6 @@ pub type Answers = Vec<Option<Vec<f64>>>;
 const RIGHT_ANGLE: f64 = 1e-10;
 /// Steps below this share of a parameter's scale are none.
 const NO_STEP: f64 = 1e-10;
-/// A sum of squares that would fall by less than this share of itself is the least.
-const NO_GAIN: f64 = 1e-14;
 /// A step is taken when it gains at least this share of what was expected.
 const ENOUGH: f64 = 1e-4;
 /// Where damping starts, as a share of the largest squared singular value; and where a step is none for certain.
@@ -37,6 +35,10 @@ pub struct Search {
     pub bounds: Vec<(f64, f64)>,
     /// Steps that are taken at most.
     pub steps: usize,
+    /// A step that would lower the sum of squares by no more than this share of it, or of 1, is the last.
+    pub gain: f64,
+    /// Length of the noise of all residuals: see [`derivative::noise`].
+    pub noise: f64,
 }
 
 /// Why a search ended.
@@ -69,6 +71,13 @@ pub struct Fit {
     pub end: End,
 }
 
+/// A step that leads lower.
+struct Step {
+    next: Vec<f64>,
+    found: Vec<f64>,
+    is_last: bool,
+}
+
 impl Search {
     /// Searches from a point of the box; `evaluate` is asked for several points at once. None where the model has no residuals at
     /// the start.
@@ -82,7 +91,7 @@ impl Search {
     ) -> Result<Option<Fit>, E> {
         let mut point = self.inside(start);
         let Some(mut residuals) = evaluate(std::slice::from_ref(&point))?.pop().flatten() else { return Ok(None) };
-        let mut steps = Steps::new(&self.bounds, &point, &residuals, evaluate)?;
+        let mut steps = Steps::new(&self.bounds, self.noise);
         let mut lengths = vec![0.0_f64; point.len()];
         let (mut taken, mut damping, mut end) = (0, None, End::Settled);
         let mut jacobian = steps.jacobian(&point, &residuals, evaluate)?;
@@ -100,13 +109,14 @@ impl Search {
                 lengths[*at] = lengths[*at].max(dot(&jacobian[*at], &jacobian[*at]).sqrt());
             }
             let damped = Damped::new(&free, &jacobian, &residuals, &lengths);
-            let Some((next, found)) =
-                self.step((&point, &residuals, &jacobian), &damped, &mut damping, &steps, evaluate)?
-            else {
-                break is_held;
-            };
+            let step = self.step((&point, &residuals, &jacobian), &damped, &mut damping, &steps, evaluate)?;
+            let Some(Step { next, found, is_last }) = step else { break is_held };
             (point, residuals) = (next, found);
             taken += 1;
+            if is_last {
+                // So short that the derivatives are as before.
+                break is_held;
+            }
             jacobian = steps.jacobian(&point, &residuals, evaluate)?;
         };
         let sum_of_squares = dot(&residuals, &residuals);
@@ -135,7 +145,7 @@ impl Search {
         damping: &mut Option<f64>,
         steps: &Steps,
         evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>,
-    ) -> Result<Option<(Vec<f64>, Vec<f64>)>, E> {
+    ) -> Result<Option<Step>, E> {
         let largest = damped.parts.values[0] * damped.parts.values[0];
         let mut now = damping.unwrap_or(FIRST_DAMPING * largest);
         let (sum, mut factor) = (dot(residuals, residuals), 2.0);
@@ -152,9 +162,10 @@ impl Search {
                 residuals[row] + change
             });
             let expected = sum - linear.map(|value| value * value).sum::<f64>();
-            if is_none || (expected > 0.0 && expected <= (NO_GAIN * sum).max(steps.noise_squared())) {
+            if is_none {
                 return Ok(None);
             }
+            let is_last = expected > 0.0 && expected <= (self.gain * sum.max(1.0)).max(self.noise * self.noise);
             let found = evaluate(std::slice::from_ref(&next))?.pop().flatten();
             let gained = found.as_ref().map_or(f64::NAN, |found| sum - dot(found, found));
             let share = gained / expected;
@@ -162,7 +173,10 @@ impl Search {
                 let cube = 2.0 * share.min(1.0) - 1.0;
                 let less = if share > 0.9 && share < 1.1 { 0.1 } else { (1.0 - cube * cube * cube).max(1.0 / 3.0) };
                 *damping = Some((now * less).max(f64::EPSILON * f64::EPSILON * largest));
-                return Ok(Some((next, found)));
+                return Ok(Some(Step { next, found, is_last }));
+            }
+            if is_last {
+                return Ok(None);
             }
             now = (now * factor).max(f64::MIN_POSITIVE);
             factor *= 2.0;

@@ -119,7 +119,7 @@ impl Goal {
                 let message = format!("`{}` is no cell of `{of}`, the stage that is computed anew", operand.text);
                 return Err(Diagnostic::new(message)
                     .at(operand.place)
-                    .help(format!("`of: {}` asks that one", cell.stage)));
+                    .help("name its cells, or another stage with `of`"));
             }
             goal.output(operand, schemas)?;
         }

@@ -6,6 +6,7 @@ use declare::error::Failure;
 use declare::seed::Seed;
 use gearmesh::numeric::student;
 use gearmesh::optimize::by_number::LatinHypercube;
+use gearmesh::optimize::least_squares::derivative::noise;
 use gearmesh::optimize::least_squares::uncertainty::Uncertainty;
 use gearmesh::optimize::least_squares::{Answers, End, Fit, Search};
 
@@ -82,19 +83,27 @@ pub fn starts(own: Option<Vec<f64>>, bounds: &[(f64, f64)], count: usize, seed: 
     own.into_iter().chain((0..drawn).map(point)).collect()
 }
 
+/// A step is the last that would move no parameter by more than 1e-4 of its standard deviation.
+const GAIN: f64 = 1e-8;
+
 /// Searches from each start.
 ///
 /// # Errors
 /// What `evaluate` says.
 pub fn from_all(
-    search: &Search,
+    (bounds, steps): (&[(f64, f64)], usize),
     starts: &[Vec<f64>],
     evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, Failure>,
     progress: &dyn Fn(f64),
 ) -> Result<Found, Failure> {
     let mut found = Found { solutions: Vec::new(), without: 0 };
-    let scales: Vec<f64> = search.bounds.iter().map(|(low, high)| high - low).collect();
+    let mut search = Search { bounds: bounds.to_vec(), steps, gain: GAIN, noise: f64::NAN };
+    let scales: Vec<f64> = bounds.iter().map(|(low, high)| high - low).collect();
     for (number, start) in starts.iter().enumerate() {
+        if search.noise.is_nan() {
+            // It is about the same everywhere.
+            search.noise = noise(bounds, start, evaluate)?.unwrap_or(f64::NAN);
+        }
         match search.from(start, evaluate)? {
             None => found.without += 1,
             Some(fit) => {

@@ -33,50 +33,44 @@ pub struct Steps {
 
 type Evaluate<'e, E> = &'e mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>;
 
+/// The length of the noise of all residuals around a point; none where the model has none there.
+///
+/// # Errors
+/// What `evaluate` says.
+pub fn noise<E>(bounds: &[(f64, f64)], point: &[f64], evaluate: Evaluate<E>) -> Result<Option<f64>, E> {
+    let scales = Steps::new(bounds, 0.0).scales(point);
+    // Inward, so that all points are in the box.
+    let way = point.iter().zip(bounds).zip(&scales);
+    let way: Vec<f64> =
+        way.map(|((value, (low, high)), scale)| if high - value > value - low { *scale } else { -scale }).collect();
+    let at = |number: usize| {
+        let along = APART * number as f64;
+        point.iter().zip(&way).map(|(value, way)| value + along * way).collect::<Vec<f64>>()
+    };
+    let points: Vec<Vec<f64>> = (0..POINTS).map(at).collect();
+    let answers = evaluate(&points)?;
+    let Some(middle) = answers[0].clone() else { return Ok(None) };
+    let all: Option<Vec<Vec<f64>>> = answers.into_iter().collect();
+    let of_row = |row: usize| {
+        let floor = ROUNDING * middle[row].abs();
+        let values = all.as_ref().map(|all| all.iter().map(|answer| answer[row]).collect());
+        values.and_then(noise_in).unwrap_or(0.0).max(floor)
+    };
+    let all: Vec<f64> = (0..middle.len()).map(of_row).collect();
+    Ok(Some(dot(&all, &all).sqrt()))
+}
+
 impl Steps {
-    /// Looks at the noise around a point.
-    ///
-    /// # Errors
-    /// What `evaluate` says.
-    pub fn new<E>(bounds: &[(f64, f64)], point: &[f64], residuals: &[f64], evaluate: Evaluate<E>) -> Result<Self, E> {
+    /// For a model with this noise.
+    pub fn new(bounds: &[(f64, f64)], noise: f64) -> Self {
         let share = libm::cbrt(3.0 * ROUNDING);
-        let mut steps =
-            Self { bounds: bounds.to_vec(), shares: vec![share; bounds.len()], noise: 0.0, is_fitted: false };
-        let scales = steps.scales(point);
-        // Inward, so that all points are in the box.
-        let way: Vec<f64> = point
-            .iter()
-            .zip(bounds)
-            .zip(&scales)
-            .map(|((value, (low, high)), scale)| if high - value > value - low { *scale } else { -scale })
-            .collect();
-        let at = |number: usize| {
-            let along = APART * number as f64;
-            point.iter().zip(&way).map(|(value, way)| value + along * way).collect::<Vec<f64>>()
-        };
-        let further: Vec<Vec<f64>> = (1..POINTS).map(at).collect();
-        let answers: Option<Vec<Vec<f64>>> = evaluate(&further)?.into_iter().collect();
-        let of_row = |row: usize| {
-            let floor = ROUNDING * residuals[row].abs();
-            let Some(answers) = &answers else { return floor };
-            let mut values = vec![residuals[row]];
-            values.extend(answers.iter().map(|answer| answer[row]));
-            noise(values).unwrap_or(0.0).max(floor)
-        };
-        let all: Vec<f64> = (0..residuals.len()).map(of_row).collect();
-        steps.noise = dot(&all, &all).sqrt();
-        Ok(steps)
+        Self { bounds: bounds.to_vec(), shares: vec![share; bounds.len()], noise, is_fitted: false }
     }
 
     /// Over which length each parameter changes much.
     pub fn scales(&self, point: &[f64]) -> Vec<f64> {
         let one = |(value, (low, high)): (&f64, &(f64, f64))| value.abs().max(OF_RANGE * (high - low));
         point.iter().zip(&self.bounds).map(one).collect()
-    }
-
-    /// Σ ε² of all residuals.
-    pub fn noise_squared(&self) -> f64 {
-        self.noise * self.noise
     }
 
     /// By parameter, the length of what noise does to its derivative.
@@ -168,7 +162,7 @@ fn column(middle: &[f64], answers: &[Option<Vec<f64>>], offsets: &[f64]) -> Vec<
 }
 
 /// The standard deviation of the noise in values at equal distances; none where the differences do not look like noise.
-fn noise(values: Vec<f64>) -> Option<f64> {
+fn noise_in(values: Vec<f64>) -> Option<f64> {
     let mut table = values;
     let mut levels: Vec<(f64, bool)> = Vec::new();
     let mut factor = 1.0;

@@ -5,6 +5,7 @@
 
 use std::convert::Infallible;
 
+use super::derivative::noise;
 use super::uncertainty::Uncertainty;
 use super::{Answers, End, Search};
 
@@ -137,7 +138,9 @@ fn certified_values_are_met() {
             Ok(points.iter().map(|point| Some(one(point))).collect())
         };
         for start in set.starts {
-            let search = Search { bounds: set.most.iter().map(|most| (0.0, *most)).collect(), steps: 500 };
+            let bounds: Vec<(f64, f64)> = set.most.iter().map(|most| (0.0, *most)).collect();
+            let Ok(Some(noise)) = noise(&bounds, start, &mut model) else { panic!("{} has no residuals", set.name) };
+            let search = Search { bounds, steps: 500, gain: 1e-18, noise };
             let Ok(Some(fit)) = search.from(start, &mut model) else { panic!("{} has no residuals", set.name) };
             assert_eq!((fit.end, fit.freedom()), (End::Settled, set.data.len() - start.len()), "{}", set.name);
             let off = (fit.sum_of_squares / set.sum_of_squares - 1.0).abs();

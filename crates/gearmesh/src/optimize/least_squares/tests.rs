@@ -14,7 +14,9 @@ fn fitted(bounds: &[(f64, f64)], start: &[f64], model: &dyn Fn(&[f64]) -> Option
         }
         Ok(points.iter().map(|point| model(point)).collect())
     };
-    let Ok(fit) = Search { bounds: bounds.to_vec(), steps: 200 }.from(start, &mut evaluate);
+    let Ok(noise) = derivative::noise(bounds, start, &mut evaluate);
+    let search = Search { bounds: bounds.to_vec(), steps: 200, gain: 1e-14, noise: noise.unwrap_or(0.0) };
+    let Ok(fit) = search.from(start, &mut evaluate);
     (fit, asked)
 }
 

@@ -15,7 +15,7 @@ fn noise_is_told_from_what_is_smooth() {
         for _ in 0..40 {
             let values: Vec<f64> =
                 (0..POINTS).map(|at| libm::sin(1.0 + APART * at as f64) + width * scattered(&mut state)).collect();
-            all.extend(noise(values));
+            all.extend(noise_in(values));
         }
         assert!(all.len() > 20, "{}", all.len());
         let wanted = width / 12.0_f64.sqrt();
@@ -24,7 +24,7 @@ fn noise_is_told_from_what_is_smooth() {
     }
     // Of what has none, nothing is made up.
     let exact: Vec<f64> = (0..POINTS).map(|at| 1.0 + at as f64).collect();
-    assert!(noise(exact).unwrap_or(0.0) < 1e-15);
+    assert!(noise_in(exact).unwrap_or(0.0) < 1e-15);
 }
 
 /// Tier: closed form; the derivative of a sine with noise is right to about ε^(2/3), which a step for exact numbers is not, and
@@ -38,7 +38,7 @@ fn steps_are_as_long_as_the_noise_asks_for() {
     };
     for at in [1.0, 0.2, 1.5] {
         let residuals = model(&[vec![at]]).unwrap().pop().flatten().unwrap();
-        let mut steps = Steps::new(&[(0.2, 1.5)], &[at], &residuals, &mut model).unwrap();
+        let mut steps = Steps::new(&[(0.2, 1.5)], noise(&[(0.2, 1.5)], &[at], &mut model).unwrap().unwrap());
         let found = steps.jacobian(&[at], &residuals, &mut model).unwrap();
         let off = (found[0][0] - libm::cos(at)).abs();
         assert!(off < 3e-5, "{off:e} at {at}, step {:e}", steps.shares[0]);
