@@ -155,7 +155,8 @@ fn what_is_not_determined_and_what_cannot_be_is_said() {
     assert!(summary.floats("condition")[0].is_nan() && solutions.floats("width_standard_deviation")[0].is_nan());
     // Along the product, width falls by width/modulus.
     let per = solutions.floats("width")[0] / solutions.floats("modulus")[0];
-    let wanted = format!("modulus + 1 GPa, width − {} mm", declare::number::significant(per, 3));
+    let wanted = format!("modulus + 1\u{202f}GPa, width − {}\u{202f}mm", declare::number::significant(per, 3));
+    assert_eq!(solutions.rows(), 1, "{}", said(&found));
     assert_eq!(summary.texts("flat")[0], wanted, "{}", said(&found));
     assert!(found["fit"].warnings[0].contains("nothing that is met changes along modulus"));
 

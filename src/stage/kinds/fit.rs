@@ -170,21 +170,18 @@ fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic
         return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
     }
     let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
-    let mut sources = Vec::new();
-    let mut next = 0;
-    for axis in axes {
+    let source = |axis: &Axis| {
         let Values::Follows(text) = &axis.values else {
-            sources.push(Source::Free(next));
-            next += 1;
-            continue;
+            return Ok(Source::Free(names.iter().position(|name| *name == axis.name).unwrap_or_default()));
         };
         let wrong = |message: String| Diagnostic::new(message).at(axis.values_place);
         let formula = Formula::parse(text, &names).map_err(wrong)?;
         if formula.is_claim() {
             return Err(wrong(format!("`{text}` is true or false; `follows` is a number")));
         }
-        sources.push(Source::Follows(formula));
-    }
+        Ok(Source::Follows(formula))
+    };
+    let sources = axes.iter().map(source).collect::<Result<Vec<_>, _>>()?;
     Ok((parameters, sources))
 }
 

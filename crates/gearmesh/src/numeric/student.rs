@@ -20,7 +20,7 @@ pub fn within(t: f64, freedom: usize) -> f64 {
     let odd = freedom % 2 == 1;
     // Terms c, 2/3 c³, 2·4/(3·5) c⁵, … of the odd and 1, 1/2 c², 1·3/(2·4) c⁴, … of the even.
     let (mut term, mut sum) = (if odd { cosine } else { 1.0 }, 0.0);
-    let mut power = if odd { 1 } else { 0 };
+    let mut power = usize::from(odd);
     while power + 2 <= freedom {
         sum += term;
         term *= square * (power + 1) as f64 / (power + 2) as f64;

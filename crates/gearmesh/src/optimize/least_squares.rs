@@ -17,6 +17,8 @@ use derivative::Steps;
 
 /// What a model gives at each of some points: its residuals, as many at each point, or none where it has none.
 pub type Answers = Vec<Option<Vec<f64>>>;
+/// A model, which is asked for several points at once.
+pub type Evaluate<'e, E> = &'e mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>;
 
 /// A direction of the residuals is at right angles to all columns when every cosine is below this.
 const RIGHT_ANGLE: f64 = 1e-10;
@@ -79,16 +81,11 @@ struct Step {
 }
 
 impl Search {
-    /// Searches from a point of the box; `evaluate` is asked for several points at once. None where the model has no residuals at
-    /// the start.
+    /// Searches from a point of the box; none where the model has no residuals at the start.
     ///
     /// # Errors
     /// What `evaluate` says.
-    pub fn from<E>(
-        &self,
-        start: &[f64],
-        evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>,
-    ) -> Result<Option<Fit>, E> {
+    pub fn from<E>(&self, start: &[f64], evaluate: Evaluate<E>) -> Result<Option<Fit>, E> {
         let mut point = self.inside(start);
         let Some(mut residuals) = evaluate(std::slice::from_ref(&point))?.pop().flatten() else { return Ok(None) };
         let mut steps = Steps::new(&self.bounds, self.noise);
@@ -144,7 +141,7 @@ impl Search {
         damped: &Damped,
         damping: &mut Option<f64>,
         steps: &Steps,
-        evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>,
+        evaluate: Evaluate<E>,
     ) -> Result<Option<Step>, E> {
         let largest = damped.parts.values[0] * damped.parts.values[0];
         let mut now = damping.unwrap_or(FIRST_DAMPING * largest);

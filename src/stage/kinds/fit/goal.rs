@@ -121,7 +121,7 @@ impl Goal {
                     .at(operand.place)
                     .help("name its cells, or another stage with `of`"));
             }
-            goal.output(operand, schemas)?;
+            Self::output(operand, schemas)?;
         }
         if let Some(dimension) = goal.dimension(schemas)? {
             let number = Number { si: f64::NAN, dimension };
@@ -160,8 +160,8 @@ impl Goal {
         })
     }
 
-    /// The cell as an output of the stage.
-    fn output(&self, operand: &Operand, schemas: &[Schema]) -> Result<Output, Diagnostic> {
+    /// A cell as an output of the stage.
+    fn output(operand: &Operand, schemas: &[Schema]) -> Result<Output, Diagnostic> {
         let rest = operand.text.split_once('.').map_or("", |(_, rest)| rest);
         Output::read(&Placed { value: rest.to_owned(), place: operand.place }, schemas)
     }
@@ -169,7 +169,7 @@ impl Goal {
     /// Adds what it needs of the stage's tables.
     pub fn ask(&self, schemas: &[Schema], demand: &mut Demand) {
         for operand in self.operands().filter(|operand| operand.cell().is_some()) {
-            if let Ok(output) = self.output(operand, schemas) {
+            if let Ok(output) = Self::output(operand, schemas) {
                 output.ask(schemas, demand);
             }
         }

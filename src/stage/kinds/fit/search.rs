@@ -8,7 +8,7 @@ use gearmesh::numeric::student;
 use gearmesh::optimize::by_number::LatinHypercube;
 use gearmesh::optimize::least_squares::derivative::noise;
 use gearmesh::optimize::least_squares::uncertainty::Uncertainty;
-use gearmesh::optimize::least_squares::{Answers, End, Fit, Search};
+use gearmesh::optimize::least_squares::{End, Evaluate, Fit, Search};
 
 /// Ends are one when the way between them changes no residual by more than this, in tolerances, or this share of the largest.
 const ALIKE: f64 = 0.1;
@@ -83,6 +83,10 @@ pub fn starts(own: Option<Vec<f64>>, bounds: &[(f64, f64)], count: usize, seed: 
     own.into_iter().chain((0..drawn).map(point)).collect()
 }
 
+fn is_flat(fit: &Fit) -> bool {
+    Uncertainty::of(fit).flat.is_some()
+}
+
 /// A step is the last that would move no parameter by more than 1e-4 of its standard deviation.
 const GAIN: f64 = 1e-8;
 
@@ -93,7 +97,7 @@ const GAIN: f64 = 1e-8;
 pub fn from_all(
     (bounds, steps): (&[(f64, f64)], usize),
     starts: &[Vec<f64>],
-    evaluate: &mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, Failure>,
+    evaluate: Evaluate<Failure>,
     progress: &dyn Fn(f64),
 ) -> Result<Found, Failure> {
     let mut found = Found { solutions: Vec::new(), without: 0 };
@@ -109,7 +113,9 @@ pub fn from_all(
             Some(fit) => {
                 let same = found.solutions.iter_mut().find(|other| {
                     let alike = ALIKE * other.largest().max(1.0);
-                    other.fit.is_as(&fit, alike, &scales)
+                    // On a valley in which nothing changes ends may be far apart, and the way between them may be bent.
+                    let are_flat = || is_flat(&other.fit) && is_flat(&fit);
+                    other.fit.is_as(&fit, alike, &scales) || (other.fit.apart(&fit) <= alike && are_flat())
                 });
                 match same {
                     Some(other) => {

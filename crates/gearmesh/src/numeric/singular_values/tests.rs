@@ -1,3 +1,5 @@
+//! Singular values against closed forms.
+
 use super::*;
 
 /// Tier: closed form; Läuchli's matrix [1 1; e 0; 0 e] has √(2 + e²) and e, of which a method by AᵀA loses the second.

@@ -1,3 +1,5 @@
+//! Student's distribution against tables and closed forms.
+
 use super::*;
 
 /// Tier: published value; percentage points of Student's distribution, Abramowitz and Stegun, table 26.10, two-sided 0.95 and

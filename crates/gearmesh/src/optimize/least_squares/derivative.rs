@@ -5,7 +5,7 @@
 //! differences at points so near to each other that nothing but noise is left in the higher ones (Moré and Wild, SIAM J. Sci.
 //! Comput. 33 (2011) 1292). Must not know: how a search goes on.
 
-use super::Answers;
+use super::Evaluate;
 use crate::numeric::singular_values::dot;
 
 /// A parameter's scale is its size, or this share of its range where that is more.
@@ -30,8 +30,6 @@ pub struct Steps {
     noise: f64,
     is_fitted: bool,
 }
-
-type Evaluate<'e, E> = &'e mut dyn FnMut(&[Vec<f64>]) -> Result<Answers, E>;
 
 /// The length of the noise of all residuals around a point; none where the model has none there.
 ///

@@ -1,3 +1,5 @@
+//! Fits with closed forms: a line, bounds, flat directions, several solutions, models with holes and with noise.
+
 use std::convert::Infallible;
 
 use super::uncertainty::{Uncertainty, digits};

@@ -112,8 +112,13 @@ impl Fit {
                 .map(|row| jacobian.iter().zip(&way).map(|(column, way)| column[row] * way).sum::<f64>().abs());
             rows.fold(0.0, f64::max)
         };
-        let apart = self.residuals.iter().zip(&other.residuals).map(|(one, two)| (one - two).abs()).fold(0.0, f64::max);
-        apart <= alike && changes(&self.jacobian).min(changes(&other.jacobian)) <= alike
+        self.apart(other) <= alike && changes(&self.jacobian).min(changes(&other.jacobian)) <= alike
+    }
+
+    /// The largest difference of a residual of two fits.
+    #[must_use]
+    pub fn apart(&self, other: &Self) -> f64 {
+        self.residuals.iter().zip(&other.residuals).map(|(one, two)| (one - two).abs()).fold(0.0, f64::max)
     }
 }
 

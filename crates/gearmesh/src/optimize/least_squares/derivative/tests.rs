@@ -1,3 +1,6 @@
+//! Noise of a known width, and derivatives of what has it.
+
+use super::super::Answers;
 use super::*;
 
 /// Numbers of which nothing but their spread is known: a linear congruential generator (Knuth's MMIX).
