@@ -68,6 +68,8 @@ static NAMED: &[Naming] = {
         of("report", "where", TABLE),
         of("report", "marked_x", MARKED),
         of("report", "marked_y", MARKED),
+        of("fit", "cell", Names::Cells),
+        of("fit", "with", Names::Cells),
         of("sweep", "outputs", ROWS),
         of("scatter", "outputs", ROWS),
         of("accuracy", "quantities", RUNS),

@@ -14,11 +14,13 @@ pub mod kinds;
 pub mod limit;
 pub mod measures;
 pub mod names;
+pub mod operand;
 pub mod pair;
 pub mod quantity;
 pub mod root_influences;
 pub mod rows;
 pub mod simpler;
+pub mod target;
 
 pub use studygraph::stage::{
     Ahead, Context, Curves, Demand, DimensionOf, Estimate, Inputs, KeysOf, Kind, Named, Omission, Others, Parts, Port,

@@ -14,6 +14,7 @@ mod e2e;
 mod estimates;
 mod export;
 mod extremes;
+mod fit;
 mod fronts;
 mod fuzz;
 mod hunting;

@@ -84,14 +84,18 @@ for path in studies:
 # What no schema can see: gears that do not fit, stages that are not there, rows that no table has. And what no text is.
 beyond = {
     "bore_above_root", "condition_on_unknown_column", "contact_law_of_a_whole_pair", "contact_ratio_below_one", "cycle",
-    "interference", "thickness_upside_down", "profile_shift_said_twice", "profile_shifts_both_follow", "pitch_deviations_twice", "thickness_leaves_no_tooth", "balls_too_near", "load_dependent_without_torque", "missing_column", "missing_stage", "missing_table",
-    "no_row_with_this_design", "no_row_with_this_torque", "pointed_tip", "rack_above_full_round", "relief_given_twice",
-    "resolved_contact_of_a_beam", "resolved_contact_without_torque", "root_stress_without_a_mesh",
-    "sharp_root_of_finite_elements", "torque_backwards", "wrong_kind_of_stage", "bad_tolerance", "device_as_stage",
-    "device_as_study", "nul_in_a_name", "nul_in_title", "bore_of_nothing", "octal_teeth", "hexadecimal_teeth",
-    "empty_file", "no_designs", "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
+    "interference", "thickness_upside_down", "profile_shift_said_twice", "profile_shifts_both_follow",
+    "pitch_deviations_twice", "thickness_leaves_no_tooth", "balls_too_near", "load_dependent_without_torque",
+    "missing_column", "missing_stage", "missing_table", "no_row_with_this_design", "no_row_with_this_torque",
+    "pointed_tip", "rack_above_full_round", "relief_given_twice", "resolved_contact_of_a_beam",
+    "resolved_contact_without_torque", "root_stress_without_a_mesh", "sharp_root_of_finite_elements",
+    "torque_backwards", "wrong_kind_of_stage", "bad_tolerance", "device_as_stage", "device_as_study", "nul_in_a_name",
+    "nul_in_title", "bore_of_nothing", "octal_teeth", "hexadecimal_teeth", "empty_file", "no_designs",
+    "condition_of_a_figure", "constraint_sign", "constraint_unit", "constraint_unknown_column",
     "constraints_contradict", "objective_unknown", "objectives_for_one", "sizing_objectives", "units_of_a_claim",
     "rating_design_alone", "trace_the_other_way", "trace_in_millimetres", "trace_without_a_deviation",
+    "fit_unknown_path", "fit_unknown_cell", "fit_meets_nothing", "fit_of_too_little", "fit_bounds_upside_down",
+    "fit_of_itself", "fit_meets_itself",
 }
 seen = []
 for path in sorted(pathlib.Path("tests/bad").glob("*.yaml")):

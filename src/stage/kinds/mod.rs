@@ -2,6 +2,7 @@
 
 pub mod accuracy;
 pub mod export;
+pub mod fit;
 pub mod geometry;
 pub mod hunting;
 pub mod modification;
@@ -30,6 +31,7 @@ pub const KINDS: &[&Kind] = &[
     &hunting::KIND,
     &sweep::KIND,
     &scatter::KIND,
+    &fit::KIND,
     &accuracy::KIND,
     &rating::KIND,
     &stability::KIND,

@@ -8,24 +8,22 @@
 mod compare;
 mod entry;
 mod figure;
-mod operand;
-mod rows;
 mod stated;
 mod stated_figure;
 mod verdict;
 
 use std::collections::BTreeSet;
 
+use crate::stage::operand::Operand;
+use crate::stage::operand::names::Shared;
 use crate::stage::{Ahead, Context, Demand, DimensionOf, Estimate, Inputs, Kind, Named, Port, RowCount, Stage, Want};
 use compare::{Compared, Comparison, comparisons};
 use declare::Declared;
 use declare::declared::{Declared, Placed};
 use declare::error::{Diagnostic, Failure, Faults};
 use declare::record::Record;
-use entry::names::Shared;
 use entry::{ReportEntry, verdicts};
 use figure::{Figure, figures, marks};
-use operand::Operand;
 use stated::{PrintedTable, Published};
 use stated_figure::StatedFigure;
 use studygraph::table::columns::Columns;
@@ -98,7 +96,7 @@ struct Report {
 
 fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
     let stated = Stated::checked(record)?;
-    let shared = Shared::read(stated.shared.as_deref().unwrap_or_default())?;
+    let shared = Shared::read(stated.shared.as_deref().unwrap_or_default(), &entry::GIVEN)?;
     let published = stated.published.into_iter().flatten().zip(record.each_inside(Stated::NAMES.published));
     let tables = stated.printout.into_iter().flatten().zip(record.each_inside(Stated::NAMES.printout));
     let printed = tables.flat_map(|(table, record)| {

@@ -10,6 +10,7 @@ pub mod gathered;
 pub mod invalid;
 mod numbers;
 pub mod output;
+pub mod points;
 mod quick;
 pub(crate) mod values;
 
@@ -175,6 +176,13 @@ impl Question<'_> {
             .or(only)
             .map(str::to_owned))
     }
+}
+
+/// Rows have values of their own in every column.
+pub fn follows_nothing(column: &Column) -> Diagnostic {
+    Diagnostic::new(format!("`{}` follows from other columns, which `kind: fit` alone can have", column.axis.name))
+        .at(column.axis.values_place)
+        .help("write its `values`, or `from` and `to`")
 }
 
 /// Takes the other designs away: nobody looks at them.

@@ -71,6 +71,8 @@ pub enum Values {
     Between(f64, f64),
     /// As a distribution has them.
     Spread(Spread),
+    /// What a formula over the other columns gives; the numbers of both are those of their units.
+    Follows(String),
 }
 
 /// How a field is distributed, as a study states it, in SI.
@@ -191,6 +193,7 @@ impl Varied {
             match &axis.values {
                 Values::Each(values) => writer.text("each").floats(values),
                 Values::Between(from, to) => writer.text("between").float(*from).float(*to),
+                Values::Follows(formula) => writer.text("follows").text(formula),
                 Values::Spread(spread) => {
                     spread.write(writer);
                     continue;

@@ -24,6 +24,7 @@ pub mod hypervolume;
 mod kink;
 pub mod latin_hypercube;
 pub mod leaders;
+pub mod least_squares;
 mod line;
 mod local;
 pub mod nelder_mead;

@@ -255,6 +255,12 @@ fn varied() -> Value {
             "description": "The values, one or several.",
             "anyOf": [number, { "type": "array", "minItems": 1, "items": number }],
         },
+        "follows": {
+            "title": "Follows",
+            "type": "string",
+            "description": "In a fit: what it is for the values of the other columns, each in its own unit.",
+            "examples": ["2 * bore"],
+        },
     });
     if let (Value::Object(properties), Value::Object(ends)) = (&mut properties, leaf::ends(&number)) {
         properties.extend(ends);

@@ -103,6 +103,7 @@ fn axis_shown(axis: &Axis) -> Json {
     };
     let shown = match &axis.values {
         Values::Between(from, to) => json!({ "from": one(*from), "to": one(*to) }),
+        Values::Follows(formula) => json!({ "follows": formula }),
         Values::Spread(spread) => spread_shown(spread, &one),
         Values::Each(values) if values.len() <= MOST => values.iter().map(|si| one(*si)).collect(),
         Values::Each(values) => {

@@ -20,8 +20,8 @@ use declare::units::{RATIO, split_quantity};
 
 /// What names of columns look like, as a regular expression: they are words of formulas and of SQL.
 pub const COLUMN_PATTERN: &str = "^[a-z][a-z0-9_]{0,63}$";
-const FIELDS: [&str; 11] =
-    ["field", "values", "from", "to", "count", "within", "shape", "iso1328", "normal", "mean", "mode"];
+const FIELDS: [&str; 12] =
+    ["field", "values", "from", "to", "count", "follows", "within", "shape", "iso1328", "normal", "mean", "mode"];
 
 /// A stage that the asked one reads, near or far.
 struct Link {
@@ -37,6 +37,11 @@ struct Link {
 /// # Errors
 /// A path that leads nowhere or to no number; values that the field does not take; a stage that has nothing to do with it.
 pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Varied, Diagnostic> {
+    // A stage of a kind that cannot be meant is told of when all references are looked at.
+    let kind = stages.pairs.iter().find(|pair| pair.key == of.stage).and_then(|pair| kind_of(&pair.node));
+    if kind.is_some_and(|kind| !of.kinds.is_empty() && !of.kinds.contains(&kind)) {
+        return Ok(Varied::default());
+    }
     let mut links = Vec::new();
     link(stages, &of.stage, of.place, &mut Vec::new(), &mut links)?;
     let mut tree = stages.pairs.to_vec();
@@ -84,6 +89,13 @@ pub fn varied(stages: Stages, of: &Reference, pairs: &[KeyValue]) -> Result<Vari
         found.axes.push(axis);
     }
     Ok(found)
+}
+
+/// The kind of a stage as written.
+fn kind_of(stage: &Node) -> Option<&str> {
+    let Content::Mapping(fields) = &stage.content else { return None };
+    let kind = fields.iter().find(|field| field.key == "kind")?;
+    if let Content::Scalar { text, .. } = &kind.node.content { Some(text) } else { None }
 }
 
 /// A place that no text has.
@@ -171,9 +183,22 @@ fn axis(stages: Stages, links: &[Link], pair: &KeyValue, of: &str) -> Result<(Ax
         }
     };
     let one = |node: &Node| number(name, target.shape, node);
+    let path_text = text;
     let about = || path.written(stages.pairs, stages.kinds);
     let stated = spread::Stated { name, fields, place: pair.place, measure: Measure::new(name, target.shape, None) };
-    let (values, first, values_place) = if let Some((spread, first, place)) = stated.spread(multiple, about)? {
+    let (values, first, values_place) = if let Some(formula) = given("follows") {
+        if let Some(other) = fields.iter().find(|other| !["field", "follows"].contains(&other.key.as_str())) {
+            let message = format!("{} does not go with `follows`, which says all of it", quote(&other.key));
+            return Err(Diagnostic::new(message).at(other.place));
+        }
+        let text = scalar("follows", &formula.node, &Shape::Text)?;
+        let written = about()?;
+        if written.is_null() {
+            let message = format!("the study has no value of {}, by which its unit were known", quote(path_text));
+            return Err(Diagnostic::new(message).at(formula.node.place).help("write one in its stage"));
+        }
+        (Values::Follows(text.to_owned()), written, formula.node.place)
+    } else if let Some((spread, first, place)) = stated.spread(multiple, about)? {
         (Values::Spread(spread), first, place)
     } else {
         match (given("values"), given("from"), given("to"), given("count")) {

@@ -2,9 +2,9 @@
 //!
 //! Rows are lined up by their keys; the row that is furthest apart stands for all. Must not know: published values.
 
-use super::operand::Operand;
-use super::rows::OperandRows;
 use crate::stage::Inputs;
+use crate::stage::operand::Operand;
+use crate::stage::operand::rows::OperandRows;
 use crate::stage::quantity::{Number, described, same_dimension};
 use declare::Declared;
 use declare::declared::Placed;

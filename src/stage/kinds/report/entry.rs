@@ -2,26 +2,26 @@
 //!
 //! Must not know: figures, other entries.
 
-pub mod names;
 mod units;
 
-use super::operand::{Operand, in_si};
-use super::rows::OperandRows;
-use super::stated::{Expected, Published, StatedProof, Target, read_target};
+use super::stated::{Expected, Published, StatedProof};
 use super::verdict::{Comparison, Verdict};
 use crate::stage::Inputs;
 use crate::stage::formula::{Formula, Outcome};
+use crate::stage::operand::names::{Operands, Shared, read_formula, read_operands};
+use crate::stage::operand::rows::OperandRows;
+use crate::stage::operand::{Operand, in_si};
 use crate::stage::quantity::Number;
+use crate::stage::target::{Target, read_target};
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
 use declare::record::Record;
 use declare::units::{Dimension, RATIO, in_unit};
-use names::{Operands, Shared, read_formula, read_operands};
 use studygraph::table::columns::Columns;
 use studygraph::table::schema::Column;
 
 /// Names that a proof may use without giving them.
-const GIVEN: [&str; 2] = ["published", "computed"];
+pub const GIVEN: [&str; 2] = ["published", "computed"];
 
 /// What is compared with the published value.
 enum Subject {

@@ -3,7 +3,7 @@
 //! Must not know: how shares are drawn.
 
 use crate::stage::cases::Deviations;
-use crate::stage::rows::Column;
+use crate::stage::rows::{Column, follows_nothing};
 use declare::error::Diagnostic;
 use declare::number::significant;
 use declare::record::varied::{Form, Spread, Values, Varied, Within};
@@ -32,6 +32,7 @@ pub fn of_column(column: &Column, varied: &Varied) -> Result<Option<Distribution
         }
         Values::Between(low, high) => Distribution::Uniform { low: *low, high: *high },
         Values::Spread(spread) => of_spread(spread, column, varied)?,
+        Values::Follows(_) => return Err(follows_nothing(column)),
     };
     held(found, column).map(Some)
 }

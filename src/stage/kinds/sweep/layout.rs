@@ -10,7 +10,7 @@ use crate::stage::formula::{Formula, Names, Outcome};
 use crate::stage::quantity::Number;
 use crate::stage::rows::gathered::RowParts;
 use crate::stage::rows::values::{Level, RowSet, level};
-use crate::stage::rows::{Column, rows_of_part};
+use crate::stage::rows::{Column, follows_nothing, rows_of_part};
 use declare::digest::{Digest, Writer};
 use declare::error::{Diagnostic, Failure, Place};
 use declare::record::varied::{Axis, Values};
@@ -252,6 +252,8 @@ fn first(values: &Values) -> f64 {
         Values::Each(values) => values[0],
         Values::Between(low, _) => *low,
         Values::Spread(spread) => spread.about,
+        // Refused before.
+        Values::Follows(_) => f64::NAN,
     }
 }
 
@@ -275,6 +277,7 @@ fn each(column: &Column, method: &str) -> Result<Vec<Level>, Diagnostic> {
                 .help("add a `count`, write its `values`, or take `method: { sobol: { samples: … } }`"))
         }
         Values::Spread(_) => Err(no_distribution(column)),
+        Values::Follows(_) => Err(follows_nothing(column)),
     }
 }
 
@@ -346,7 +349,12 @@ fn drawn(columns: &[Column], method: Method) -> Result<Rows, Diagnostic> {
     if let Some(column) = columns.iter().find(|column| matches!(column.axis.values, Values::Spread(_))) {
         return Err(no_distribution(column));
     }
+    if let Some(column) = columns.iter().find(|column| matches!(column.axis.values, Values::Follows(_))) {
+        return Err(follows_nothing(column));
+    }
     let span = |column: &Column| match &column.axis.values {
+        // Both were refused.
+        Values::Follows(_) => Span::Of(Vec::new()),
         Values::Spread(spread) => Span::Of(vec![level(spread.about, &column.axis.unit)]),
         Values::Between(low, high) => Span::Between {
             low: *low,

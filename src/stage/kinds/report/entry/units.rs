@@ -2,12 +2,13 @@
 //!
 //! Must not know: values.
 
-use super::{GIVEN, Operands, Proof, ReportEntry, Subject};
+use super::{GIVEN, Proof, ReportEntry, Subject};
 use crate::stage::DimensionOf;
 use crate::stage::formula::Formula;
-use crate::stage::kinds::report::operand::Source;
-use crate::stage::kinds::report::stated::Target;
+use crate::stage::operand::Source;
+use crate::stage::operand::names::Operands;
 use crate::stage::quantity::Number;
+use crate::stage::target::Target;
 use declare::error::{Diagnostic, Place};
 use declare::units::Dimension;
 

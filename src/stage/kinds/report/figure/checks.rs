@@ -2,9 +2,9 @@
 //!
 //! Must not know: how it was stated.
 
-use super::super::operand::{in_si, table};
 use super::{DESIGN, Figure, How, MarkRow, Place, StatedFigure, StatedFigureNames};
 use crate::stage::Inputs;
+use crate::stage::operand::{in_si, table};
 use crate::stage::quantity::{described, same_dimension};
 use declare::error::Diagnostic;
 use declare::units::{in_unit, parse_quantity, parse_unit, split_quantity};

@@ -1,12 +1,11 @@
-//! What the names in a formula, claim or proof stand for: its own `with`, or the `let` of the report.
+//! What the names in a formula, claim or proof stand for: its own `with`, or what a report gives to all with `let`.
 //!
 //! Must not know: what a formula is for.
 
 use std::cell::RefCell;
 use std::collections::BTreeSet;
 
-use super::super::operand::Operand;
-use super::GIVEN;
+use super::Operand;
 use crate::stage::formula::Formula;
 use declare::declared::Placed;
 use declare::error::{Diagnostic, Place};
@@ -15,16 +14,19 @@ use declare::error::{Diagnostic, Place};
 pub type Operands = Vec<(String, Operand)>;
 
 /// What names stand for in every formula, claim and proof that does not say it itself; and which of them are used.
+#[derive(Default)]
 pub struct Shared {
     operands: Operands,
     used: RefCell<BTreeSet<usize>>,
 }
 
 impl Shared {
+    /// Those that stand for something other than what is `taken`.
+    ///
     /// # Errors
     /// What is wrong with one of them, at its place.
-    pub fn read(stated: &[(String, Placed<String>)]) -> Result<Self, Diagnostic> {
-        Ok(Self { operands: read_operands(stated, &GIVEN)?, used: RefCell::default() })
+    pub fn read(stated: &[(String, Placed<String>)], taken: &[&str]) -> Result<Self, Diagnostic> {
+        Ok(Self { operands: read_operands(stated, taken)?, used: RefCell::default() })
     }
 
     /// The first that nothing uses.
@@ -42,7 +44,10 @@ impl Shared {
 }
 
 /// Reads what names stand for; refuses those that stand for something already.
-pub(super) fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
+///
+/// # Errors
+/// What is wrong with one of them, at its place.
+pub fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -> Result<Operands, Diagnostic> {
     let mut operands = Operands::new();
     for (name, given) in with {
         if taken.contains(&name.as_str()) {
@@ -55,7 +60,10 @@ pub(super) fn read_operands(with: &[(String, Placed<String>)], taken: &[&str]) -
 }
 
 /// A formula, and what its names stand for: its own first.
-pub(super) fn read_formula(
+///
+/// # Errors
+/// A formula that cannot be read, or a name that it does not use.
+pub fn read_formula(
     text: &str,
     mut with: Operands,
     given: &[&str],

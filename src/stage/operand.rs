@@ -1,6 +1,9 @@
-//! What a name in an entry stands for: quantities as written, or cells of another stage's table.
+//! What a name in a formula stands for: quantities as written, or cells of another stage's table.
 //!
 //! Must not know: verdicts. Everything is SI once it is resolved.
+
+pub mod names;
+pub mod rows;
 
 use crate::stage::Inputs;
 use crate::stage::quantity::{Number, described};

@@ -2,7 +2,7 @@
 //!
 //! Must not know: published values, verdicts.
 
-use super::operand::{Operand, Values};
+use super::{Operand, Values};
 use crate::stage::Inputs;
 use crate::stage::formula::{Formula, Names};
 use crate::stage::quantity::{Number, shown};

@@ -1,0 +1,434 @@
+//! `kind: fit`: what fields of the study must be so that cells of a stage meet published values.
+//!
+//! Least squares within bounds, from several starts, so that several solutions, none, or directions that nothing determines are
+//! found and said. The stage and what it reads are computed anew at each point, as a sweep does it. Must not know: how any
+//! stage computes.
+
+mod goal;
+mod search;
+mod tables;
+mod words;
+
+use self::goal::{Goal, Met};
+use self::search::{Found, Solution};
+use self::tables::{ParameterRow, ResidualRow, SolutionRow, Summary};
+use crate::stage::formula::{Formula, Names, Outcome};
+use crate::stage::quantity::Number;
+use crate::stage::rows::chain;
+use crate::stage::rows::points::{Memory, Points};
+use crate::stage::{Ahead, Context, Demand, Estimate, Inputs, Kind, Named, Port, RowCount, Stage};
+use declare::Declared;
+use declare::declared::Declared;
+use declare::error::{Diagnostic, Failure, Faults};
+use declare::record::varied::{Axis, Values, Varied};
+use declare::record::{Record, Value};
+use declare::units::{parse_quantity, showing};
+use gearmesh::optimize::least_squares::Answers;
+use gearmesh::optimize::least_squares::uncertainty::{Uncertainty, digits};
+use studygraph::table::data::{Table, TableError};
+use studygraph::table::schema::Schema;
+
+pub const KIND: Kind = Kind {
+    name: "fit",
+    version: 1,
+    summary: Stated::MEMBER.summary,
+    fields: Stated::MEMBER.fields,
+    curves: &[],
+    example: "
+kind: fit
+of: stiffness
+vary:
+  bore: { field: geometry.pinion.bore_radius, from: 8 mm, to: 20 mm }
+  bore_of_gear: { field: geometry.gear.bore_radius, follows: 2.75 * bore }
+meet:
+  - { label: Largest stiffness of one pair, cell: stiffness.summary.single_max, value: 2.738e8 N/m }
+",
+    build,
+};
+
+/// What fields must be so that cells of a stage meet published values: least squares within bounds, and how well it is determined.
+#[derive(Debug, Declared)]
+struct Stated {
+    /// The stage whose cells are met; it and what it reads are as in the study but for what is varied.
+    #[declared(kinds = ["geometry", "modification", "stiffness", "ste", "rating"])]
+    pub of: String,
+    /// Names of parameters, and the fields that they are with their bounds; a field can follow from the other parameters.
+    #[declared(varies = Stated::NAMES.of)]
+    pub vary: Varied,
+    /// What is to be met.
+    pub meet: Vec<Met>,
+    /// From how many points is searched: the values of the study, where they are within the bounds, and others from the seed.
+    #[declared(minimum = 1, maximum = 1000, default = "4")]
+    pub starts: usize,
+    /// Steps from each of them, at most.
+    #[declared(minimum = 1, maximum = 10_000, default = "50")]
+    pub steps: usize,
+}
+
+/// A field that is fitted.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    pub name: String,
+    pub path: String,
+    pub unit: String,
+    /// In SI.
+    pub bounds: (f64, f64),
+}
+
+impl Parameter {
+    /// In its unit.
+    fn shown(&self, si: f64) -> f64 {
+        showing(&self.unit)(si)
+    }
+}
+
+/// Where the value of a varied field comes from.
+enum Source {
+    /// Index of the parameter.
+    Free(usize),
+    Follows(Formula),
+}
+
+/// A fit.
+struct Fitting {
+    of: String,
+    points: Points,
+    axes: Vec<Axis>,
+    /// By axis.
+    sources: Vec<Source>,
+    parameters: Vec<Parameter>,
+    goals: Vec<Goal>,
+    /// The values of the study in SI, where they are within the bounds.
+    own: Option<Vec<f64>>,
+    starts: usize,
+    steps: usize,
+}
+
+fn build(record: &Record) -> Result<Box<dyn Stage>, Faults> {
+    let stated = Stated::checked(record)?;
+    let nothing = |field: &str| Err(Diagnostic::new(format!("`{field}` is empty")).at(record.place_of(field)).into());
+    if stated.vary.axes.is_empty() {
+        return nothing(Stated::NAMES.vary);
+    }
+    if stated.meet.is_empty() {
+        return nothing(Stated::NAMES.meet);
+    }
+    let schemas = match stated.vary.stages.last() {
+        Some(asked) => chain::built(asked)?.outputs(),
+        None => Vec::new(),
+    };
+    let goals = stated.meet.iter().zip(record.each_inside(Stated::NAMES.meet));
+    let goals = Faults::collect(goals.map(|(met, record)| Goal::read(met, record, (&stated.of, &schemas))))?;
+    let (parameters, sources) = parameters(&stated.vary.axes)?;
+    let values: usize = goals.iter().map(|goal| goal.targets.len()).sum();
+    if values < parameters.len() {
+        let (few, many) = (words::count(values, "value"), words::count(parameters.len(), "parameter"));
+        return Err(Diagnostic::new(format!("{few} cannot determine {many}"))
+            .at(record.place_of(Stated::NAMES.meet))
+            .help("meet more values, or vary fewer fields")
+            .into());
+    }
+    let mut demand = Demand::default();
+    for goal in &goals {
+        goal.ask(&schemas, &mut demand);
+    }
+    let points = Points::new(&stated.vary, demand)?;
+    let own = own_values(&stated.vary, &parameters);
+    let axes = stated.vary.axes;
+    let (starts, steps) = (stated.starts, stated.steps);
+    Ok(Box::new(Fitting { of: stated.of, points, axes, sources, parameters, goals, own, starts, steps }))
+}
+
+/// The parameters, and where the value of each axis comes from.
+fn parameters(axes: &[Axis]) -> Result<(Vec<Parameter>, Vec<Source>), Diagnostic> {
+    let mut parameters: Vec<Parameter> = Vec::new();
+    for axis in axes {
+        let clashes = tables::RESERVED.contains(&axis.name.as_str())
+            || axes.iter().any(|other| tables::deviation_name(&other.name) == axis.name);
+        if clashes {
+            let message = format!("`{}` is a column of the table `solutions`; take another name", axis.name);
+            return Err(Diagnostic::new(message).at(axis.place));
+        }
+        let bounds = match &axis.values {
+            Values::Between(low, high) => (*low, *high),
+            Values::Follows(_) => continue,
+            Values::Each(_) | Values::Spread(_) => {
+                return Err(Diagnostic::new(format!("`{}` has no bounds to be fitted within", axis.name))
+                    .at(axis.values_place)
+                    .help("write `from` and `to`, without a `count`"));
+            }
+        };
+        if axis.multiple.is_some() {
+            let message =
+                format!("`{}` takes whole numbers, which cannot be fitted: nothing lies between them", axis.name);
+            return Err(Diagnostic::new(message).at(axis.place).help("sweep them: `kind: sweep` takes all `values`"));
+        }
+        let (name, path, unit) = (axis.name.clone(), axis.path.clone(), axis.unit.clone());
+        parameters.push(Parameter { name, path, unit, bounds });
+    }
+    if parameters.is_empty() {
+        return Err(Diagnostic::new("nothing is free: every field follows from others").at(axes[0].values_place));
+    }
+    let names: Vec<&str> = parameters.iter().map(|parameter| parameter.name.as_str()).collect();
+    let source = |axis: &Axis| {
+        let Values::Follows(text) = &axis.values else {
+            return Ok(Source::Free(names.iter().position(|name| *name == axis.name).unwrap_or_default()));
+        };
+        let wrong = |message: String| Diagnostic::new(message).at(axis.values_place);
+        let formula = Formula::parse(text, &names).map_err(wrong)?;
+        if formula.is_claim() {
+            return Err(wrong(format!("`{text}` is true or false; `follows` is a number")));
+        }
+        Ok(Source::Follows(formula))
+    };
+    let sources = axes.iter().map(source).collect::<Result<Vec<_>, _>>()?;
+    Ok((parameters, sources))
+}
+
+/// The values that the study has; none where it has several of a field, or one outside of the bounds.
+fn own_values(varied: &Varied, parameters: &[Parameter]) -> Option<Vec<f64>> {
+    let free = varied.axes.iter().filter(|axis| matches!(axis.values, Values::Between(..)));
+    free.zip(parameters)
+        .map(|(axis, parameter)| {
+            let entry = axis.slot.entry(&varied.stages[axis.stage].record)?;
+            let value = match &entry.value {
+                Value::Quantity(value) | Value::Number(value) => *value,
+                Value::Axis(values) if values.len() == 1 => values[0],
+                _ => return None,
+            };
+            (parameter.bounds.0 <= value && value <= parameter.bounds.1).then_some(value)
+        })
+        .collect()
+}
+
+impl Fitting {
+    /// The values of all axes in SI for values of the parameters; those that follow are as their formulas say of the numbers in
+    /// the units of the columns.
+    fn values(&self, parameters: &[f64]) -> Result<Vec<f64>, String> {
+        let number = |name: &str, _row: usize| {
+            let at = self.parameters.iter().position(|parameter| parameter.name == name)?;
+            Some(Number::plain(self.parameters[at].shown(parameters[at])))
+        };
+        let names = Names { value: &number, row: 0, rows: 1 };
+        let one = |(axis, source): (&Axis, &Source)| {
+            let formula = match source {
+                Source::Free(at) => return Ok(parameters[*at]),
+                Source::Follows(formula) => formula,
+            };
+            let Outcome::Number(number) = formula.evaluate(names)? else {
+                return Err("a formula gives a number".to_owned());
+            };
+            let unit = &axis.unit;
+            let text = format!("{:e} {unit}", number.si);
+            let value = if unit.is_empty() {
+                number.si
+            } else {
+                parse_quantity(&text).map_err(|error| error.to_string())?.value
+            };
+            let (low, high) = axis.range;
+            if value < low || value > high {
+                return Err(format!("`{}` would be {text}, which `{}` cannot be", axis.name, axis.path));
+            }
+            Ok(value)
+        };
+        self.axes.iter().zip(&self.sources).map(one).collect()
+    }
+
+    /// The numbers that are to be met at points of the parameters, in the units of their targets.
+    fn found(
+        &self,
+        points: &[Vec<f64>],
+        memory: &mut Memory,
+        (context, inputs): (&Context, &Inputs),
+    ) -> Result<Vec<Result<Vec<f64>, Diagnostic>>, Failure> {
+        let all: Vec<Result<Vec<f64>, String>> = points.iter().map(|point| self.values(point)).collect();
+        let there: Vec<Vec<f64>> = all.iter().filter_map(|values| values.as_ref().ok()).cloned().collect();
+        let mut tables = self.points.tables(&there, memory, (context, inputs))?.into_iter();
+        let one = |values: Result<Vec<f64>, String>| {
+            values.map_err(Diagnostic::new)?;
+            let found = tables.next().unwrap_or_else(|| Err(String::new())).map_err(Diagnostic::new)?;
+            let mut own = Inputs::default();
+            own.ports.insert(self.of.clone(), found.iter().collect());
+            let numbers: Vec<Vec<f64>> = self.goals.iter().map(|goal| goal.found(&own)).collect::<Result<_, _>>()?;
+            Ok(numbers.concat())
+        };
+        Ok(all.into_iter().map(one).collect())
+    }
+
+    /// Each in tolerances.
+    fn residuals(&self, found: &[f64]) -> Vec<f64> {
+        let targets = self.goals.iter().flat_map(|goal| &goal.targets);
+        found.iter().zip(targets).map(|(found, target)| (found - target.stated.number) / target.tolerance).collect()
+    }
+
+    /// Names, units and paths of all that is varied.
+    fn columns(&self) -> Vec<(String, String, String)> {
+        self.axes.iter().map(|axis| (axis.name.clone(), axis.unit.clone(), axis.path.clone())).collect()
+    }
+
+    fn shown(&self, deviations: Vec<f64>) -> Vec<f64> {
+        let shown = self.parameters.iter().zip(deviations);
+        shown
+            .map(|(parameter, deviation)| if deviation.is_finite() { parameter.shown(deviation) } else { deviation })
+            .collect()
+    }
+
+    fn solution_row<'a>(&self, (number, solution): (usize, &'a Solution)) -> SolutionRow<'a> {
+        let values = self.values(&solution.fit.point).unwrap_or_else(|_| vec![f64::NAN; self.axes.len()]);
+        let values = self.axes.iter().zip(values).map(|(axis, si)| showing(&axis.unit)(si)).collect();
+        let deviations = self.shown(solution.deviations(&Uncertainty::of(&solution.fit)));
+        SolutionRow { number: number + 1, solution, values, deviations }
+    }
+
+    fn parameter_rows(&self, best: &Solution, uncertainty: &Uncertainty) -> Vec<ParameterRow<'_>> {
+        let deviations = self.shown(best.deviations(uncertainty));
+        let one = |(at, (parameter, deviation)): (usize, (&'_ Parameter, f64))| {
+            let value = parameter.shown(best.fit.point[at]);
+            (at, value, deviation, digits(value, deviation))
+        };
+        let rows = self.parameters.iter().zip(deviations).enumerate().map(one);
+        rows.map(|(at, value, deviation, digits)| ParameterRow {
+            parameter: &self.parameters[at],
+            value,
+            deviation,
+            reach: best.reach(),
+            digits,
+            is_held: best.fit.is_held[at],
+        })
+        .collect()
+    }
+
+    fn pairs(&self, best: &Solution, uncertainty: &Uncertainty) -> Vec<tables::Pair<'_>> {
+        let spread = best.scatter().max(1.0);
+        let count = self.parameters.len();
+        let both = (0..count).flat_map(|one| (0..count).map(move |two| (one, two)));
+        let pair = |(one, two): (usize, usize)| {
+            let scale = |at: usize| self.parameters[at].shown(1.0) - self.parameters[at].shown(0.0);
+            let covariance = uncertainty.covariance[one][two] * spread * spread * scale(one) * scale(two);
+            let (first, second) = (&*self.parameters[one].name, &*self.parameters[two].name);
+            tables::Pair { first, second, covariance, correlation: uncertainty.correlation(one, two) }
+        };
+        both.map(pair).collect()
+    }
+
+    fn residual_rows(&self, best: &Solution) -> Vec<ResidualRow<'_>> {
+        let mut residuals = best.fit.residuals.iter();
+        let mut rows = Vec::new();
+        for (number, goal) in self.goals.iter().enumerate() {
+            for (row, target) in goal.targets.iter().enumerate() {
+                let residual = residuals.next().copied().unwrap_or(f64::NAN);
+                let found = target.stated.number + residual * target.tolerance;
+                rows.push(ResidualRow { number: number + 1, row: row + 1, goal, found });
+            }
+        }
+        rows
+    }
+
+    fn search(&self, context: &Context, inputs: &Inputs) -> Result<(Found, usize), Failure> {
+        let bounds: Vec<(f64, f64)> = self.parameters.iter().map(|parameter| parameter.bounds).collect();
+        let starts = search::starts(self.own.clone(), &bounds, self.starts, &context.seed);
+        let (mut memory, mut evaluations) = (Memory::default(), 0);
+        let mut reason: Option<Diagnostic> = None;
+        let mut evaluate = |points: &[Vec<f64>]| -> Result<Answers, Failure> {
+            evaluations += points.len();
+            let found = self.found(points, &mut memory, (context, inputs))?;
+            let one = |found: Result<Vec<f64>, Diagnostic>| match found {
+                Ok(found) => Some(self.residuals(&found)),
+                Err(wrong) => {
+                    reason.get_or_insert(wrong);
+                    None
+                }
+            };
+            Ok(found.into_iter().map(one).collect())
+        };
+        let found = search::from_all((&bounds, self.steps), &starts, &mut evaluate, context.progress)?;
+        if found.solutions.is_empty() {
+            // A mistake of the study's text has its place; what a stage cannot do has none.
+            return Err(match reason {
+                Some(wrong) if wrong.place.is_some() => Faults::from(wrong).into(),
+                Some(wrong) => {
+                    let starts = words::count(self.starts, "start");
+                    Failure::new(format!(
+                        "`{}` has no numbers at any of {starts}, for example: {}",
+                        self.of, wrong.message
+                    ))
+                }
+                None => Failure::new("there is nothing to be met"),
+            });
+        }
+        Ok((found, evaluations))
+    }
+}
+
+impl Stage for Fitting {
+    fn inputs(&self) -> Vec<Port> {
+        self.points.ports().to_vec()
+    }
+
+    fn named(&self) -> Vec<Named> {
+        self.goals.iter().flat_map(Goal::named).collect()
+    }
+
+    fn outputs(&self) -> Vec<Schema> {
+        vec![
+            tables::summary().schema(),
+            tables::parameters().schema(),
+            tables::covariance().schema(),
+            tables::residuals().schema(),
+            tables::solutions(&self.columns(), &self.parameters).schema(),
+        ]
+    }
+
+    fn uses_seed(&self) -> bool {
+        self.starts > 1 || self.own.is_none() || self.points.uses_seed()
+    }
+
+    fn estimate(&self, demand: &Demand, _ahead: &Ahead) -> Estimate {
+        let count = self.parameters.len();
+        let values: usize = self.goals.iter().map(|goal| goal.targets.len()).sum();
+        Estimate::new(true)
+            .rows(demand, tables::summary().schema(), RowCount::exact(1))
+            .rows(demand, tables::parameters().schema(), RowCount::exact(count))
+            .rows(demand, tables::covariance().schema(), RowCount::exact(count * count))
+            .rows(demand, tables::residuals().schema(), RowCount::exact(values))
+            .rows(demand, tables::solutions(&self.columns(), &self.parameters).schema(), RowCount::at_most(self.starts))
+    }
+
+    fn run(&self, context: &Context, inputs: &Inputs) -> Result<Vec<Table>, Failure> {
+        let (found, evaluations) = self.search(context, inputs)?;
+        let best = &found.solutions[0];
+        let uncertainty = Uncertainty::of(&best.fit);
+        let flat = words::flat(&self.parameters, &uncertainty);
+        let rows = self.parameter_rows(best, &uncertainty);
+        let said = words::said(&found, &rows, &flat);
+        if said.is_warning {
+            (context.warn)(said.text.clone().into());
+        }
+        let summary = Summary {
+            said: said.text,
+            solutions: found.meeting(),
+            sum_of_squares: best.fit.sum_of_squares,
+            residuals: best.fit.residuals.len(),
+            free: uncertainty.free,
+            freedom: best.fit.freedom(),
+            scatter: best.scatter(),
+            rank: uncertainty.rank,
+            condition: uncertainty.condition,
+            flat,
+            starts: self.starts,
+            without: found.without,
+            evaluations,
+        };
+        let solutions: Vec<SolutionRow> =
+            found.solutions.iter().enumerate().map(|solution| self.solution_row(solution)).collect();
+        let made: Vec<Result<Table, TableError>> = vec![
+            tables::summary().table(&[summary]),
+            tables::parameters().table(&rows),
+            tables::covariance().table(&self.pairs(best, &uncertainty)),
+            tables::residuals().table(&self.residual_rows(best)),
+            tables::solutions(&self.columns(), &self.parameters).table(&solutions),
+        ];
+        let made = made.into_iter().collect::<Result<Vec<_>, _>>().map_err(|error| Failure::new(error.to_string()))?;
+        Ok(made.into_iter().filter(|table| context.demand.table(table.name())).collect())
+    }
+}
