@@ -15,6 +15,7 @@ pub mod doubt;
 mod ends;
 pub mod face_map;
 mod flanks;
+pub mod friction;
 pub mod load_case;
 mod path;
 mod plain_pairs;
